@@ -1,0 +1,51 @@
+// Counter-based noise: the value belongs to (seed, channel, tick), whatever was drawn before, on every platform.
+// Philox 4x32 with ten rounds (Salmon et al., SC11); normal deviates by Box and Muller.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "elementary.hpp"
+
+namespace giveway::math {
+
+inline std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
+    for (int round = 0; round < 10; ++round) {
+        const std::uint64_t product0 = 0xD2511F53ULL * counter[0];
+        const std::uint64_t product1 = 0xCD9E8D57ULL * counter[2];
+        counter = {static_cast<std::uint32_t>(product1 >> 32U) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(product1),
+                   static_cast<std::uint32_t>(product0 >> 32U) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(product0)};
+        key[0] += 0x9E3779B9U;
+        key[1] += 0xBB67AE85U;
+    }
+    return counter;
+}
+
+// Natural logarithm of a normal number in (0, 1e300]: a = 2^k m, ln m by the atanh series.
+inline double log(double a) {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(a);
+    auto exponent = static_cast<std::int64_t>(bits >> 52U) - 1023;
+    double m = std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL);
+    if (m > 1.4142135623730951) {
+        m *= 0.5;
+        ++exponent;
+    }
+    const double s = (m - 1.0) / (m + 1.0); // |s| < 0.1716
+    const double s2 = s * s;
+    double p = 1.0 / 21.0;
+    for (int n = 19; n >= 1; n -= 2) {
+        p = p * s2 + 1.0 / static_cast<double>(n);
+    }
+    const auto k = static_cast<double>(exponent);
+    return k * detail::ln2_high + (k * detail::ln2_low + 2.0 * s * p);
+}
+
+// Standard normal deviate.
+inline double normal(std::uint32_t seed, std::uint32_t channel, std::uint64_t tick) {
+    const auto words = philox4x32({static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32U), channel, 0U}, {seed, 0x67697665U});
+    const double u1 = (static_cast<double>(words[0]) + 0.5) * 0x1p-32; // in (0, 1)
+    const double u2 = (static_cast<double>(words[1]) + 0.5) * 0x1p-32;
+    return sqrt(-2.0 * log(u1)) * sincos(6.283185307179586 * u2).cos;
+}
+
+} // namespace giveway::math

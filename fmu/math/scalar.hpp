@@ -1,0 +1,42 @@
+// The operations that the plant may use on its scalar type T, for T = double.
+//
+// A scalar type offers + - * /, comparisons through less(), and the functions below. There is no conversion to bool:
+// a comparison gives a mask, and only select() reads it, so a vector of designs takes every path at once.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace giveway::math {
+
+using Mask = bool;
+
+inline Mask less(double a, double b) { return a < b; }
+inline double select(Mask mask, double if_true, double if_false) { return mask ? if_true : if_false; }
+inline double min(double a, double b) { return a < b ? a : b; }
+inline double max(double a, double b) { return a > b ? a : b; }
+inline double abs(double a) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & ~(1ULL << 63U)); }
+// The square root instruction is correctly rounded on every target: no libm call.
+inline double sqrt(double a) { return __builtin_sqrt(a); }
+
+// Nearest integer (ties to even) for |a| < 2^51, by the rounding of an addition.
+inline double round(double a) {
+    constexpr double shift = 6755399441055744.0; // 1.5 * 2^52
+    return (a + shift) - shift;
+}
+
+// 2^k for an integral k in [-1022, 1023].
+inline double exp2_integer(double k) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(static_cast<std::int64_t>(k) + 1023) << 52U);
+}
+
+template <class T> T clamp(T a, T low, T high) { return max(low, min(a, high)); }
+
+// -1, 0 or +1.
+template <class T> T sign(T a) {
+    return select(less(T(0.0), a), T(1.0), select(less(a, T(0.0)), T(-1.0), T(0.0)));
+}
+
+template <class T> T square(T a) { return a * a; }
+
+} // namespace giveway::math
