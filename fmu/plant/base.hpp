@@ -1,0 +1,77 @@
+// Inertia of the base with its rolling wheels and rollers, and the 3x3 solve for its acceleration.
+#pragma once
+
+#include "state.hpp"
+#include "vector2.hpp"
+
+namespace giveway::plant {
+
+// A motion or a wrench of the base: two components in base axes and one about z.
+template <class T> struct Planar3 {
+    T x, y, z;
+    friend Planar3 operator+(Planar3 a, Planar3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Planar3 operator*(T s, Planar3 a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+template <class T> T dot(Planar3<T> a, Planar3<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// Generalised direction of a force along the unit vector `axis` at `point`.
+template <class T> Planar3<T> wrench_direction(Vector2<T> axis, Vector2<T> point) {
+    return {axis.x, axis.y, cross(point, axis)};
+}
+
+// Rows of (15), (16) in the base frame.
+template <class T> Planar3<T> wheel_row(const Parameters<T>& p, int wheel) {
+    return {T(-wheel_sin[wheel]) / p.wheel_radius, T(wheel_cos[wheel]) / p.wheel_radius, p.wheel_distance / p.wheel_radius};
+}
+template <class T> Planar3<T> roller_row(const Parameters<T>& p, int wheel) {
+    return {T(wheel_cos[wheel]) / p.roller_radius, T(wheel_sin[wheel]) / p.roller_radius, T(0.0)};
+}
+
+template <class T> struct Inertia3 {
+    T xx, xy, xz, yy, yz, zz;
+
+    void add(T weight, Planar3<T> u) {
+        xx = xx + weight * u.x * u.x;
+        xy = xy + weight * u.x * u.y;
+        xz = xz + weight * u.x * u.z;
+        yy = yy + weight * u.y * u.y;
+        yz = yz + weight * u.y * u.z;
+        zz = zz + weight * u.z * u.z;
+    }
+
+    // Symmetric and positive definite: L D L^T without pivoting.
+    [[nodiscard]] Planar3<T> solve(Planar3<T> f) const {
+        const T l21 = xy / xx;
+        const T l31 = xz / xx;
+        const T d2 = yy - l21 * xy;
+        const T l32 = (yz - l31 * xy) / d2;
+        const T d3 = zz - l31 * xz - l32 * (yz - l31 * xy);
+        const T y2 = f.y - l21 * f.x;
+        const T y3 = f.z - l31 * f.x - l32 * y2;
+        const T z = y3 / d3;
+        const T y = y2 / d2 - l32 * z;
+        return {f.x / xx - l21 * y - l31 * z, y, z};
+    }
+};
+
+// Body, wheels and rollers, without a bumper plate.
+template <class T> Inertia3<T> base_inertia(const Parameters<T>& p) {
+    Inertia3<T> inertia{p.mass, T(0.0), T(0.0), p.mass, T(0.0), p.yaw_inertia};
+    for (int i = 0; i < wheel_count; ++i) {
+        inertia.add(p.wheel_traction[i] * p.wheel_inertia, wheel_row(p, i));
+        inertia.add(p.wheel_traction[i] * p.roller_inertia, roller_row(p, i));
+    }
+    return inertia;
+}
+
+// J_w^-T w: the wheel torques that balance a wrench in base axes (closed form of (15)).
+template <class T> std::array<T, wheel_count> balancing_torques(const Parameters<T>& p, Planar3<T> w) {
+    std::array<T, wheel_count> torque{};
+    for (int i = 0; i < wheel_count; ++i) {
+        torque[i] = p.wheel_radius * (T(2.0 / 3.0) * (T(wheel_cos[i]) * w.y - T(wheel_sin[i]) * w.x) + w.z / (T(3.0) * p.wheel_distance));
+    }
+    return torque;
+}
+
+} // namespace giveway::plant

@@ -1,0 +1,61 @@
+// A consistent start: at rest with zero bristles, or in steady motion with rollers and drivetrains wound up.
+#pragma once
+
+#include "plant.hpp"
+
+namespace giveway::plant {
+
+template <class T> struct InitialMotion {
+    T x, y, theta;    // world frame
+    T vx, vy, omega;
+    T slider_speed;
+};
+
+template <class T>
+void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Parameters<T>& p, const Derived<T>& d, StateVector<T>& x, Modes<T>& m) {
+    x = {};
+    m = {};
+    x[base_x] = start.x;
+    x[base_y] = start.y;
+    x[base_theta] = start.theta;
+    x[base_vx] = start.vx;
+    x[base_vy] = start.vy;
+    x[base_omega] = start.omega;
+    x[slider_speed] = p.slider_present != 0 ? start.slider_speed : T(0.0);
+    x[weight_speed] = p.rope_attached != 0 ? x[slider_speed] : T(0.0);
+    if (p.slider_present != 0 && p.has_plate() && !p.has_ideal_latch()) {
+        const T outward = p.preload + (p.has_continuous_latch() ? p.latch_force : T(0.0));
+        x[compression] = T(-1.0) * outward / (p.spring_rate + p.stop_stiffness);
+    }
+    m.latched = p.has_ideal_latch() ? T(1.0) : T(0.0);
+
+    const auto heading = math::sincos(start.theta);
+    const Vector2<T> velocity = to_base(heading, Vector2<T>{start.vx, start.vy});
+    const Planar3<T> twist{velocity.x, velocity.y, start.omega};
+    Planar3<T> friction{T(0.0), T(0.0), T(0.0)};
+    for (int i = 0; i < wheel_count; ++i) {
+        const Vector2<T> radial{T(wheel_cos[i]), T(wheel_sin[i])};
+        const T speed = dot(radial, velocity);
+        x[bristle + i] = steady_deflection(p, i, speed);
+        const T force = p.wheel_traction[i] * roller_force(p, i, speed, x[bristle + i]).force;
+        friction = friction + Planar3<T>{force * radial.x, force * radial.y, T(0.0)};
+    }
+    const auto torque = balancing_torques(p, friction);
+    for (int i = 0; i < wheel_count; ++i) {
+        const T speed = dot(wheel_row(p, i), twist);
+        x[motor_speed + i] = speed;
+        x[motor_angle + i] = torque[i] / p.drivetrain_stiffness;
+        m.gear_direction[i] = math::sign(speed);
+    }
+    accept_inputs(x, u, m, p, d);
+
+    const EventVector<T> g = event_indicators(x, u, m, p, d);
+    const auto positive = [](T value) { return math::select(math::less(T(0.0), value), T(1.0), T(0.0)); };
+    m.contact = positive(g[event_contact]);
+    m.rope_taut = positive(g[event_rope]);
+    m.bottom_stop = positive(g[event_bottom_stop]);
+    m.landed = positive(g[event_landing]);
+    m.end_stop = p.has_ideal_latch() ? T(0.0) : T(1.0) - positive(g[event_end_stop]);
+}
+
+} // namespace giveway::plant

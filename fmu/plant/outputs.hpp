@@ -1,0 +1,75 @@
+// What an observer with perfect sensors sees: the truth that estimates are judged against.
+#pragma once
+
+#include "plant.hpp"
+
+namespace giveway::plant {
+
+template <class T> struct Outputs {
+    std::array<T, wheel_count> wheel_speed, wheel_torque, roller_force;
+    T contact_force;                        // magnitude, N
+    T contact_force_x, contact_force_y;     // on the robot, world frame
+    T contact_point_x, contact_point_y;     // world frame
+    T contact_base_x, contact_base_y;       // base frame
+    T nose_x, nose_y;                       // tip of the nose, world frame
+    T bumper_force, rope_tension;
+    T stored_energy;
+};
+
+template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
+    const T half = T(0.5);
+    T energy = half * p.mass * dot(e.velocity, e.velocity) + half * p.yaw_inertia * math::square(x[base_omega]);
+    for (int i = 0; i < wheel_count; ++i) {
+        const T roller_speed = (T(wheel_cos[i]) * e.velocity.x + T(wheel_sin[i]) * e.velocity.y) / p.roller_radius;
+        energy = energy + half * p.wheel_traction[i] * (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
+                 half * p.motor_inertia * math::square(x[motor_speed + i]) +
+                 half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
+        if (p.roller_model == RollerModel::bristle) {
+            energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[bristle + i]);
+        }
+    }
+    if (p.plate_on_robot()) {
+        const Vector2<T> outward{d.plate_x, d.plate_y};
+        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
+        const Vector2<T> speed = e.velocity + x[base_omega] * turned(plate) - x[compression_rate] * outward;
+        energy = energy + half * p.plate_mass * dot(speed, speed);
+    }
+    if (p.slider_present != 0) {
+        energy = energy + half * d.carriage_mass * math::square(x[slider_speed]);
+        if (p.has_plate() && !p.plate_on_robot()) {
+            energy = energy + half * p.plate_mass * math::square(x[slider_speed] - x[compression_rate]);
+        }
+        if (p.rope_attached != 0) {
+            energy = energy + half * p.hanging_mass * math::square(x[weight_speed]);
+        }
+        energy = energy + e.bumper.stored + e.rope.stored + e.contact_force.stored;
+    }
+    return energy;
+}
+
+template <class T>
+Outputs<T> outputs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    const Evaluation<T> e = evaluate(x, u, m, p, d);
+    Outputs<T> o{};
+    o.wheel_speed = e.wheel_speed;
+    o.wheel_torque = e.sensed_torque;
+    o.roller_force = e.roller_force;
+    const Vector2<T> force = to_world(e.heading, e.contact_force.on_robot);
+    o.contact_force = math::sqrt(dot(force, force));
+    o.contact_force_x = force.x;
+    o.contact_force_y = force.y;
+    o.contact_base_x = e.contact.point.x;
+    o.contact_base_y = e.contact.point.y;
+    const Vector2<T> point = to_world(e.heading, e.contact.point);
+    o.contact_point_x = x[base_x] + point.x;
+    o.contact_point_y = x[base_y] + point.y;
+    const T travel = x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.nose_radius;
+    o.nose_x = d.origin_x + travel * d.rail_x;
+    o.nose_y = d.origin_y + travel * d.rail_y;
+    o.bumper_force = e.internal_force;
+    o.rope_tension = e.rope.tension;
+    o.stored_energy = stored_energy(x, e, p, d);
+    return o;
+}
+
+} // namespace giveway::plant

@@ -1,0 +1,267 @@
+// The plant's four functions: rhs, outputs, event_indicators, transition. README.md of this folder has the equations.
+#pragma once
+
+#include "base.hpp"
+#include "bumper.hpp"
+#include "contact.hpp"
+#include "drivetrain.hpp"
+#include "roller.hpp"
+#include "rope.hpp"
+
+namespace giveway::plant {
+
+// Everything that the equations produce on the way to the state's rate.
+template <class T> struct Evaluation {
+    StateVector<T> rate;
+    math::SinCos<T> heading;
+    Vector2<T> velocity; // base axes
+    std::array<T, wheel_count> wheel_speed, sensed_torque, net_torque, roller_force;
+    Contact<T> contact;
+    ContactForce<T> contact_force;
+    BumperForce<T> bumper;
+    RopeForces<T> rope;
+    T internal_force; // between plate and carrier, compressing; of a locked bumper the force that locks it
+};
+
+template <class T> Vector2<T> to_base(const math::SinCos<T>& heading, Vector2<T> world) {
+    return {heading.cos * world.x + heading.sin * world.y, heading.cos * world.y - heading.sin * world.x};
+}
+template <class T> Vector2<T> to_world(const math::SinCos<T>& heading, Vector2<T> base) {
+    return {heading.cos * base.x - heading.sin * base.y, heading.sin * base.x + heading.cos * base.y};
+}
+
+// 1 where the plate moves as one with its carrier.
+template <class T> T locked(const Parameters<T>& p, const Modes<T>& m) {
+    if (!p.has_plate() || p.slider_present == 0) {
+        return T(1.0);
+    }
+    return p.has_ideal_latch() ? m.latched : T(0.0);
+}
+
+namespace detail {
+
+template <class T> Contact<T> find_contact(const StateVector<T>& x, const Parameters<T>& p, const Derived<T>& d,
+                                           const math::SinCos<T>& heading, Vector2<T> velocity) {
+    const bool plate_on_slider = p.has_plate() && !p.plate_on_robot();
+    const T nose_travel = plate_on_slider ? x[slider_position] - x[compression] : x[slider_position];
+    const T nose_speed = plate_on_slider ? x[slider_speed] - x[compression_rate] : x[slider_speed];
+    const Vector2<T> rail{d.rail_x, d.rail_y};
+    const Vector2<T> nose{d.origin_x + nose_travel * rail.x - x[base_x], d.origin_y + nose_travel * rail.y - x[base_y]};
+    return locate_contact(p, d, to_base(heading, nose), to_base(heading, nose_speed * rail), velocity, x[base_omega],
+                          x[compression], x[compression_rate]);
+}
+
+} // namespace detail
+
+template <class T>
+Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    Evaluation<T> e{};
+    e.heading = math::sincos(x[base_theta]);
+    e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
+    const T omega = x[base_omega];
+    const Planar3<T> twist{e.velocity.x, e.velocity.y, omega};
+    const Vector2<T> push = to_base(e.heading, Vector2<T>{u.push_force_x, u.push_force_y});
+    const Vector2<T> push_point{u.push_point_x, u.push_point_y};
+    T loss = T(0.0);
+    T work = dot(push, e.velocity + omega * turned(push_point));
+
+    Inertia3<T> inertia = base_inertia(p);
+    Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
+    for (int i = 0; i < wheel_count; ++i) {
+        const Vector2<T> radial{T(wheel_cos[i]), T(wheel_sin[i])};
+        const T axial_speed = dot(radial, e.velocity);
+        const T rolling_speed = dot(turned(radial), e.velocity);
+        const Planar3<T> row = wheel_row(p, i);
+        e.wheel_speed[i] = dot(row, twist);
+        e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
+        e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
+        const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
+        e.roller_force[i] = p.wheel_traction[i] * roller.force;
+
+        // The parts of the wheel's and roller's accelerations that come from turning (29), (30).
+        const T wheel_turning = T(-1.0) * omega * axial_speed / p.wheel_radius;
+        const T roller_turning = omega * rolling_speed / p.roller_radius;
+        wrench = wrench + (p.wheel_traction[i] * (e.sensed_torque[i] - p.wheel_inertia * wheel_turning)) * row;
+        wrench = wrench + (T(-1.0) * e.roller_force[i]) * Planar3<T>{radial.x, radial.y, T(0.0)};
+        wrench = wrench + (T(-1.0) * p.wheel_traction[i] * p.roller_inertia * roller_turning) * roller_row(p, i);
+
+        const T direction = m.gear_direction[i];
+        e.rate[motor_angle + i] = x[motor_speed + i];
+        e.rate[motor_speed + i] = motor_acceleration(p, direction, e.net_torque[i], x[motor_speed + i]);
+        e.rate[wheel_angle + i] = e.wheel_speed[i];
+        e.rate[bristle + i] = roller.deflection_rate;
+        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
+        loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
+               p.drivetrain_damping * math::square(x[motor_speed + i] - e.wheel_speed[i]) + p.wheel_traction[i] * roller.dissipation;
+    }
+
+    e.contact = detail::find_contact(x, p, d, e.heading, e.velocity);
+    e.contact_force = contact_force(p, e.contact, p.slider_present != 0 ? m.contact : T(0.0));
+    const Vector2<T> force = e.contact_force.on_robot;
+    wrench = wrench + Planar3<T>{force.x, force.y, cross(e.contact.point, force)};
+    const Vector2<T> force_world = to_world(e.heading, force);
+    // What the contact takes from the slider along its rail.
+    const T decelerating = force_world.x * d.rail_x + force_world.y * d.rail_y;
+
+    const T lock = locked(p, m);
+    const T free = T(1.0) - lock;
+    if (p.slider_present != 0) {
+        e.rope = rope_forces(p, d, m, x[slider_position], x[slider_speed], x[weight_drop], x[weight_speed]);
+        const T rail = rail_friction(p, x[slider_speed]);
+        loss = loss + e.rope.dissipation + rail * x[slider_speed] + e.contact_force.dissipation;
+        if (p.has_plate()) {
+            e.bumper = bumper_force(p, m, x[compression], x[compression_rate]);
+            loss = loss + e.bumper.dissipation;
+        }
+        const T drive = e.rope.tension - rail;
+        const T whole = (drive - decelerating) / p.slider_mass;
+        e.rate[slider_position] = x[slider_speed];
+        e.rate[slider_speed] = whole;
+        if (p.has_plate() && !p.plate_on_robot()) {
+            const T alone = (drive - e.bumper.force) / d.carriage_mass;
+            e.rate[slider_speed] = free * alone + lock * whole;
+            e.rate[compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.plate_mass);
+            e.internal_force = free * e.bumper.force + lock * (decelerating + p.plate_mass * whole);
+        }
+        e.rate[compression] = free * x[compression_rate];
+        if (p.rope_attached != 0) {
+            e.rate[weight_drop] = x[weight_speed];
+            e.rate[weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.hanging_mass;
+        }
+    }
+
+    Planar3<T> acceleration;
+    if (p.plate_on_robot()) {
+        // Point mass on a guide along `outward`: across the guide, and along it while locked, it adds to the base's inertia.
+        const Vector2<T> outward{d.plate_x, d.plate_y};
+        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
+        const Planar3<T> along = wrench_direction(outward, plate);
+        const Planar3<T> across = wrench_direction(turned(outward), plate);
+        const T centripetal = omega * omega;
+        inertia.add(p.plate_mass, across);
+        inertia.add(lock * p.plate_mass, along);
+        const T across_turning = T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[compression_rate];
+        const T along_turning = T(-1.0) * centripetal * dot(plate, outward);
+        const T pull = dot(force, outward);
+        wrench = wrench + (T(-1.0) * p.plate_mass * across_turning) * across;
+        wrench = wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.plate_mass * along_turning)) * along;
+        acceleration = inertia.solve(wrench);
+        const T guide = dot(along, acceleration) + along_turning;
+        e.rate[compression_rate] = free * (guide - (pull + e.bumper.force) / p.plate_mass);
+        e.internal_force = free * e.bumper.force + lock * (p.plate_mass * guide - pull);
+    } else {
+        acceleration = inertia.solve(wrench);
+    }
+
+    const Vector2<T> acceleration_world = to_world(e.heading, Vector2<T>{acceleration.x, acceleration.y});
+    e.rate[base_x] = x[base_vx];
+    e.rate[base_y] = x[base_vy];
+    e.rate[base_theta] = omega;
+    e.rate[base_vx] = acceleration_world.x;
+    e.rate[base_vy] = acceleration_world.y;
+    e.rate[base_omega] = acceleration.z;
+    e.rate[work_in] = work;
+    e.rate[dissipated] = loss;
+    e.rate[impulse_x] = force_world.x;
+    e.rate[impulse_y] = force_world.y;
+    return e;
+}
+
+template <class T>
+StateVector<T> rhs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    return evaluate(x, u, m, p, d).rate;
+}
+
+// Zero at an event; see the table in README.md for the meaning of the signs.
+template <class T>
+EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    EventVector<T> g{};
+    const auto heading = math::sincos(x[base_theta]);
+    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
+    const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
+    for (int i = 0; i < wheel_count; ++i) {
+        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
+        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
+    }
+    // What cannot happen keeps a constant sign.
+    const bool slider = p.slider_present != 0;
+    g[event_contact] = slider ? detail::find_contact(x, p, d, heading, velocity).depth : T(-1.0);
+    g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
+    g[event_end_stop] = T(1.0);
+    if (slider && p.has_ideal_latch()) {
+        const T holding = p.latch_force + p.preload - evaluate(x, u, m, p, d).internal_force;
+        g[event_end_stop] = math::select(math::less(T(0.5), m.latched), holding, x[compression]);
+    } else if (slider && p.has_plate()) {
+        g[event_end_stop] = x[compression];
+    }
+    g[event_bottom_stop] = slider && p.has_plate() ? x[compression] - p.travel : T(-1.0);
+    g[event_landing] = slider && p.rope_attached != 0 ? x[weight_drop] - p.drop_height : T(-1.0);
+    return g;
+}
+
+// `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where it jumps.
+template <class T>
+void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventVector<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
+    const Evaluation<T> e = evaluate(x, u, m, p, d);
+    for (int i = 0; i < wheel_count; ++i) {
+        const auto now = math::less(fired[event_gear + i], T(0.0));
+        const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
+        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the torque.
+        const T from_stuck = math::sign(e.net_torque[i]);
+        const T from_sliding = gear_direction_from_rest(p, e.net_torque[i]);
+        x[motor_speed + i] = math::select(now, T(0.0), x[motor_speed + i]);
+        m.gear_direction[i] = math::select(now, math::select(was_stuck, from_stuck, from_sliding), m.gear_direction[i]);
+    }
+    const auto follow = [&](int event, T mode) {
+        return math::select(math::less(T(0.0), fired[event]), T(1.0), math::select(math::less(fired[event], T(0.0)), T(0.0), mode));
+    };
+    m.contact = follow(event_contact, m.contact);
+    m.rope_taut = follow(event_rope, m.rope_taut);
+    m.bottom_stop = follow(event_bottom_stop, m.bottom_stop);
+    m.landed = follow(event_landing, m.landed);
+    if (!p.has_ideal_latch()) {
+        m.end_stop = T(1.0) - follow(event_end_stop, T(1.0) - m.end_stop);
+        return;
+    }
+    // Either way the indicator falls: the latch lets go, or the plate is back and latches in a plastic impact.
+    const auto now = math::less(fired[event_end_stop], T(0.0));
+    const T latching = math::select(now, T(1.0) - m.latched, T(0.0));
+    const T rate = latching * x[compression_rate];
+    T impulse;
+    if (p.plate_on_robot()) {
+        const Vector2<T> outward{d.plate_x, d.plate_y};
+        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
+        const Planar3<T> along = wrench_direction(outward, plate);
+        Inertia3<T> inertia = base_inertia(p);
+        inertia.add(p.plate_mass, wrench_direction(turned(outward), plate));
+        inertia.add(p.plate_mass, along);
+        const Planar3<T> change = inertia.solve((T(-1.0) * p.plate_mass * rate) * along);
+        const Vector2<T> change_world = to_world(e.heading, Vector2<T>{change.x, change.y});
+        x[base_vx] = x[base_vx] + change_world.x;
+        x[base_vy] = x[base_vy] + change_world.y;
+        x[base_omega] = x[base_omega] + change.z;
+        impulse = p.plate_mass * (dot(along, change) + rate);
+    } else {
+        x[slider_speed] = x[slider_speed] - p.plate_mass / p.slider_mass * rate;
+        impulse = p.plate_mass * d.carriage_mass / p.slider_mass * rate;
+    }
+    x[dissipated] = x[dissipated] + T(0.5) * impulse * rate;
+    x[compression] = math::select(now, T(0.0), x[compression]);
+    x[compression_rate] = math::select(now, T(0.0), x[compression_rate]);
+    m.latched = math::select(now, T(1.0) - m.latched, m.latched);
+}
+
+// After the inputs changed: a stuck gear whose motor now pulls more than its stiction breaks away.
+template <class T>
+void accept_inputs(const StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {
+    const auto heading = math::sincos(x[base_theta]);
+    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
+    const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
+    for (int i = 0; i < wheel_count; ++i) {
+        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
+        const T direction = gear_direction_from_rest(p, net_motor_torque(p, u.motor_torque[i], sensed));
+        m.gear_direction[i] = math::select(math::less(math::abs(m.gear_direction[i]), T(0.5)), direction, m.gear_direction[i]);
+    }
+}
+
+} // namespace giveway::plant

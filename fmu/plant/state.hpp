@@ -1,0 +1,60 @@
+// State, inputs and modes of the plant; the table in README.md of this folder is the legend.
+#pragma once
+
+#include <array>
+
+#include "parameters.hpp"
+
+namespace giveway::plant {
+
+enum StateIndex : int {
+    base_x = 0,
+    base_y = 1,
+    base_theta = 2,
+    base_vx = 3,
+    base_vy = 4,
+    base_omega = 5,
+    motor_angle = 6,  // 3
+    motor_speed = 9,  // 3
+    wheel_angle = 12, // 3
+    bristle = 15,     // 3
+    slider_position = 18,
+    slider_speed = 19,
+    weight_drop = 20,
+    weight_speed = 21,
+    compression = 22,
+    compression_rate = 23,
+    work_in = 24,
+    dissipated = 25,
+    impulse_x = 26,
+    impulse_y = 27,
+    state_count = 28,
+};
+
+template <class T> using StateVector = std::array<T, state_count>;
+
+template <class T> struct Inputs {
+    std::array<T, wheel_count> motor_torque;
+    T push_force_x, push_force_y; // world frame, N
+    T push_point_x, push_point_y; // base frame, m
+};
+
+// Constant between events. Numbers, not booleans: lanes differ.
+template <class T> struct Modes {
+    std::array<T, wheel_count> gear_direction; // -1, 0 (stuck), +1
+    T contact, rope_taut, end_stop, bottom_stop, latched, landed; // 0 or 1
+};
+
+enum EventIndex : int {
+    event_gear = 0, // 3
+    event_contact = 3,
+    event_rope = 4,
+    event_end_stop = 5,
+    event_bottom_stop = 6,
+    event_landing = 7,
+    event_count = 8,
+};
+
+template <class T> using EventVector = std::array<T, event_count>;
+
+} // namespace giveway::plant
