@@ -1,0 +1,10 @@
+# What every one of our own targets is compiled with. Contracted or reassociated arithmetic would make
+# results depend on the compiler, so contraction is off everywhere.
+function(giveway_compile_options TARGET)
+  target_compile_options(
+    ${TARGET}
+    PRIVATE -Wall -Wextra -Wconversion -Werror -ffp-contract=off
+            "-ffile-prefix-map=${CMAKE_SOURCE_DIR}=." $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+  set_target_properties(${TARGET} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
+                                             CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+endfunction()

@@ -1,0 +1,1 @@
+// Cargo wants a target to resolve dependencies for; nothing is ever compiled.
