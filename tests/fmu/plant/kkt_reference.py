@@ -1,0 +1,723 @@
+"""The plant once more, in multiplier (KKT) form, to hold fmu/plant against.
+
+Written from (9)-(31) of Kim, Llado, Sentis 2016, with `F_ext` as the wrench of the environment ON the robot, and from the
+element laws in fmu/plant/README.md; not from the C++. It is built differently on purpose: no equation is reduced by hand.
+
+Every body keeps its own coordinates, every joint is a constraint with a multiplier, and each evaluation solves
+
+    | A  J^T | | Q'' |   | forces     |
+    | J   0  | |  l  | = | -J' Q'     |
+
+    Q = (x, y, theta | q_w[3] | q_r[3] | carriage x, y | plate x, y | weight h)
+    J = 6 rolling constraints (19) | carriage on its rail | plate on its guide | plate locked to its carrier
+        | weight locked (no rope) | carriage locked (no slider)
+
+The 28 states of the README are only the carrier of the integration. The internal force of a latched bumper is a multiplier.
+Plain Python floats and `math` around one `numpy.linalg.solve`: a right-hand side takes about 0.1 ms.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+from scipy.integrate import DOP853
+from scipy.optimize import brentq
+
+STATES = 28
+INDICATORS = 8
+KIND_NONE, KIND_SPRING, KIND_MAGNETIC = 0, 1, 2
+MOUNT_SLIDER, MOUNT_ROBOT = 0, 1
+LATCH_CONTINUOUS, LATCH_IDEALISED = 0, 1
+ROLLER_BRISTLE, ROLLER_TANH = 0, 1
+GRAVITY = 9.81
+GEAR, CONTACT, ROPE, BUMPER, BOTTOM, LANDING = 0, 3, 4, 5, 6, 7  # event indices; gears are 0, 1, 2
+
+_COS = [math.cos(2.0 * math.pi * i / 3.0) for i in range(3)]
+_SIN = [math.sin(2.0 * math.pi * i / 3.0) for i in range(3)]
+
+
+@dataclass
+class Parameters:
+    """SI units. The defaults are Trikey's numbers where the robot file has them."""
+
+    mass: float = 34.7
+    yaw_inertia: float = 1.31
+    wheel_radius: float = 0.1016
+    wheel_distance: float = 0.24
+    wheel_inertia: float = 0.002798
+    wheel_traction: list[float] = field(default_factory=lambda: [1.0, 1.0, 1.0])
+    wheel_load: list[float] = field(default_factory=lambda: [1.0, 1.0, 1.0])  # over the nominal normal load
+    roller_model: int = ROLLER_BRISTLE
+    roller_radius: float = 0.009525
+    roller_inertia: float = 1.23e-6
+    roller_torque: float = 0.2  # B_r, N m
+    roller_slope: float = 0.4  # alpha, s/rad
+    roller_presliding_stiffness: list[float] = field(default_factory=lambda: [25900.0] * 3)  # sigma0, N/m
+    roller_presliding_damping: float = 20.0  # sigma1, N s/m
+    roller_stribeck_speed: float = 0.002  # v_S, m/s
+    roller_elastic_fraction: float = 0.7  # rho_ba
+    motor_inertia: float = 0.0523
+    drivetrain_stiffness: float = 668.0
+    drivetrain_damping: float = 1.0
+    gear_coulomb: float = 2.8
+    gear_stiction: float = 3.0
+    gear_viscous: float = 0.02
+    torque_limit: float = 20.0
+    slider_present: int = 1
+    slider_mass: float = 9.08
+    rail_direction: float = 0.0  # psi, rad
+    target_x: float = -0.176092
+    target_y: float = 0.0
+    run_up: float = 0.0382
+    nose_radius: float = 0.03
+    slider_friction: float = 1.0
+    slider_friction_speed: float = 0.01
+    slider_damping: float = 0.0
+    rope_attached: int = 1
+    hanging_mass: float = 4.54
+    rope_stiffness: float = 1.0e4
+    rope_damping: float = 150.0
+    drop_height: float = 0.3
+    floor_stiffness: float = 1.0e5
+    floor_damping: float = 1.0  # e_f, s/m
+    bumper_kind: int = KIND_SPRING
+    bumper_mount: int = MOUNT_SLIDER
+    latch_model: int = LATCH_CONTINUOUS
+    plate_mass: float = 0.5
+    preload: float = 2.0
+    spring_rate: float = 723.0
+    bumper_damping: float = 5.0
+    guide_friction: float = 0.5
+    guide_friction_speed: float = 0.01
+    travel: float = 0.12
+    stop_stiffness: float = 2.0e4
+    stop_damping: float = 0.5
+    latch_force: float = 33.0
+    latch_gap: float = 0.001
+    mount_x: float = -0.25
+    mount_y: float = 0.0
+    mount_azimuth: float = math.pi  # of the outward unit vector a, base frame
+    contact_stiffness: float = 1.06e4
+    contact_damping: float = 0.3
+    contact_friction: float = 0.0
+    contact_friction_speed: float = 0.01
+    outline: list[tuple[float, float]] = field(
+        default_factory=lambda: [(0.352184, 0.0), (-0.176092, 0.305), (-0.176092, -0.305)]
+    )
+    # Deliberate faults: a comparison against a faulty reference must turn red.
+    fault_velocity_term: float = 1.0  # factor on J' Q' of the rolling constraints; -1 flips c(nu)
+    fault_contact_moment: float = 1.0  # factor on the contact force's moment on the base
+    fault_external_sign: float = 1.0  # factor on the wrench on the base; -1 is the paper's printed (31)
+
+
+@dataclass
+class Inputs:
+    motor_torque: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    push_force: tuple[float, float] = (0.0, 0.0)  # world frame
+    push_point: tuple[float, float] = (0.0, 0.0)  # base frame
+
+
+@dataclass
+class Modes:
+    gear: list[int] = field(default_factory=lambda: [0, 0, 0])
+    contact: int = 0
+    rope_taut: int = 0
+    end_stop: int = 0
+    bottom_stop: int = 0
+    latched: int = 0
+    landed: int = 0
+
+    def copy(self) -> "Modes":
+        return replace(self, gear=list(self.gear))
+
+    def as_list(self) -> list[int]:
+        return [*self.gear, *(getattr(self, f.name) for f in fields(self)[1:])]
+
+
+def one_sided(k: float, depth: float, rate: float, e: float) -> float:
+    """Hunt-Crossley spring of exponent 1 that never pulls."""
+    return max(0.0, k * depth * (1.0 + e * rate))
+
+
+def closest_on_outline(
+    px: float, py: float, outline: list[tuple[float, float]]
+) -> tuple[float, float, float, float, float]:
+    """Signed distance (negative inside), closest point and outward normal: all in the outline's frame.
+
+    Brute force: the nearest of the nearest points of all edges; inside by winding of the crossings.
+    """
+    best = (math.inf, 0.0, 0.0, 0.0, 0.0)
+    inside = False
+    ax, ay = outline[-1]
+    for bx, by in outline:
+        if (ay > py) != (by > py) and px < ax + (py - ay) * (bx - ax) / (by - ay):
+            inside = not inside
+        ex, ey = bx - ax, by - ay
+        share = min(1.0, max(0.0, ((px - ax) * ex + (py - ay) * ey) / (ex * ex + ey * ey)))
+        cx, cy = ax + share * ex, ay + share * ey
+        distance = math.hypot(px - cx, py - cy)
+        if distance < best[0]:
+            best = (distance, cx, cy, ex, ey)
+        ax, ay = bx, by
+    distance, cx, cy, ex, ey = best
+    if inside or distance < 1e-12:
+        length = math.hypot(ex, ey)
+        return -distance, cx, cy, ey / length, -ex / length
+    return distance, cx, cy, (px - cx) / distance, (py - cy) / distance
+
+
+class Reference:
+    """The plant with one set of parameters."""
+
+    N_Q = 14
+    RAIL, GUIDE, LOCK, LOCK_WEIGHT, LOCK_CARRIAGE = 20, 21, 22, 23, 24
+    SIZE = 25
+
+    def __init__(self, p: Parameters) -> None:
+        self.p = p
+        self.ex, self.ey = math.cos(p.rail_direction), math.sin(p.rail_direction)
+        self.on_robot = p.bumper_mount == MOUNT_ROBOT and p.bumper_kind != KIND_NONE
+        self.has_latch = p.bumper_kind == KIND_MAGNETIC
+        self.ideal = self.has_latch and p.latch_model == LATCH_IDEALISED
+        self.carriage_mass = p.slider_mass - (0.0 if self.on_robot else p.plate_mass)
+        self.aim = (
+            p.target_x - self.ex * (p.run_up + p.nose_radius),
+            p.target_y - self.ey * (p.run_up + p.nose_radius),
+        )
+        self.rope_preload = p.hanging_mass * GRAVITY / p.rope_stiffness
+        self.axis = (math.cos(p.mount_azimuth), math.sin(p.mount_azimuth))
+        masses = [p.mass, p.mass, p.yaw_inertia]
+        masses += [p.wheel_inertia] * 3 + [p.roller_inertia] * 3
+        masses += [self.carriage_mass] * 2 + [p.plate_mass] * 2 + [p.hanging_mass]
+        self.masses = np.array(masses)
+        self.template = np.zeros((self.SIZE, self.SIZE))
+        self.template[range(self.N_Q), range(self.N_Q)] = masses
+        for i in range(3):
+            if p.wheel_traction[i]:
+                self._fill(self.template, 14 + i, {3 + i: -1.0})
+                self._fill(self.template, 17 + i, {6 + i: -1.0})
+            else:  # a wheel without grip: its two constraints do not exist
+                self.template[14 + i, 14 + i] = self.template[17 + i, 17 + i] = 1.0
+        self._fill(self.template, self.RAIL, {9: -self.ey, 10: self.ex})
+        if not self.on_robot:
+            self._fill(self.template, self.GUIDE, {11: -self.ey, 12: self.ex})
+
+    @staticmethod
+    def _fill(matrix: np.ndarray, row: int, entries: dict[int, float]) -> None:
+        for column, value in entries.items():
+            matrix[row, column] = matrix[column, row] = value
+
+    # --- Geometry ------------------------------------------------------------------------------------------------
+
+    def plate_locked(self, modes: Modes) -> bool:
+        p = self.p
+        return p.bumper_kind == KIND_NONE or not p.slider_present or bool(self.ideal and modes.latched)
+
+    def plate(self, x: np.ndarray) -> tuple[float, ...]:
+        """Plate position and velocity, world frame; its outward axis."""
+        c, cdot = x[22], x[23]
+        if not self.on_robot:
+            along, rate = x[18] - c, x[19] - cdot
+            return (
+                self.aim[0] + self.ex * along,
+                self.aim[1] + self.ey * along,
+                self.ex * rate,
+                self.ey * rate,
+                self.ex,
+                self.ey,
+            )
+        p = self.p
+        ct, st = math.cos(x[2]), math.sin(x[2])
+        ax, ay = ct * self.axis[0] - st * self.axis[1], st * self.axis[0] + ct * self.axis[1]
+        rx = ct * p.mount_x - st * p.mount_y - ax * c
+        ry = st * p.mount_x + ct * p.mount_y - ay * c
+        vx = x[3] - x[5] * ry - ax * cdot
+        vy = x[4] + x[5] * rx - ay * cdot
+        return x[0] + rx, x[1] + ry, vx, vy, ax, ay
+
+    def nose(self, x: np.ndarray) -> tuple[float, float, float, float]:
+        """Centre of the nose disc and its velocity, world frame."""
+        along, rate = (x[18], x[19]) if self.on_robot else (x[18] - x[22], x[19] - x[23])
+        return (
+            self.aim[0] + self.ex * along,
+            self.aim[1] + self.ey * along,
+            self.ex * rate,
+            self.ey * rate,
+        )
+
+    def contact(self, x: np.ndarray) -> tuple[float, ...]:
+        """Penetration, its rate, slip speed, closest point and outward normal (world frame)."""
+        p = self.p
+        cx, cy, ux, uy = self.nose(x)
+        if self.on_robot:
+            px, py, vx, vy, nx, ny = self.plate(x)
+            distance = (cx - px) * nx + (cy - py) * ny
+            qx, qy = cx - distance * nx, cy - distance * ny
+            bx, by = vx - x[5] * (qy - py), vy + x[5] * (qx - px)
+        else:
+            ct, st = math.cos(x[2]), math.sin(x[2])
+            dx, dy = cx - x[0], cy - x[1]
+            distance, lx, ly, mx, my = closest_on_outline(ct * dx + st * dy, ct * dy - st * dx, p.outline)
+            rx, ry = ct * lx - st * ly, st * lx + ct * ly
+            qx, qy = x[0] + rx, x[1] + ry
+            nx, ny = ct * mx - st * my, st * mx + ct * my
+            bx, by = x[3] - x[5] * ry, x[4] + x[5] * rx
+        depth_rate = (bx - ux) * nx + (by - uy) * ny
+        slip = -(bx - ux) * ny + (by - uy) * nx
+        return p.nose_radius - distance, depth_rate, slip, qx, qy, nx, ny
+
+    # --- Element laws --------------------------------------------------------------------------------------------
+
+    def rope(self, x: np.ndarray) -> tuple[float, float]:
+        return self.rope_preload + x[20] - x[18], x[21] - x[19]
+
+    def roller(self, i: int, z: float, v: float) -> tuple[float, float]:
+        """Friction force at the floor and the bristle's rate."""
+        p = self.p
+        level = p.wheel_load[i] * p.roller_torque / p.roller_radius
+        moving = math.tanh(p.roller_slope * abs(v) / p.roller_radius)
+        if p.roller_model == ROLLER_TANH:
+            return level * math.copysign(moving, v), 0.0
+        w = math.exp(-((v / p.roller_stribeck_speed) ** 2))
+        g = level * (w + (1.0 - w) * moving)
+        stiffness = p.roller_presliding_stiffness[i]
+        share = stiffness * abs(z) / g
+        creep = 0.0
+        if z * v > 0.0:
+            y = (share - p.roller_elastic_fraction) / (1.0 - p.roller_elastic_fraction)
+            y = min(1.0, max(0.0, y))
+            creep = y * y * (3.0 - 2.0 * y)
+        zdot = v * (1.0 - creep * share)
+        return stiffness * z + p.roller_presliding_damping * zdot, zdot
+
+    def latch(self, c: float) -> float:
+        if not self.has_latch or self.ideal:
+            return 0.0
+        return self.p.latch_force / (1.0 + max(c, 0.0) / self.p.latch_gap) ** 2
+
+    # --- Right-hand side -----------------------------------------------------------------------------------------
+
+    def evaluate(self, t: float, state: np.ndarray, u: Inputs, modes: Modes) -> dict:
+        """Everything at one instant: rates, forces, powers."""
+        p = self.p
+        x = state.tolist() if isinstance(state, np.ndarray) else list(state)
+        theta, vx, vy, omega = x[2], x[3], x[4], x[5]
+        ct, st = math.cos(theta), math.sin(theta)
+        matrix = self.template.copy()
+        load = [0.0] * self.SIZE
+        rate = [0.0] * STATES
+        work = dissipated = 0.0
+
+        # Base, wheels, rollers: (11), (12), (19) and d/dt of (19), world frame.
+        torque, friction = [], []
+        for i in range(3):
+            ci, si = ct * _COS[i] - st * _SIN[i], st * _COS[i] + ct * _SIN[i]
+            v_roll = -si * vx + ci * vy
+            v_radial = ci * vx + si * vy
+            wheel_speed = (v_roll + p.wheel_distance * omega) / p.wheel_radius
+            if p.wheel_traction[i]:
+                row = 14 + i
+                for column, value in ((0, -si), (1, ci), (2, p.wheel_distance)):
+                    matrix[row, column] = matrix[column, row] = value / p.wheel_radius
+                load[row] = p.fault_velocity_term * omega * v_radial / p.wheel_radius
+                row = 17 + i
+                for column, value in ((0, ci), (1, si)):
+                    matrix[row, column] = matrix[column, row] = value / p.roller_radius
+                load[row] = -p.fault_velocity_term * omega * v_roll / p.roller_radius
+
+            twist_rate = x[9 + i] - wheel_speed
+            t_i = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * twist_rate
+            torque.append(t_i)
+            load[3 + i] = t_i
+            f_i, zdot = self.roller(i, x[15 + i], v_radial)
+            friction.append(f_i)
+            load[6 + i] = -p.roller_radius * f_i
+            rate[12 + i] = wheel_speed
+            rate[15 + i] = zdot
+            dissipated += p.drivetrain_damping * twist_rate**2
+            if p.wheel_traction[i]:
+                stored_rate = p.roller_presliding_stiffness[i] * x[15 + i] * zdot if p.roller_model == ROLLER_BRISTLE else 0.0
+                dissipated += f_i * v_radial - stored_rate
+
+            drive = max(-p.torque_limit, min(p.torque_limit, u.motor_torque[i]))
+            direction = modes.gear[i]
+            if direction:
+                w_m = x[9 + i]
+                gear = p.gear_coulomb * direction + p.gear_viscous * w_m
+                rate[6 + i] = w_m
+                rate[9 + i] = (drive - t_i - gear) / p.motor_inertia
+                work += drive * w_m
+                dissipated += gear * w_m
+
+        # External push: force at a point of the base.
+        fx, fy = u.push_force
+        rx = ct * u.push_point[0] - st * u.push_point[1]
+        ry = st * u.push_point[0] + ct * u.push_point[1]
+        load[0] += p.fault_external_sign * fx
+        load[1] += p.fault_external_sign * fy
+        load[2] += p.fault_external_sign * (rx * fy - ry * fx)
+        work += fx * (vx - omega * ry) + fy * (vy + omega * rx)
+
+        # Slider, rope, weight.
+        tension = 0.0
+        if p.slider_present:
+            if p.rope_attached:
+                ext, ext_rate = self.rope(x)
+                if modes.rope_taut:
+                    tension = max(0.0, p.rope_stiffness * ext + p.rope_damping * ext_rate)
+                    dissipated += (tension - p.rope_stiffness * ext) * ext_rate
+                floor = 0.0
+                if modes.landed:
+                    depth = x[20] - p.drop_height
+                    floor = one_sided(p.floor_stiffness, depth, x[21], p.floor_damping)
+                    dissipated += (floor - p.floor_stiffness * depth) * x[21]
+                load[13] = p.hanging_mass * GRAVITY - tension - floor
+            rail = p.slider_friction * math.tanh(x[19] / p.slider_friction_speed) + p.slider_damping * x[19]
+            dissipated += rail * x[19]
+            load[9] += self.ex * (tension - rail)
+            load[10] += self.ey * (tension - rail)
+        if not (p.slider_present and p.rope_attached):
+            self._fill(matrix, self.LOCK_WEIGHT, {13: 1.0})
+        else:
+            matrix[self.LOCK_WEIGHT, self.LOCK_WEIGHT] = 1.0
+        if not p.slider_present:
+            self._fill(matrix, self.LOCK_CARRIAGE, {9: self.ex, 10: self.ey})
+        else:
+            matrix[self.LOCK_CARRIAGE, self.LOCK_CARRIAGE] = 1.0
+
+        # Plate on its guide. `out` is the direction in which the bumper extends, `across` the guide's normal.
+        px, py, pvx, pvy, ox, oy = self.plate(x)
+        gx, gy = px - x[0], py - x[1]
+        if self.on_robot:
+            wx, wy = -oy, ox
+            rvx, rvy = pvx - vx, pvy - vy
+            gap, lever = gx * ox + gy * oy, gx * wx + gy * wy
+            # across . (P - X) = const, differentiated twice
+            self._fill(matrix, self.GUIDE, {0: -wx, 1: -wy, 2: -gap, 11: wx, 12: wy})
+            load[self.GUIDE] = 2.0 * omega * (rvx * ox + rvy * oy) + lever * omega**2
+            extension = {0: -ox, 1: -oy, 2: lever, 11: ox, 12: oy}
+            centrifugal = 2.0 * omega * (rvx * wx + rvy * wy) - gap * omega**2
+        else:
+            extension = {9: -ox, 10: -oy, 11: ox, 12: oy}
+            centrifugal = 0.0
+        locked = self.plate_locked(modes)
+        if locked:
+            self._fill(matrix, self.LOCK, extension)
+            load[self.LOCK] = -centrifugal
+        else:
+            c, cdot = x[22], x[23]
+            force = p.preload + p.spring_rate * c + p.bumper_damping * cdot + self.latch(c)
+            slide = p.guide_friction * math.tanh(cdot / p.guide_friction_speed)
+            force += slide
+            dissipated += (p.bumper_damping * cdot + slide) * cdot
+            if modes.end_stop and not self.ideal:
+                stop = one_sided(p.stop_stiffness, -c, -cdot, p.stop_damping)
+                force -= stop
+                dissipated += (stop - p.stop_stiffness * -c) * -cdot
+            if modes.bottom_stop:
+                depth = c - p.travel
+                stop = one_sided(p.stop_stiffness, depth, cdot, p.stop_damping)
+                force += stop
+                dissipated += (stop - p.stop_stiffness * depth) * cdot
+            matrix[self.LOCK, self.LOCK] = 1.0
+            for column, value in extension.items():
+                load[column] += force * value
+
+        # Contact: force on the robot, its reaction on the nose.
+        cfx = cfy = 0.0
+        qx = qy = 0.0
+        normal = 0.0
+        if p.slider_present:
+            depth, depth_rate, slip, qx, qy, nx, ny = self.contact(x)
+            if modes.contact:
+                normal = one_sided(p.contact_stiffness, depth, depth_rate, p.contact_damping)
+                shear = p.contact_friction * normal * math.tanh(slip / p.contact_friction_speed)
+                cfx, cfy = -normal * nx + shear * ny, -normal * ny - shear * nx
+                dissipated += (normal - p.contact_stiffness * depth) * depth_rate + shear * slip
+                s = p.fault_external_sign
+                if self.on_robot:  # the plate takes the force; its guide takes the moment about the plate
+                    load[11] += s * cfx
+                    load[12] += s * cfy
+                    load[2] += s * p.fault_contact_moment * ((qx - px) * cfy - (qy - py) * cfx)
+                    load[9] -= cfx
+                    load[10] -= cfy
+                else:
+                    load[0] += s * cfx
+                    load[1] += s * cfy
+                    load[2] += s * p.fault_contact_moment * ((qx - x[0]) * cfy - (qy - x[1]) * cfx)
+                    load[11] -= cfx
+                    load[12] -= cfy
+
+        solution = np.linalg.solve(matrix, load).tolist()
+        rate[0:3] = [vx, vy, omega]
+        rate[3:6] = solution[0:3]
+        if p.slider_present:
+            rate[18], rate[19] = x[19], solution[9] * self.ex + solution[10] * self.ey
+            if p.rope_attached:
+                rate[20], rate[21] = x[21], solution[13]
+            if not locked:
+                rate[22] = x[23]
+                rate[23] = -centrifugal - sum(value * solution[k] for k, value in extension.items())
+        rate[24], rate[25] = work, dissipated
+        rate[26], rate[27] = cfx, cfy
+        return {
+            "rate": rate,
+            "torque": torque,
+            "roller_force": friction,
+            "contact_force": (cfx, cfy),
+            "contact_normal": normal,
+            "contact_point": (qx, qy),
+            "tension": tension,
+            "internal_force": -solution[self.LOCK] if locked else force,
+        }
+
+    def rhs(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> np.ndarray:
+        return np.array(self.evaluate(t, x, u, modes)["rate"])
+
+    # --- Energy --------------------------------------------------------------------------------------------------
+
+    def stored_energy(self, x: np.ndarray, modes: Modes) -> float:
+        p = self.p
+        ct, st = math.cos(x[2]), math.sin(x[2])
+        energy = 0.5 * p.mass * (x[3] ** 2 + x[4] ** 2) + 0.5 * p.yaw_inertia * x[5] ** 2
+        for i in range(3):
+            ci, si = ct * _COS[i] - st * _SIN[i], st * _COS[i] + ct * _SIN[i]
+            if p.wheel_traction[i]:
+                wheel = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
+                roller = (ci * x[3] + si * x[4]) / p.roller_radius
+                energy += 0.5 * p.wheel_inertia * wheel**2 + 0.5 * p.roller_inertia * roller**2
+            energy += 0.5 * p.motor_inertia * x[9 + i] ** 2
+            energy += 0.5 * p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) ** 2
+            if p.roller_model == ROLLER_BRISTLE:
+                energy += 0.5 * p.roller_presliding_stiffness[i] * x[15 + i] ** 2
+        _, _, pvx, pvy, _, _ = self.plate(x)
+        energy += 0.5 * self.carriage_mass * x[19] ** 2 + 0.5 * p.plate_mass * (pvx**2 + pvy**2)
+        if not p.slider_present:
+            return energy
+        if p.rope_attached:
+            energy += 0.5 * p.hanging_mass * x[21] ** 2 - p.hanging_mass * GRAVITY * x[20]
+            if modes.rope_taut:
+                energy += 0.5 * p.rope_stiffness * self.rope(x)[0] ** 2
+            if modes.landed:
+                energy += 0.5 * p.floor_stiffness * (x[20] - p.drop_height) ** 2
+        if p.bumper_kind != KIND_NONE:
+            c = x[22]
+            energy += p.preload * c + 0.5 * p.spring_rate * c**2
+            if self.has_latch and not self.ideal:
+                energy += p.latch_force * (c if c < 0.0 else p.latch_gap * c / (p.latch_gap + c))
+            if modes.end_stop and not self.ideal:
+                energy += 0.5 * p.stop_stiffness * c**2
+            if modes.bottom_stop:
+                energy += 0.5 * p.stop_stiffness * (c - p.travel) ** 2
+        if modes.contact:
+            energy += 0.5 * p.contact_stiffness * self.contact(x)[0] ** 2
+        return energy
+
+    # --- Events --------------------------------------------------------------------------------------------------
+
+    def gear_surplus(self, i: int, x: np.ndarray, u: Inputs) -> float:
+        """Motor torque less drivetrain torque: what the gear friction has to hold."""
+        p = self.p
+        ci, si = math.cos(x[2] + 2.0 * math.pi * i / 3.0), math.sin(x[2] + 2.0 * math.pi * i / 3.0)
+        wheel_speed = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
+        torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (x[9 + i] - wheel_speed)
+        return max(-p.torque_limit, min(p.torque_limit, u.motor_torque[i])) - torque
+
+    def indicators(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> list[float]:
+        p = self.p
+        g = [0.0] * INDICATORS
+        for i in range(3):
+            direction = modes.gear[i]
+            g[i] = x[9 + i] * direction if direction else p.gear_stiction - abs(self.gear_surplus(i, x, u))
+        if p.slider_present:
+            g[CONTACT] = self.contact(x)[0]
+            if p.rope_attached:
+                g[ROPE] = self.rope(x)[0]
+                g[LANDING] = x[20] - p.drop_height
+            if p.bumper_kind != KIND_NONE:
+                if self.ideal and modes.latched:
+                    g[BUMPER] = p.latch_force + p.preload - self.evaluate(t, x, u, modes)["internal_force"]
+                else:
+                    g[BUMPER] = x[22]
+                g[BOTTOM] = x[22] - p.travel
+        return g
+
+    def event_direction(self, index: int, modes: Modes) -> int:
+        """Sign of the crossing that is an event in the present modes; 0 = none can happen."""
+        p = self.p
+        if index < 3:
+            return -1
+        if not p.slider_present:
+            return 0
+        if index == CONTACT:
+            return -1 if modes.contact else 1
+        if index in (ROPE, LANDING):
+            engaged = modes.rope_taut if index == ROPE else modes.landed
+            return (-1 if engaged else 1) if p.rope_attached else 0
+        if p.bumper_kind == KIND_NONE:
+            return 0
+        if index == BUMPER:
+            if self.ideal:
+                return -1
+            return 1 if modes.end_stop else -1
+        return 0 if self.plate_locked(modes) else (-1 if modes.bottom_stop else 1)
+
+    def transition(
+        self, t: float, x: np.ndarray, u: Inputs, modes: Modes, index: int
+    ) -> tuple[np.ndarray, Modes]:
+        x, modes = np.array(x), modes.copy()
+        if index < 3:
+            if modes.gear[index]:
+                x[9 + index] = 0.0
+            surplus = self.gear_surplus(index, x, u)
+            stays = modes.gear[index] and abs(surplus) <= self.p.gear_stiction
+            modes.gear[index] = 0 if stays else int(math.copysign(1.0, surplus))
+        elif index == CONTACT:
+            modes.contact = 1 - modes.contact
+        elif index == ROPE:
+            modes.rope_taut = 1 - modes.rope_taut
+        elif index == BUMPER:
+            if not self.ideal:
+                modes.end_stop = 1 - modes.end_stop
+            elif modes.latched:
+                modes.latched = 0
+            else:
+                x = self.relatch(x)
+                modes.latched = 1
+        elif index == BOTTOM:
+            modes.bottom_stop = 1 - modes.bottom_stop
+        else:
+            modes.landed = 1 - modes.landed
+        return x, modes
+
+    def relatch(self, x: np.ndarray) -> np.ndarray:
+        """Plastic impact of plate and carrier: A dQ' + J^T impulses = 0 with the lock closed afterwards."""
+        p = self.p
+        x = np.array(x)
+        x[22] = 0.0
+        still = Modes()
+        before = self.stored_energy(x, still)
+        # The rows of J do not depend on the modes except for the lock, which the magnetic bumper closes when latched.
+        theta = x[2]
+        rows = np.zeros((9, self.N_Q))
+        for i in range(3):
+            ci, si = math.cos(theta + 2.0 * math.pi * i / 3.0), math.sin(theta + 2.0 * math.pi * i / 3.0)
+            if p.wheel_traction[i]:
+                rows[i, [0, 1, 2, 3 + i]] = -si / p.wheel_radius, ci / p.wheel_radius, 0.0, -1.0
+                rows[i, 2] = p.wheel_distance / p.wheel_radius
+                rows[3 + i, [0, 1, 6 + i]] = ci / p.roller_radius, si / p.roller_radius, -1.0
+        rows[6, [9, 10]] = -self.ey, self.ex
+        px, py, pvx, pvy, ox, oy = self.plate(x)
+        gx, gy = px - x[0], py - x[1]
+        if self.on_robot:
+            rows[7, [0, 1, 2, 11, 12]] = oy, -ox, -(gx * ox + gy * oy), -oy, ox
+            rows[8, [0, 1, 2, 11, 12]] = -ox, -oy, -gx * oy + gy * ox, ox, oy
+        else:
+            rows[7, [11, 12]] = -self.ey, self.ex
+            rows[8, [9, 10, 11, 12]] = -ox, -oy, ox, oy
+        speeds = np.zeros(self.N_Q)
+        speeds[0:3] = x[3:6]
+        for i in range(3):
+            speeds[3 + i] = rows[i, 0:3] @ x[3:6]
+            speeds[6 + i] = rows[3 + i, 0:3] @ x[3:6]
+        speeds[9:11] = x[19] * self.ex, x[19] * self.ey
+        speeds[11:13] = pvx, pvy
+        rows = rows[np.any(rows != 0.0, axis=1)]  # without those of lifted wheels
+        weights = rows / self.masses
+        after = speeds - weights.T @ np.linalg.solve(weights @ rows.T, rows @ speeds)
+        x[3:6] = after[0:3]
+        x[19] = after[9] * self.ex + after[10] * self.ey
+        x[23] = 0.0
+        x[25] += before - self.stored_energy(x, still)
+        return x
+
+    def settle(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> Modes:
+        """A stuck gear that a jump (of the input, of a speed) has overloaded breaks away at once."""
+        modes = modes.copy()
+        for i in range(3):
+            surplus = self.gear_surplus(i, x, u)
+            if modes.gear[i] == 0 and abs(surplus) > self.p.gear_stiction:
+                modes.gear[i] = int(math.copysign(1.0, surplus))
+        return modes
+
+    # --- Simulation ----------------------------------------------------------------------------------------------
+
+    def simulate(
+        self,
+        x0: np.ndarray,
+        modes: Modes,
+        times: np.ndarray,
+        inputs: list[tuple[float, Inputs]],
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+    ) -> "Trajectory":
+        """States at `times`. `inputs`: (from time, value), the first from times[0]. Restarted at inputs and events."""
+        times = np.asarray(times, dtype=float)
+        x, t = np.array(x0, dtype=float), float(times[0])
+        states = np.empty((len(times), STATES))
+        events: list[tuple[float, int]] = []
+        history: list[Modes] = []
+        done = 0
+        evaluations = 0
+        for k, (start, u) in enumerate(inputs):
+            end = min(inputs[k + 1][0], times[-1]) if k + 1 < len(inputs) else times[-1]
+            while t < end:
+                modes = self.settle(t, x, u, modes)
+                solver = DOP853(
+                    lambda at, y: self.evaluate(at, y, u, modes)["rate"], t, x, end, rtol=rtol, atol=atol
+                )
+                directions = [self.event_direction(i, modes) for i in range(INDICATORS)]
+                old = self.indicators(t, x, u, modes)
+                event = None
+                while solver.status == "running":
+                    solver.step()
+                    new = self.indicators(solver.t, solver.y.tolist(), u, modes)
+                    crossed = [
+                        i
+                        for i in range(INDICATORS)
+                        if (directions[i] > 0 and old[i] <= 0.0 < new[i])
+                        or (directions[i] < 0 and old[i] >= 0.0 > new[i])
+                    ]
+                    dense = solver.dense_output() if crossed else None
+                    roots = []
+                    for i in crossed:
+                        def value(at: float, i: int = i) -> float:
+                            return self.indicators(at, dense(at), u, modes)[i]
+
+                        # The start of a step may be the zero of the last event: keep away from it.
+                        left = solver.t_old if old[i] != 0.0 else solver.t_old + 1e-12
+                        if value(left) * value(solver.t) > 0.0:
+                            roots.append((left, i))
+                        else:
+                            roots.append((brentq(value, left, solver.t, xtol=1e-14, rtol=1e-15), i))
+                    stop = min(roots)[0] if roots else solver.t
+                    upto = np.searchsorted(times, stop, side="right")
+                    if upto > done:
+                        dense = dense or solver.dense_output()
+                        states[done:upto] = dense(times[done:upto]).T
+                        history += [modes] * (upto - done)
+                        done = upto
+                    if roots:
+                        event = min(roots)
+                        break
+                    old = new
+                evaluations += solver.nfev
+                if event is None:
+                    t, x = solver.t, np.array(solver.y)
+                    continue
+                t, x = event[0], dense(event[0])
+                x, modes = self.transition(t, x, u, modes, event[1])
+                events.append(event)
+        return Trajectory(times, states, history, events, modes, evaluations)
+
+
+@dataclass
+class Trajectory:
+    times: np.ndarray
+    states: np.ndarray
+    modes: list[Modes]
+    events: list[tuple[float, int]]
+    final_modes: Modes
+    evaluations: int

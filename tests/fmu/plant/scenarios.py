@@ -1,0 +1,102 @@
+"""Situations used by several tests: parameters, start states, start modes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from kkt_reference import (
+    KIND_MAGNETIC,
+    KIND_NONE,
+    KIND_SPRING,
+    LATCH_CONTINUOUS,
+    LATCH_IDEALISED,
+    MOUNT_ROBOT,
+    MOUNT_SLIDER,
+    ROLLER_TANH,
+    STATES,
+    Inputs,
+    Modes,
+    Parameters,
+    Reference,
+)
+
+# name: (bumper kind, mount, latch model, other parameters)
+COLLISIONS = {
+    "none": (KIND_NONE, MOUNT_SLIDER, LATCH_CONTINUOUS, {}),
+    "spring on slider": (KIND_SPRING, MOUNT_SLIDER, LATCH_CONTINUOUS, {}),
+    "magnetic continuous on slider": (KIND_MAGNETIC, MOUNT_SLIDER, LATCH_CONTINUOUS, {}),
+    "magnetic idealised on slider": (KIND_MAGNETIC, MOUNT_SLIDER, LATCH_IDEALISED, {}),
+    "spring on robot": (KIND_SPRING, MOUNT_ROBOT, LATCH_CONTINUOUS, {}),
+    "magnetic continuous on robot": (KIND_MAGNETIC, MOUNT_ROBOT, LATCH_CONTINUOUS, {}),
+    "magnetic idealised on robot": (KIND_MAGNETIC, MOUNT_ROBOT, LATCH_IDEALISED, {}),
+    # A light dummy without rope bounces off: the plate returns and latches again.
+    "idealised latch closes again on slider": (
+        KIND_MAGNETIC,
+        MOUNT_SLIDER,
+        LATCH_IDEALISED,
+        {"rope_attached": 0, "slider_mass": 4.0, "latch_force": 10.0},
+    ),
+    "idealised latch closes again on robot": (
+        KIND_MAGNETIC,
+        MOUNT_ROBOT,
+        LATCH_IDEALISED,
+        {"rope_attached": 0, "slider_mass": 4.0, "latch_force": 10.0},
+    ),
+    # Hits a corner: the contact point runs around the vertex while the robot turns.
+    "vertex, tanh rollers, rubbing": (
+        KIND_SPRING,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {"roller_model": ROLLER_TANH, "contact_friction": 0.3, "target_x": -0.177, "target_y": 0.29},
+    ),
+    # The spring is too soft and the drop too short: bottoming stop and landing weight.
+    "bottoming and landing": (
+        KIND_SPRING,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {"spring_rate": 150.0, "travel": 0.03, "drop_height": 0.05},
+    ),
+}
+
+
+def collision(
+    name: str, case: tuple[int, int, int, dict], **faults: float
+) -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
+    """Slider at 0.5 m/s, 2 mm before the robot, slightly off the centre line; the robot stands, unpowered."""
+    kind, mount, latch, other = case
+    p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, run_up=0.002)
+    p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04)
+    p = replace(p, mount_azimuth=math.pi + 0.1 if mount == MOUNT_ROBOT else math.pi, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4])
+    p = replace(p, contact_friction=0.1)
+    p = replace(p, **{**other, **faults})
+    reference = Reference(p)
+    x = np.zeros(STATES)
+    x[19] = 0.5
+    modes = Modes(latched=int(reference.ideal))
+    if p.rope_attached:
+        x[21] = 0.5
+        modes.rope_taut = 1
+    return reference, x, modes, [(0.0, Inputs())]
+
+
+def disconnected(p: Parameters) -> Parameters:
+    """No drive, no friction, no slider: nothing left but the rolling constraints."""
+    return replace(
+        p, drivetrain_stiffness=0.0, drivetrain_damping=0.0, roller_torque=0.0,
+        roller_presliding_stiffness=[0.0] * 3, roller_presliding_damping=0.0, roller_model=ROLLER_TANH, slider_present=0,
+    )  # fmt: skip
+
+
+def still(p: Parameters) -> tuple[Reference, np.ndarray, Modes]:
+    """Everything at rest and unloaded: slider run_up away from the robot, bumper extended against its end."""
+    reference = Reference(p)
+    x = np.zeros(STATES)
+    modes = Modes(latched=int(reference.ideal))
+    if p.bumper_kind != KIND_NONE and not reference.ideal:
+        # preload + latch + k c = end-stop force
+        latch = p.latch_force if p.bumper_kind == KIND_MAGNETIC else 0.0
+        x[22] = -(p.preload + latch) / (p.spring_rate + p.stop_stiffness)
+        modes.end_stop = 1
+    return reference, x, modes
