@@ -1,0 +1,95 @@
+// The plant as the solver sees it: state and indicators as plain arrays, modes kept between events.
+#pragma once
+
+#include "hybrid_system.hpp"
+#include "initial_state.hpp"
+#include "outputs.hpp"
+
+namespace giveway::testbed {
+
+class PlantSystem final : public solver::HybridSystem {
+public:
+    void start(const plant::Parameters<double>& parameters, const plant::InitialMotion<double>& motion, const plant::Inputs<double>& inputs,
+               plant::StateVector<double>& state) {
+        parameters_ = parameters;
+        derived_ = plant::derive(parameters_);
+        inputs_ = inputs;
+        first_contact_time_s_ = -1.0;
+        plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
+    }
+
+    void set_inputs(const plant::Inputs<double>& inputs, const double* state) {
+        inputs_ = inputs;
+        plant::accept_inputs(as_state(state), inputs_, modes_, parameters_, derived_);
+    }
+
+    [[nodiscard]] const plant::Modes<double>& modes() const { return modes_; }
+    [[nodiscard]] const plant::Parameters<double>& parameters() const { return parameters_; }
+    [[nodiscard]] const plant::Inputs<double>& inputs() const { return inputs_; }
+    [[nodiscard]] double first_contact_time() const { return first_contact_time_s_; }
+    [[nodiscard]] plant::Outputs<double> outputs(const double* state) const {
+        return plant::outputs(as_state(state), inputs_, modes_, parameters_, derived_);
+    }
+
+    [[nodiscard]] int state_count() const override { return plant::state_count; }
+    [[nodiscard]] int event_count() const override { return plant::event_count; }
+
+    void rhs(double, const double* state, double* rate) override {
+        const auto value = plant::rhs(as_state(state), inputs_, modes_, parameters_, derived_);
+        std::copy(value.begin(), value.end(), rate);
+    }
+
+    void indicators(double, const double* state, double* value) override {
+        const auto indicator = plant::event_indicators(as_state(state), inputs_, modes_, parameters_, derived_);
+        std::copy(indicator.begin(), indicator.end(), value);
+    }
+
+    void transition(double time_s, double* state, const int* fired) override {
+        plant::EventVector<double> direction{};
+        for (int i = 0; i < plant::event_count; ++i) {
+            direction[static_cast<std::size_t>(i)] = static_cast<double>(fired[i]);
+        }
+        plant::StateVector<double> next = as_state(state);
+        plant::transition(next, inputs_, modes_, direction, parameters_, derived_);
+        std::copy(next.begin(), next.end(), state);
+        if (first_contact_time_s_ < 0.0 && modes_.contact > 0.5) {
+            first_contact_time_s_ = time_s;
+        }
+    }
+
+    [[nodiscard]] double absolute_tolerance(int state) const override {
+        switch (state) {
+        case plant::base_vx:
+        case plant::base_vy:
+        case plant::base_omega:
+        case plant::motor_speed:
+        case plant::motor_speed + 1:
+        case plant::motor_speed + 2:
+        case plant::slider_speed:
+        case plant::weight_speed:
+        case plant::compression_rate:
+            return 1e-8; // m/s, rad/s
+        case plant::work_in:
+        case plant::dissipated:
+        case plant::impulse_x:
+        case plant::impulse_y:
+            return 1e-7; // J, N s: accounts, which nothing else depends on
+        default:
+            return 1e-9; // m, rad
+        }
+    }
+
+private:
+    static const plant::StateVector<double>& as_state(const double* state) {
+        // The solver's array has exactly state_count doubles.
+        return *reinterpret_cast<const plant::StateVector<double>*>(state);
+    }
+
+    plant::Parameters<double> parameters_{};
+    plant::Derived<double> derived_{};
+    plant::Inputs<double> inputs_{};
+    plant::Modes<double> modes_{};
+    double first_contact_time_s_ = -1.0;
+};
+
+} // namespace giveway::testbed

@@ -1,0 +1,44 @@
+// Torque sensors and encoders of the drives: noise, offset, quantisation, saturation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "noise.hpp"
+
+namespace giveway::testbed {
+
+struct SensorOptions {
+    std::int32_t encoder_counts; // per turn of the wheel axle
+    std::uint32_t seed;
+    double torque_noise_nm, torque_resolution_nm, torque_range_nm;
+    std::array<double, 3> torque_offset_nm;
+};
+
+struct SensorSample {
+    std::array<double, 3> torque_nm;
+    std::array<std::int32_t, 3> encoder_counts;
+    std::int32_t counter;
+};
+
+// Counts of the motor encoder, wrapping like a 32-bit counter.
+inline std::int32_t encoder_count(const SensorOptions& options, double angle_rad) {
+    const double turns = angle_rad / 6.283185307179586;
+    const double counts = turns * static_cast<double>(options.encoder_counts);
+    auto whole = static_cast<std::int64_t>(counts);
+    whole -= counts < static_cast<double>(whole) ? 1 : 0; // floor
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
+}
+
+inline double measured_torque(const SensorOptions& options, std::uint32_t wheel, std::int64_t cycle, double torque_nm) {
+    double value = torque_nm + options.torque_offset_nm[wheel];
+    if (options.torque_noise_nm > 0.0) {
+        value += options.torque_noise_nm * math::normal(options.seed, wheel, static_cast<std::uint64_t>(cycle));
+    }
+    if (options.torque_resolution_nm > 0.0) {
+        value = options.torque_resolution_nm * math::round(value / options.torque_resolution_nm);
+    }
+    return math::clamp(value, -options.torque_range_nm, options.torque_range_nm);
+}
+
+} // namespace giveway::testbed

@@ -1,0 +1,19 @@
+// What the solver knows of a model: a smooth right-hand side between events, indicators that cross zero at events, and what happens there.
+#pragma once
+
+namespace giveway::solver {
+
+class HybridSystem {
+public:
+    virtual ~HybridSystem() = default;
+    [[nodiscard]] virtual int state_count() const = 0;
+    [[nodiscard]] virtual int event_count() const = 0;
+    virtual void rhs(double time_s, const double* state, double* rate) = 0;
+    virtual void indicators(double time_s, const double* state, double* value) = 0;
+    // fired[i]: +1 the indicator rose through zero, -1 it fell, 0 nothing.
+    virtual void transition(double time_s, double* state, const int* fired) = 0;
+    // Absolute tolerance of each state at the default relative tolerance.
+    [[nodiscard]] virtual double absolute_tolerance(int state) const = 0;
+};
+
+} // namespace giveway::solver
