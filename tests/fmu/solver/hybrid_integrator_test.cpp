@@ -1,0 +1,130 @@
+// The integrator against closed forms: a bouncing ball's impact times, an oscillator under switched input, failures that say so.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "hybrid_integrator.hpp"
+
+namespace {
+
+using giveway::solver::HybridIntegrator;
+using giveway::solver::HybridSystem;
+using giveway::solver::IntegratorOptions;
+
+constexpr double gravity = 9.81;
+
+// Height and speed; the speed is reversed with restitution 0.5 at the floor.
+struct Ball final : HybridSystem {
+    int bounces = 0;
+    double first_bounce_s = -1.0;
+    [[nodiscard]] int state_count() const override { return 2; }
+    [[nodiscard]] int event_count() const override { return 1; }
+    void rhs(double, const double* x, double* rate) override {
+        rate[0] = x[1];
+        rate[1] = -gravity;
+    }
+    void indicators(double, const double* x, double* value) override { value[0] = x[0]; }
+    void transition(double time_s, double* x, const int* fired) override {
+        if (fired[0] < 0) {
+            x[1] = -0.5 * x[1];
+            first_bounce_s = bounces == 0 ? time_s : first_bounce_s;
+            ++bounces;
+        }
+    }
+    [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
+};
+
+// x'' = u - x, the input changed from outside.
+struct Oscillator final : HybridSystem {
+    double input = 0.0;
+    [[nodiscard]] int state_count() const override { return 2; }
+    [[nodiscard]] int event_count() const override { return 0; }
+    void rhs(double, const double* x, double* rate) override {
+        rate[0] = x[1];
+        rate[1] = input - x[0];
+    }
+    void indicators(double, const double*, double*) override {}
+    void transition(double, double*, const int*) override {}
+    [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
+};
+
+struct Exploding final : HybridSystem {
+    [[nodiscard]] int state_count() const override { return 1; }
+    [[nodiscard]] int event_count() const override { return 0; }
+    void rhs(double, const double* x, double* rate) override { rate[0] = x[0] * x[0]; }
+    void indicators(double, const double*, double*) override {}
+    void transition(double, double*, const int*) override {}
+    [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
+};
+
+} // namespace
+
+TEST(HybridIntegrator, LocatesImpactsOfABouncingBall) {
+    Ball ball;
+    const double start[2] = {1.0, 0.0};
+    HybridIntegrator integrator;
+    // A crossing shows as a change of sign over a step: a step must not jump over a whole flight.
+    IntegratorOptions options;
+    options.maximum_step_s = 0.05;
+    ASSERT_TRUE(integrator.create(ball, 0.0, start, options));
+    ASSERT_TRUE(integrator.advance(1.2)) << integrator.error();
+    const double fall = std::sqrt(2.0 / gravity);
+    const double speed = gravity * fall;
+    // Parabolas are integrated exactly: what is left is root finding, to about 100 roundings of the step.
+    EXPECT_NEAR(ball.first_bounce_s, fall, 1e-12);
+    EXPECT_EQ(ball.bounces, 3); // impacts at fall * (1, 2, 2.5, 2.75 ..): three before 1.2 s = 2.66 fall
+    const double since = 1.2 - 2.5 * fall;
+    EXPECT_NEAR(integrator.state()[0], 0.125 * speed * since - 0.5 * gravity * since * since, 1e-11);
+    EXPECT_EQ(integrator.statistics().events, 2 * ball.bounces); // the floor is crossed downwards and, a rounding later, upwards
+}
+
+TEST(HybridIntegrator, StartsFreshWhenTheInputChanges) {
+    Oscillator oscillator;
+    const double start[2] = {0.0, 0.0};
+    HybridIntegrator integrator;
+    ASSERT_TRUE(integrator.create(oscillator, 0.0, start, IntegratorOptions{}));
+    double position = 0.0;
+    double speed = 0.0;
+    constexpr double step = 1e-3;
+    for (int k = 0; k < 5000; ++k) {
+        oscillator.input = (k / 7) % 2 == 0 ? 1.0 : -0.4;
+        integrator.restart();
+        ASSERT_TRUE(integrator.advance(static_cast<double>(k + 1) * step));
+        // Exact zero-order-hold step.
+        const double next = oscillator.input + (position - oscillator.input) * std::cos(step) + speed * std::sin(step);
+        speed = -(position - oscillator.input) * std::sin(step) + speed * std::cos(step);
+        position = next;
+    }
+    // Local errors of 1e-6 relative at most, in practice far below: a 1 ms step of a 1 rad/s oscillator is easy.
+    EXPECT_NEAR(integrator.state()[0], position, 1e-10);
+    EXPECT_NEAR(integrator.state()[1], speed, 1e-10);
+    EXPECT_LT(integrator.statistics().steps, 5100); // one step per input: a restart does not fall back to tiny steps
+}
+
+TEST(HybridIntegrator, ConvergesWithItsTolerance) {
+    double previous = 1.0;
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+        Oscillator oscillator;
+        const double start[2] = {1.0, 0.0};
+        HybridIntegrator integrator;
+        ASSERT_TRUE(integrator.create(oscillator, 0.0, start, {tolerance, tolerance, 0.0}));
+        ASSERT_TRUE(integrator.advance(10.0));
+        const double error = std::fabs(integrator.state()[0] - std::cos(10.0));
+        EXPECT_LT(error, 100.0 * tolerance);
+        EXPECT_LT(error, previous);
+        previous = error;
+    }
+}
+
+TEST(HybridIntegrator, SaysWhenAndWhyItStops) {
+    Exploding exploding;
+    const double start[1] = {1.0}; // 1/(1 - t): infinite at t = 1
+    HybridIntegrator integrator;
+    ASSERT_TRUE(integrator.create(exploding, 0.0, start, IntegratorOptions{}));
+    EXPECT_FALSE(integrator.advance(2.0));
+    const std::string message = integrator.error();
+    EXPECT_NEAR(integrator.time(), 1.0, 1e-5); // the singularity, to the tolerance's reach
+    EXPECT_NE(message.find("at t = "), std::string::npos) << message;
+    EXPECT_NE(message.find("ARK_"), std::string::npos) << message;
+}
