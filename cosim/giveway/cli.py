@@ -1,0 +1,271 @@
+"""The command line: a thin skin over the Python interface. Heavy imports happen inside the commands."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from giveway import __version__
+from giveway.errors import GivewayError, UnknownNameError
+
+if TYPE_CHECKING:
+    from giveway.master import Progress
+    from giveway.result import Result
+    from giveway.scenario import Scenario
+
+__all__ = ["app", "main"]
+
+WRONG_INPUT, INTERRUPTED = 2, 130
+LONG_RUN_S = 20.0  # simulated; shorter runs end before a bar could be read
+
+app = typer.Typer(
+    name="giveway",
+    help="Collision reflexes for omnidirectional robot bases: run experiments, look at variables, measure speed.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="MODEL.NAME=VALUE", help="Set a parameter of an FMU; see `giveway variables`."),
+]
+FmiOption = Annotated[int, typer.Option("--fmi", help="FMI version of the FMUs: 3 or 2.")]
+SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of the sensor noise.")]
+RobotOption = Annotated[Path | None, typer.Option("--robot", metavar="FILE", help="Robot file (TOML).")]
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"giveway {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version.")
+    ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Log what happens to stderr.")] = False,
+) -> None:
+    if verbose:
+        logging.basicConfig(stream=sys.stderr, level=logging.DEBUG, format="%(name)s: %(message)s")
+
+
+@app.command()
+def run(
+    experiment: Annotated[str, typer.Argument(help="Name of the experiment; see `giveway list`.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for traces, manifest and report.")],
+    bumper: Annotated[str, typer.Option("--bumper", help="none, spring or magnetic.")] = "magnetic",
+    assignments: SetOption = None,
+    fmi: FmiOption = 3,
+    duration: Annotated[float | None, typer.Option("--duration", metavar="S", help="Simulated time in s.")] = None,
+    seed: SeedOption = None,
+    robot: RobotOption = None,
+) -> None:
+    """Run one experiment with one bumper; writes traces, metrics, manifest and a report."""
+    import giveway
+    from giveway.files import check_output, replace_folder
+
+    scenario = _scenario(experiment, bumper, assignments, fmi, duration, seed, robot)
+    check_output(out)
+    with _progress(scenario.duration_s) as progress:
+        result = giveway.run(scenario, progress)
+    from giveway.report import write_report
+
+    with replace_folder(out) as folder:
+        result.write_into(folder)
+        write_report(folder / "report.html", experiment, [result])
+    _print_table(experiment, {scenario.bumper: result})
+    typer.echo(f"Written: {out / 'report.html'}")
+    if result.interrupted:
+        typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)
+        raise typer.Exit(INTERRUPTED)
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for report, summary and runs.")] = Path(
+        "out/demo"
+    ),
+    fmi: FmiOption = 3,
+    seed: SeedOption = None,
+) -> None:
+    """Run the paper's experiment 5.2 with all three bumpers; prints a table, writes report.html and summary.json."""
+    import giveway
+    from giveway import experiments
+    from giveway.files import check_output, replace_folder
+    from giveway.summary import write_summary
+
+    check_output(out)
+    name = "motionless"
+    results: dict[str, Result] = {}
+    for bumper in experiments.get(name).bumpers:
+        scenario = _scenario(name, bumper, None, fmi, None, seed, None)
+        with _progress(scenario.duration_s) as progress:
+            results[bumper] = giveway.run(scenario, progress)
+        if results[bumper].interrupted:
+            raise KeyboardInterrupt
+    from giveway.report import write_report
+
+    with replace_folder(out) as folder:
+        for bumper, result in results.items():
+            (folder / bumper).mkdir()
+            result.write_into(folder / bumper)
+        write_report(folder / "report.html", name, list(results.values()))
+        write_summary(folder / "summary.json", results)
+    _print_table(name, results)
+    typer.echo(f"Written: {out / 'report.html'} and {out / 'summary.json'}")
+
+
+@app.command("list")
+def list_experiments() -> None:
+    """List the experiments."""
+    from giveway import experiments
+
+    for experiment in experiments.all_experiments().values():
+        typer.echo(f"{experiment.name}: {experiment.summary} Bumpers: {', '.join(experiment.bumpers)}.")
+
+
+@app.command()
+def variables(
+    model: Annotated[str, typer.Argument(help="controller or testbed.")],
+    grep: Annotated[str, typer.Option("--grep", metavar="TEXT", help="Only names or descriptions with TEXT.")] = "",
+) -> None:
+    """List the variables of an FMU: what can be set, its range and unit, and what comes out."""
+    from giveway.variables import table
+
+    wanted = grep.lower()
+    chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
+    rows = [(v.name, v.causality, "" if v.start is None else f"{v.start}", v.allowed, v.description) for v in chosen]
+    _print_columns(f"{len(chosen)} variables of {model}", ("name", "kind", "start", "allowed", "meaning"), rows)
+
+
+@app.command()
+def bench(
+    repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
+    fmi: FmiOption = 3,
+) -> None:
+    """Measure the wall time of one co-simulated second over FMPy: both FMUs, 1 ms exchange, all traces recorded."""
+    from giveway.bench import measure
+    from giveway.checks import whole
+
+    whole("--repeats", repeats, 1, 100)
+    rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
+    title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
+    _print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
+
+
+def _scenario(
+    experiment: str,
+    bumper: str,
+    assignments: list[str] | None,
+    fmi: int,
+    duration: float | None,
+    seed: int | None,
+    robot: Path | None,
+) -> Scenario:
+    """The experiment's scenario with the command line's changes, all of it checked before anything runs."""
+    import dataclasses
+
+    from giveway import experiments
+    from giveway.variables import parse_assignments
+
+    chosen = experiments.get(experiment)
+    if bumper not in chosen.bumpers:
+        raise UnknownNameError("--bumper", bumper, chosen.bumpers)
+    scenario = chosen.scenario(bumper)
+    overrides = parse_assignments(assignments or [])
+    scenario = dataclasses.replace(
+        scenario,
+        duration_s=scenario.duration_s if duration is None else duration,
+        testbed={**scenario.testbed, **overrides["testbed"]},
+        controller={**scenario.controller, **overrides["controller"]},
+        fmi_version=fmi,
+        seed=seed,
+        robot=robot,
+    )
+    for model in overrides:
+        scenario.parameters(model)
+    return scenario
+
+
+@contextmanager
+def _progress(duration_s: float) -> Iterator[Progress | None]:
+    """A progress bar on stderr for long runs at a terminal, else nothing."""
+    if duration_s < LONG_RUN_S or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (BarColumn(), TextColumn("{task.completed:.1f} of {task.total:.0f} s"), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("simulating", total=duration_s)
+        yield lambda now_s, _duration_s: bar.update(task, completed=now_s)
+
+
+def _print_table(experiment: str, results: dict[str, Result]) -> None:
+    from giveway.summary import table_rows
+
+    header = ("", *(f"{bumper} bumper" if bumper != "none" else "no bumper" for bumper in results))
+    _print_columns(f"Experiment {experiment}: estimated or measured (true value)", header, table_rows(results))
+
+
+def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(highlight=False)
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for index, name in enumerate(header):
+        table.add_column(name, no_wrap=index == 0, overflow="fold")
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    console.print(title, style="bold")
+    # A pipe has no width to fit into: let every row keep its line there.
+    console.print(table, width=None if console.is_terminal else 200)
+
+
+def main() -> None:
+    """Entry point: any wrong input is one line on stderr and exit code 2."""
+    sys.exit(_main(sys.argv[1:]))
+
+
+def _main(arguments: list[str]) -> int:
+    from giveway.errors import one_line
+
+    try:
+        code = app(args=arguments, standalone_mode=False)
+    except GivewayError as error:
+        return _fail(str(error))
+    except KeyboardInterrupt:
+        typer.echo("giveway: interrupted; nothing was written", err=True)
+        return INTERRUPTED
+    except typer.Abort:
+        typer.echo("giveway: interrupted; nothing was written", err=True)
+        return INTERRUPTED
+    except Exception as error:
+        # Typer's usage errors (missing argument, unknown option or command) know how to say themselves.
+        if not hasattr(error, "format_message"):
+            raise
+        return _fail(one_line(error.format_message()))
+    return code if isinstance(code, int) else 0
+
+
+def _fail(message: str) -> int:
+    typer.echo(f"giveway: {message}", err=True)
+    return WRONG_INPUT
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,88 @@
+"""Writing so that nothing half-written is ever seen: a temporary name first, then one rename."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from giveway.errors import FileError
+
+__all__ = ["check_output", "replace_folder", "write_text"]
+
+MARKERS = ("manifest.json", "summary.json")
+
+
+def check_output(folder: Path) -> None:
+    """Refuse, before any work is done, a folder that `replace_folder` could not or should not replace."""
+    if folder.exists():
+        if not folder.is_dir():
+            raise FileError(folder, "is a file", "give a folder to write to")
+        if any(folder.iterdir()) and not any((folder / marker).is_file() for marker in MARKERS):
+            raise FileError(folder, "is not empty and holds no giveway result", "give a new or an empty folder")
+    parent = folder.absolute().parent
+    while not parent.exists():
+        parent = parent.parent
+    if not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise FileError(folder, f"cannot be written: {parent} is not a writable folder")
+
+
+@contextmanager
+def replace_folder(folder: Path) -> Iterator[Path]:
+    """A temporary folder beside ``folder`` that takes its place when the block ends without an exception.
+
+    Parents that had to be made are removed again if the block fails.
+    """
+    check_output(folder)
+    made = [parent for parent in folder.absolute().parents if not parent.exists()]
+    try:
+        folder.absolute().parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.absolute().parent))
+    except OSError as error:
+        raise FileError(folder, f"cannot be written: {error.strerror}") from None
+    try:
+        temporary.chmod(0o755)
+        yield temporary
+        _swap(temporary, folder)
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        for parent in made:
+            if parent.is_dir() and not any(parent.iterdir()):
+                parent.rmdir()
+        raise
+
+
+def _swap(temporary: Path, folder: Path) -> None:
+    for path in temporary.rglob("*"):
+        if path.is_file():
+            _sync(path)
+    if not folder.exists() or not any(folder.iterdir()):
+        os.replace(temporary, folder)  # onto an empty folder, too: one atomic rename
+        return
+    old = Path(tempfile.mkdtemp(prefix=f".{folder.name}-old-", dir=folder.absolute().parent))
+    os.replace(folder, old)
+    os.replace(temporary, folder)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write ``text`` to ``path`` atomically (UTF-8)."""
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.absolute().parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        temporary.chmod(0o644)
+        _sync(temporary)
+        os.replace(temporary, path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def _sync(path: Path) -> None:
+    with path.open("rb") as stream:
+        os.fsync(stream.fileno())

@@ -1,0 +1,291 @@
+"""What a collision is judged by. Each function's docstring is the definition of one number.
+
+Traces are named as in the FMUs and lie on the grid of communication steps; contact starts at the plant's own event
+time, so detection times resolve one step. "Base frame" is x forward, y left, fixed to the robot.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+__all__ = ["Collision", "Metric", "collision"]
+
+PEAK_WINDOW_S = 0.35
+LOADED_SHARE = 0.5
+WHEELS = 3
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One number of a run.
+
+    Attributes:
+        name: what it is.
+        value: what the robot estimated, did or suffered; None if it did not happen.
+        unit: unit of value and truth.
+        truth: what the testbed knows it should be; None where there is no such thing.
+        decimals: digits after the point that are worth printing.
+    """
+
+    name: str
+    value: float | None
+    unit: str
+    truth: float | None = None
+    decimals: int = 2
+
+    def __post_init__(self) -> None:
+        for name in ("value", "truth"):
+            number = getattr(self, name)
+            finite = number is not None and math.isfinite(number)
+            object.__setattr__(self, name, float(number) if finite else None)
+
+
+class Collision:
+    """The first collision of a run, cut out of its traces.
+
+    Attributes:
+        time_s: shape (n,).
+        contact_s: time of the first cover contact, None if there was none.
+        detected: row of the first detection after contact, None if there was none.
+    """
+
+    def __init__(self, traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]) -> None:
+        self._traces = traces
+        self._parameters = parameters
+        self.time_s: NDArray[np.float64] = traces["time"].values
+        first = float(traces["testbed.truth.first_contact_time"].values[-1])
+        self.contact_s = first if first >= 0.0 else None
+        self.detected = self._first_detection()
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        values: NDArray[Any] = self._traces[name].values
+        return values
+
+    def wheels(self, name: str) -> NDArray[np.float64]:
+        """The traces ``name[0]`` to ``name[2]`` as shape (n, 3)."""
+        return np.stack([self[f"{name}[{wheel}]"] for wheel in range(WHEELS)], axis=1)
+
+    def _first_detection(self) -> int | None:
+        if self.contact_s is None:
+            return None
+        count = self["controller.detection.count"]
+        before = count[self.time_s < self.contact_s]
+        rows = np.flatnonzero((self.time_s >= self.contact_s) & (count > (before[-1] if before.size else 0)))
+        return int(rows[0]) if rows.size else None
+
+    def force_base(self) -> NDArray[np.float64]:
+        """True contact force on the robot in the base frame, N, shape (n, 2)."""
+        theta = self["testbed.truth.theta"]
+        fx, fy = self["testbed.truth.contact_force_x"], self["testbed.truth.contact_force_y"]
+        cos, sin = np.cos(theta), np.sin(theta)
+        return np.stack([cos * fx + sin * fy, -sin * fx + cos * fy], axis=1)
+
+    def until_detection(self) -> slice:
+        """Rows from contact to detection, both included (to the end if there was no detection)."""
+        start = 0 if self.contact_s is None else int(np.searchsorted(self.time_s, self.contact_s))
+        return slice(start, None if self.detected is None else self.detected + 1)
+
+    def true_impulse(self) -> NDArray[np.float64]:
+        """Impulse of the contact on the robot up to detection, base frame, N s, shape (2,).
+
+        From the plant's own integral in the world frame, turned by the heading at detection.
+        """
+        row = -1 if self.detected is None else self.detected
+        px, py = self["testbed.truth.contact_impulse_x"][row], self["testbed.truth.contact_impulse_y"][row]
+        theta = self["testbed.truth.theta"][row]
+        return np.array([math.cos(theta) * px + math.sin(theta) * py, -math.sin(theta) * px + math.cos(theta) * py])
+
+    def true_point(self) -> NDArray[np.float64] | None:
+        """Contact point on the robot in the base frame, m, shape (2,): mean up to detection, weighted by the force."""
+        rows = self.until_detection()
+        weight = self["testbed.truth.contact_force"][rows]
+        if weight.sum() <= 0.0:
+            return None
+        points = np.stack([self["testbed.truth.contact_base_x"][rows], self["testbed.truth.contact_base_y"][rows]])
+        return np.asarray(points @ weight / weight.sum())
+
+    def loaded_wheels(self) -> dict[int, float]:
+        """Wheels that carry the impact and the sign of the torque it makes there.
+
+        At rest T = -J^-T F. A wheel counts if its share is at least half of the largest.
+        """
+        point, force = self.true_point(), self.true_impulse()
+        if point is None:
+            return {}
+        parameters = self._parameters["testbed"]
+        radius, distance = float(parameters["wheel.radius"]), float(parameters["wheel.distance"])
+        azimuth = np.arange(WHEELS) * 2.0 * math.pi / 3.0
+        moment = point[0] * force[1] - point[1] * force[0]
+        rolling = -np.sin(azimuth) * force[0] + np.cos(azimuth) * force[1]
+        torque = -radius * (2.0 / 3.0 * rolling + moment / (3.0 * distance))
+        loaded = np.flatnonzero(np.abs(torque) >= LOADED_SHARE * np.abs(torque).max())
+        return {int(wheel): float(np.sign(torque[wheel])) for wheel in loaded}
+
+    # Numbers of the table
+
+    def contact_speed(self) -> Metric:
+        """Speed of the slider's nose relative to the robot at the last step before contact, m/s."""
+        name = "contact speed"
+        row = self.until_detection().start - 1
+        if self.contact_s is None or row < 1:
+            return Metric(name, None, "m/s")
+        step_s = self.time_s[row] - self.time_s[row - 1]
+        nose = [np.diff(self[f"testbed.truth.nose_{axis}"][row - 1 : row + 1])[0] / step_s for axis in "xy"]
+        base = [self[f"testbed.truth.v{axis}"][row] for axis in "xy"]
+        return Metric(name, math.hypot(nose[0] - base[0], nose[1] - base[1]), "m/s", decimals=3)
+
+    def detection_time(self) -> Metric:
+        """Time from the first cover contact to the controller's decision, all delays included, ms."""
+        if self.contact_s is None or self.detected is None:
+            return Metric("detection time", None, "ms")
+        return Metric("detection time", 1e3 * (self.time_s[self.detected] - self.contact_s), "ms", decimals=1)
+
+    def false_detections(self) -> Metric:
+        """Detections before the first contact (in the whole run if there was none)."""
+        count = self["controller.detection.count"]
+        before = count if self.contact_s is None else count[self.time_s < self.contact_s]
+        return Metric("detections before contact", float(before[-1]) if before.size else 0.0, "1", 0.0, 0)
+
+    def direction(self) -> Metric:
+        """Direction of the detection's mean force against that of the true impulse up to detection, base frame, deg."""
+        name = "force direction"
+        if self.detected is None:
+            return Metric(name, None, "deg")
+        value = math.degrees(self["controller.detection.direction"][self.detected])
+        px, py = self.true_impulse()
+        truth = math.degrees(math.atan2(py, px))
+        return Metric(name, truth + _wrapped(value - truth), "deg", truth, 1)
+
+    def direction_error(self) -> Metric:
+        """Estimated minus true direction of the force at detection, wrapped to [-180, 180), deg."""
+        direction = self.direction()
+        if direction.value is None or direction.truth is None:
+            return Metric("direction error", None, "deg")
+        return Metric("direction error", _wrapped(direction.value - direction.truth), "deg", 0.0, 1)
+
+    def location(self) -> tuple[Metric, Metric, Metric]:
+        """Estimated contact point at detection against the force-weighted true one, base frame x, y and distance, m."""
+        names = ("contact point x", "contact point y", "location error")
+        truth = self.true_point()
+        if self.detected is None or truth is None:
+            empty = [Metric(name, None, "m") for name in names]
+            return empty[0], empty[1], empty[2]
+        x, y = (float(self[f"controller.detection.point_{axis}"][self.detected]) for axis in "xy")
+        distance = math.hypot(x - truth[0], y - truth[1])
+        return (
+            Metric(names[0], x, "m", truth[0], 3),
+            Metric(names[1], y, "m", truth[1], 3),
+            Metric(names[2], distance, "m", 0.0, 3),
+        )
+
+    def magnitude(self) -> Metric:
+        """Filtered force estimate at detection against the true contact force averaged over the same window, N.
+
+        The average is of the force vector; the window ends at detection, so delays count as error.
+        """
+        name = "force at detection"
+        if self.detected is None:
+            return Metric(name, None, "N")
+        window = max(1, round(self._window_s() / (self.time_s[1] - self.time_s[0])))
+        rows = slice(max(0, self.detected + 1 - window), self.detected + 1)
+        mean = self.force_base()[rows].mean(axis=0)
+        return Metric(name, float(self["controller.estimate.force"][self.detected]), "N", math.hypot(*mean), 1)
+
+    def _window_s(self) -> float:
+        controller = self._parameters["controller"]
+        return float(controller["estimator.filter_length"]) * float(controller["estimator.period"])
+
+    def impulse(self) -> Metric:
+        """Integral of the estimated force vector from contact to detection against the true impulse, N s."""
+        name = "impulse at detection"
+        if self.detected is None:
+            return Metric(name, None, "N.s")
+        rows = self.until_detection()
+        step_s = self.time_s[1] - self.time_s[0]
+        estimated = [self[f"controller.estimate.force_{axis}"][rows].sum() * step_s for axis in "xy"]
+        return Metric(name, math.hypot(*estimated), "N.s", math.hypot(*self.true_impulse()))
+
+    def peak_force(self) -> Metric:
+        """Largest true contact force of the run, N."""
+        return Metric("peak contact force", float(self["testbed.truth.contact_force"].max()), "N", decimals=1)
+
+    def peak_torque(self) -> Metric:
+        """Largest sensed-side wheel torque in the impact's direction within 0.35 s of contact, N m.
+
+        True drivetrain torque of the wheels that carry the impact, signed so that the impact makes it positive:
+        the paper's "positive" peak of experiment 5.2.
+        """
+        name = "peak wheel torque, impact direction"
+        wheels = self.loaded_wheels()
+        if self.contact_s is None or not wheels:
+            return Metric(name, None, "N.m")
+        rows = (self.time_s >= self.contact_s) & (self.time_s <= self.contact_s + PEAK_WINDOW_S)
+        torque = self.wheels("testbed.truth.wheel_torque")[rows]
+        return Metric(name, max(float((sign * torque[:, wheel]).max()) for wheel, sign in wheels.items()), "N.m")
+
+    def peak_torque_any(self) -> Metric:
+        """Largest true drivetrain torque of any wheel, either sign, from contact on, N m."""
+        name = "peak wheel torque, either sign"
+        if self.contact_s is None:
+            return Metric(name, None, "N.m")
+        rows = self.time_s >= self.contact_s
+        return Metric(name, float(np.abs(self.wheels("testbed.truth.wheel_torque")[rows]).max()), "N.m")
+
+    def escape(self) -> Metric:
+        """Travel of the controller's reference from detection to the end, against the base's own travel, m."""
+        if self.detected is None:
+            return Metric("escape distance", None, "m")
+        travel = [
+            math.hypot(*(self[f"{source}.{axis}"][-1] - self[f"{source}.{axis}"][self.detected] for axis in "xy"))
+            for source in ("controller.reference", "testbed.truth")
+        ]
+        return Metric("escape distance", travel[0], "m", travel[1], 3)
+
+    def bumper_travel(self) -> Metric:
+        """Largest compression of the bumper, mm."""
+        return Metric("bumper travel", 1e3 * float(self["testbed.truth.bumper_compression"].max()), "mm", decimals=1)
+
+    def energy_residual(self) -> Metric:
+        """Largest error of the energy balance (work in = stored + dissipated) over the largest energy in play, 1.
+
+        Energy in play: work put in plus what was stored at the start and has been released.
+        """
+        stored, work = self["testbed.energy.stored"], self["testbed.energy.work_in"]
+        scale = max(float(np.abs(work).max()), float(np.ptp(stored)), float(self["testbed.energy.dissipated"].max()))
+        worst = float(np.abs(self["testbed.energy.residual"]).max())
+        return Metric("energy residual", worst / scale if scale > 0.0 else worst, "1", 0.0, 9)
+
+
+def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]) -> tuple[Metric, ...]:
+    """All metrics of the first collision in ``traces``, in the order of the table."""
+    hit = Collision(traces, parameters)
+    return (
+        hit.contact_speed(),
+        hit.false_detections(),
+        hit.detection_time(),
+        hit.direction(),
+        hit.direction_error(),
+        *hit.location(),
+        hit.magnitude(),
+        hit.impulse(),
+        hit.peak_force(),
+        hit.bumper_travel(),
+        hit.peak_torque(),
+        hit.peak_torque_any(),
+        hit.escape(),
+        hit.energy_residual(),
+    )
+
+
+def _wrapped(degrees: float) -> float:
+    """``degrees`` wrapped to [-180, 180)."""
+    return (degrees + 180.0) % 360.0 - 180.0

@@ -1,0 +1,53 @@
+"""One self-contained HTML file per report: table, figures (inline SVG), and a top-view animation."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from giveway.files import write_text
+
+if TYPE_CHECKING:
+    from giveway.result import Result
+
+__all__ = ["render", "write_report"]
+
+BUMPER_LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic spring bumper"}
+
+
+def write_report(path: Path, experiment: str, results: Sequence[Result]) -> None:
+    """Write the report of ``results`` (one per bumper) to ``path``, atomically."""
+    write_text(path, render(experiment, results))
+
+
+def render(experiment: str, results: Sequence[Result]) -> str:
+    """The report as HTML text; it refers to nothing outside itself."""
+    import jinja2
+
+    from giveway import experiments
+    from giveway.report.animation import scene
+    from giveway.report.figures import figures
+    from giveway.summary import table_rows
+
+    by_bumper = {result.manifest["scenario"]["bumper"]: result for result in results}
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    resources = files("giveway.report") / "templates"
+    scenes = [scene(BUMPER_LABELS[bumper], result) for bumper, result in by_bumper.items()]
+    return environment.get_template("report.html.j2").render(
+        experiment=experiment,
+        summary=experiments.get(experiment).summary,
+        header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
+        rows=table_rows(by_bumper),
+        figures=figures({BUMPER_LABELS[bumper]: result for bumper, result in by_bumper.items()}),
+        # "</" would end the script element early.
+        scenes=json.dumps(scenes, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
+        manifest=results[0].manifest,
+        runs=[result.manifest for result in results],
+        style=(resources / "style.css").read_text(encoding="utf-8"),
+        script=(resources / "animation.js").read_text(encoding="utf-8"),
+    )

@@ -1,0 +1,218 @@
+"""The figures of a report, overlaid per bumper as in the paper's Fig. 10; time runs from the first contact."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.style import context
+
+from giveway.metrics import WHEELS, Collision
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from giveway.result import Result
+
+__all__ = ["NamedFigure", "figures"]
+
+COLOURS = {"no bumper": "#c8500a", "spring bumper": "#0b64a8", "magnetic spring bumper": "#0a8a63"}
+TRUTH_COLOUR = "#8a8f98"
+IMPACT_MS = (-40.0, 350.0)
+WIDTH_IN = 9.6
+STYLE = {
+    "font.family": "sans-serif",
+    "font.size": 9.5,
+    "axes.grid": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#9aa0a8",
+    "axes.labelcolor": "#2b2f36",
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "grid.color": "#e4e7eb",
+    "grid.linewidth": 0.7,
+    "lines.linewidth": 1.5,
+    "legend.frameon": False,
+    "xtick.color": "#555b65",
+    "ytick.color": "#555b65",
+    "svg.fonttype": "none",  # text stays text: smaller, selectable, in the reader's font
+    "svg.hashsalt": "giveway",  # the same run gives the same bytes
+}
+
+
+@dataclass(frozen=True)
+class NamedFigure:
+    """A figure with its words; ``svg`` is an element to be put inline."""
+
+    title: str
+    caption: str
+    svg: str
+
+
+class _Run:
+    """One result, seen from its contact."""
+
+    def __init__(self, label: str, result: Result) -> None:
+        self.hit = Collision(result.traces, result.manifest["parameters"])
+        self.label = label
+        self.colour = COLOURS[label]
+        self.time_s = self.hit.time_s - (self.hit.contact_s or 0.0)
+        self.time_ms = 1e3 * self.time_s
+        self.impact = (self.time_ms >= IMPACT_MS[0]) & (self.time_ms <= IMPACT_MS[1])
+        self.detected_ms = None if self.hit.detected is None else float(self.time_ms[self.hit.detected])
+        nose = np.stack([self.hit["testbed.truth.nose_x"], self.hit["testbed.truth.nose_y"]], axis=1)
+        start = self.hit.until_detection().start
+        run_up = nose[min(start, len(nose) - 1)] - nose[0]
+        length = math.hypot(*run_up)
+        self.along = run_up / length if length > 0.0 else np.array([1.0, 0.0])
+        self._contact_row = min(start, len(nose) - 1)
+        self.nose = nose
+
+    def travel(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Travel of a point along the slider's run-up since contact, m."""
+        return np.asarray((xy - xy[self._contact_row]) @ self.along)
+
+    def position(self, source: str) -> NDArray[np.float64]:
+        """Travel of ``source`` (x and y traces) along the run-up since contact, m."""
+        return self.travel(np.stack([self.hit[f"{source}.x"], self.hit[f"{source}.y"]], axis=1))
+
+    def mark_detection(self, axes: Axes, scale: float = 1.0) -> None:
+        if self.detected_ms is not None:
+            axes.axvline(self.detected_ms * scale, color=self.colour, linestyle=(0, (4, 3)), linewidth=1.0)
+
+
+def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
+    """All figures for ``results`` by label."""
+    runs = [_Run(label, result) for label, result in results.items()]
+    drawn = []
+    with context(STYLE):
+        for number, (title, caption, draw) in enumerate(_FIGURES):
+            drawn.append(NamedFigure(title, caption, _inline_svg(draw(runs), f"f{number}-")))
+    return drawn
+
+
+def _contact_force(runs: list[_Run]) -> Figure:
+    figure = Figure(figsize=(WIDTH_IN, 3.3), layout="constrained")
+    axes = figure.subplots()
+    for run in runs:
+        force = run.hit["testbed.truth.contact_force"]
+        axes.plot(run.time_ms[run.impact], force[run.impact], color=run.colour, label=run.label)
+        run.mark_detection(axes)
+    axes.set(xlabel="time since contact (ms)", ylabel="contact force (N)", xlim=IMPACT_MS)
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="upper right")
+    return figure
+
+
+def _wheel_torques(runs: list[_Run]) -> Figure:
+    figure = Figure(figsize=(WIDTH_IN, 3.2), layout="constrained")
+    panels = figure.subplots(1, WHEELS, sharey=True)
+    for wheel, axes in enumerate(panels):
+        for run in runs:
+            torque = run.hit[f"testbed.truth.wheel_torque[{wheel}]"]
+            axes.plot(run.time_ms[run.impact], torque[run.impact], color=run.colour, label=run.label)
+            run.mark_detection(axes)
+        axes.set(title=f"wheel {wheel}", xlabel="time since contact (ms)", xlim=IMPACT_MS)
+    panels[0].set_ylabel("wheel torque (N m)")
+    _legend_below(figure, panels[0])
+    return figure
+
+
+def _positions(runs: list[_Run]) -> Figure:
+    figure = Figure(figsize=(WIDTH_IN, 5.4), layout="constrained")
+    panels = figure.subplots(2, len(runs), sharey="row", squeeze=False)
+    for column, run in enumerate(runs):
+        base, reference = run.position("testbed.truth"), run.position("controller.reference")
+        nose = run.travel(run.nose)
+        escape = run.time_s >= IMPACT_MS[0] / 1e3
+        for axes, rows, time, scale in (
+            (panels[0, column], run.impact, run.time_ms, 1.0),
+            (panels[1, column], escape, run.time_s, 1e-3),
+        ):
+            axes.plot(time[rows], 1e3 * nose[rows], color=TRUTH_COLOUR, linewidth=1.2, label="slider nose")
+            axes.plot(time[rows], 1e3 * base[rows], color=run.colour, label="robot base")
+            axes.plot(
+                time[rows], 1e3 * reference[rows], color="#2b2f36", linewidth=1.0, linestyle=":", label="reference"
+            )
+            run.mark_detection(axes, scale)
+        panels[0, column].set(title=run.label, xlabel="time since contact (ms)", xlim=IMPACT_MS)
+        panels[1, column].set(xlabel="time since contact (s)", xlim=(IMPACT_MS[0] / 1e3, float(run.time_s[-1])))
+        panels[0, column].legend(loc="upper left")
+    for row in range(2):
+        panels[row, 0].set_ylabel("travel (mm)")
+    return figure
+
+
+def _estimates(runs: list[_Run]) -> Figure:
+    figure = Figure(figsize=(WIDTH_IN, 5.0), layout="constrained")
+    panels = figure.subplots(2, len(runs), sharex=True, sharey="row", squeeze=False)
+    for column, run in enumerate(runs):
+        hit, rows, time = run.hit, run.impact, run.time_ms
+        step_s = float(run.time_s[1] - run.time_s[0])
+        since = (run.time_s >= 0.0).astype(float)
+        estimated = [np.cumsum(hit[f"controller.estimate.force_{axis}"] * since) * step_s for axis in "xy"]
+        true = [hit[f"testbed.truth.contact_impulse_{axis}"] for axis in "xy"]
+        for axes, truth, estimate in (
+            (panels[0, column], hit["testbed.truth.contact_force"], hit["controller.estimate.force"]),
+            (panels[1, column], np.hypot(*true), np.hypot(*estimated)),
+        ):
+            axes.fill_between(time[rows], truth[rows], color=TRUTH_COLOUR, alpha=0.25, linewidth=0)
+            axes.plot(time[rows], truth[rows], color=TRUTH_COLOUR, linewidth=1.2, label="true")
+            axes.plot(time[rows], estimate[rows], color=run.colour, label="estimated")
+            run.mark_detection(axes)
+        panels[0, column].set(title=run.label, xlim=IMPACT_MS)
+        panels[1, column].set(xlabel="time since contact (ms)")
+        panels[0, column].legend(loc="upper right")
+    panels[0, 0].set_ylabel("force (N)")
+    panels[1, 0].set_ylabel("impulse (N s)")
+    return figure
+
+
+_FIGURES: tuple[tuple[str, str, Callable[[list[_Run]], Figure]], ...] = (
+    (
+        "Contact force",
+        "True force between cover and robot. Dashed: the moment the controller decides that this is a collision.",
+        _contact_force,
+    ),
+    (
+        "Wheel torques",
+        "True drivetrain torque at each wheel: first the impact, then the drive away from it. Dashed: detection.",
+        _wheel_torques,
+    ),
+    (
+        "Positions along the impact",
+        "Travel of base, slider nose and the reference since contact; above the impact, below the whole escape.",
+        _positions,
+    ),
+    (
+        "Estimate against truth",
+        "Contact force and its impulse: estimated from wheel torques alone, and as the testbed knows them (grey).",
+        _estimates,
+    ),
+)
+
+
+def _legend_below(figure: Figure, axes: Axes) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+
+
+def _inline_svg(figure: Figure, prefix: str) -> str:
+    """The figure as an SVG element whose ids do not collide with those of other figures in the page."""
+    buffer = io.StringIO()
+    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r' (?:width|height)="[^"]*pt"', "", text, count=2)
+    text = re.sub(r' xmlns(?::xlink)?="[^"]*"', "", text).replace("xlink:href", "href")
+    text = text.replace('id="', f'id="{prefix}').replace("url(#", f"url(#{prefix}")
+    return text.replace('href="#', f'href="#{prefix}')

@@ -1,0 +1,116 @@
+"""The result of a run: labelled traces with units, metrics, and a manifest that says where they come from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from giveway.errors import FileError
+from giveway.files import replace_folder, write_text
+from giveway.metrics import Metric
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Result", "load"]
+
+SCHEMA_VERSION = 1
+TRACES_FILE = "traces.parquet"
+MANIFEST_FILE = "manifest.json"
+METRICS_FILE = "metrics.json"
+
+
+@dataclass(frozen=True)
+class Result:
+    """One run.
+
+    Attributes:
+        traces: one variable per FMU output, named ``testbed.truth.x``, over the coordinate ``time`` (s);
+            the attributes ``units`` and ``long_name`` come from the variable tables.
+        metrics: what the run is judged by, in the order of the printed table.
+        manifest: versions, hashes, seeds, parameters, solver options, scenario.
+    """
+
+    traces: xarray.Dataset
+    metrics: tuple[Metric, ...]
+    manifest: dict[str, Any]
+
+    @property
+    def interrupted(self) -> bool:
+        """True if the run was stopped before its end time."""
+        return bool(self.manifest["interrupted"])
+
+    def metric(self, name: str) -> Metric:
+        """The metric called ``name``."""
+        for metric in self.metrics:
+            if metric.name == name:
+                return metric
+        from giveway.errors import UnknownNameError
+
+        raise UnknownNameError("metric", name, [metric.name for metric in self.metrics])
+
+    def save(self, folder: Path | str) -> Path:
+        """Write traces (Parquet), metrics and manifest (JSON) to ``folder``, all of them or nothing."""
+        with replace_folder(Path(folder)) as temporary:
+            self.write_into(temporary)
+        return Path(folder)
+
+    def write_into(self, folder: Path) -> None:
+        """Write the files of this result into an existing folder."""
+        import pyarrow
+        import pyarrow.parquet
+
+        columns = {"time": self.traces["time"], **self.traces.data_vars}
+        fields = [
+            pyarrow.field(str(name), pyarrow.from_numpy_dtype(array.dtype), metadata=_text_attributes(array.attrs))
+            for name, array in columns.items()
+        ]
+        metadata = {"schema_version": str(SCHEMA_VERSION), "scenario": self.manifest["scenario"]["name"]}
+        schema = pyarrow.schema(fields, metadata=metadata)
+        data = pyarrow.table([array.values for array in columns.values()], schema=schema)
+        pyarrow.parquet.write_table(data, folder / TRACES_FILE, compression="zstd")
+        metrics = {"schema_version": SCHEMA_VERSION, "metrics": [asdict(metric) for metric in self.metrics]}
+        write_text(folder / METRICS_FILE, json.dumps(metrics, indent=2, allow_nan=False) + "\n")
+        write_text(folder / MANIFEST_FILE, json.dumps(self.manifest, indent=2, allow_nan=False) + "\n")
+
+
+def load(folder: Path | str) -> Result:
+    """Read a result that `Result.save` wrote."""
+    import pyarrow
+    import pyarrow.parquet
+    import xarray
+
+    folder = Path(folder)
+    manifest = _read_json(folder / MANIFEST_FILE)
+    metrics = tuple(Metric(**entry) for entry in _read_json(folder / METRICS_FILE)["metrics"])
+    path = folder / TRACES_FILE
+    try:
+        data = pyarrow.parquet.read_table(path)
+    except (OSError, pyarrow.ArrowException) as error:
+        raise FileError(path, f"cannot be read: {error}") from None
+    variables: dict[str, Any] = {}
+    for field, column in zip(data.schema, data.columns, strict=True):
+        attributes = {name: (field.metadata or {}).get(name.encode(), b"").decode() for name in ("units", "long_name")}
+        variables[field.name] = ("time", column.to_numpy(), attributes)
+    time = variables.pop("time")
+    return Result(xarray.Dataset(variables, coords={"time": time}), metrics, manifest)
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise FileError(path, "no such file", "give a folder that `giveway run --out` wrote") from None
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise FileError(path, f"cannot be read: {error}") from None
+    found = document.get("schema_version") if isinstance(document, dict) else None
+    if found != SCHEMA_VERSION:
+        raise FileError(path, f"schema_version is {found}", f"this version reads {SCHEMA_VERSION}")
+    assert isinstance(document, dict)
+    return document
+
+
+def _text_attributes(attributes: dict[Any, Any]) -> dict[str, str]:
+    return {str(key): str(value) for key, value in attributes.items()}

@@ -1,0 +1,92 @@
+"""From a scenario to a result: run, label, judge, and record where it came from."""
+
+from __future__ import annotations
+
+import datetime
+import importlib.metadata
+import platform
+from typing import TYPE_CHECKING, Any
+
+import xarray
+
+import giveway
+from giveway import metrics, native
+from giveway.master import Progress, Record, simulate
+from giveway.result import SCHEMA_VERSION, Result
+from giveway.variables import Value, table
+
+if TYPE_CHECKING:
+    from giveway.scenario import Scenario
+
+__all__ = ["run"]
+
+_LIBRARIES = ("fmpy", "numpy", "xarray", "pyarrow")
+EXCHANGE_ORDER = "sequential: sensors, controller, plant"
+
+
+def run(scenario: Scenario, progress: Progress | None = None) -> Result:
+    """Co-simulate ``scenario``; see `giveway.run`."""
+    record = simulate(scenario, progress)
+    traces = _label(record)
+    manifest = _manifest(scenario, record)
+    return Result(traces, metrics.collision(traces, manifest["parameters"]), manifest)
+
+
+def _label(record: Record) -> xarray.Dataset:
+    variables: dict[str, Any] = {}
+    for model in native.MODELS:
+        for variable in table(model):
+            values = record.traces.get(f"{model}.{variable.name}")
+            if values is not None:
+                attributes = {"units": variable.unit or "1", "long_name": variable.description}
+                variables[f"{model}.{variable.name}"] = ("time", values, attributes)
+    time = ("time", record.time_s, {"units": "s", "long_name": "Simulated time"})
+    return xarray.Dataset(variables, coords={"time": time})
+
+
+def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
+    effective = {
+        model: {v.name: record.parameters[model].get(v.name, v.start) for v in table(model).select("parameter")}
+        for model in native.MODELS
+    }
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "interrupted": record.interrupted,
+        "simulated_s": float(record.time_s[-1]),
+        "wall_s": record.wall_s,
+        "scenario": {
+            "name": scenario.name,
+            "bumper": scenario.bumper,
+            "duration_s": scenario.duration_s,
+            "step_s": scenario.step_s,
+            "fmi_version": scenario.fmi_version,
+            "plan": _describe(scenario.plan),
+            "push": None if scenario.push is None else _describe(scenario.push),
+            "robot": None if scenario.robot is None else str(scenario.robot),
+        },
+        "exchange_order": EXCHANGE_ORDER,
+        "seed": effective["testbed"]["electronics.seed"],
+        "solver": _group(effective["testbed"], "solver."),
+        "versions": {
+            "giveway": giveway.__version__,
+            "python": platform.python_version(),
+            **{name: importlib.metadata.version(name) for name in _LIBRARIES},
+        },
+        "platform": platform.platform(),
+        "fmus": {
+            model: {"file": file.path.name, "token": file.token, "sha256": file.sha256}
+            for model, file in record.files.items()
+        },
+        "parameters_set": record.parameters,
+        "parameters": effective,
+    }
+
+
+def _group(values: dict[str, Value | None], prefix: str) -> dict[str, Value | None]:
+    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
+
+
+def _describe(function: object) -> str:
+    text = repr(function)
+    return text if " at 0x" not in text else getattr(function, "__qualname__", type(function).__qualname__)

@@ -1,0 +1,86 @@
+"""A scenario: everything that decides the outcome of one run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+from giveway.checks import finite, whole
+from giveway.errors import GivewayError, UnknownNameError
+from giveway.plan import Plan, Push, Rest
+from giveway.robot import read_robot
+from giveway.variables import Value, table
+
+__all__ = ["BUMPERS", "FMI_VERSIONS", "Scenario"]
+
+BUMPERS: Mapping[str, int] = MappingProxyType({"none": 0, "spring": 1, "magnetic": 2})
+FMI_VERSIONS = (3, 2)
+MAXIMUM_DURATION_S = 3600.0
+MINIMUM_STEP_S, MAXIMUM_STEP_S = 1e-4, 0.1
+MAXIMUM_STEPS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One co-simulation of controller and testbed.
+
+    Attributes:
+        name: a short name, for manifests and figures.
+        duration_s: simulated time in s, above 0 and at most 3600.
+        step_s: communication step in s.
+        bumper: "none", "spring" or "magnetic".
+        testbed, controller: parameter overrides, names as in the variable tables, values in their units.
+        plan: the planned motion (world frame).
+        push: an external push on the robot over time, or None.
+        seed: seed of the testbed's sensor noise, or None for the table's start value.
+        fmi_version: 3 or 2.
+        robot: a robot file that replaces the one the FMUs were built with, or None.
+    """
+
+    name: str
+    duration_s: float
+    step_s: float = 1e-3
+    bumper: str = "magnetic"
+    testbed: Mapping[str, Value] = field(default_factory=dict)
+    controller: Mapping[str, Value] = field(default_factory=dict)
+    plan: Plan = field(default_factory=Rest)
+    push: Push | None = None
+    seed: int | None = None
+    fmi_version: int = 3
+    robot: Path | None = None
+
+    def __post_init__(self) -> None:
+        finite("duration_s", self.duration_s, 0.0, MAXIMUM_DURATION_S, "s")
+        finite("step_s", self.step_s, MINIMUM_STEP_S, MAXIMUM_STEP_S, "s")
+        if not 1 <= self.steps <= MAXIMUM_STEPS:
+            allowed = f"1 to {MAXIMUM_STEPS} communication steps of step_s = {self.step_s:g} s"
+            raise GivewayError("duration_s", self.duration_s, allowed)
+        if self.bumper not in BUMPERS:
+            raise UnknownNameError("bumper", self.bumper, BUMPERS)
+        if self.fmi_version not in FMI_VERSIONS:
+            raise GivewayError("fmi_version", self.fmi_version, "3 or 2")
+        if self.seed is not None:
+            whole("seed", self.seed, 0, 2**31 - 1)
+        # Copies, so that a frozen scenario cannot change behind the caller's back.
+        object.__setattr__(self, "testbed", MappingProxyType(dict(self.testbed)))
+        object.__setattr__(self, "controller", MappingProxyType(dict(self.controller)))
+
+    @property
+    def steps(self) -> int:
+        """Number of communication steps."""
+        return round(self.duration_s / self.step_s)
+
+    def parameters(self, model: str) -> dict[str, Value]:
+        """The checked parameters to set on the FMU of ``model``: robot file, then scenario, then overrides."""
+        variables = table(model)
+        values: dict[str, Value] = {}
+        if self.robot is not None:
+            values |= variables.robot_values(read_robot(Path(self.robot)))
+        if model == "testbed":
+            values["bumper.kind"] = BUMPERS[self.bumper]
+            if self.seed is not None:
+                values["electronics.seed"] = self.seed
+            return variables.check_all(values | dict(self.testbed))
+        return variables.check_all(values | dict(self.controller))

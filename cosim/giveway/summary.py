@@ -1,0 +1,59 @@
+"""The result table of several bumpers: as printed rows, and as summary.json for scripts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from giveway.files import write_text
+from giveway.metrics import Metric
+from giveway.result import Result
+
+__all__ = ["cell", "summary", "table_rows", "write_summary"]
+
+SCHEMA_VERSION = 1
+
+
+def table_rows(results: Mapping[str, Result]) -> list[tuple[str, ...]]:
+    """One row per metric: name with unit, then one cell per bumper: ``value (truth)``."""
+    first = next(iter(results.values()))
+    rows = []
+    for index, metric in enumerate(first.metrics):
+        unit = "" if metric.unit == "1" else f", {metric.unit}"
+        rows.append((f"{metric.name}{unit}", *(cell(result.metrics[index]) for result in results.values())))
+    return rows
+
+
+def cell(metric: Metric) -> str:
+    """A metric as text: ``value (truth)``, with "-" for what did not happen."""
+    if metric.truth is None or metric.truth == 0.0:  # an error's truth is zero by definition: not worth printing
+        return number(metric.value, metric.decimals)
+    return f"{number(metric.value, metric.decimals)} ({number(metric.truth, metric.decimals)})"
+
+
+def number(value: float | None, decimals: int) -> str:
+    """A number with fixed digits, or in exponent form where those would show nothing."""
+    if value is None:
+        return "-"
+    if value != 0.0 and abs(value) < 0.5 * 10.0 ** -min(decimals, 4):
+        return f"{value:.1e}"
+    return f"{value:.{min(decimals, 4)}f}"
+
+
+def summary(results: Mapping[str, Result]) -> dict[str, Any]:
+    """Every number of the table at full precision."""
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "rows": [
+            {"bumper": bumper, "name": metric.name, "value": metric.value, "unit": metric.unit, "truth": metric.truth}
+            for bumper, result in results.items()
+            for metric in result.metrics
+        ],
+    }
+
+
+def write_summary(path: Path, results: Mapping[str, Result]) -> None:
+    """Write `summary` as JSON, atomically."""
+    write_text(path, json.dumps(summary(results), indent=2, allow_nan=False) + "\n")
