@@ -1,6 +1,8 @@
 // The plant as the solver sees it: state and indicators as plain arrays, modes kept between events.
 #pragma once
 
+#include <algorithm>
+
 #include "hybrid_system.hpp"
 #include "initial_state.hpp"
 #include "outputs.hpp"
@@ -14,8 +16,8 @@ public:
         parameters_ = parameters;
         derived_ = plant::derive(parameters_);
         inputs_ = inputs;
-        first_contact_time_s_ = -1.0;
         plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
+        first_contact_time_s_ = modes_.contact > 0.5 ? 0.0 : -1.0;
     }
 
     void set_inputs(const plant::Inputs<double>& inputs, const double* state) {

@@ -1,0 +1,123 @@
+// The drive electronics of Fig. 3: three 2 kHz joint servos, sensor sampling, and the bus with its delay each way.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "delay_line.hpp"
+#include "giveway/gw_servo.h"
+#include "sensors.hpp"
+
+namespace giveway::testbed {
+
+inline constexpr std::int64_t servo_rate_hz = 2000;
+inline constexpr int servo_ticks_per_cycle = 2;
+inline constexpr double bus_period_s = 1e-3;
+
+struct Command {
+    std::array<double, 3> wheel_angle_rad, wheel_speed_radps;
+    bool enable;
+};
+
+struct DriveOptions {
+    SensorOptions sensors;
+    double kp_nm_per_rad, kd_nms_per_rad, torque_limit_nm, derivative_cutoff_hz;
+    int sensor_delay_cycles, command_delay_cycles;
+};
+
+class Drives {
+public:
+    // The drives have been holding their reference: earlier cycles moved at the start's wheel speeds. Returns what the servo
+    // refuses, empty if nothing.
+    gw_config_error_t start(const DriveOptions& options, const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& wheel_speed_radps,
+                            const std::array<double, 3>& torque_nm, bool enable) {
+        options_ = options;
+        cycle_ = 0;
+        gw_servo_config_t config{};
+        config.period_s = 1.0F / static_cast<gw_real_t>(servo_rate_hz);
+        config.kp_nm_per_rad = static_cast<gw_real_t>(options.kp_nm_per_rad);
+        config.kd_nms_per_rad = static_cast<gw_real_t>(options.kd_nms_per_rad);
+        config.torque_limit_nm = static_cast<gw_real_t>(options.torque_limit_nm);
+        config.torque_rate_limit_nm_per_s = 0.0F;
+        config.encoder_counts = static_cast<std::uint32_t>(options.sensors.encoder_counts);
+        config.derivative_cutoff_hz = static_cast<gw_real_t>(options.derivative_cutoff_hz);
+        config.stale_ticks_max = stale_ticks;
+        gw_config_error_t error{};
+        gw_servo_config_check(&config, &error);
+        if (error.field != GW_FIELD_NONE) {
+            return error;
+        }
+        for (auto& servo : servos_) {
+            (void)gw_servo_init(&servo, &config);
+        }
+        commands_.start(options.command_delay_cycles, [&](int cycles_ago) {
+            Command command{{}, wheel_speed_radps, enable};
+            for (std::size_t i = 0; i < 3; ++i) {
+                command.wheel_angle_rad[i] = -wheel_speed_radps[i] * bus_period_s * static_cast<double>(cycles_ago);
+            }
+            return command;
+        });
+        samples_.start(options.sensor_delay_cycles, [&](int cycles_ago) {
+            auto earlier = motor_angle_rad;
+            for (std::size_t i = 0; i < 3; ++i) {
+                earlier[i] -= wheel_speed_radps[i] * bus_period_s * static_cast<double>(cycles_ago);
+            }
+            return take_sample(earlier, torque_nm, -cycles_ago);
+        });
+        return error;
+    }
+
+    // Once per bus cycle, when its time is reached: samples the sensors and returns what the controller gets now.
+    SensorSample sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm) {
+        const SensorSample now = take_sample(motor_angle_rad, torque_nm, cycle_);
+        ++cycle_;
+        return samples_.exchange(now);
+    }
+
+    // Once per bus cycle, after the controller's command arrived.
+    void receive(const Command& command) {
+        active_ = commands_.exchange(command);
+        reference_is_new_ = true;
+    }
+
+    // Every servo tick: motor torques, from the drives' own undelayed encoders.
+    std::array<double, 3> regulate(const std::array<double, 3>& motor_angle_rad) {
+        std::array<double, 3> torque{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            gw_servo_input_t input{};
+            input.angle_rad = static_cast<gw_real_t>(active_.wheel_angle_rad[i]);
+            input.speed_radps = static_cast<gw_real_t>(active_.wheel_speed_radps[i]);
+            input.reference_is_new = reference_is_new_;
+            input.enable = active_.enable;
+            input.encoder_count = encoder_count(options_.sensors, motor_angle_rad[i]);
+            gw_servo_output_t output{};
+            (void)gw_servo_step(&servos_[i], &input, &output); // a bad reference holds the last angle
+            torque[i] = static_cast<double>(output.torque_nm);
+        }
+        reference_is_new_ = false;
+        return torque;
+    }
+
+private:
+    static constexpr std::uint32_t stale_ticks = 20; // 10 ms without a command: hold
+
+    [[nodiscard]] SensorSample take_sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm, std::int64_t cycle) const {
+        SensorSample sample{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            sample.torque_nm[i] = measured_torque(options_.sensors, static_cast<std::uint32_t>(i), cycle, torque_nm[i]);
+            sample.encoder_counts[i] = encoder_count(options_.sensors, motor_angle_rad[i]);
+        }
+        sample.counter = static_cast<std::int32_t>(static_cast<std::uint32_t>(cycle + max_delay_cycles));
+        return sample;
+    }
+
+    DriveOptions options_{};
+    std::array<gw_servo_t, 3> servos_{};
+    DelayLine<Command> commands_;
+    DelayLine<SensorSample> samples_;
+    Command active_{};
+    std::int64_t cycle_ = 0;
+    bool reference_is_new_ = false;
+};
+
+} // namespace giveway::testbed

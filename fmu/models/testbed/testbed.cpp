@@ -1,0 +1,198 @@
+// The testbed: plant, solver and drive electronics behind the model interface.
+//
+// Time runs in servo ticks of 0.5 ms. Reaching a bus tick samples the sensors; leaving it takes the command in. So sensor outputs at the end of a step
+// belong to that instant (less the bus delay), and the command set before the next step acts from there on.
+#include <cmath>
+#include <new>
+
+#include "from_variables.hpp"
+#include "hybrid_integrator.hpp"
+#include "model.hpp"
+#include "plant_system.hpp"
+#include "testbed_variables.hpp"
+
+namespace giveway::testbed {
+
+namespace {
+
+class Testbed final : public Model {
+public:
+    Testbed() { set_start_values(v_); }
+
+    void* variables() override { return &v_; }
+
+    void reset() override {
+        v_ = {};
+        set_start_values(v_);
+    }
+
+    Status initialise(double start_time_s, Message& message) override {
+        if (!check_relations(v_, message)) {
+            return Status::error;
+        }
+        start_time_s_ = start_time_s;
+        tick_ = 0;
+        due_ = true;
+        const plant::InitialMotion<double> motion{v_.start_x, v_.start_y, v_.start_theta, v_.start_vx, v_.start_vy, v_.start_omega, v_.slider_speed};
+        plant::StateVector<double> state{};
+        system_.start(plant_parameters(v_), motion, push_inputs({}), state);
+        const auto truth = system_.outputs(state.data());
+        stored_at_start_j_ = truth.stored_energy;
+        const auto refused = drives_.start(drive_options(v_), motor_angles(state.data()), truth.wheel_speed, truth.wheel_torque, v_.command_enable);
+        if (refused.field != GW_FIELD_NONE) {
+            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_limit(refused.field)->name,
+                          static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
+            return Status::error;
+        }
+        const solver::IntegratorOptions options{v_.solver_relative_tolerance, v_.solver_absolute_scale, v_.solver_maximum_step};
+        if (!integrator_.create(system_, 0.0, state.data(), options)) {
+            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+            return Status::error;
+        }
+        sample_sensors();
+        write_outputs();
+        return Status::ok;
+    }
+
+    Status step(double time_s, double step_size_s, Message& message) override {
+        const double end_s = time_s + step_size_s - start_time_s_;
+        // Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
+        const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
+        constexpr double rounding_ticks = 1e-6;
+        change_push();
+        while (static_cast<double>(tick_) < end_ticks - rounding_ticks) {
+            if (due_) {
+                leave_tick();
+            }
+            const auto next = tick_ + 1;
+            const bool reaches = static_cast<double>(next) <= end_ticks + rounding_ticks;
+            const double until_s = reaches ? static_cast<double>(next) / static_cast<double>(servo_rate_hz) : end_s;
+            if (!integrator_.advance(until_s)) {
+                std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+                return Status::error;
+            }
+            if (!reaches) {
+                break;
+            }
+            tick_ = next;
+            due_ = true;
+            if (tick_ % servo_ticks_per_cycle == 0) {
+                sample_sensors();
+            }
+        }
+        write_outputs();
+        if (!std::isfinite(v_.energy_stored)) {
+            std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s", time_s + step_size_s);
+            return Status::error;
+        }
+        return Status::ok;
+    }
+
+private:
+    [[nodiscard]] plant::Inputs<double> push_inputs(const std::array<double, 3>& motor_torque_nm) const {
+        return {motor_torque_nm, v_.push_force_x, v_.push_force_y, v_.push_point_x, v_.push_point_y};
+    }
+
+    static std::array<double, 3> motor_angles(const double* state) {
+        return {state[plant::motor_angle], state[plant::motor_angle + 1], state[plant::motor_angle + 2]};
+    }
+
+    // A step that does not start on a tick still has to see a new push from its start.
+    void change_push() {
+        const auto& now = system_.inputs();
+        if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y || v_.push_point_x != now.push_point_x ||
+            v_.push_point_y != now.push_point_y) {
+            system_.set_inputs(push_inputs(now.motor_torque), integrator_.state());
+            integrator_.restart();
+        }
+    }
+
+    void leave_tick() {
+        due_ = false;
+        if (tick_ % servo_ticks_per_cycle == 0) {
+            Command command{};
+            std::copy_n(v_.command_wheel_angle, 3, command.wheel_angle_rad.begin());
+            std::copy_n(v_.command_wheel_speed, 3, command.wheel_speed_radps.begin());
+            command.enable = v_.command_enable;
+            drives_.receive(command);
+        }
+        const double* state = integrator_.state();
+        system_.set_inputs(push_inputs(drives_.regulate(motor_angles(state))), state);
+        integrator_.restart();
+    }
+
+    void sample_sensors() {
+        const double* state = integrator_.state();
+        const SensorSample sample = drives_.sample(motor_angles(state), system_.outputs(state).wheel_torque);
+        std::copy_n(sample.torque_nm.begin(), 3, v_.sensor_torque);
+        std::copy_n(sample.encoder_counts.begin(), 3, v_.sensor_encoder);
+        v_.sensor_counter = sample.counter;
+        v_.sensor_present = true;
+    }
+
+    void write_outputs() {
+        const double* x = integrator_.state();
+        const auto truth = system_.outputs(x);
+        const auto& modes = system_.modes();
+        v_.truth_x = x[plant::base_x];
+        v_.truth_y = x[plant::base_y];
+        v_.truth_theta = x[plant::base_theta];
+        v_.truth_vx = x[plant::base_vx];
+        v_.truth_vy = x[plant::base_vy];
+        v_.truth_omega = x[plant::base_omega];
+        for (int i = 0; i < plant::wheel_count; ++i) {
+            const auto wheel = static_cast<std::size_t>(i);
+            v_.truth_wheel_angle[i] = x[plant::wheel_angle + i];
+            v_.truth_wheel_speed[i] = truth.wheel_speed[wheel];
+            v_.truth_wheel_torque[i] = truth.wheel_torque[wheel];
+            v_.truth_motor_torque[i] = system_.inputs().motor_torque[wheel];
+            v_.truth_gear_stuck[i] = std::fabs(modes.gear_direction[wheel]) < 0.5;
+            v_.truth_roller_force[i] = truth.roller_force[wheel];
+        }
+        v_.truth_contact = modes.contact > 0.5;
+        v_.truth_contact_force = truth.contact_force;
+        v_.truth_contact_force_x = truth.contact_force_x;
+        v_.truth_contact_force_y = truth.contact_force_y;
+        v_.truth_contact_point_x = truth.contact_point_x;
+        v_.truth_contact_point_y = truth.contact_point_y;
+        v_.truth_contact_base_x = truth.contact_base_x;
+        v_.truth_contact_base_y = truth.contact_base_y;
+        v_.truth_contact_impulse_x = x[plant::impulse_x];
+        v_.truth_contact_impulse_y = x[plant::impulse_y];
+        v_.truth_first_contact_time = system_.first_contact_time() < 0.0 ? -1.0 : start_time_s_ + system_.first_contact_time();
+        v_.truth_slider_position = x[plant::slider_position];
+        v_.truth_slider_speed = x[plant::slider_speed];
+        v_.truth_nose_x = truth.nose_x;
+        v_.truth_nose_y = truth.nose_y;
+        v_.truth_bumper_compression = x[plant::compression];
+        v_.truth_bumper_force = truth.bumper_force;
+        const auto& p = system_.parameters();
+        v_.truth_latched = p.has_ideal_latch() ? modes.latched > 0.5 : p.has_continuous_latch() && x[plant::compression] < p.latch_gap;
+        v_.truth_rope_tension = truth.rope_tension;
+        v_.truth_rope_taut = modes.rope_taut > 0.5;
+        v_.truth_weight_drop = x[plant::weight_drop];
+        v_.energy_stored = truth.stored_energy - stored_at_start_j_;
+        v_.energy_work_in = x[plant::work_in];
+        v_.energy_dissipated = x[plant::dissipated];
+        v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
+        const auto statistics = integrator_.statistics();
+        v_.events = static_cast<std::int32_t>(statistics.events);
+        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
+        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
+    }
+
+    Variables v_{};
+    PlantSystem system_;
+    solver::HybridIntegrator integrator_;
+    Drives drives_;
+    double start_time_s_ = 0.0;
+    double stored_at_start_j_ = 0.0;
+    std::int64_t tick_ = 0; // servo ticks since the start
+    bool due_ = true;       // the servo has yet to act at this tick
+};
+
+} // namespace
+
+} // namespace giveway::testbed
+
+giveway::Model* giveway::create_model() { return new (std::nothrow) testbed::Testbed; }
