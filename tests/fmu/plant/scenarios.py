@@ -14,6 +14,7 @@ from kkt_reference import (
     LATCH_IDEALISED,
     MOUNT_ROBOT,
     MOUNT_SLIDER,
+    ROLLER_BRISTLE,
     ROLLER_TANH,
     STATES,
     Inputs,
@@ -62,19 +63,16 @@ COLLISIONS = {
 
 
 def collision(
-    name: str, case: tuple[int, int, int, dict], **faults: float
+    case: tuple[int, int, int, dict], **faults: float
 ) -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
-    """Slider at 0.5 m/s, 2 mm before the robot, slightly off the centre line; the robot stands, unpowered."""
+    """Slider at 0.5 m/s, 6 mm before the robot, off the centre line; the robot stands, unpowered."""
     kind, mount, latch, other = case
-    p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, run_up=0.002)
+    p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, run_up=0.006)
     p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04)
-    p = replace(p, mount_azimuth=math.pi + 0.1 if mount == MOUNT_ROBOT else math.pi, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4])
-    p = replace(p, contact_friction=0.1)
+    p = replace(p, mount_azimuth=math.pi + 0.1, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4], contact_friction=0.1)
     p = replace(p, **{**other, **faults})
-    reference = Reference(p)
-    x = np.zeros(STATES)
+    reference, x, modes = still(p)
     x[19] = 0.5
-    modes = Modes(latched=int(reference.ideal))
     if p.rope_attached:
         x[21] = 0.5
         modes.rope_taut = 1
@@ -100,3 +98,41 @@ def still(p: Parameters) -> tuple[Reference, np.ndarray, Modes]:
         x[22] = -(p.preload + latch) / (p.spring_rate + p.stop_stiffness)
         modes.end_stop = 1
     return reference, x, modes
+
+
+def moving(p: Parameters, vx: float, vy: float, omega: float) -> tuple[Reference, np.ndarray, Modes]:
+    """The base in motion, its drivetrains turning along without torque, no slider."""
+    reference = Reference(replace(p, slider_present=0))
+    x = np.zeros(STATES)
+    x[3:6] = vx, vy, omega
+    x[9:12] = reference.rhs(0.0, x, Inputs(), Modes())[12:15]
+    return reference, x, Modes(gear=[int(math.copysign(1.0, w)) for w in x[9:12]])
+
+
+def pushed() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
+    """An unpowered robot, pushed hard off its centre for 0.3 s, then let go: gears slide and stick again."""
+    p = Parameters(slider_present=0, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4])
+    reference, x, modes = still(p)
+    x[2] = 0.3
+    push = Inputs(push_force=(70.0, 40.0), push_point=(-0.1, 0.25))
+    return reference, x, modes, [(0.0, push), (0.3, Inputs())]
+
+
+def driven() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
+    """Motor torques that step up, reverse and vanish; one beyond the torque limit."""
+    p = Parameters(slider_present=0, torque_limit=12.0)
+    reference, x, modes = still(p)
+    torques = [(0.0, (0.0, 0.0, 0.0)), (0.05, (6.0, -5.0, 2.5)), (0.25, (-15.0, 5.0, 4.0)), (0.4, (0.0, 0.0, 0.0))]
+    return reference, x, modes, [(t, Inputs(motor_torque=torque)) for t, torque in torques]
+
+
+def spinning(roller_model: int) -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
+    """Coasting to rest from a translation with spin, unpowered."""
+    reference, x, modes = moving(Parameters(roller_model=roller_model), 0.3, -0.2, 2.0)
+    return reference, x, modes, [(0.0, Inputs())]
+
+
+def all_runs() -> dict[str, tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]]:
+    runs = {f"collision, {name}": collision(case) for name, case in COLLISIONS.items()}
+    runs |= {"pushed": pushed(), "driven": driven()}
+    return runs | {"spinning, bristle": spinning(ROLLER_BRISTLE), "spinning, tanh": spinning(ROLLER_TANH)}

@@ -68,7 +68,7 @@ def test_unloaded_state_is_an_equilibrium():
 @pytest.mark.parametrize("name", ["none", "magnetic continuous on robot", "magnetic idealised on slider"])
 def test_energy_closes(name):
     """D sums what every element takes; stored energy is built from the state alone: nothing makes them agree but physics."""
-    r, x, modes, inputs = collision(name, COLLISIONS[name])
+    r, x, modes, inputs = collision(COLLISIONS[name])
     run = r.simulate(x, modes, np.linspace(0.0, 0.6, 31), inputs)
     start = r.stored_energy(x, modes)
     residual = [s[24] - s[25] - (r.stored_energy(s, m) - start) for s, m in zip(run.states, run.modes)]
