@@ -7,6 +7,7 @@ namespace giveway::plant {
 
 template <class T> struct Outputs {
     std::array<T, wheel_count> wheel_speed, wheel_torque, roller_force;
+    T contact_depth;                        // negative: clear of the robot
     T contact_force;                        // magnitude, N
     T contact_force_x, contact_force_y;     // on the robot, world frame
     T contact_point_x, contact_point_y;     // world frame
@@ -55,6 +56,7 @@ Outputs<T> outputs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& 
     o.wheel_torque = e.sensed_torque;
     o.roller_force = e.roller_force;
     const Vector2<T> force = to_world(e.heading, e.contact_force.on_robot);
+    o.contact_depth = e.contact.depth;
     o.contact_force = math::sqrt(dot(force, force));
     o.contact_force_x = force.x;
     o.contact_force_y = force.y;

@@ -37,6 +37,14 @@ public:
         plant::StateVector<double> state{};
         system_.start(plant_parameters(v_), motion, push_inputs({}), state);
         const auto truth = system_.outputs(state.data());
+        // A start inside the robot would be a catapult.
+        constexpr double touching_m = 1e-6;
+        if (v_.slider_present && truth.contact_depth > touching_m) {
+            std::snprintf(message.text, sizeof message.text,
+                          "slider.run_up = %.9g is not allowed: with this target, direction and start the nose starts %.9g m inside the robot", v_.slider_run_up,
+                          truth.contact_depth);
+            return Status::error;
+        }
         stored_at_start_j_ = truth.stored_energy;
         const auto refused = drives_.start(drive_options(v_), motor_angles(state.data()), truth.wheel_speed, truth.wheel_torque, v_.command_enable);
         if (refused.field != GW_FIELD_NONE) {

@@ -1,0 +1,124 @@
+// The testbed as a model: step sizes, energy, refusals. The plant's equations have their own reference in ../plant.
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "model.hpp"
+#include "testbed_variables.hpp"
+
+namespace {
+
+using giveway::Message;
+using giveway::Model;
+using giveway::Status;
+using giveway::testbed::Variables;
+
+struct Run {
+    std::unique_ptr<Model> model{giveway::create_model()};
+    Message message{};
+    [[nodiscard]] Variables& v() const { return *static_cast<Variables*>(model->variables()); }
+    void initialise() { ASSERT_EQ(model->initialise(0.0, message), Status::ok) << message.text; }
+    void step_to(double end_s, double step_s) {
+        const auto steps = std::llround(end_s / step_s);
+        for (long long k = 0; k < steps; ++k) {
+            ASSERT_EQ(model->step(static_cast<double>(k) * step_s, step_s, message), Status::ok) << message.text;
+        }
+    }
+};
+
+} // namespace
+
+TEST(Testbed, CollisionClosesItsEnergyAccount) {
+    for (const int kind : {0, 1, 2}) {
+        for (const int mount : {0, 1}) {
+            Run run;
+            run.v().bumper_kind = kind;
+            run.v().bumper_mount = mount;
+            if (kind != 0 && mount == 1) {
+                run.v().slider_target_x = run.v().bumper_mount_x;
+                run.v().slider_target_y = run.v().bumper_mount_y;
+            }
+            run.initialise();
+            run.step_to(0.5, 1e-3);
+            EXPECT_GT(run.v().truth_first_contact_time, 0.14);
+            EXPECT_GT(run.v().energy_dissipated, 0.5);
+            // Of some 4 J turned over, 1e-6 each way at the default tolerance.
+            EXPECT_LT(std::fabs(run.v().energy_residual), 1e-5) << "kind " << kind << ", mount " << mount;
+        }
+    }
+}
+
+TEST(Testbed, StepsOfWholeTicksGiveTheSameBits) {
+    Run one;
+    Run two;
+    Run half;
+    one.initialise();
+    two.initialise();
+    half.initialise();
+    one.step_to(0.3, 1e-3);
+    two.step_to(0.3, 2e-3);
+    half.step_to(0.3, 5e-4);
+    EXPECT_EQ(std::memcmp(&one.v(), &two.v(), sizeof(Variables)), 0);
+    EXPECT_EQ(std::memcmp(&one.v(), &half.v(), sizeof(Variables)), 0);
+}
+
+TEST(Testbed, StepsAcrossTicksAgreeToTheTolerance) {
+    Run one;
+    Run odd;
+    one.initialise();
+    odd.initialise();
+    one.step_to(0.21, 1e-3);
+    odd.step_to(0.21, 7e-4);
+    // The integrator stops at other instants: a few times its relative tolerance of 1e-6.
+    EXPECT_NEAR(odd.v().truth_slider_position, one.v().truth_slider_position, 1e-6 * 0.06);
+    EXPECT_NEAR(odd.v().truth_contact_force, one.v().truth_contact_force, 1e-4 * one.v().truth_contact_force);
+}
+
+TEST(Testbed, ResetAndRunAgainGivesTheSameBits) {
+    Run run;
+    run.initialise();
+    run.step_to(0.2, 1e-3);
+    const Variables first = run.v();
+    run.model->reset();
+    run.initialise();
+    run.step_to(0.2, 1e-3);
+    EXPECT_EQ(std::memcmp(&first, &run.v(), sizeof first), 0);
+}
+
+TEST(Testbed, UnpoweredDrivesGiveNoTorque) {
+    Run run;
+    run.v().command_enable = false;
+    run.v().start_vx = 0.1;
+    run.v().slider_present = false;
+    run.initialise();
+    run.step_to(0.1, 1e-3);
+    for (const double torque : run.v().truth_motor_torque) {
+        EXPECT_EQ(torque, 0.0);
+    }
+    EXPECT_EQ(run.v().energy_work_in, 0.0);
+}
+
+TEST(Testbed, RefusesWhatDoesNotFitTogether) {
+    const auto refusal = [](auto change) {
+        Run run;
+        change(run.v());
+        EXPECT_EQ(run.model->initialise(0.0, run.message), Status::error);
+        return std::string(run.message.text);
+    };
+    EXPECT_NE(refusal([](Variables& v) { v.drivetrain_gear_stiction = 1.0; }).find("drivetrain.gear_stiction = 1"), std::string::npos);
+    EXPECT_NE(refusal([](Variables& v) { v.bumper_plate_mass = 9.0; }).find("bumper.plate_mass = 9"), std::string::npos);
+    EXPECT_NE(refusal([](Variables& v) { std::swap(v.outline_x[1], v.outline_x[2]), std::swap(v.outline_y[1], v.outline_y[2]); }).find("outline."), std::string::npos);
+    EXPECT_NE(refusal([](Variables& v) { v.slider_target_x = 0.0; }).find("slider.run_up = 0.0382"), std::string::npos);
+    EXPECT_NE(refusal([](Variables& v) {
+                  // A pentagram: every corner turns left, yet it is not convex.
+                  v.outline_count = 5;
+                  for (int i = 0; i < 5; ++i) {
+                      v.outline_x[i] = 0.3 * std::cos(0.8 * M_PI * i);
+                      v.outline_y[i] = 0.3 * std::sin(0.8 * M_PI * i);
+                  }
+              }).find("convex"),
+              std::string::npos);
+}
