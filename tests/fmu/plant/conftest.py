@@ -1,7 +1,8 @@
 import ctypes
 
-import plant_probe
 import pytest
+
+import plant_probe
 
 
 @pytest.fixture(scope="session")

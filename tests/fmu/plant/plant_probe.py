@@ -1,4 +1,4 @@
-"""The C++ plant from Python: parameters by name, the plant's functions, and giveway's own solver."""
+"""The C++ plant from Python: parameters by name, its functions, and giveway's own solver."""
 
 from __future__ import annotations
 
@@ -8,16 +8,18 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
+
 from kkt_reference import INDICATORS, STATES, Inputs, Modes, Parameters
 
 MODE_COUNT = 9
 # Fields of the reference that are not parameters of the plant under the same name.
 NOT_SHARED = {"outline", "fault_velocity_term", "fault_contact_moment", "fault_external_sign"}
 OUTPUTS = (
-    *(f"wheel_speed[{i}]" for i in range(3)), *(f"wheel_torque[{i}]" for i in range(3)), *(f"roller_force[{i}]" for i in range(3)),
-    "contact_force", "contact_force_x", "contact_force_y", "contact_point_x", "contact_point_y", "contact_base_x", "contact_base_y",
-    "nose_x", "nose_y", "bumper_force", "rope_tension", "stored_energy",
-)  # fmt: skip
+    *(f"{name}[{i}]" for name in ("wheel_speed", "wheel_torque", "roller_force") for i in range(3)),
+    *("contact_force", "contact_force_x", "contact_force_y", "contact_point_x", "contact_point_y"),
+    *("contact_base_x", "contact_base_y", "nose_x", "nose_y", "bumper_force", "rope_tension"),
+    "stored_energy",
+)
 
 
 def library_path() -> Path:
@@ -28,12 +30,12 @@ def library_path() -> Path:
 def load() -> ctypes.CDLL:
     path = library_path()
     if not path.exists():
-        raise FileNotFoundError(f"{path}: build the target giveway_plant_probe, or set GIVEWAY_TEST_DIR to where it is")
+        raise FileNotFoundError(
+            f"{path}: build the target giveway_plant_probe, or set GIVEWAY_TEST_DIR to where it is"
+        )
     library = ctypes.CDLL(str(path))
     library.probe_new.restype = ctypes.c_void_p
     library.probe_error.restype = ctypes.c_char_p
-    for name in ("delete", "error", "set", "derive", "rhs", "indicators", "transition", "outputs", "simulate"):
-        getattr(library, f"probe_{name}").argtypes = None
     return library
 
 
@@ -81,7 +83,12 @@ class Plant:
             raise KeyError(f"the C++ plant has no parameter {name} of {len(values)} values")
 
     def _call(self, name: str, x: np.ndarray, u: Inputs, modes: Modes, count: int) -> np.ndarray:
-        state, inputs, mode, out = _array(x), _array(input_row(u)), _array(modes.as_list()), np.empty(count)
+        state, inputs, mode, out = (
+            _array(x),
+            _array(input_row(u)),
+            _array(modes.as_list()),
+            np.empty(count),
+        )
         function = getattr(self._library, f"probe_{name}")
         function(self._handle, _pointer(state), _pointer(inputs), _pointer(mode), _pointer(out))
         return out
@@ -93,11 +100,22 @@ class Plant:
         return self._call("indicators", x, u, modes, INDICATORS)
 
     def outputs(self, x: np.ndarray, u: Inputs, modes: Modes) -> dict[str, float]:
-        return dict(zip(OUTPUTS, self._call("outputs", x, u, modes, len(OUTPUTS)).tolist(), strict=True))
+        return dict(
+            zip(OUTPUTS, self._call("outputs", x, u, modes, len(OUTPUTS)).tolist(), strict=True)
+        )
 
-    def transition(self, x: np.ndarray, u: Inputs, modes: Modes, fired: np.ndarray) -> tuple[np.ndarray, Modes]:
-        state, inputs, mode, fired = np.array(x, dtype=float), _array(input_row(u)), _array(modes.as_list()), _array(fired)
-        self._library.probe_transition(self._handle, _pointer(state), _pointer(inputs), _pointer(mode), _pointer(fired))
+    def transition(
+        self, x: np.ndarray, u: Inputs, modes: Modes, fired: np.ndarray
+    ) -> tuple[np.ndarray, Modes]:
+        state, inputs, mode, fired = (
+            np.array(x, dtype=float),
+            _array(input_row(u)),
+            _array(modes.as_list()),
+            _array(fired),
+        )
+        self._library.probe_transition(
+            self._handle, _pointer(state), _pointer(inputs), _pointer(mode), _pointer(fired)
+        )
         return state, modes_from(mode)
 
     def simulate(
@@ -117,14 +135,37 @@ class Plant:
         event_times, event_indices = np.empty(capacity), np.empty(capacity, dtype=np.int32)
         statistics = np.zeros(3, dtype=np.int64)
         count = self._library.probe_simulate(
-            self._handle, _pointer(state), _pointer(mode), len(starts), _pointer(starts), _pointer(rows), len(times), _pointer(times),
-            ctypes.c_double(rtol), ctypes.c_double(atol), _pointer(states), _pointer(all_modes), capacity, _pointer(event_times),
-            _pointer(event_indices), _pointer(statistics),
-        )  # fmt: skip
+            self._handle,
+            _pointer(state),
+            _pointer(mode),
+            len(starts),
+            _pointer(starts),
+            _pointer(rows),
+            len(times),
+            _pointer(times),
+            ctypes.c_double(rtol),
+            ctypes.c_double(atol),
+            _pointer(states),
+            _pointer(all_modes),
+            capacity,
+            _pointer(event_times),
+            _pointer(event_indices),
+            _pointer(statistics),
+        )
         if count < 0:
             raise RuntimeError(self._library.probe_error(self._handle).decode())
-        events = [(float(t), int(i)) for t, i in zip(event_times[:count], event_indices[:count], strict=True)]
-        return Run(times, states, [modes_from(m) for m in all_modes], events, int(statistics[0]), int(statistics[1]))
+        events = [
+            (float(t), int(i))
+            for t, i in zip(event_times[:count], event_indices[:count], strict=True)
+        ]
+        return Run(
+            times,
+            states,
+            [modes_from(m) for m in all_modes],
+            events,
+            int(statistics[0]),
+            int(statistics[1]),
+        )
 
 
 def modes_from(row: np.ndarray) -> Modes:

@@ -1,7 +1,7 @@
 // The plant behind a flat C interface, for the Python tests in this folder only (loaded by ctypes).
 //
-// Parameters are set by the names they have in parameters.hpp. Those that were never set are NaN (reals) or -1 (choices),
-// so that a forgotten one shows in every comparison.
+// Parameters are set by the names they have in parameters.hpp. Those that were never set are NaN
+// (reals) or -1 (choices), so that a forgotten one shows in every comparison.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -33,26 +33,70 @@ struct Probe {
 
 struct Real {
     const char* name;
-    double Parameters::*member;
+    double Parameters::* member;
 };
 struct RealPerWheel {
     const char* name;
-    std::array<double, plant::wheel_count> Parameters::*member;
+    std::array<double, plant::wheel_count> Parameters::* member;
 };
 
 #define REAL(name) {#name, &Parameters::name}
 constexpr Real reals[] = {
-    REAL(mass), REAL(yaw_inertia), REAL(wheel_radius), REAL(wheel_distance), REAL(wheel_inertia), REAL(roller_radius), REAL(roller_inertia),
-    REAL(roller_torque), REAL(roller_slope), REAL(roller_presliding_damping), REAL(roller_stribeck_speed), REAL(roller_elastic_fraction),
-    REAL(motor_inertia), REAL(drivetrain_stiffness), REAL(drivetrain_damping), REAL(gear_coulomb), REAL(gear_stiction), REAL(gear_viscous),
-    REAL(torque_limit), REAL(slider_mass), REAL(slider_friction), REAL(slider_friction_speed), REAL(slider_damping), REAL(rail_direction),
-    REAL(target_x), REAL(target_y), REAL(run_up), REAL(hanging_mass), REAL(rope_stiffness), REAL(rope_damping), REAL(drop_height),
-    REAL(floor_stiffness), REAL(floor_damping), REAL(plate_mass), REAL(spring_rate), REAL(preload), REAL(bumper_damping), REAL(guide_friction),
-    REAL(guide_friction_speed), REAL(travel), REAL(stop_stiffness), REAL(stop_damping), REAL(latch_force), REAL(latch_gap), REAL(mount_x),
-    REAL(mount_y), REAL(mount_azimuth), REAL(nose_radius), REAL(contact_stiffness), REAL(contact_damping), REAL(contact_friction),
+    REAL(mass),
+    REAL(yaw_inertia),
+    REAL(wheel_radius),
+    REAL(wheel_distance),
+    REAL(wheel_inertia),
+    REAL(roller_radius),
+    REAL(roller_inertia),
+    REAL(roller_torque),
+    REAL(roller_slope),
+    REAL(roller_presliding_damping),
+    REAL(roller_stribeck_speed),
+    REAL(roller_elastic_fraction),
+    REAL(motor_inertia),
+    REAL(drivetrain_stiffness),
+    REAL(drivetrain_damping),
+    REAL(gear_coulomb),
+    REAL(gear_stiction),
+    REAL(gear_viscous),
+    REAL(torque_limit),
+    REAL(slider_mass),
+    REAL(slider_friction),
+    REAL(slider_friction_speed),
+    REAL(slider_damping),
+    REAL(rail_direction),
+    REAL(target_x),
+    REAL(target_y),
+    REAL(run_up),
+    REAL(hanging_mass),
+    REAL(rope_stiffness),
+    REAL(rope_damping),
+    REAL(drop_height),
+    REAL(floor_stiffness),
+    REAL(floor_damping),
+    REAL(plate_mass),
+    REAL(spring_rate),
+    REAL(preload),
+    REAL(bumper_damping),
+    REAL(guide_friction),
+    REAL(guide_friction_speed),
+    REAL(travel),
+    REAL(stop_stiffness),
+    REAL(stop_damping),
+    REAL(latch_force),
+    REAL(latch_gap),
+    REAL(mount_x),
+    REAL(mount_y),
+    REAL(mount_azimuth),
+    REAL(nose_radius),
+    REAL(contact_stiffness),
+    REAL(contact_damping),
+    REAL(contact_friction),
     REAL(contact_friction_speed),
 };
-constexpr RealPerWheel per_wheel[] = {REAL(wheel_load), REAL(wheel_traction), REAL(roller_presliding_stiffness)};
+constexpr RealPerWheel per_wheel[] = {REAL(wheel_load), REAL(wheel_traction),
+                                      REAL(roller_presliding_stiffness)};
 #undef REAL
 
 // True if `name` is a choice; sets it.
@@ -91,8 +135,9 @@ Modes modes_from(const double* m) {
 }
 
 void modes_to(const Modes& m, double* out) {
-    const double flat[mode_count] = {
-        m.gear_direction[0], m.gear_direction[1], m.gear_direction[2], m.contact, m.rope_taut, m.end_stop, m.bottom_stop, m.latched, m.landed};
+    const double flat[mode_count] = {m.gear_direction[0], m.gear_direction[1], m.gear_direction[2],
+                                     m.contact,           m.rope_taut,         m.end_stop,
+                                     m.bottom_stop,       m.latched,           m.landed};
     std::copy_n(flat, mode_count, out);
 }
 
@@ -101,7 +146,8 @@ struct Event {
     int index;
 };
 
-// The plant as the solver sees it, with constant inputs between restarts; keeps a list of the events.
+// The plant as the solver sees it, with constant inputs between restarts; keeps a list of the
+// events.
 class RecordedPlant final : public giveway::solver::HybridSystem {
 public:
     explicit RecordedPlant(const Probe& probe, const Modes& modes, double absolute_tolerance)
@@ -116,7 +162,8 @@ public:
         std::copy(result.begin(), result.end(), rate);
     }
     void indicators(double, const double* state, double* value) override {
-        const auto result = plant::event_indicators(state_from(state), inputs, modes, probe_.p, probe_.d);
+        const auto result =
+            plant::event_indicators(state_from(state), inputs, modes, probe_.p, probe_.d);
         std::copy(result.begin(), result.end(), value);
     }
     void transition(double time_s, double* state, const int* fired) override {
@@ -155,7 +202,8 @@ EXPORT void* probe_new() {
         for (const auto& real : per_wheel) {
             (probe->p.*real.member).fill(unset);
         }
-        for (const char* name : {"roller_model", "bumper_kind", "bumper_mount", "latch_model", "slider_present", "rope_attached"}) {
+        for (const char* name : {"roller_model", "bumper_kind", "bumper_mount", "latch_model",
+                                 "slider_present", "rope_attached"}) {
             set_choice(probe->p, name, -1);
         }
     }
@@ -177,13 +225,17 @@ EXPORT int probe_set(void* handle, const char* name, const double* values, int c
         std::copy_n(values, count, target.begin());
         p.outline_count = count;
     } else if (count == plant::wheel_count) {
-        const auto* found = std::find_if(std::begin(per_wheel), std::end(per_wheel), [name](const auto& r) { return std::strcmp(r.name, name) == 0; });
+        const auto* found =
+            std::find_if(std::begin(per_wheel), std::end(per_wheel),
+                         [name](const auto& r) { return std::strcmp(r.name, name) == 0; });
         if (found == std::end(per_wheel)) {
             return 1;
         }
         std::copy_n(values, count, (p.*found->member).begin());
     } else if (count == 1) {
-        const auto* found = std::find_if(std::begin(reals), std::end(reals), [name](const auto& r) { return std::strcmp(r.name, name) == 0; });
+        const auto* found = std::find_if(std::begin(reals), std::end(reals), [name](const auto& r) {
+            return std::strcmp(r.name, name) == 0;
+        });
         if (found != std::end(reals)) {
             p.*found->member = values[0];
         } else if (!set_choice(p, name, static_cast<int>(values[0]))) {
@@ -201,19 +253,24 @@ EXPORT void probe_derive(void* handle) {
     probe->d = plant::derive(probe->p);
 }
 
-EXPORT void probe_rhs(void* handle, const double* x, const double* u, const double* m, double* rate) {
+EXPORT void probe_rhs(void* handle, const double* x, const double* u, const double* m,
+                      double* rate) {
     const auto* probe = static_cast<const Probe*>(handle);
-    const auto result = plant::rhs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto result =
+        plant::rhs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
     std::copy(result.begin(), result.end(), rate);
 }
 
-EXPORT void probe_indicators(void* handle, const double* x, const double* u, const double* m, double* value) {
+EXPORT void probe_indicators(void* handle, const double* x, const double* u, const double* m,
+                             double* value) {
     const auto* probe = static_cast<const Probe*>(handle);
-    const auto result = plant::event_indicators(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto result =
+        plant::event_indicators(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
     std::copy(result.begin(), result.end(), value);
 }
 
-EXPORT void probe_transition(void* handle, double* x, const double* u, double* m, const double* fired) {
+EXPORT void probe_transition(void* handle, double* x, const double* u, double* m,
+                             const double* fired) {
     const auto* probe = static_cast<const Probe*>(handle);
     auto state = state_from(x);
     auto modes = modes_from(m);
@@ -224,9 +281,10 @@ EXPORT void probe_transition(void* handle, double* x, const double* u, double* m
     modes_to(modes, m);
 }
 
-// wheel_speed[3], wheel_torque[3], roller_force[3], contact force (magnitude, x, y), contact point (world x, y; base x, y),
-// nose tip x, y, bumper force, rope tension, stored energy
-EXPORT void probe_outputs(void* handle, const double* x, const double* u, const double* m, double* out) {
+// wheel_speed[3], wheel_torque[3], roller_force[3], contact force (magnitude, x, y), contact point
+// (world x, y; base x, y), nose tip x, y, bumper force, rope tension, stored energy
+EXPORT void probe_outputs(void* handle, const double* x, const double* u, const double* m,
+                          double* out) {
     const auto* probe = static_cast<const Probe*>(handle);
     const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
     for (int i = 0; i < plant::wheel_count; ++i) {
@@ -234,16 +292,21 @@ EXPORT void probe_outputs(void* handle, const double* x, const double* u, const 
         out[3 + i] = o.wheel_torque[i];
         out[6 + i] = o.roller_force[i];
     }
-    const double rest[] = {o.contact_force, o.contact_force_x, o.contact_force_y, o.contact_point_x, o.contact_point_y, o.contact_base_x,
-                           o.contact_base_y, o.nose_x, o.nose_y, o.bumper_force, o.rope_tension, o.stored_energy};
+    const double rest[] = {o.contact_force,   o.contact_force_x, o.contact_force_y,
+                           o.contact_point_x, o.contact_point_y, o.contact_base_x,
+                           o.contact_base_y,  o.nose_x,          o.nose_y,
+                           o.bumper_force,    o.rope_tension,    o.stored_energy};
     std::copy(std::begin(rest), std::end(rest), out + 9);
 }
 
-// Runs giveway's own solver from times[0]. Inputs are piecewise constant: row k holds from input_times[k] on, the first from
-// times[0]. states: one row per time; statistics: steps, rhs calls, events. Returns the number of events, or -1 (probe_error says why).
-EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int inputs, const double* input_times, const double* input_rows,
-                          int count, const double* times, double relative_tolerance, double absolute_tolerance, double* states, double* modes,
-                          int max_events, double* event_times, int* event_indices, std::int64_t* statistics) {
+// Runs giveway's own solver from times[0]. Inputs are piecewise constant: row k holds from
+// input_times[k] on, the first from times[0]. states: one row per time; statistics: steps, rhs
+// calls, events. Returns the number of events, or -1 (probe_error says why).
+EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int inputs,
+                          const double* input_times, const double* input_rows, int count,
+                          const double* times, double relative_tolerance, double absolute_tolerance,
+                          double* states, double* modes, int max_events, double* event_times,
+                          int* event_indices, std::int64_t* statistics) {
     auto* probe = static_cast<Probe*>(handle);
     RecordedPlant system(*probe, modes_from(m0), absolute_tolerance);
     giveway::solver::HybridIntegrator integrator;
@@ -257,7 +320,8 @@ EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int 
         while (good && next_input < inputs && input_times[next_input] <= times[k]) {
             good = integrator.advance(input_times[next_input]);
             system.inputs = inputs_from(input_rows + next_input * input_count);
-            plant::accept_inputs(state_from(integrator.state()), system.inputs, system.modes, probe->p, probe->d);
+            plant::accept_inputs(state_from(integrator.state()), system.inputs, system.modes,
+                                 probe->p, probe->d);
             integrator.restart();
             ++next_input;
         }
@@ -269,7 +333,8 @@ EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int 
         std::snprintf(probe->error, sizeof probe->error, "%s", integrator.error());
         return -1;
     }
-    const auto recorded = std::min<std::size_t>(system.events.size(), static_cast<std::size_t>(max_events));
+    const auto recorded =
+        std::min<std::size_t>(system.events.size(), static_cast<std::size_t>(max_events));
     for (std::size_t k = 0; k < recorded; ++k) {
         event_times[k] = system.events[k].time_s;
         event_indices[k] = system.events[k].index;

@@ -1,4 +1,5 @@
-"""Random parameters, states, modes and inputs: all kinds and mounts, spinning, off centre, in and out of contact."""
+"""Random parameters, states, modes and inputs: all kinds and mounts, spinning, off centre, in and
+out of contact."""
 
 from __future__ import annotations
 
@@ -6,6 +7,7 @@ import math
 from dataclasses import fields
 
 import numpy as np
+
 from kkt_reference import (
     KIND_MAGNETIC,
     KIND_NONE,
@@ -18,10 +20,20 @@ from kkt_reference import (
     Reference,
 )
 
-_NOT_SCALED = {"rail_direction", "target_x", "target_y", "mount_x", "mount_y", "mount_azimuth", "contact_friction"}
+_NOT_SCALED = {
+    "rail_direction",
+    "target_x",
+    "target_y",
+    "mount_x",
+    "mount_y",
+    "mount_azimuth",
+    "contact_friction",
+}
 
 
-def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roller: int) -> Parameters:
+def parameters(
+    rng: np.random.Generator, kind: int, mount: int, latch: int, roller: int
+) -> Parameters:
     p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, roller_model=roller)
     for f in fields(p):
         if f.type == "float" and f.name not in _NOT_SCALED and not f.name.startswith("fault"):
@@ -43,7 +55,9 @@ def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roll
         angles = np.sort(rng.uniform(0.0, 2.0 * math.pi, rng.integers(5, 17)))
         angles[:3] = 0.0, 2.1, 4.2  # the centre stays inside
         angles = np.sort(angles)
-        p.outline = list(zip((0.35 * np.cos(angles)).tolist(), (0.25 * np.sin(angles)).tolist(), strict=True))
+        p.outline = list(
+            zip((0.35 * np.cos(angles)).tolist(), (0.25 * np.sin(angles)).tolist(), strict=True)
+        )
     return p
 
 
@@ -70,7 +84,10 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
         if p.rope_attached:
             x[20], x[21] = x[18] + rng.normal(0.0, 3e-3), x[19] + rng.normal(0.0, 0.05)
         if not r.plate_locked(modes):
-            x[22], x[23] = rng.choice([rng.uniform(-2e-3, 2e-3), rng.uniform(0.0, 1.2 * p.travel)]), rng.normal(0.0, 0.5)
+            x[22], x[23] = (
+                rng.choice([rng.uniform(-2e-3, 2e-3), rng.uniform(0.0, 1.2 * p.travel)]),
+                rng.normal(0.0, 0.5),
+            )
     # Bring the robot to where the nose just touches it, from 5 mm short to 20 mm deep.
     depth = rng.uniform(-5e-3, 20e-3)
     nose_x, nose_y = r.nose(x)[0:2]
@@ -79,14 +96,18 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
         plate = np.array(r.plate(x)[0:2])
         away = p.nose_radius - depth
         side = rng.normal(0.0, 0.1)
-        wanted = np.array([nose_x - away * out_x - side * out_y, nose_y - away * out_y + side * out_x])
+        wanted = np.array(
+            [nose_x - away * out_x - side * out_y, nose_y - away * out_y + side * out_x]
+        )
         x[0:2] += wanted - plate
     else:
         k = rng.integers(len(p.outline))
         corner, following = np.array(p.outline[k]), np.array(p.outline[(k + 1) % len(p.outline)])
         along = following - corner
         normal = np.array([along[1], -along[0]]) / np.linalg.norm(along)
-        if rng.random() < 0.4:  # a vertex: outside of it, in any direction between its edges' normals
+        if (
+            rng.random() < 0.4
+        ):  # a vertex: outside of it, in any direction between its edges' normals
             previous = corner - np.array(p.outline[k - 1])
             other = np.array([previous[1], -previous[0]]) / np.linalg.norm(previous)
             share = rng.random()
@@ -113,6 +134,7 @@ def description(r: Reference, modes: Modes) -> str:
     latch = "idealised" if p.latch_model == LATCH_IDEALISED else "continuous"
     mount = "robot" if p.bumper_mount == MOUNT_ROBOT else "slider"
     return (
-        f"{kind} {latch} on {mount}, roller {p.roller_model}, traction {p.wheel_traction}, slider {p.slider_present}, "
+        f"{kind} {latch} on {mount}, roller {p.roller_model}, traction {p.wheel_traction}, "
+        f"slider {p.slider_present}, "
         f"rope {p.rope_attached}, {modes}"
     )

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+
 from kkt_reference import (
     KIND_MAGNETIC,
     KIND_NONE,
@@ -50,7 +51,12 @@ COLLISIONS = {
         KIND_SPRING,
         MOUNT_SLIDER,
         LATCH_CONTINUOUS,
-        {"roller_model": ROLLER_TANH, "contact_friction": 0.3, "target_x": -0.177, "target_y": 0.29},
+        {
+            "roller_model": ROLLER_TANH,
+            "contact_friction": 0.3,
+            "target_x": -0.177,
+            "target_y": 0.29,
+        },
     ),
     # The spring is too soft and the drop too short: bottoming stop and landing weight.
     "bottoming and landing": (
@@ -65,11 +71,18 @@ COLLISIONS = {
 def collision(
     case: tuple[int, int, int, dict], **faults: float
 ) -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
-    """Slider at 0.5 m/s, 6 mm before the robot, off the centre line; the robot stands, unpowered."""
+    """Slider at 0.5 m/s, 6 mm before the robot, off its centre; the robot stands, unpowered."""
     kind, mount, latch, other = case
     p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, run_up=0.006)
-    p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04)
-    p = replace(p, mount_azimuth=math.pi + 0.1, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4], contact_friction=0.1)
+    p = replace(
+        p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04
+    )
+    p = replace(
+        p,
+        mount_azimuth=math.pi + 0.1,
+        roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4],
+        contact_friction=0.1,
+    )
     p = replace(p, **{**other, **faults})
     reference, x, modes = still(p)
     x[19] = 0.5
@@ -82,13 +95,20 @@ def collision(
 def disconnected(p: Parameters) -> Parameters:
     """No drive, no friction, no slider: nothing left but the rolling constraints."""
     return replace(
-        p, drivetrain_stiffness=0.0, drivetrain_damping=0.0, roller_torque=0.0,
-        roller_presliding_stiffness=[0.0] * 3, roller_presliding_damping=0.0, roller_model=ROLLER_TANH, slider_present=0,
-    )  # fmt: skip
+        p,
+        drivetrain_stiffness=0.0,
+        drivetrain_damping=0.0,
+        roller_torque=0.0,
+        roller_presliding_stiffness=[0.0] * 3,
+        roller_presliding_damping=0.0,
+        roller_model=ROLLER_TANH,
+        slider_present=0,
+    )
 
 
 def still(p: Parameters) -> tuple[Reference, np.ndarray, Modes]:
-    """Everything at rest and unloaded: slider run_up away from the robot, bumper extended against its end."""
+    """Everything at rest and unloaded: slider run_up away from the robot, bumper extended against
+    its end."""
     reference = Reference(p)
     x = np.zeros(STATES)
     modes = Modes(latched=int(reference.ideal))
@@ -100,7 +120,9 @@ def still(p: Parameters) -> tuple[Reference, np.ndarray, Modes]:
     return reference, x, modes
 
 
-def moving(p: Parameters, vx: float, vy: float, omega: float) -> tuple[Reference, np.ndarray, Modes]:
+def moving(
+    p: Parameters, vx: float, vy: float, omega: float
+) -> tuple[Reference, np.ndarray, Modes]:
     """The base in motion, its drivetrains turning along without torque, no slider."""
     reference = Reference(replace(p, slider_present=0))
     x = np.zeros(STATES)
@@ -110,7 +132,8 @@ def moving(p: Parameters, vx: float, vy: float, omega: float) -> tuple[Reference
 
 
 def pushed() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
-    """An unpowered robot, pushed hard off its centre for 0.3 s, then let go: gears slide and stick again."""
+    """An unpowered robot, pushed hard off its centre for 0.3 s, then let go: gears slide and stick
+    again."""
     p = Parameters(slider_present=0, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4])
     reference, x, modes = still(p)
     x[2] = 0.3
@@ -122,7 +145,12 @@ def driven() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
     """Motor torques that step up, reverse and vanish; one beyond the torque limit."""
     p = Parameters(slider_present=0, torque_limit=12.0)
     reference, x, modes = still(p)
-    torques = [(0.0, (0.0, 0.0, 0.0)), (0.05, (6.0, -5.0, 2.5)), (0.25, (-15.0, 5.0, 4.0)), (0.4, (0.0, 0.0, 0.0))]
+    torques = [
+        (0.0, (0.0, 0.0, 0.0)),
+        (0.05, (6.0, -5.0, 2.5)),
+        (0.25, (-15.0, 5.0, 4.0)),
+        (0.4, (0.0, 0.0, 0.0)),
+    ]
     return reference, x, modes, [(t, Inputs(motor_torque=torque)) for t, torque in torques]
 
 
@@ -135,4 +163,7 @@ def spinning(roller_model: int) -> tuple[Reference, np.ndarray, Modes, list[tupl
 def all_runs() -> dict[str, tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]]:
     runs = {f"collision, {name}": collision(case) for name, case in COLLISIONS.items()}
     runs |= {"pushed": pushed(), "driven": driven()}
-    return runs | {"spinning, bristle": spinning(ROLLER_BRISTLE), "spinning, tanh": spinning(ROLLER_TANH)}
+    return runs | {
+        "spinning, bristle": spinning(ROLLER_BRISTLE),
+        "spinning, tanh": spinning(ROLLER_TANH),
+    }

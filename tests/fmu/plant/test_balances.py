@@ -4,8 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 import random_cases
-from kkt_reference import KIND_SPRING, MOUNT_ROBOT, MOUNT_SLIDER, STATES, Inputs, Modes, Parameters, Reference
+from kkt_reference import (
+    KIND_SPRING,
+    MOUNT_ROBOT,
+    MOUNT_SLIDER,
+    STATES,
+    Inputs,
+    Modes,
+    Parameters,
+    Reference,
+)
 from plant_probe import Plant
 from scenarios import COLLISIONS, all_runs, collision, disconnected
 
@@ -17,7 +27,8 @@ PRODUCTION, TIGHT = (1e-6, 1e-9, 1e-6), (1e-9, 1e-11, 1e-8)
 @pytest.mark.parametrize("rtol, atol, bound", [PRODUCTION, TIGHT], ids=["production", "tight"])
 @pytest.mark.parametrize("name", RUNS)
 def test_energy_balance_closes(library, name, rtol, atol, bound):
-    """W - D - stored = 0, through every event. Measured: 7e-7 at the tolerances used in production, 2e-9 at tight ones."""
+    """W - D - stored = 0, through every event. Measured: 7e-7 at the tolerances used in production,
+    2e-9 at tight ones."""
     reference, x, modes, inputs = RUNS[name]
     plant, times = Plant(library, reference.p), np.linspace(0.0, 0.6, 301)
     run = plant.simulate(x, modes, times, inputs, rtol, atol)
@@ -32,7 +43,8 @@ def test_energy_balance_closes(library, name, rtol, atol, bound):
 
 
 def test_the_velocity_term_does_no_work(library):
-    """Without drive, friction and input the base's acceleration is c(nu) alone, as physics has it in closed form."""
+    """Without drive, friction and input the base's acceleration is c(nu) alone, as physics has it
+    in closed form."""
     rng = np.random.default_rng(5)
     for _ in range(300):
         p = disconnected(random_cases.parameters(rng, KIND_SPRING, MOUNT_SLIDER, 0, 0))
@@ -44,7 +56,9 @@ def test_the_velocity_term_does_no_work(library):
         turning = wheels / (p.mass + wheels) * x[5]
         speed = np.hypot(x[3], x[4])
         # Some ten operations on numbers of this size.
-        assert rate[3:6] == pytest.approx([-turning * x[4], turning * x[3], 0.0], abs=1e-13 * (1.0 + speed * abs(x[5])))
+        assert rate[3:6] == pytest.approx(
+            [-turning * x[4], turning * x[3], 0.0], abs=1e-13 * (1.0 + speed * abs(x[5]))
+        )
 
 
 def test_free_spinning_base_keeps_its_energy(library):
@@ -56,49 +70,73 @@ def test_free_spinning_base_keeps_its_energy(library):
     energy = [plant.outputs(state, Inputs(), Modes())["stored_energy"] for state in run.states]
     # The velocity has turned by kappa omega t = 0.24 rad meanwhile; integrator at 1e-9.
     assert np.ptp(energy) < 1e-8 * energy[0]
-    assert np.arctan2(run.states[-1, 4], run.states[-1, 3]) - np.arctan2(-0.2, 0.3) == pytest.approx(0.2431, abs=1e-3)
+    assert np.arctan2(run.states[-1, 4], run.states[-1, 3]) - np.arctan2(
+        -0.2, 0.3
+    ) == pytest.approx(0.2431, abs=1e-3)
 
 
-@pytest.mark.parametrize("name", ["none", "spring on slider", "magnetic idealised on slider", "spring on robot", "idealised latch closes again on robot"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "none",
+        "spring on slider",
+        "magnetic idealised on slider",
+        "spring on robot",
+        "idealised latch closes again on robot",
+    ],
+)
 def test_slider_momentum_is_the_contact_impulse(library, name):
     """Rope off, rail smooth: along the rail the contact is the slider's only force."""
     reference, x, modes, inputs = collision(COLLISIONS[name])
-    p = replace(reference.p, rope_attached=0, slider_friction=0.0, slider_damping=0.0, rail_direction=0.2)
+    p = replace(
+        reference.p, rope_attached=0, slider_friction=0.0, slider_damping=0.0, rail_direction=0.2
+    )
     x[20:22], modes.rope_taut = 0.0, 0
     run = Plant(library, p).simulate(x, modes, np.linspace(0.0, 0.6, 61), inputs)
     s = run.states
     plate = 0.0 if p.bumper_mount == MOUNT_ROBOT else p.plate_mass * (p.bumper_kind != 0)
     momentum = (p.slider_mass - plate) * s[:, 19] + plate * (s[:, 19] - s[:, 23])
     impulse = s[:, 26] * np.cos(p.rail_direction) + s[:, 27] * np.sin(p.rail_direction)
-    # Both are integrated with the same errors: only rounding and the relatching's plastic impact could part them.
+    # Both are integrated with the same errors: only rounding and the relatching's plastic impact
+    # could part them.
     assert impulse[-1] > 1.0
     assert np.abs(momentum - momentum[0] + impulse).max() < 1e-9 * impulse[-1]
 
 
 @pytest.mark.parametrize("mount", [MOUNT_SLIDER, MOUNT_ROBOT])
 def test_robot_momentum_is_the_contact_impulse(library, mount):
-    """Rolling freely, hit through its centre: base, wheels, rollers (and plate) take the whole impulse."""
+    """Rolling freely, hit through its centre: base, wheels, rollers (and plate) take the whole
+    impulse."""
     p = replace(disconnected(Parameters(bumper_mount=mount)), slider_present=1, run_up=0.006)
     p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else p.target_x)
     reference = Reference(p)
     x = np.zeros(STATES)
     x[19] = x[21] = 0.5
-    run = Plant(library, p).simulate(x, Modes(rope_taut=1), np.linspace(0.0, 0.6, 61), [(0.0, Inputs())])
+    run = Plant(library, p).simulate(
+        x, Modes(rope_taut=1), np.linspace(0.0, 0.6, 61), [(0.0, Inputs())]
+    )
     s = run.states
-    moved = p.mass + 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
-    momentum = moved * s[:, 3] + (p.plate_mass * (s[:, 3] + s[:, 23]) if reference.on_robot else 0.0)
+    moved = p.mass + 1.5 * (
+        p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2
+    )
+    momentum = moved * s[:, 3] + (
+        p.plate_mass * (s[:, 3] + s[:, 23]) if reference.on_robot else 0.0
+    )
     assert s[-1, 26] > 1.0
     assert np.abs(momentum - s[:, 26]).max() < 1e-8 * s[-1, 26]
 
 
 def test_impulse_and_spin_are_the_integrals_of_the_contact_force(library):
-    """Hit off its centre: (px, py) and I omega against Simpson's rule over the force and its moment, as the outputs give them."""
+    """Hit off its centre: (px, py) and I omega against Simpson's rule over the force and its
+    moment, as the outputs give them."""
     reference, x, modes, inputs = collision(COLLISIONS["spring on slider"])
     p = replace(disconnected(reference.p), slider_present=1)
     plant = Plant(library, p)
     step = 2e-5
     run = plant.simulate(x, modes, np.arange(0.0, 0.2 + step / 2.0, step), inputs)
-    outputs = [plant.outputs(s, inputs[0][1], m) for s, m in zip(run.states, run.modes, strict=True)]
+    outputs = [
+        plant.outputs(s, inputs[0][1], m) for s, m in zip(run.states, run.modes, strict=True)
+    ]
     fx, fy = (np.array([o[f"contact_force_{axis}"] for o in outputs]) for axis in "xy")
     qx, qy = (np.array([o[f"contact_point_{axis}"] for o in outputs]) for axis in "xy")
     moment = (qx - run.states[:, 0]) * fy - (qy - run.states[:, 1]) * fx
@@ -108,5 +146,6 @@ def test_impulse_and_spin_are_the_integrals_of_the_contact_force(library):
     inertia = p.yaw_inertia + 3.0 * p.wheel_inertia * (p.wheel_distance / p.wheel_radius) ** 2
     end = run.states[-1]
     assert abs(end[26]) > 1.0 and abs(end[27]) > 0.01 and abs(end[5]) > 0.05
-    # The force has a corner where the contact closes: Simpson errs there by step^2 times its slope (5 N/ms), 2e-6 N s.
+    # The force has a corner where the contact closes: Simpson errs there by step^2 times its slope
+    # (5 N/ms), 2e-6 N s.
     assert [end[26], end[27], inertia * end[5]] == pytest.approx(integral, abs=5e-6)

@@ -1,8 +1,9 @@
-"""The C++ plant against the multiplier form at random states: one evaluation at a time, no integrator between them.
+"""The C++ plant against the multiplier form at random states: one evaluation at a time, no
+integrator between them.
 
-Tolerance 1e-9 of the largest rate of a group (base accelerations, motor accelerations, ...): the multiplier form solves a
-25 x 25 system whose entries span 1e-6 (a roller's inertia) to 100 (1/r_r), which costs up to six of sixteen digits.
-Measured: 1e-12.
+Tolerance 1e-9 of the largest rate of a group (base accelerations, motor accelerations, ...): the
+multiplier form solves a 25 x 25 system whose entries span 1e-6 (a roller's inertia) to 100 (1/r_r),
+which costs up to six of sixteen digits. Measured: 1e-12.
 """
 
 import ctypes
@@ -12,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 import random_cases
 from kkt_reference import BUMPER, CONTACT, INDICATORS, KIND_NONE, Reference
 from plant_probe import Plant
@@ -19,10 +21,16 @@ from plant_probe import Plant
 TOLERANCE = 1e-9
 # Rates compared together: each group shares a scale.
 GROUPS = {
-    "pose": slice(0, 3), "base acceleration": slice(3, 6), "motor speed": slice(6, 9), "motor acceleration": slice(9, 12),
-    "wheel speed": slice(12, 15), "bristle": slice(15, 18), "slider, weight, bumper": slice(18, 24), "powers": slice(24, 26),
+    "pose": slice(0, 3),
+    "base acceleration": slice(3, 6),
+    "motor speed": slice(6, 9),
+    "motor acceleration": slice(9, 12),
+    "wheel speed": slice(12, 15),
+    "bristle": slice(15, 18),
+    "slider, weight, bumper": slice(18, 24),
+    "powers": slice(24, 26),
     "contact force": slice(26, 28),
-}  # fmt: skip
+}
 COMBINATIONS = list(itertools.product((0, 1, 2), (0, 1), (0, 1), (0, 1)))
 PARAMETER_SETS, STATES_PER_SET = 30, 5  # of each of the 24 combinations: 3600 states
 
@@ -35,8 +43,11 @@ def cases(seed: int):
             yield reference, [random_cases.state(rng, reference) for _ in range(STATES_PER_SET)]
 
 
-def worst_error(library: ctypes.CDLL, faults: dict[str, float], limit: int | None = None) -> tuple[dict[str, float], int]:
-    """Worst relative difference of the right-hand sides by group; number of states beyond the tolerance."""
+def worst_error(
+    library: ctypes.CDLL, faults: dict[str, float], limit: int | None = None
+) -> tuple[dict[str, float], int]:
+    """Worst relative difference of the right-hand sides by group; number of states beyond the
+    tolerance."""
     worst = dict.fromkeys(GROUPS, 0.0)
     beyond = 0
     for reference, states in itertools.islice(cases(1), limit):
@@ -67,7 +78,8 @@ def test_right_hand_side(library, record_property):
     ids=lambda fault: next(iter(fault)),
 )
 def test_a_planted_fault_turns_the_comparison_red(library, fault):
-    """Sign of c(nu), of the contact force's moment, of the external wrench: each must fail the test above, and clearly."""
+    """Sign of c(nu), of the contact force's moment, of the external wrench: each must fail the test
+    above, and clearly."""
     worst, beyond = worst_error(library, fault, limit=240)
     assert beyond > 100
     assert worst["base acceleration"] > 1e-2
@@ -106,13 +118,17 @@ def test_event_indicators(library):
                 if reference.event_direction(i, modes):
                     # Torques of some N m, lengths of some mm, forces of some 10 N.
                     scale = max(abs(expected[i]), 1e-3 if i >= CONTACT else 1.0)
-                    assert abs(found[i] - expected[i]) < TOLERANCE * scale, (i, random_cases.description(reference, modes))
+                    assert abs(found[i] - expected[i]) < TOLERANCE * scale, (
+                        i,
+                        random_cases.description(reference, modes),
+                    )
                     compared[i] += 1
     assert min(compared.values()) > 500 and len(compared) == INDICATORS, compared
 
 
 def test_transitions(library):
-    """Every event from the states in which it can happen: new modes, and the jumps that go with them."""
+    """Every event from the states in which it can happen: new modes, and the jumps that go with
+    them."""
     seen: Counter[str] = Counter()
     for reference, states in itertools.islice(cases(3), 0, None, 3):
         plant = Plant(library, reference.p)
@@ -136,7 +152,8 @@ def test_transitions(library):
                 assert np.abs(found - expected).max() < TOLERANCE, about
                 seen[f"{i} {direction}"] += 1
                 seen["impact"] += bool(np.abs(expected - x).max() > 1e-3)
-    # Gears only fall; the bumper's indicator falls, or rises off the end stop; everything else goes both ways.
+    # Gears only fall; the bumper's indicator falls, or rises off the end stop; everything else goes
+    # both ways.
     assert len(seen) == 3 + 2 * 5 + 1 and min(seen.values()) > 20, seen
 
 
@@ -148,9 +165,18 @@ def test_outputs(library):
             force = e["contact_force"]
             expected = {f"wheel_torque[{i}]": e["torque"][i] for i in range(3)}
             expected |= {f"wheel_speed[{i}]": e["rate"][12 + i] for i in range(3)}
-            expected |= {f"roller_force[{i}]": p.wheel_traction[i] * e["roller_force"][i] for i in range(3)}
-            expected |= {"contact_force_x": force[0], "contact_force_y": force[1], "contact_force": np.hypot(*force)}
-            expected |= {"rope_tension": e["tension"], "stored_energy": reference.stored_energy(x, modes)}
+            expected |= {
+                f"roller_force[{i}]": p.wheel_traction[i] * e["roller_force"][i] for i in range(3)
+            }
+            expected |= {
+                "contact_force_x": force[0],
+                "contact_force_y": force[1],
+                "contact_force": np.hypot(*force),
+            }
+            expected |= {
+                "rope_tension": e["tension"],
+                "stored_energy": reference.stored_energy(x, modes),
+            }
             if p.bumper_kind != KIND_NONE and p.slider_present:
                 expected["bumper_force"] = e["internal_force"]
             if p.slider_present:
@@ -158,7 +184,18 @@ def test_outputs(library):
                 turn = complex(np.cos(x[2]), -np.sin(x[2]))
                 base = complex(qx - x[0], qy - x[1]) * turn
                 nose = reference.nose(x)
-                expected |= {"contact_point_x": qx, "contact_point_y": qy, "contact_base_x": base.real, "contact_base_y": base.imag}
-                expected |= {"nose_x": nose[0] + p.nose_radius * reference.ex, "nose_y": nose[1] + p.nose_radius * reference.ey}
+                expected |= {
+                    "contact_point_x": qx,
+                    "contact_point_y": qy,
+                    "contact_base_x": base.real,
+                    "contact_base_y": base.imag,
+                }
+                expected |= {
+                    "nose_x": nose[0] + p.nose_radius * reference.ex,
+                    "nose_y": nose[1] + p.nose_radius * reference.ey,
+                }
             for name, value in expected.items():
-                assert found[name] == pytest.approx(value, rel=TOLERANCE, abs=TOLERANCE), (name, random_cases.description(reference, modes))
+                assert found[name] == pytest.approx(value, rel=TOLERANCE, abs=TOLERANCE), (
+                    name,
+                    random_cases.description(reference, modes),
+                )

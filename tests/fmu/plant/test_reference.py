@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from kkt_reference import (
     KIND_MAGNETIC,
     KIND_NONE,
@@ -22,7 +23,8 @@ from scenarios import COLLISIONS, collision, disconnected, still
 
 
 def test_free_spinning_base_moves_as_the_closed_form_says():
-    """Without drive and friction, c(nu) turns the velocity at the rate kappa omega and does no work."""
+    """Without drive and friction, c(nu) turns the velocity at the rate kappa omega and does no
+    work."""
     p = disconnected(Parameters())
     kappa = 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
     kappa /= p.mass + kappa
@@ -36,7 +38,8 @@ def test_free_spinning_base_moves_as_the_closed_form_says():
 
 
 def test_static_push_is_shared_between_wheels_and_rollers():
-    """At rest J_w^T T + sum(n_i f_i) balances the push: solved here by hand, wheels stuck, bristles elastic."""
+    """At rest J_w^T T + sum(n_i f_i) balances the push: solved here by hand, wheels stuck, bristles
+    elastic."""
     p = Parameters(slider_present=0, roller_presliding_stiffness=[2.0e4, 2.6e4, 3.1e4])
     r = Reference(p)
     theta, point = 0.4, np.array([0.1, -0.2])
@@ -45,7 +48,10 @@ def test_static_push_is_shared_between_wheels_and_rollers():
     lever = turn @ point
     push = np.array([*force, lever[0] * force[1] - lever[1] * force[0]])
     angles = theta + np.array([0.0, 2.0, 4.0]) * math.pi / 3.0
-    j_w = np.stack([-np.sin(angles), np.cos(angles), np.full(3, p.wheel_distance)], axis=1) / p.wheel_radius
+    j_w = (
+        np.stack([-np.sin(angles), np.cos(angles), np.full(3, p.wheel_distance)], axis=1)
+        / p.wheel_radius
+    )
     j_n = np.stack([np.cos(angles), np.sin(angles), np.zeros(3)], axis=1)
     k = p.drivetrain_stiffness * j_w.T @ j_w + j_n.T @ np.diag(p.roller_presliding_stiffness) @ j_n
     shift = np.linalg.solve(k, push)
@@ -60,18 +66,25 @@ def test_static_push_is_shared_between_wheels_and_rollers():
 def test_unloaded_state_is_an_equilibrium():
     for mount in (MOUNT_SLIDER, MOUNT_ROBOT):
         for kind in (KIND_NONE, KIND_SPRING, KIND_MAGNETIC):
-            p = Parameters(bumper_mount=mount, bumper_kind=kind, rope_attached=0, latch_model=LATCH_IDEALISED)
+            p = Parameters(
+                bumper_mount=mount, bumper_kind=kind, rope_attached=0, latch_model=LATCH_IDEALISED
+            )
             r, x, modes = still(p)
             assert np.abs(r.rhs(0.0, x, Inputs(), modes)).max() < 1e-12
 
 
-@pytest.mark.parametrize("name", ["none", "magnetic continuous on robot", "magnetic idealised on slider"])
+@pytest.mark.parametrize(
+    "name", ["none", "magnetic continuous on robot", "magnetic idealised on slider"]
+)
 def test_energy_closes(name):
-    """D sums what every element takes; stored energy is built from the state alone: nothing makes them agree but physics."""
+    """D sums what every element takes; stored energy is built from the state alone: nothing makes
+    them agree but physics."""
     r, x, modes, inputs = collision(COLLISIONS[name])
     run = r.simulate(x, modes, np.linspace(0.0, 0.6, 31), inputs)
     start = r.stored_energy(x, modes)
-    residual = [s[24] - s[25] - (r.stored_energy(s, m) - start) for s, m in zip(run.states, run.modes)]
+    residual = [
+        s[24] - s[25] - (r.stored_energy(s, m) - start) for s, m in zip(run.states, run.modes)
+    ]
     assert len(run.events) > 3
     # Local errors of 1e-10 over some thousand steps against Joules turned over.
     assert np.abs(residual).max() < 1e-8 * run.states[-1, 25]
@@ -85,7 +98,9 @@ def test_closest_point_against_a_finely_sampled_outline():
     samples = np.concatenate(
         [a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0))]
     )
-    inward = [np.array([-(b - a)[1], (b - a)[0]]) for a, b in zip(corners, np.roll(corners, -1, axis=0))]
+    inward = [
+        np.array([-(b - a)[1], (b - a)[0]]) for a, b in zip(corners, np.roll(corners, -1, axis=0))
+    ]
     seen = {True: 0, False: 0}
     for q in rng.uniform(-0.5, 0.5, (400, 2)):
         distance, *rest = closest_on_outline(q[0], q[1], outline)
@@ -94,7 +109,8 @@ def test_closest_point_against_a_finely_sampled_outline():
         seen[inside] += 1
         nearest = np.min(np.linalg.norm(samples - q, axis=1))
         assert (distance < 0.0) == inside
-        # Samples are 0.15 mm apart: the sampled distance errs by h^2/(8 d) or, close to the outline, h/2.
+        # Samples are 0.15 mm apart: the sampled distance errs by h^2/(8 d) or, close to the
+        # outline, h/2.
         assert abs(distance) == pytest.approx(nearest, abs=8e-5)
         assert point + distance * normal == pytest.approx(q, abs=1e-12)
     assert min(seen.values()) > 50

@@ -1,11 +1,14 @@
-"""The unpowered robot of 5.1 holds a 10 N push: after the elastic transient less than 1 um of further motion in 10 s.
+"""The unpowered robot of 5.1 holds a 10 N push: after the elastic transient less than 1 um of
+further motion in 10 s.
 
-The transient: the base rings on its drivetrains and bristles at about 10 Hz and dies out with 2.4 1/s (damping of
-drivetrains and bristles over twice the mass). After 5 s, exp(-12) of some 70 um is left: 0.4 nm.
+The transient: the base rings on its drivetrains and bristles at about 10 Hz and dies out with 2.4
+1/s (damping of drivetrains and bristles over twice the mass). After 5 s, exp(-12) of some 70 um is
+left: 0.4 nm.
 
-Dither of +-1 N rides on the push. Near that 10 Hz resonance it is no longer a small one: +-1 N then swings the base by
-60 um at over 4 mm/s, twice the Stribeck speed, the rollers begin to slip and the mean creeps by 0.1 um/s. Dither is
-therefore tested well below and above the resonance, and as a square wave, which contains it.
+Dither of +-1 N rides on the push. Near that 10 Hz resonance it is no longer a small one: +-1 N then
+swings the base by 60 um at over 4 mm/s, twice the Stribeck speed, the rollers begin to slip and the
+mean creeps by 0.1 um/s. Dither is therefore tested well below and above the resonance, and as a
+square wave, which contains it.
 """
 
 import math
@@ -13,15 +16,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from kkt_reference import Inputs, Parameters
 from plant_probe import Plant
 from scenarios import still
 
 SETTLED_S, HELD_S = 5.0, 10.0
 # Stiction equal to Coulomb friction, as in the robot file.
-ROBOT = Parameters(slider_present=0, gear_coulomb=2.8, gear_stiction=2.8, roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4])
-# Direction of the push in the world and where it acts on the outline: edges, corners, along and across, off the centre.
-SIDES = [(0.0, (-0.176, 0.0)), (53.0, (-0.176, 0.25)), (180.0, (0.352, 0.0)), (-75.0, (0.0, 0.203)), (120.0, (0.1, -0.145))]
+ROBOT = Parameters(
+    slider_present=0,
+    gear_coulomb=2.8,
+    gear_stiction=2.8,
+    roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4],
+)
+# Direction of the push in the world and where it acts on the outline: edges, corners, along and
+# across, off the centre.
+SIDES = [
+    (0.0, (-0.176, 0.0)),
+    (53.0, (-0.176, 0.25)),
+    (180.0, (0.352, 0.0)),
+    (-75.0, (0.0, 0.203)),
+    (120.0, (0.1, -0.145)),
+]
 
 
 def square(t: float) -> float:
@@ -34,7 +50,8 @@ DITHERS = {"none": lambda t: 0.0, "square 2 Hz": square} | {
 
 
 def motion(library, p: Parameters, direction: float, point: tuple[float, float], dither) -> float:
-    """Range (m), over the held time, of the positions of base and pushed point; under dither, of their means over seconds."""
+    """Range (m), over the held time, of the positions of base and pushed point; under dither, of
+    their means over seconds."""
     _, x, modes = still(p)
     x[2] = 0.3
     ux, uy = math.cos(math.radians(direction)), math.sin(math.radians(direction))
@@ -48,7 +65,13 @@ def motion(library, p: Parameters, direction: float, point: tuple[float, float],
     s = Plant(library, p).simulate(x, modes, samples, inputs, rtol=1e-6, atol=1e-11).states
     c, sn = np.cos(s[:, 2]), np.sin(s[:, 2])
     track = np.stack(
-        [s[:, 0], s[:, 1], s[:, 0] + c * point[0] - sn * point[1], s[:, 1] + sn * point[0] + c * point[1]], axis=1
+        [
+            s[:, 0],
+            s[:, 1],
+            s[:, 0] + c * point[0] - sn * point[1],
+            s[:, 1] + sn * point[0] + c * point[1],
+        ],
+        axis=1,
     )
     held = track[int(SETTLED_S * 1000) : -1]
     if len(inputs) > 1:
@@ -63,6 +86,7 @@ def test_holds(library, direction, point, dither):
 
 
 def test_without_enough_stiction_it_does_not_hold(library):
-    """10 N make 0.68 N m at a wheel through the centre: 0.4 N m of stiction cannot hold that, and the test sees it."""
+    """10 N make 0.68 N m at a wheel through the centre: 0.4 N m of stiction cannot hold that, and
+    the test sees it."""
     weak = replace(ROBOT, gear_coulomb=0.4, gear_stiction=0.4)
     assert motion(library, weak, *SIDES[1], DITHERS["none"]) > 1e-3

@@ -1,13 +1,16 @@
-"""Whole runs: the C++ plant in giveway's own solver against the reference in scipy's DOP853, both restarted at every event.
+"""Whole runs: the C++ plant in giveway's own solver against the reference in scipy's DOP853, both
+restarted at every event.
 
-Tolerances: the integrators run at relative 1e-10 (C++) and 1e-11. Over the some thousand steps and ten to forty events of a
-run, each passing on its instant's error, they agree to 9e-8 of each signal's peak; bound: 1e-6. An instant at which an
-indicator creeps through zero (a motor coming to rest) is as good as the state over the indicator's slope: 4e-9 s seen;
-bound: 1e-7 s. Tightened further, the two converge towards each other (3e-9 at 1e-12).
+Tolerances: the integrators run at relative 1e-10 (C++) and 1e-11. Over the some thousand steps and
+ten to forty events of a run, each passing on its instant's error, they agree to 9e-8 of each
+signal's peak; bound: 1e-6. An instant at which an indicator creeps through zero (a motor coming to
+rest) is as good as the state over the indicator's slope: 4e-9 s seen; bound: 1e-7 s. Tightened
+further, the two converge towards each other (3e-9 at 1e-12).
 """
 
 import numpy as np
 import pytest
+
 from kkt_reference import BUMPER, STATES, Reference
 from plant_probe import Plant
 from scenarios import COLLISIONS, all_runs, collision, pushed, spinning
@@ -42,7 +45,8 @@ def test_run(library, name, record_property):
 
 
 def test_the_collisions_are_collisions():
-    """Each bumper gives way, each latch lets go, the light dummy's latch closes again: the runs above mean something."""
+    """Each bumper gives way, each latch lets go, the light dummy's latch closes again: the runs
+    above mean something."""
     for name, case in COLLISIONS.items():
         reference, x, modes, inputs = collision(case)
         run = reference.simulate(x, modes, TIMES, inputs)
@@ -57,7 +61,11 @@ def test_the_collisions_are_collisions():
     "run, fault, states",
     [
         (collision(COLLISIONS["spring on slider"]), {"fault_contact_moment": -1.0}, [2, 5]),
-        (collision(COLLISIONS["magnetic continuous on robot"]), {"fault_contact_moment": 0.0}, [2, 5]),
+        (
+            collision(COLLISIONS["magnetic continuous on robot"]),
+            {"fault_contact_moment": 0.0},
+            [2, 5],
+        ),
         (spinning(1), {"fault_velocity_term": -1.0}, [0, 1, 3, 4]),
         (pushed(), {"fault_external_sign": -1.0}, [0, 1, 3, 4]),
     ],
