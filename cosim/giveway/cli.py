@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from giveway import __version__
-from giveway.errors import GivewayError, UnknownNameError
+from giveway.errors import GivewayError, SimulationError, UnknownNameError, one_line
 
 if TYPE_CHECKING:
     from giveway.master import Progress
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "main"]
 
-WRONG_INPUT, INTERRUPTED = 2, 130
+FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 LONG_RUN_S = 20.0  # simulated; shorter runs end before a bar could be read
 
 app = typer.Typer(
@@ -237,34 +237,30 @@ def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str
 
 
 def main() -> None:
-    """Entry point: any wrong input is one line on stderr and exit code 2."""
+    """Entry point. Wrong input is one line on stderr and exit code 2; a run that fails on its way exits with 1."""
     sys.exit(_main(sys.argv[1:]))
 
 
 def _main(arguments: list[str]) -> int:
-    from giveway.errors import one_line
-
     try:
         code = app(args=arguments, standalone_mode=False)
     except GivewayError as error:
-        return _fail(str(error))
-    except KeyboardInterrupt:
-        typer.echo("giveway: interrupted; nothing was written", err=True)
-        return INTERRUPTED
-    except typer.Abort:
+        under_way = isinstance(error, SimulationError) and error.time_s > 0.0
+        return _fail(str(error), FAILED if under_way else WRONG_INPUT)
+    except (KeyboardInterrupt, typer.Abort):
         typer.echo("giveway: interrupted; nothing was written", err=True)
         return INTERRUPTED
     except Exception as error:
         # Typer's usage errors (missing argument, unknown option or command) know how to say themselves.
         if not hasattr(error, "format_message"):
             raise
-        return _fail(one_line(error.format_message()))
+        return _fail(one_line(error.format_message()), WRONG_INPUT)
     return code if isinstance(code, int) else 0
 
 
-def _fail(message: str) -> int:
+def _fail(message: str, code: int) -> int:
     typer.echo(f"giveway: {message}", err=True)
-    return WRONG_INPUT
+    return code
 
 
 if __name__ == "__main__":

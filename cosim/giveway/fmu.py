@@ -13,7 +13,7 @@ import hashlib
 import logging
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -53,6 +53,7 @@ class FmuFile:
     Attributes:
         token: instantiation token (FMI 2: GUID), the hash of the variable table it was built from.
         sha256: hash of the FMU file.
+        references: value reference by variable name.
     """
 
     path: Path
@@ -61,6 +62,16 @@ class FmuFile:
     identifier: str
     token: str
     sha256: str
+    references: Mapping[str, int]
+
+    def check_matches(self, table: VariableTable) -> None:
+        """Refuse an FMU that was built from another variable table: its references would mean other things."""
+        for variable in table:
+            found = self.references.get(variable.name)
+            if found != variable.reference:
+                wanted = f"{variable.name} has reference {found}, not {variable.reference}"
+                reason = f"was built from another variable table: {wanted}"
+                raise FileError(self.path, reason, "build the FMUs and the tables together")
 
 
 def open_fmu(path: Path) -> FmuFile:
@@ -91,6 +102,7 @@ def _unpack(path: Path, _modified_ns: int) -> FmuFile:
         identifier=description.coSimulation.modelIdentifier,
         token=description.instantiationToken if version == 3 else description.guid,
         sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
+        references={variable.name: variable.valueReference for variable in description.modelVariables},
     )
 
 

@@ -16,6 +16,7 @@ results: the order is part of the definition of a run.
 from __future__ import annotations
 
 import ctypes
+import logging
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from giveway.scenario import Scenario
 
 __all__ = ["Progress", "Record", "simulate"]
+
+_log = logging.getLogger(__name__)
 
 KINDS = ("real", "integer", "boolean")
 PATH_TICK_S = 1e-3
@@ -152,6 +155,8 @@ def simulate(scenario: Scenario, progress: Progress | None = None, *, profile: b
     tables = {model: table(model) for model in native.MODELS}
     parameters = {model: scenario.parameters(model) for model in native.MODELS}
     files = {model: open_fmu(native.fmu(model, scenario.fmi_version)) for model in native.MODELS}
+    for model, file in files.items():
+        file.check_matches(tables[model])
     with ExitStack() as stack:
         instances = {model: stack.enter_context(Instance(files[model], model)) for model in native.MODELS}
         for model, instance in instances.items():
@@ -188,6 +193,7 @@ def _loop(
 
     report_every = max(1, round(PROGRESS_INTERVAL_S / step_s))
     path_row, rows, interrupted = 0, 0, False
+    _log.debug("stepping %s: %d steps of %g s", scenario.name, steps, step_s)
     started = time.perf_counter()
     try:
         for k in range(steps + 1):

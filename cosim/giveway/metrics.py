@@ -202,7 +202,7 @@ class Collision:
 
     def _window_s(self) -> float:
         controller = self._parameters["controller"]
-        return float(controller["estimator.filter_length"]) * float(controller["estimator.period"])
+        return float(controller["estimator.average_window"]) * float(controller["controller.period"])
 
     def impulse(self) -> Metric:
         """Integral of the estimated force vector from contact to detection against the true impulse, N s."""

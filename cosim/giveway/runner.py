@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import datetime
+import hashlib
 import importlib.metadata
 import platform
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import xarray
@@ -49,6 +51,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
         model: {v.name: record.parameters[model].get(v.name, v.start) for v in table(model).select("parameter")}
         for model in native.MODELS
     }
+    robot = native.robot() if scenario.robot is None else Path(scenario.robot)
     return {
         "schema_version": SCHEMA_VERSION,
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
@@ -63,8 +66,8 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "fmi_version": scenario.fmi_version,
             "plan": _describe(scenario.plan),
             "push": None if scenario.push is None else _describe(scenario.push),
-            "robot": None if scenario.robot is None else str(scenario.robot),
         },
+        "robot": {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()},
         "exchange_order": EXCHANGE_ORDER,
         "seed": effective["testbed"]["electronics.seed"],
         "solver": _group(effective["testbed"], "solver."),

@@ -19,7 +19,7 @@ BUMPERS: Mapping[str, int] = MappingProxyType({"none": 0, "spring": 1, "magnetic
 FMI_VERSIONS = (3, 2)
 MAXIMUM_DURATION_S = 3600.0
 MINIMUM_STEP_S, MAXIMUM_STEP_S = 1e-4, 0.1
-MAXIMUM_STEPS = 1_000_000
+MAXIMUM_STEPS = 300_000  # all traces of both FMUs stay in memory: about 1 kB per step
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,13 @@ class Scenario:
         values: dict[str, Value] = {}
         if self.robot is not None:
             values |= variables.robot_values(read_robot(Path(self.robot)))
+        overrides: Mapping[str, Value] = self.controller
         if model == "testbed":
+            overrides = self.testbed
             values["bumper.kind"] = BUMPERS[self.bumper]
+            if "bumper.kind" in overrides:
+                allowed = "one place to choose the bumper: the scenario's bumper, on the command line --bumper"
+                raise GivewayError("testbed.bumper.kind", overrides["bumper.kind"], allowed)
             if self.seed is not None:
                 values["electronics.seed"] = self.seed
-            return variables.check_all(values | dict(self.testbed))
-        return variables.check_all(values | dict(self.controller))
+        return variables.check_all(values | dict(overrides))

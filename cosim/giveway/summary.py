@@ -37,7 +37,9 @@ def number(value: float | None, decimals: int) -> str:
     """A number with fixed digits, or in exponent form where those would show nothing."""
     if value is None:
         return "-"
-    if value != 0.0 and abs(value) < 0.5 * 10.0 ** -min(decimals, 4):
+    if value == 0.0:
+        return "0"
+    if abs(value) < 0.5 * 10.0 ** -min(decimals, 4):
         return f"{value:.1e}"
     return f"{value:.{min(decimals, 4)}f}"
 

@@ -21,11 +21,11 @@ POINT_M, ESTIMATED_POINT_M = (0.1, 0.05), (0.13, 0.09)
 SPEED_MPS = 0.5
 TORQUE_NM = (1.5, -4.0, 2.5)  # while in contact
 REVERSAL_NM = 6.0  # wheel 1 afterwards
-FILTER_LENGTH = 10
+AVERAGE_WINDOW = 10
 
 PARAMETERS: dict[str, dict[str, Any]] = {
     "testbed": {"wheel.radius": 0.1, "wheel.distance": 0.24},
-    "controller": {"estimator.filter_length": FILTER_LENGTH, "estimator.period": STEP_S},
+    "controller": {"estimator.average_window": AVERAGE_WINDOW, "controller.period": STEP_S},
 }
 
 

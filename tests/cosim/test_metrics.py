@@ -49,7 +49,7 @@ def test_magnitude_averages_the_truth_over_the_filter_window() -> None:
 
 
 def test_magnitude_window_reaches_back_before_contact() -> None:
-    long = {**synthetic.PARAMETERS, "controller": {"estimator.filter_length": 102, "estimator.period": 0.001}}
+    long = {**synthetic.PARAMETERS, "controller": {"estimator.average_window": 102, "controller.period": 0.001}}
     # 51 samples of the contact (both ends of 50 ms) among 102.
     assert Collision(synthetic.traces(), long).magnitude().truth == pytest.approx(20.0)
 

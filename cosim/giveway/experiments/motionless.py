@@ -11,11 +11,12 @@ from giveway.experiments import Experiment
 from giveway.scenario import BUMPERS, Scenario
 
 DURATION_S = 8.0
+HOLD = 0  # after the escape; 1 would go back to the path
 
 
 def scenario(bumper: str) -> Scenario:
     """The experiment with ``bumper`` ("none", "spring" or "magnetic") on the slider."""
-    return Scenario(name="motionless", duration_s=DURATION_S, bumper=bumper)
+    return Scenario("motionless", DURATION_S, bumper=bumper, controller={"supervisor.after_settled": HOLD})
 
 
 EXPERIMENT = Experiment(

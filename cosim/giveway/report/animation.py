@@ -40,6 +40,7 @@ def scene(label: str, result: Result) -> dict[str, Any]:
         "outline": _outline(parameters),
         "wheel": {"radius": parameters["wheel.radius"], "distance": parameters["wheel.distance"]},
         "nose_radius": parameters["contact.nose_radius"],
+        "rigid": result.manifest["scenario"]["bumper"] == "none",
         "rail": _rail(hit),
         "time": _rounded((hit.time_s - contact_s)[rows]),
         "base": [sampled(f"testbed.truth.{name}") for name in ("x", "y", "theta")],

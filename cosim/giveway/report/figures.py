@@ -145,7 +145,7 @@ def _positions(runs: list[_Run]) -> Figure:
             run.mark_detection(axes, scale)
         panels[0, column].set(title=run.label, xlabel="time since contact (ms)", xlim=IMPACT_MS)
         panels[1, column].set(xlabel="time since contact (s)", xlim=(IMPACT_MS[0] / 1e3, float(run.time_s[-1])))
-        panels[0, column].legend(loc="upper left")
+    panels[0, 0].legend(loc="upper left")
     for row in range(2):
         panels[row, 0].set_ylabel("travel (mm)")
     return figure
@@ -170,7 +170,7 @@ def _estimates(runs: list[_Run]) -> Figure:
             run.mark_detection(axes)
         panels[0, column].set(title=run.label, xlim=IMPACT_MS)
         panels[1, column].set(xlabel="time since contact (ms)")
-        panels[0, column].legend(loc="upper right")
+    panels[0, 0].legend(loc="upper right")
     panels[0, 0].set_ylabel("force (N)")
     panels[1, 0].set_ylabel("impulse (N s)")
     return figure

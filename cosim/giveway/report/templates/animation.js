@@ -5,7 +5,7 @@
   const canvas = document.getElementById("stage"), pen = canvas.getContext("2d");
   const seek = document.getElementById("seek"), clock = document.getElementById("clock");
   const play = document.getElementById("play"), speed = document.getElementById("speed");
-  const colours = { truth: "#6b727d", estimate: "#0b64a8", detected: "#c8500a", body: "#eef1f4", ink: "#2b2f36" };
+  const colours = { truth: "#7a2ea0", estimate: "#0b64a8", detected: "#c8500a", body: "#eef1f4", ink: "#2b2f36" };
   const metresPerNewton = 0.004, smallestForce = 2, longestArrow = 0.45, springLength = 0.16;
   const first = Math.min(...scenes.map(s => s.time[0]));
   const last = Math.max(...scenes.map(s => s.time[s.time.length - 1]));
@@ -92,9 +92,9 @@
     pen.strokeStyle = "#c9ced6"; pen.lineWidth = 3 / scale;
     pen.beginPath(); pen.moveTo(...at(2, 0)); pen.lineTo(...at(springLength, 0)); pen.stroke();
     const gap = Math.max(springLength - compression, 0.02), from = 2 * s.nose_radius;
-    pen.strokeStyle = "#8a8f98"; pen.lineWidth = 1.4 / scale; pen.beginPath();
+    pen.strokeStyle = "#8a8f98"; pen.lineWidth = (s.rigid ? 6 : 1.4) / scale; pen.beginPath();
     for (let k = 0; k <= 10; k++) {
-      const back = from + (gap - from) * k / 10, side = k % 10 ? (k % 2 ? 0.022 : -0.022) : 0;
+      const back = from + (gap - from) * k / 10, side = s.rigid || k % 10 === 0 ? 0 : k % 2 ? 0.022 : -0.022;
       (k ? pen.lineTo : pen.moveTo).apply(pen, at(back, side));
     }
     pen.stroke();
@@ -158,6 +158,6 @@
   seek.addEventListener("input", () => { setPlaying(false); now = toTime(Number(seek.value)); draw(); });
   window.addEventListener("resize", draw);
   const shown = scenes.map(s => s.detection).filter(Boolean).map(d => d.time);
-  now = shown.length ? Math.min(...shown) * 0.9 : first;  // open on something worth seeing
+  now = shown.length ? Math.max(...shown) + 0.01 : first;  // open on something worth seeing
   draw();
 })();

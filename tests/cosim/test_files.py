@@ -1,0 +1,70 @@
+"""Nothing half-written is ever seen under a result's name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import folder_content
+from giveway.errors import FileError
+from giveway.files import check_output, replace_folder, write_text
+
+
+def write_result(folder: Path, text: str) -> None:
+    with replace_folder(folder) as temporary:
+        (temporary / "manifest.json").write_text(text)
+
+
+def fail_halfway(folder: Path, failure: type[BaseException]) -> None:
+    with replace_folder(folder) as temporary:
+        (temporary / "manifest.json").write_text("{")
+        raise failure
+
+
+def test_a_folder_appears_only_when_complete(tmp_path: Path) -> None:
+    target = tmp_path / "deep" / "out"
+    with replace_folder(target) as temporary:
+        (temporary / "manifest.json").write_text("{}")
+        assert not target.exists()
+    assert folder_content(target) == ["manifest.json"]
+    assert folder_content(tmp_path) == ["deep", "deep/out", "deep/out/manifest.json"]
+
+
+@pytest.mark.parametrize("failure", [RuntimeError, KeyboardInterrupt])
+def test_a_failure_leaves_nothing(tmp_path: Path, failure: type[BaseException]) -> None:
+    with pytest.raises(failure):
+        fail_halfway(tmp_path / "deep" / "out", failure)
+    assert folder_content(tmp_path) == []
+
+
+def test_a_failure_keeps_the_old_result(tmp_path: Path) -> None:
+    target = tmp_path / "out"
+    write_result(target, "old")
+    with pytest.raises(RuntimeError):
+        fail_halfway(target, RuntimeError)
+    assert (target / "manifest.json").read_text() == "old"
+    write_result(target, "new")
+    assert (target / "manifest.json").read_text() == "new"
+    assert folder_content(tmp_path) == ["out", "out/manifest.json"]
+
+
+def test_other_peoples_files_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(FileError, match="not empty"):
+        check_output(tmp_path)
+    with pytest.raises(FileError, match="is a file"):
+        check_output(tmp_path / "notes.txt")
+
+
+def test_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "report.html"
+    write_text(path, "old")
+
+    def full_disk(*_arguments: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("giveway.files.os.replace", full_disk)
+    with pytest.raises(OSError, match="no space"):
+        write_text(path, "new")
+    assert path.read_text() == "old"
+    assert folder_content(tmp_path) == ["report.html"]

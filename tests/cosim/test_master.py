@@ -1,0 +1,141 @@
+"""The master: same bits for both FMI versions and every repetition, documented order, clean ends."""
+
+from __future__ import annotations
+
+import dataclasses
+import signal
+import tempfile
+import threading
+from pathlib import Path
+
+import giveway
+import numpy as np
+import pytest
+from conftest import short
+from giveway import native
+from giveway.errors import FileError, GivewayError, SimulationError
+from giveway.fmu import open_fmu
+from giveway.master import simulate
+from giveway.result import Result
+from giveway.variables import table
+from numpy.typing import NDArray
+
+
+def same_bits(first: Result, second: Result) -> bool:
+    return all(
+        first.traces[name].values.tobytes() == second.traces[name].values.tobytes() for name in first.traces.data_vars
+    )
+
+
+def test_fmi_2_and_fmi_3_give_the_same_bits(short_run: Result) -> None:
+    other = giveway.run(short(fmi_version=2))
+    assert set(other.traces.data_vars) == set(short_run.traces.data_vars)
+    assert same_bits(short_run, other)
+
+
+def test_the_seed_decides_the_noise_and_nothing_else_does(short_run: Result) -> None:
+    assert same_bits(short_run, giveway.run(short()))
+    other = giveway.run(short(seed=12345))
+    assert not same_bits(short_run, other)
+    # Before anything moves, the truth does not depend on the noise of the sensors.
+    assert (other.traces["testbed.truth.rope_tension"][0] == short_run.traces["testbed.truth.rope_tension"][0]).all()
+
+
+def test_sensors_of_a_step_reach_the_controller_in_that_step(short_run: Result) -> None:
+    # Row k of the plant's input is what the controller made of row k: a held command moves the plant in row k + 1.
+    tick = short_run.traces["controller.tick"].values
+    assert (np.diff(tick) == 1).all()
+    counter = short_run.traces["testbed.sensor.counter"].values
+    assert (np.diff(counter[5:]) == 1).all()  # the first samples are still in the bus
+
+
+def test_a_push_is_felt_and_the_robot_moves_away() -> None:
+    # 60 N towards -x at the base's corner over wheel 0, for as long as the run: slider absent.
+    def push(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        push = np.zeros((len(time_s), 4))
+        push[(time_s >= 0.3) & (time_s < 0.5)] = (-60.0, 0.0, 0.35, 0.0)
+        return push
+
+    result = giveway.run(short(duration_s=1.5, push=push, testbed={"slider.present": False}))
+    traces = result.traces
+    assert traces["controller.detection.count"][-1] == 1
+    assert abs(abs(float(traces["controller.detection.direction"][-1])) - np.pi) < np.radians(15.0)
+    assert float(traces["testbed.truth.x"][-1]) < -0.1
+
+
+@pytest.mark.parametrize("shape", [(3, 4), (501, 3)])
+def test_a_push_of_the_wrong_shape_is_refused(shape: tuple[int, int]) -> None:
+    with pytest.raises(GivewayError, match="push"):
+        giveway.run(short(push=lambda _time: np.zeros(shape)))
+
+
+def test_a_plan_with_nan_is_refused() -> None:
+    with pytest.raises(GivewayError, match="plan"):
+        giveway.run(short(plan=lambda time: np.full((len(time), 9), np.nan)))
+
+
+def test_an_fmus_refusal_carries_its_words_and_the_time() -> None:
+    with pytest.raises(SimulationError) as caught:
+        giveway.run(short(testbed={"outline.count": 4}))
+    assert caught.value.time_s == 0.0
+    assert "outline" in str(caught.value)
+
+
+def test_ctrl_c_keeps_what_was_computed() -> None:
+    scenario = dataclasses.replace(short(), duration_s=60.0)
+    timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+    started = threading.Event()
+
+    def progress(_now_s: float, _duration_s: float) -> None:
+        if not started.is_set():
+            started.set()
+            timer.start()
+
+    result = giveway.run(scenario, progress)
+    timer.join()
+    assert result.interrupted
+    simulated = result.manifest["simulated_s"]
+    assert 0.0 < simulated < 60.0
+    assert result.traces["time"].values[-1] == simulated
+    whole = giveway.run(dataclasses.replace(scenario, duration_s=0.1))
+    for name, trace in whole.traces.data_vars.items():
+        rows = min(len(trace), result.traces.sizes["time"])
+        assert trace.values[:rows].tobytes() == result.traces[name].values[:rows].tobytes()
+
+
+def test_progress_reports_up_to_the_end() -> None:
+    seen: list[tuple[float, float]] = []
+    giveway.run(short(), lambda now_s, duration_s: seen.append((now_s, duration_s)))
+    assert seen[-1] == (pytest.approx(0.5), 0.5)
+    assert [now for now, _ in seen] == sorted(now for now, _ in seen)
+
+
+def test_an_fmu_is_unpacked_once_per_process() -> None:
+    simulate(short())
+    before = set(Path(tempfile.gettempdir()).glob("giveway-fmu-*"))
+    simulate(short())
+    assert set(Path(tempfile.gettempdir()).glob("giveway-fmu-*")) == before
+
+
+def test_an_fmu_of_another_table_is_refused() -> None:
+    file = open_fmu(native.fmu("testbed", 3))
+    file.check_matches(table("testbed"))
+    with pytest.raises(FileError, match="another variable table"):
+        file.check_matches(table("controller"))
+
+
+def test_a_file_that_is_no_fmu_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "model.fmu"
+    path.write_bytes(b"PK but not really")
+    with pytest.raises(FileError, match="not a usable FMU"):
+        open_fmu(path)
+    with pytest.raises(FileError, match="cannot be read"):
+        open_fmu(tmp_path / "absent.fmu")
+
+
+def test_a_profiled_run_gives_the_same_bits(short_run: Result) -> None:
+    record = simulate(short(), profile=True)
+    assert set(record.step_wall_s) == {"controller", "testbed"}
+    assert all(0.0 < wall <= record.wall_s for wall in record.step_wall_s.values())
+    for name, values in record.traces.items():
+        assert values.tobytes() == short_run.traces[name].values.tobytes()

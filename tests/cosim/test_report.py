@@ -1,0 +1,149 @@
+"""Demo, summary and report: the same numbers everywhere, in one file that needs nothing else."""
+
+from __future__ import annotations
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import giveway
+import pytest
+from conftest import Cli, folder_content
+from giveway.metrics import Metric
+from giveway.report import render
+from giveway.result import Result
+from giveway.summary import cell, number, summary, table_rows
+
+MAXIMUM_BYTES = 3_000_000
+
+
+class References(HTMLParser):
+    """Collects everything in a page that points somewhere, and all ids."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.ids: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        del tag
+        for name, value in attrs:
+            if name in ("src", "href", "xlink:href", "action", "data") and value:
+                self.links.append(value)
+            if name == "id" and value:
+                self.ids.append(value)
+
+
+@pytest.fixture(scope="module")
+def page(full_runs: dict[str, Result]) -> str:
+    return render("motionless", list(full_runs.values()))
+
+
+def test_the_report_needs_nothing_else(page: str) -> None:
+    references = References()
+    references.feed(page)
+    ids = set(references.ids)
+    assert len(ids) == len(references.ids)  # four inline figures must not share ids
+    assert all(link.startswith("#") and link[1:] in ids for link in references.links)
+    assert not re.search(r"url\((?!#)|@import|https?://", page)
+
+
+def test_the_report_is_small_and_whole(page: str) -> None:
+    assert len(page.encode()) < MAXIMUM_BYTES
+    assert page.count("<svg") == 4
+    assert "NaN" not in page
+    assert page.rstrip().endswith("</html>")
+
+
+def test_the_animation_data_is_json_with_the_detection(page: str, full_runs: dict[str, Result]) -> None:
+    text = re.search(r'<script id="scenes" type="application/json">(.*?)</script>', page, re.DOTALL)
+    assert text is not None
+    scenes = json.loads(text.group(1))
+    for scene, run in zip(scenes, full_runs.values(), strict=True):
+        assert len(scene["outline"]) == 3
+        assert 1e3 * scene["detection"]["time"] == pytest.approx(run.metric("detection time").value, abs=0.1)
+        assert len(scene["time"]) == len(scene["base"][0]) == len(scene["force"][1])
+
+
+def test_an_interrupted_run_says_so_in_its_report(short_run: Result) -> None:
+    manifest = {**short_run.manifest, "interrupted": True}
+    assert "was interrupted" in render("motionless", [Result(short_run.traces, short_run.metrics, manifest)])
+    assert "was interrupted" not in render("motionless", [short_run])
+
+
+def test_demo_writes_what_it_prints(cli: Cli, tmp_path: Path) -> None:
+    done = cli("demo")
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr
+    out = tmp_path / "out" / "demo"
+    assert {"report.html", "summary.json", "none", "spring", "magnetic"} <= set(folder_content(out))
+    document = json.loads((out / "summary.json").read_text())
+    assert document["schema_version"] == 1
+    printed = [line.split() for line in done.stdout.splitlines()]
+    names = {row["name"] for row in document["rows"]}
+    for name in names:
+        rows = {row["bumper"]: row for row in document["rows"] if row["name"] == name}
+        assert set(rows) == {"none", "spring", "magnetic"}
+        assert all(set(row) == {"bumper", "name", "value", "unit", "truth"} for row in rows.values())
+        loaded = {bumper: giveway.load(out / bumper) for bumper in rows}
+        cells = [cell(loaded[bumper].metric(name)) for bumper in rows]
+        assert [loaded[bumper].metric(name).value for bumper in rows] == [row["value"] for row in rows.values()]
+        words = (name.split(), " ".join(cells).split())
+        assert any(
+            all(w.rstrip(",") in line for w in words[0]) and line[-len(words[1]) :] == words[1]
+            for line in ([word.rstrip(",") for word in line] for line in printed)
+        ), (name, cells, done.stdout)
+
+
+def test_the_table_has_every_row_of_the_summary(full_runs: dict[str, Result]) -> None:
+    rows = summary(full_runs)["rows"]
+    assert len(rows) == len(full_runs) * len(table_rows(full_runs))
+
+
+@pytest.mark.parametrize(
+    ("value", "decimals", "text"),
+    [
+        (None, 1, "-"),
+        (0.0, 9, "0"),
+        (12.345, 1, "12.3"),
+        (-3.0, 0, "-3"),
+        (1.2e-7, 9, "1.2e-07"),
+        (0.0004, 3, "4.0e-04"),
+    ],
+)
+def test_numbers_never_print_as_nothing(value: float | None, decimals: int, text: str) -> None:
+    assert number(value, decimals) == text
+
+
+def test_a_cell_shows_the_truth_in_brackets() -> None:
+    assert cell(Metric("x", 1.0, "m", 2.0, 1)) == "1.0 (2.0)"
+    assert cell(Metric("x", 1.0, "m", None, 1)) == "1.0"
+    assert cell(Metric("x", None, "m", 2.0, 1)) == "- (2.0)"
+
+
+def test_run_can_be_loaded_again(cli: Cli, tmp_path: Path) -> None:
+    arguments = ("run", "motionless", "--bumper", "spring", "--out", "r", "--duration", "0.3", "--fmi", "2")
+    done = cli(*arguments, "--set", "testbed.base.mass=36", "--seed", "5")
+    assert done.returncode == 0, done.stderr
+    result = giveway.load(tmp_path / "r")
+    assert result.manifest["parameters"]["testbed"]["base.mass"] == 36.0
+    assert result.manifest["seed"] == 5
+    assert result.manifest["scenario"]["fmi_version"] == 2
+    assert cli(*arguments).returncode == 0  # its own earlier result may be replaced
+
+
+def test_lists_and_version(cli: Cli) -> None:
+    assert cli("--version").stdout == f"giveway {giveway.__version__}\n"
+    assert "motionless" in cli("list").stdout
+    listed = cli("variables", "testbed", "--grep", "slider.mass").stdout
+    assert "slider.mass" in listed
+    assert "kg" in listed
+    assert "base.mass" not in listed
+
+
+def test_bench_prints_all_parts(cli: Cli) -> None:
+    done = cli("bench", "--repeats", "1")
+    assert done.returncode == 0, done.stderr
+    for part in ("run", "stepping", "testbed FMU", "controller FMU"):
+        assert part in done.stdout

@@ -1,0 +1,121 @@
+"""Scenarios and variable tables check what they are given and name field, value and allowed range."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import subprocess
+import sys
+
+import giveway
+import pytest
+from giveway.errors import GivewayError, UnknownNameError
+from giveway.plan import Rest
+from giveway.variables import parse_assignments, table
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"duration_s": 0.0}, "duration_s"),
+        ({"duration_s": math.nan}, "duration_s"),
+        ({"duration_s": 3601.0}, "duration_s"),
+        ({"step_s": 0.0}, "step_s"),
+        ({"step_s": math.inf}, "step_s"),
+        ({"bumper": "rubber"}, "bumper"),
+        ({"fmi_version": 1}, "fmi_version"),
+        ({"seed": -1}, "seed"),
+        ({"seed": 1.5}, "seed"),
+        ({"duration_s": True}, "duration_s"),
+    ],
+)
+def test_a_scenario_refuses(changes: dict[str, object], field: str) -> None:
+    with pytest.raises(GivewayError) as caught:
+        giveway.Scenario(**{"name": "x", "duration_s": 1.0, **changes})  # type: ignore[arg-type]
+    assert caught.value.field == field
+    assert "\n" not in str(caught.value)
+
+
+def test_a_scenario_cannot_be_changed_through_the_callers_dict() -> None:
+    overrides = {"base.mass": 40.0}
+    scenario = giveway.Scenario("x", 1.0, testbed=overrides)
+    overrides["base.mass"] = -1.0
+    assert scenario.testbed["base.mass"] == 40.0
+    with pytest.raises(TypeError):
+        scenario.testbed["base.mass"] = 1.0  # type: ignore[index]
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        scenario.duration_s = 2.0  # type: ignore[misc]
+
+
+def test_bumper_and_seed_become_parameters_and_overrides_win() -> None:
+    scenario = giveway.Scenario("x", 1.0, bumper="spring", seed=7, testbed={"base.mass": 40.0})
+    assert scenario.parameters("testbed") == {"bumper.kind": 1, "electronics.seed": 7, "base.mass": 40.0}
+    assert scenario.parameters("controller") == {}
+
+
+def test_overrides_from_python_are_checked_too() -> None:
+    with pytest.raises(GivewayError, match=r"testbed\.base\.mass"):
+        giveway.Scenario("x", 1.0, testbed={"base.mass": math.nan}).parameters("testbed")
+
+
+def test_every_bound_is_inclusive_and_its_neighbour_is_refused() -> None:
+    checked = 0
+    for model in ("testbed", "controller"):
+        for variable in table(model).select("parameter", "real"):
+            for bound, outward in ((variable.minimum, -math.inf), (variable.maximum, math.inf)):
+                if math.isinf(bound):
+                    continue
+                assert table(model).check(variable.name, bound) == bound
+                with pytest.raises(GivewayError):
+                    table(model).check(variable.name, math.nextafter(bound, outward))
+                checked += 1
+    assert checked > 100  # every table states ranges; an empty loop would prove nothing
+
+
+def test_starts_lie_in_their_ranges() -> None:
+    for model in ("testbed", "controller"):
+        for variable in table(model).select("parameter"):
+            assert table(model).check(variable.name, variable.start) == variable.start
+
+
+@pytest.mark.parametrize(("text", "value"), [("true", True), ("1", True), ("False", False), ("off", False)])
+def test_booleans_as_text(text: str, value: bool) -> None:
+    assert parse_assignments([f"testbed.slider.present={text}"])["testbed"] == {"slider.present": value}
+
+
+def test_a_boolean_is_not_a_number() -> None:
+    with pytest.raises(GivewayError):
+        table("testbed").check("base.mass", True)
+    with pytest.raises(GivewayError):
+        table("testbed").check("slider.present", 2)
+
+
+def test_the_last_assignment_wins() -> None:
+    assignments = parse_assignments(["testbed.base.mass=30", "testbed.base.mass=40"])
+    assert assignments["testbed"]["base.mass"] == 40.0
+
+
+def test_unknown_names_offer_the_nearest() -> None:
+    with pytest.raises(UnknownNameError) as caught:
+        table("testbed").check("slider.mas", 1.0)
+    assert "slider.mass" in caught.value.nearest
+
+
+def test_rest_is_a_pose_without_motion() -> None:
+    import numpy as np
+
+    plan = Rest(1.0, 2.0, 0.5)(np.arange(4.0))
+    assert plan.shape == (4, 9)
+    assert (plan[:, :3] == [1.0, 2.0, 0.5]).all()
+    assert not plan[:, 3:].any()
+    with pytest.raises(GivewayError):
+        Rest(math.nan)
+
+
+def test_importing_the_package_is_light() -> None:
+    # Numerical and drawing libraries cost most of a second: the command line must not wait for them.
+    heavy = {"numpy", "xarray", "matplotlib", "fmpy", "pyarrow", "pandas", "jinja2", "rich"}
+    code = "import sys, giveway; print(' '.join(sys.modules))"
+    modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "giveway" in modules
+    assert not heavy & set(modules)

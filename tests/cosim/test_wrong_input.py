@@ -1,0 +1,97 @@
+"""What a newcomer may type wrong: one line that names it, exit code 2, and nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import Cli, folder_content
+
+RUN = ("run", "motionless", "--out", "out/run")
+WRONG = {
+    "unknown experiment": (("run", "motionles", "--out", "out/run"), ("motionles", "did you mean motionless?")),
+    "unknown bumper": ((*RUN, "--bumper", "magnetc"), ("--bumper", "magnetc", "none, spring", "magnetic")),
+    "negative mass": ((*RUN, "--set", "testbed.base.mass=-3"), ("testbed.base.mass", "-3", "kg")),
+    "unknown variable": ((*RUN, "--set", "testbed.base.mas=3"), ("base.mas", "did you mean base.mass")),
+    "unknown model": ((*RUN, "--set", "testbd.base.mass=3"), ("testbd", "did you mean testbed?")),
+    "output set": ((*RUN, "--set", "testbed.truth.x=1"), ("testbed.truth.x", "is an output")),
+    "not a number": ((*RUN, "--set", "testbed.base.mass=heavy"), ("testbed.base.mass", "heavy", "number")),
+    "NaN": ((*RUN, "--set", "testbed.base.mass=nan"), ("testbed.base.mass", "nan")),
+    "infinity": ((*RUN, "--set", "testbed.base.mass=inf"), ("testbed.base.mass", "inf")),
+    "fraction for a whole number": ((*RUN, "--set", "testbed.bumper.mount=0.5"), ("testbed.bumper.mount", "whole")),
+    "bumper set twice": ((*RUN, "--set", "testbed.bumper.kind=0"), ("testbed.bumper.kind", "--bumper")),
+    "too long for memory": ((*RUN, "--duration", "3000"), ("duration_s", "300000")),
+    "no value": ((*RUN, "--set", "testbed.base.mass"), ("--set", "MODEL.PARAMETER=VALUE")),
+    "negative duration": ((*RUN, "--duration", "-1"), ("duration_s", "-1")),
+    "zero duration": ((*RUN, "--duration", "0"), ("duration_s", "0")),
+    "NaN duration": ((*RUN, "--duration", "nan"), ("duration_s", "nan")),
+    "duration in words": ((*RUN, "--duration", "long"), ("--duration",)),
+    "FMI version": ((*RUN, "--fmi", "1"), ("fmi_version", "3 or 2")),
+    "negative seed": ((*RUN, "--seed", "-1"), ("seed", "-1")),
+    "missing robot file": ((*RUN, "--robot", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    "robot file is a folder": ((*RUN, "--robot", "."), (".", "cannot be read")),
+    "output is a file": (("run", "motionless", "--out", "/dev/null"), ("/dev/null", "folder")),
+    "no output given": (("run", "motionless"), ("--out",)),
+    "unknown command": (("frob",), ("frob",)),
+    "unknown model of variables": (("variables", "testbd"), ("testbd", "did you mean testbed?")),
+    "no repeats": (("bench", "--repeats", "0"), ("--repeats", "1 to 100")),
+    "demo output is a file": (("demo", "--out", "/dev/null"), ("/dev/null", "folder")),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_input_is_one_line_and_writes_nothing(case: str, cli: Cli, tmp_path: Path) -> None:
+    arguments, words = WRONG[case]
+    done = cli(*arguments)
+    assert done.returncode == 2, done.stderr
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+    assert not done.stdout
+    for word in words:
+        assert word in done.stderr
+    assert folder_content(tmp_path) == []
+
+
+def test_a_folder_with_someone_elses_files_is_left_alone(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "chapter.txt").write_text("years of work")
+    done = cli("run", "motionless", "--out", "thesis")
+    assert done.returncode == 2
+    assert "not empty" in done.stderr
+    assert folder_content(tmp_path) == ["thesis", "thesis/chapter.txt"]
+
+
+def test_broken_robot_files_name_the_key(cli: Cli, tmp_path: Path) -> None:
+    robot = tmp_path / "robot.toml"
+    for text, word in {
+        "schema_version = 7\n": "schema_version is 7",
+        "schema_version = 1\n[base.mass]\nvalue = 20.0\nunit = 'kg'\n": "is missing",
+        "not toml at all": "is not TOML",
+    }.items():
+        robot.write_text(text)
+        done = cli(*RUN, "--robot", "robot.toml")
+        assert done.returncode == 2
+        assert len(done.stderr.splitlines()) == 1
+        assert "robot.toml" in done.stderr
+        assert word in done.stderr
+    assert folder_content(tmp_path) == ["robot.toml"]
+
+
+def test_missing_native_parts_name_both_places(cli: Cli, tmp_path: Path) -> None:
+    from giveway import native
+
+    if (Path(native.__file__).parent / "native").is_dir():
+        pytest.skip("the native parts are installed in the package: there is no way to miss them")
+    done = cli(*RUN, environment={native.ENVIRONMENT_VARIABLE: str(tmp_path)})
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert f"{native.ENVIRONMENT_VARIABLE}={tmp_path}" in done.stderr
+    assert "giveway/native" in done.stderr
+
+
+def test_an_fmu_that_refuses_its_parameters_is_one_line(cli: Cli, tmp_path: Path) -> None:
+    # In range each, but not together: four corners are asked for, three are given, the fourth is at the origin.
+    done = cli(*RUN, "--set", "testbed.outline.count=4")
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "testbed" in done.stderr
+    assert folder_content(tmp_path) == []
