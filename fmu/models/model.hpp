@@ -30,7 +30,6 @@ struct ModelInfo {
     const char *token;             // instantiation token: hash of the variable table
     const VariableInfo *variables; // sorted by reference
     std::size_t variable_count;
-    std::size_t variables_size; // bytes of the Variables struct
 };
 
 enum class Status { ok, error };
@@ -49,7 +48,8 @@ public:
     // The generated Variables struct (plain data); the shell reads and writes it by offset.
     virtual void *variables() = 0;
 
-    // Parameters and start inputs are set; computes the outputs at the start time.
+    // Parameters and start inputs are set; computes the outputs at the start time, from parameters
+    // alone. Called again, from scratch, when a value is set after a first look at the outputs.
     virtual Status initialise(double start_time_s, Message &message) = 0;
 
     // Inputs are held constant over the step; the outputs are valid at its end.

@@ -1,0 +1,80 @@
+# giveway_add_fmu(NAME controller SOURCES ... [LIBRARIES ...] [TABLE file] [ROBOT file] [OUTPUT dir]
+#                 [LICENCES NAME=FILE ...])
+#
+# Builds the model as static library giveway_<name>_model (for tests), giveway_<name>.so, one binary for
+# FMI 2.0 and 3.0, and packs giveway_<name>_fmi2.fmu and giveway_<name>_fmi3.fmu. Defaults: TABLE variables.toml beside the caller's CMakeLists.txt, ROBOT
+# robots/trikey.toml, OUTPUT ${CMAKE_BINARY_DIR}/fmus. Target fmu_<name>; target fmus builds those
+# with the default OUTPUT.
+add_custom_target(fmus ALL)
+
+set(GIVEWAY_CODEGEN_DIR "${PROJECT_SOURCE_DIR}/fmu/codegen")
+file(GLOB GIVEWAY_CODEGEN_FILES CONFIGURE_DEPENDS "${GIVEWAY_CODEGEN_DIR}/giveway_codegen/*.py")
+set(GIVEWAY_CODEGEN "${CMAKE_COMMAND}" -E env "PYTHONPATH=${GIVEWAY_CODEGEN_DIR}" PYTHONDONTWRITEBYTECODE=1
+                    "${Python3_EXECUTABLE}" -m giveway_codegen)
+
+function(giveway_add_fmu)
+  cmake_parse_arguments(ARG "" "NAME;TABLE;ROBOT;OUTPUT" "SOURCES;LIBRARIES;LICENCES" ${ARGN})
+  if(NOT ARG_TABLE)
+    set(ARG_TABLE "${CMAKE_CURRENT_SOURCE_DIR}/variables.toml")
+  endif()
+  if(NOT ARG_ROBOT)
+    set(ARG_ROBOT "${PROJECT_SOURCE_DIR}/robots/trikey.toml")
+  endif()
+  set(_generated "${CMAKE_CURRENT_BINARY_DIR}/generated_${ARG_NAME}")
+  set(_generated_files
+      "${_generated}/${ARG_NAME}_variables.hpp" "${_generated}/${ARG_NAME}_variables.cpp"
+      "${_generated}/fmi2/modelDescription.xml" "${_generated}/fmi3/modelDescription.xml"
+      "${_generated}/documentation/index.html")
+  add_custom_command(
+    OUTPUT ${_generated_files}
+    COMMAND ${GIVEWAY_CODEGEN} sources --name ${ARG_NAME} --table "${ARG_TABLE}" --robot "${ARG_ROBOT}"
+            --version ${PROJECT_VERSION} --out "${_generated}"
+    DEPENDS "${ARG_TABLE}" "${ARG_ROBOT}" ${GIVEWAY_CODEGEN_FILES}
+    COMMENT "Generating sources of ${ARG_NAME} from its variable table"
+    VERBATIM)
+
+  set(_module giveway_${ARG_NAME})
+  add_library(${_module}_model STATIC ${ARG_SOURCES} "${_generated}/${ARG_NAME}_variables.cpp"
+                                      "${_generated}/${ARG_NAME}_variables.hpp")
+  giveway_compile_options(${_module}_model)
+  target_include_directories(${_module}_model PUBLIC "${_generated}" "${PROJECT_SOURCE_DIR}/fmu/models"
+                                                     "${CMAKE_CURRENT_SOURCE_DIR}")
+  target_link_libraries(${_module}_model PUBLIC ${ARG_LIBRARIES})
+
+  add_library(${_module} MODULE)
+  set_target_properties(${_module} PROPERTIES PREFIX "")
+  giveway_compile_options(${_module})
+  target_link_libraries(${_module} PRIVATE giveway_fmi_shell ${_module}_model)
+  target_link_options(
+    ${_module} PRIVATE -static-libstdc++ -static-libgcc -Wl,--gc-sections -Wl,--as-needed
+    -Wl,--no-undefined -Wl,--build-id=none -s
+    "-Wl,--version-script=${PROJECT_SOURCE_DIR}/fmu/shell/exports.map")
+  set_property(TARGET ${_module} APPEND PROPERTY LINK_DEPENDS "${PROJECT_SOURCE_DIR}/fmu/shell/exports.map")
+
+  set(_output "${CMAKE_BINARY_DIR}/fmus")
+  if(ARG_OUTPUT)
+    set(_output "${ARG_OUTPUT}")
+  endif()
+  set(_licences --licence "license.txt=${PROJECT_SOURCE_DIR}/LICENSE")
+  foreach(_licence IN LISTS ARG_LICENCES)
+    list(APPEND _licences --licence "${_licence}")
+  endforeach()
+  set(_fmus "")
+  foreach(_fmi 2 3)
+    set(_fmu "${_output}/${_module}_fmi${_fmi}.fmu")
+    add_custom_command(
+      OUTPUT "${_fmu}"
+      COMMAND ${GIVEWAY_CODEGEN} package --fmi ${_fmi} --generated "${_generated}" --binary
+              "$<TARGET_FILE:${_module}>" ${_licences} --out "${_fmu}"
+      DEPENDS ${_module} ${_generated_files} ${GIVEWAY_CODEGEN_FILES}
+      COMMENT "Packing ${_module}_fmi${_fmi}.fmu"
+      VERBATIM)
+    list(APPEND _fmus "${_fmu}")
+  endforeach()
+  add_custom_target(fmu_${ARG_NAME} ALL DEPENDS ${_fmus})
+  if(NOT ARG_OUTPUT)
+    add_dependencies(fmus fmu_${ARG_NAME})
+    install(FILES ${_fmus} DESTINATION giveway/native COMPONENT native)
+    install(FILES "${ARG_TABLE}" DESTINATION giveway/native RENAME ${ARG_NAME}.variables.toml COMPONENT native)
+  endif()
+endfunction()

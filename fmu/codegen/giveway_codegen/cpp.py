@@ -1,0 +1,102 @@
+"""C++: the Variables struct, its start values and the table that the shell looks variables up in."""
+
+from __future__ import annotations
+
+from .table import Group, Table, Value
+
+__all__ = ["header", "source"]
+
+_CPP_TYPES = {"real": "double", "integer": "std::int32_t", "boolean": "bool"}
+
+
+def _declaration(group: Group) -> str:
+    size = "" if group.count is None else f"[{group.count}]"
+    unit = f" [{group.unit}]" if group.unit else ""
+    return f"    {_CPP_TYPES[group.type]} {group.identifier}{size}; // {group.description}{unit}"
+
+
+def header(table: Table) -> str:
+    members = "\n".join(_declaration(group) for group in table.groups)
+    return f"""// Generated from the variable table of {table.name}; do not edit.
+#pragma once
+
+#include <cstdint>
+
+namespace giveway::{table.name} {{
+
+// Plain data: a copy is a checkpoint. Inputs and parameters are written by the importer.
+struct Variables {{
+{members}
+}};
+
+// Everything zero, then the start values of the inputs and parameters.
+void set_start_values(Variables &variables);
+
+}} // namespace giveway::{table.name}
+"""
+
+
+def _literal(value: Value) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        # -2147483648 is no literal in C++
+        return str(value) if value != -(2**31) else "(-2147483647 - 1)"
+    return repr(value)
+
+
+def _bound(value: Value | None, infinity: str) -> str:
+    return infinity if value is None else repr(float(value))
+
+
+def source(table: Table) -> str:
+    starts: list[str] = []
+    rows: list[str] = []
+    for group in table.groups:
+        for index, variable in enumerate(group.variables):
+            member = group.identifier if group.count is None else f"{group.identifier}[{index}]"
+            # -0.0 == 0 but is not what Variables{} holds
+            if variable.start is not None and (variable.start != 0 or str(variable.start).startswith("-")):
+                starts.append(f"    variables.{member} = {_literal(variable.start)};")
+            offset = f"offsetof(Variables, {group.identifier})"
+            if index:
+                offset += f" + {index} * sizeof({_CPP_TYPES[group.type]})"
+            rows.append(
+                f'    {{{variable.reference}u, "{variable.name}", VariableType::{group.type}, '
+                f"Causality::{group.causality}, {_bound(group.minimum, '-infinity')}, "
+                f"{_bound(group.maximum, 'infinity')}, {offset}, {str(group.allow_nonfinite).lower()}}},"
+            )
+    start_lines = "\n".join(starts)
+    row_lines = "\n".join(rows)
+    return f"""// Generated from the variable table of {table.name}; do not edit.
+#include "{table.name}_variables.hpp"
+
+#include "model.hpp"
+
+#include <cstddef>
+#include <limits>
+
+namespace giveway {{
+namespace {{
+
+using {table.name}::Variables;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr VariableInfo variable_infos[] = {{
+{row_lines}
+}};
+
+constexpr ModelInfo info = {{"{table.name}", "{table.token}", variable_infos, {len(rows)}}};
+
+}} // namespace
+
+const ModelInfo &model_info() {{ return info; }}
+
+void {table.name}::set_start_values(Variables &variables) {{
+    variables = Variables{{}};
+{start_lines}
+}}
+
+}} // namespace giveway
+"""

@@ -1,0 +1,294 @@
+"""Reads and checks a variable table (TOML) against a robot file (TOML)."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+import tomllib
+import uuid
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .errors import TableError
+from .units import base_units
+
+__all__ = ["Group", "Table", "Variable", "read_table"]
+
+SCHEMA_VERSION = 1
+TIME_REFERENCE = 0  # the independent variable of FMI 3
+INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
+
+Value = float | int | bool
+
+_MODEL_KEYS = {"name", "description", "step_size_s"}
+_VARIABLE_KEYS = {
+    "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
+    "allow_nonfinite", "description",
+}  # fmt: skip
+_NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable, as an importer sees it."""
+
+    reference: int
+    name: str
+    start: Value | None
+    robot_path: str | None  # where in the robot file the start value comes from
+
+
+@dataclass(frozen=True)
+class Group:
+    """One entry of the table: a scalar, or ``count`` scalars ``name[0]``, ``name[1]``, ..."""
+
+    name: str
+    identifier: str
+    count: int | None
+    causality: str
+    type: str
+    unit: str | None
+    minimum: Value | None
+    maximum: Value | None
+    nominal: float | None
+    allow_nonfinite: bool
+    description: str
+    variables: tuple[Variable, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A checked table; ``groups`` in the order of their references."""
+
+    name: str
+    description: str
+    step_size: float
+    groups: tuple[Group, ...]
+
+    @property
+    def scalars(self) -> list[tuple[Group, Variable]]:
+        return [(group, variable) for group in self.groups for variable in group.variables]
+
+    @property
+    def units(self) -> dict[str, dict[str, int]]:
+        """The units in use with their SI exponents, always with the second (the unit of time)."""
+        names = {group.unit for group in self.groups if group.unit} | {"s"}
+        return {name: base_units(name) for name in sorted(names)}
+
+    @property
+    def token(self) -> str:
+        """Instantiation token: a hash of everything in the table, resolved start values included."""
+        text = repr(self).encode()
+        return "{" + str(uuid.UUID(bytes=hashlib.sha256(text).digest()[:16])) + "}"
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read: {error.strerror}") from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise TableError(f"{path}: not valid TOML: {error}") from error
+    if document.get("schema_version") != SCHEMA_VERSION:
+        found = document.get("schema_version")
+        raise TableError(f"{path}: schema_version: {found!r}, but this version reads {SCHEMA_VERSION}")
+    return document
+
+
+def _robot_entry(robot: dict[str, Any], path: str) -> dict[str, Any] | None:
+    entry: Any = robot
+    for part in path.split("."):
+        entry = entry.get(part) if isinstance(entry, dict) else None
+    return entry if isinstance(entry, dict) and "value" in entry else None
+
+
+class _Entry:
+    """One [[variable]] while it is being checked."""
+
+    def __init__(self, file: Path, position: int, raw: dict[str, Any]) -> None:
+        self.file = file
+        self.raw = raw
+        self.label = str(raw.get("name", f"number {position}"))
+
+    def fail(self, key: str, message: str) -> TableError:
+        return TableError(f"{self.file}: variable {self.label}: {key}: {message}")
+
+    def choice(self, key: str, allowed: tuple[str, ...]) -> str:
+        value = self.raw.get(key)
+        if value not in allowed:
+            raise self.fail(key, f"{value!r}, but must be one of {', '.join(allowed)}")
+        return str(value)
+
+    def whole(self, key: str, minimum: int, maximum: int) -> int:
+        value = self.raw.get(key)
+        if isinstance(value, bool) or not isinstance(value, int) or not minimum <= value <= maximum:
+            raise self.fail(key, f"{value!r}, but must be a whole number from {minimum} to {maximum}")
+        return value
+
+    def value(self, key: str, kind: str, value: Any) -> Value:
+        """``value`` as Python value of variable type ``kind``."""
+        if kind == "boolean":
+            if isinstance(value, bool):
+                return value
+            raise self.fail(key, f"{value!r}, but must be true or false")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise self.fail(key, f"{value!r}, but must be a finite number")
+        if kind == "real":
+            return float(value)
+        if value != int(value) or not INT32_MIN <= value <= INT32_MAX:
+            raise self.fail(key, f"{value!r}, but must be a whole number of 32 bits")
+        return int(value)
+
+
+def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Group:
+    raw = entry.raw
+    name = raw.get("name")
+    if not isinstance(name, str) or not _NAME.fullmatch(name) or name == "time":
+        raise entry.fail("name", f"{name!r}, but must be words of a-z, 0-9 and _ joined by dots, and not 'time'")
+    for key in raw:
+        if key not in _VARIABLE_KEYS:
+            raise entry.fail(key, f"unknown key; known are {', '.join(sorted(_VARIABLE_KEYS))}")
+    count = entry.whole("count", 1, 1024) if "count" in raw else None
+    reference = entry.whole("reference", TIME_REFERENCE + 1, 2**31 - 1 - (count or 1))
+    causality = entry.choice("causality", ("parameter", "input", "output"))
+    kind = entry.choice("type", ("real", "integer", "boolean"))
+    description = raw.get("description")
+    if not isinstance(description, str) or not description.strip():
+        raise entry.fail("description", "missing")
+
+    unit = raw.get("unit")
+    if kind == "real":
+        if not isinstance(unit, str):
+            raise entry.fail("unit", 'missing; dimensionless variables have unit = "1"')
+        try:
+            base_units(unit)
+        except ValueError as error:
+            raise entry.fail("unit", f"{unit!r}: {error}") from error
+    elif "unit" in raw:
+        raise entry.fail("unit", f"a variable of type {kind} has no unit")
+
+    if kind == "boolean":
+        for key in ("minimum", "maximum"):
+            if key in raw:
+                raise entry.fail(key, "a boolean has no range")
+    if kind != "real":
+        for key in ("nominal", "allow_nonfinite"):
+            if key in raw:
+                raise entry.fail(key, "only for variables of type real")
+    minimum = entry.value("minimum", kind, raw["minimum"]) if "minimum" in raw else None
+    maximum = entry.value("maximum", kind, raw["maximum"]) if "maximum" in raw else None
+    if minimum is not None and maximum is not None and minimum > maximum:
+        raise entry.fail("minimum", f"{minimum} is above the maximum {maximum}")
+    nominal = float(entry.value("nominal", kind, raw["nominal"])) if "nominal" in raw else None
+    if nominal is not None and nominal <= 0:
+        raise entry.fail("nominal", f"{nominal} is not positive")
+    allow_nonfinite = raw.get("allow_nonfinite", False)
+    if not isinstance(allow_nonfinite, bool) or (allow_nonfinite and causality != "input"):
+        raise entry.fail("allow_nonfinite", f"{allow_nonfinite!r}, but must be true or false, and true only for inputs")
+
+    starts = _starts(entry, kind, unit, causality, count, robot, robot_file)
+    for start, _ in starts:
+        if start is None or kind == "boolean":
+            continue
+        if (minimum is not None and start < minimum) or (maximum is not None and start > maximum):
+            raise entry.fail("start", f"{start} is outside {minimum} to {maximum}")
+    variables = tuple(
+        Variable(reference + i, name if count is None else f"{name}[{i}]", start, path)
+        for i, (start, path) in enumerate(starts)
+    )
+    return Group(
+        name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
+        " ".join(description.split()), variables,
+    )  # fmt: skip
+
+
+def _starts(
+    entry: _Entry,
+    kind: str,
+    unit: str | None,
+    causality: str,
+    count: int | None,
+    robot: dict[str, Any],
+    robot_file: Path,
+) -> list[tuple[Value | None, str | None]]:
+    """Start value and robot path of each element."""
+    size = count or 1
+    if causality == "output":
+        if "start" in entry.raw:
+            raise entry.fail("start", "an output has no start value")
+        return [(None, None)] * size
+    if "start" not in entry.raw:
+        raise entry.fail("start", "missing")
+    raw = entry.raw["start"]
+    if isinstance(raw, list):
+        if count is None or len(raw) != count:
+            raise entry.fail("start", f"a list of {len(raw)} values for {size} variables")
+        items = raw
+    else:
+        items = [raw] * size
+    starts: list[tuple[Value | None, str | None]] = []
+    for index, item in enumerate(items):
+        path = None
+        if isinstance(item, dict):
+            path = item.get("robot")
+            if set(item) != {"robot"} or not isinstance(path, str):
+                raise entry.fail("start", f'{item!r}, but must be a value or {{ robot = "path" }}')
+            item = _robot_value(entry, path, index, count, unit or "1", robot, robot_file)
+        starts.append((entry.value("start", kind, item), path))
+    return starts
+
+
+def _robot_value(
+    entry: _Entry, path: str, index: int, count: int | None, unit: str, robot: dict[str, Any], robot_file: Path
+) -> Any:
+    found = _robot_entry(robot, path)
+    if found is None:
+        raise entry.fail("start", f"{robot_file} has no value {path}")
+    if found.get("unit") != unit:
+        raise entry.fail("start", f"{path} of {robot_file} is in {found.get('unit')!r}, the variable in {unit!r}")
+    value = found["value"]
+    if not isinstance(value, list):
+        return value
+    if count is None or len(value) > count:
+        raise entry.fail("start", f"{path} of {robot_file} has {len(value)} values for {count or 1} variables")
+    # A robot with fewer elements than there are variables (an outline's vertices) leaves the rest unused.
+    return value[index] if index < len(value) else 0
+
+
+def read_table(table_file: Path, robot_file: Path) -> Table:
+    """The checked table; TableError if anything is wrong."""
+    document = _read_toml(table_file)
+    robot = _read_toml(robot_file)
+    model = document.get("model", {})
+    for key in model:
+        if key not in _MODEL_KEYS:
+            raise TableError(f"{table_file}: model: {key}: unknown key; known are {', '.join(sorted(_MODEL_KEYS))}")
+    name, description, step_size = (model.get(key) for key in ("name", "description", "step_size_s"))
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        raise TableError(f"{table_file}: model: name: {name!r}, but must be a word of a-z, 0-9 and _")
+    if not isinstance(description, str) or not description.strip():
+        raise TableError(f"{table_file}: model: description: missing")
+    if isinstance(step_size, bool) or not isinstance(step_size, float) or not 0 < step_size < math.inf:
+        raise TableError(f"{table_file}: model: step_size_s: {step_size!r}, but must be a positive number of seconds")
+
+    groups: list[Group] = []
+    references: dict[int, str] = {}
+    identifiers: dict[str, str] = {}
+    for position, raw in enumerate(document.get("variable", []), start=1):
+        entry = _Entry(table_file, position, raw)
+        group = _parse_entry(entry, robot, robot_file)
+        for variable in group.variables:
+            if variable.reference in references:
+                taken = references[variable.reference]
+                raise entry.fail("reference", f"{variable.reference} is taken by {taken}")
+            references[variable.reference] = variable.name
+        if group.identifier in identifiers:
+            raise entry.fail("name", f"taken or too like {identifiers[group.identifier]}")
+        identifiers[group.identifier] = group.name
+        groups.append(group)
+    if not groups:
+        raise TableError(f"{table_file}: no [[variable]]")
+    groups.sort(key=lambda group: group.variables[0].reference)
+    return Table(name, " ".join(description.split()), step_size, tuple(groups))

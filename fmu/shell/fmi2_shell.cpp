@@ -1,0 +1,396 @@
+// FMI 2.0 entry points, Co-Simulation.
+#include "instance.hpp"
+
+#include <fmi2Functions.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <new>
+
+namespace {
+
+using giveway::Instance;
+using giveway::State;
+
+struct Fmi2Instance {
+    fmi2CallbackLogger logger;
+    fmi2ComponentEnvironment environment;
+    char *name; // owned copy, handed to the logger
+    Instance instance;
+    // From fmi2SetupExperiment, for fmi2EnterInitializationMode.
+    bool experiment_set_up = false;
+    double start_time = 0.0;
+    double stop_time = 0.0;
+
+    static void log(void *context, const char *text) {
+        const Fmi2Instance *self = static_cast<const Fmi2Instance *>(context);
+        if (self->logger != nullptr) {
+            // The message is a printf format in FMI 2.
+            self->logger(self->environment, self->name, fmi2Error, "logStatusError", "%s", text);
+        }
+    }
+
+    Fmi2Instance(const fmi2CallbackFunctions &functions, char *name_, giveway::Model *model)
+        : logger(functions.logger), environment(functions.componentEnvironment), name(name_),
+          instance(model, false, log, this) {}
+    ~Fmi2Instance() { delete[] name; }
+};
+
+Fmi2Instance *unwrap(fmi2Component component) { return static_cast<Fmi2Instance *>(component); }
+
+fmi2Status status(bool ok) { return ok ? fmi2OK : fmi2Error; }
+
+fmi2Status unsupported(fmi2Component component, const char *function, const char *what) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.unsupported(function, what));
+}
+
+fmi2Component refuse_instance(const fmi2CallbackFunctions *functions, const char *name,
+                              const char *text) {
+    if (functions != nullptr && functions->logger != nullptr) {
+        functions->logger(functions->componentEnvironment, name != nullptr ? name : "", fmi2Error,
+                          "logStatusError", "fmi2Instantiate: %s", text);
+    }
+    return nullptr;
+}
+
+// FMI 2 knows the state of a step only as something to ask for afterwards.
+bool allow_status(Fmi2Instance &self, const char *function) {
+    return self.instance.allow(function, State::step_mode | State::terminated | State::failed);
+}
+
+fmi2Status no_strings(fmi2Component component, const char *function, size_t count) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr) {
+        return fmi2Error;
+    }
+    return status(count == 0 || self->instance.refuse(function, "no variable is of type String"));
+}
+
+} // namespace
+
+extern "C" {
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component component, fmi2Boolean, size_t count,
+                               const fmi2String categories[]) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr) {
+        return fmi2Error;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (categories == nullptr || categories[i] == nullptr ||
+            std::strcmp(categories[i], "logStatusError") != 0) {
+            return status(self->instance.refuse("fmi2SetDebugLogging", "unknown log category '%s'",
+                                                categories != nullptr && categories[i] != nullptr
+                                                    ? categories[i]
+                                                    : "(null)"));
+        }
+    }
+    return fmi2OK; // errors, the only category, are always logged
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String,
+                              const fmi2CallbackFunctions *functions, fmi2Boolean, fmi2Boolean) {
+    if (functions == nullptr) {
+        return nullptr; // and there is no logger to say so
+    }
+    if (name == nullptr || name[0] == '\0') {
+        return refuse_instance(functions, name, "the instance name is missing");
+    }
+    if (type != fmi2CoSimulation) {
+        return refuse_instance(functions, name, "this FMU does not support Model Exchange");
+    }
+    if (guid == nullptr || std::strcmp(guid, giveway::model_info().token) != 0) {
+        return refuse_instance(functions, name,
+                               "the GUID does not match; model description and binary are of "
+                               "different builds");
+    }
+    const size_t size = std::strlen(name) + 1;
+    char *name_copy = new (std::nothrow) char[size];
+    giveway::Model *model = giveway::create_model();
+    if (name_copy != nullptr && model != nullptr) {
+        std::memcpy(name_copy, name, size);
+        Fmi2Instance *self = new (std::nothrow) Fmi2Instance(*functions, name_copy, model);
+        if (self != nullptr) {
+            return self;
+        }
+    }
+    delete model;
+    delete[] name_copy;
+    return refuse_instance(functions, name, "out of memory");
+}
+
+void fmi2FreeInstance(fmi2Component component) { delete unwrap(component); }
+
+fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined,
+                               fmi2Real tolerance, fmi2Real start_time, fmi2Boolean stop_time_defined,
+                               fmi2Real stop_time) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr || !self->instance.allow("fmi2SetupExperiment", only(State::instantiated))) {
+        return fmi2Error;
+    }
+    // The tolerances of a model's solver are its parameters; a given one is checked, not used.
+    if (tolerance_defined && !(tolerance > 0.0)) {
+        return status(self->instance.refuse("fmi2SetupExperiment",
+                                            "tolerance is %g, but must be positive", tolerance));
+    }
+    self->experiment_set_up = true;
+    self->start_time = start_time;
+    self->stop_time = stop_time_defined ? stop_time : std::numeric_limits<double>::infinity();
+    return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component component) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr ||
+        !self->instance.allow("fmi2EnterInitializationMode", only(State::instantiated))) {
+        return fmi2Error;
+    }
+    if (!self->experiment_set_up) {
+        return status(self->instance.refuse("fmi2EnterInitializationMode",
+                                            "not allowed before fmi2SetupExperiment"));
+    }
+    return status(self->instance.enter_initialisation("fmi2EnterInitializationMode",
+                                                      self->start_time, self->stop_time));
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component component) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.exit_initialisation("fmi2ExitInitializationMode"));
+}
+
+fmi2Status fmi2Terminate(fmi2Component component) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.terminate("fmi2Terminate"));
+}
+
+fmi2Status fmi2Reset(fmi2Component component) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr || !self->instance.reset("fmi2Reset")) {
+        return fmi2Error;
+    }
+    self->experiment_set_up = false;
+    return fmi2OK;
+}
+
+fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real step_size, fmi2Boolean) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.step("fmi2DoStep", time, step_size));
+}
+
+fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                       fmi2Real values[]) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.get_real("fmi2GetReal", references, count, values));
+}
+
+fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                          fmi2Integer values[]) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.get_integer("fmi2GetInteger", references, count, values));
+}
+
+fmi2Status fmi2GetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                          fmi2Boolean values[]) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr) {
+        return fmi2Error;
+    }
+    if (count > 0 && (references == nullptr || values == nullptr)) {
+        return status(self->instance.refuse("fmi2GetBoolean",
+                                            "value references or values are a null pointer"));
+    }
+    for (size_t i = 0; i < count; ++i) {
+        bool value = false;
+        if (!self->instance.get_boolean("fmi2GetBoolean", &references[i], 1, &value)) {
+            return fmi2Error;
+        }
+        values[i] = value ? fmi2True : fmi2False;
+    }
+    return status(self->instance.get_boolean("fmi2GetBoolean", references, 0, nullptr));
+}
+
+fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                       const fmi2Real values[]) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.set_real("fmi2SetReal", references, count, values));
+}
+
+fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                          const fmi2Integer values[]) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.set_integer("fmi2SetInteger", references, count, values));
+}
+
+fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                          const fmi2Boolean values[]) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr) {
+        return fmi2Error;
+    }
+    if (count > 0 && (references == nullptr || values == nullptr)) {
+        return status(self->instance.refuse("fmi2SetBoolean",
+                                            "value references or values are a null pointer"));
+    }
+    bool *converted = new (std::nothrow) bool[count + 1];
+    if (converted == nullptr) {
+        return status(self->instance.refuse("fmi2SetBoolean", "out of memory"));
+    }
+    for (size_t i = 0; i < count; ++i) {
+        converted[i] = values[i] != fmi2False;
+    }
+    const bool ok = self->instance.set_boolean("fmi2SetBoolean", references, count, converted);
+    delete[] converted;
+    return status(ok);
+}
+
+fmi2Status fmi2GetString(fmi2Component component, const fmi2ValueReference[], size_t count,
+                         fmi2String[]) {
+    return no_strings(component, "fmi2GetString", count);
+}
+
+fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference[], size_t count,
+                         const fmi2String[]) {
+    return no_strings(component, "fmi2SetString", count);
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component component, const fmi2StatusKind kind, fmi2Real *value) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr || !allow_status(*self, "fmi2GetRealStatus")) {
+        return fmi2Error;
+    }
+    if (kind != fmi2LastSuccessfulTime || value == nullptr) {
+        self->instance.unsupported("fmi2GetRealStatus", "anything but fmi2LastSuccessfulTime");
+        return fmi2Discard;
+    }
+    *value = self->instance.time();
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind kind,
+                                fmi2Boolean *value) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr || !allow_status(*self, "fmi2GetBooleanStatus")) {
+        return fmi2Error;
+    }
+    if (kind != fmi2Terminated || value == nullptr) {
+        self->instance.unsupported("fmi2GetBooleanStatus", "anything but fmi2Terminated");
+        return fmi2Discard;
+    }
+    *value = fmi2False; // the FMU never asks to end the simulation
+    return fmi2OK;
+}
+
+// What the model description does not offer.
+
+fmi2Status fmi2GetStatus(fmi2Component component, const fmi2StatusKind, fmi2Status *) {
+    unsupported(component, "fmi2GetStatus", "asynchronous steps");
+    return component == nullptr ? fmi2Error : fmi2Discard;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component component, const fmi2StatusKind, fmi2Integer *) {
+    unsupported(component, "fmi2GetIntegerStatus", "asynchronous steps");
+    return component == nullptr ? fmi2Error : fmi2Discard;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component component, const fmi2StatusKind, fmi2String *) {
+    unsupported(component, "fmi2GetStringStatus", "asynchronous steps");
+    return component == nullptr ? fmi2Error : fmi2Discard;
+}
+
+fmi2Status fmi2CancelStep(fmi2Component component) {
+    return unsupported(component, "fmi2CancelStep", "asynchronous steps");
+}
+
+fmi2Status fmi2GetFMUstate(fmi2Component component, fmi2FMUstate *) {
+    return unsupported(component, "fmi2GetFMUstate", "getting its state");
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component component, fmi2FMUstate) {
+    return unsupported(component, "fmi2SetFMUstate", "setting its state");
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component component, fmi2FMUstate *) {
+    return unsupported(component, "fmi2FreeFMUstate", "getting its state");
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate, size_t *) {
+    return unsupported(component, "fmi2SerializedFMUstateSize", "serialising its state");
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate, fmi2Byte[], size_t) {
+    return unsupported(component, "fmi2SerializeFMUstate", "serialising its state");
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte[], size_t, fmi2FMUstate *) {
+    return unsupported(component, "fmi2DeSerializeFMUstate", "serialising its state");
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2ValueReference[], size_t,
+                                        const fmi2ValueReference[], size_t, const fmi2Real[],
+                                        fmi2Real[]) {
+    return unsupported(component, "fmi2GetDirectionalDerivative", "directional derivatives");
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component component, const fmi2ValueReference[], size_t,
+                                       const fmi2Integer[], const fmi2Real[]) {
+    return unsupported(component, "fmi2SetRealInputDerivatives", "input derivatives");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component component, const fmi2ValueReference[], size_t,
+                                        const fmi2Integer[], fmi2Real[]) {
+    return unsupported(component, "fmi2GetRealOutputDerivatives", "output derivatives");
+}
+
+fmi2Status fmi2EnterEventMode(fmi2Component component) {
+    return unsupported(component, "fmi2EnterEventMode", "Model Exchange");
+}
+
+fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *) {
+    return unsupported(component, "fmi2NewDiscreteStates", "Model Exchange");
+}
+
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component component) {
+    return unsupported(component, "fmi2EnterContinuousTimeMode", "Model Exchange");
+}
+
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean, fmi2Boolean *,
+                                       fmi2Boolean *) {
+    return unsupported(component, "fmi2CompletedIntegratorStep", "Model Exchange");
+}
+
+fmi2Status fmi2SetTime(fmi2Component component, fmi2Real) {
+    return unsupported(component, "fmi2SetTime", "Model Exchange");
+}
+
+fmi2Status fmi2SetContinuousStates(fmi2Component component, const fmi2Real[], size_t) {
+    return unsupported(component, "fmi2SetContinuousStates", "Model Exchange");
+}
+
+fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real[], size_t) {
+    return unsupported(component, "fmi2GetDerivatives", "Model Exchange");
+}
+
+fmi2Status fmi2GetEventIndicators(fmi2Component component, fmi2Real[], size_t) {
+    return unsupported(component, "fmi2GetEventIndicators", "Model Exchange");
+}
+
+fmi2Status fmi2GetContinuousStates(fmi2Component component, fmi2Real[], size_t) {
+    return unsupported(component, "fmi2GetContinuousStates", "Model Exchange");
+}
+
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real[], size_t) {
+    return unsupported(component, "fmi2GetNominalsOfContinuousStates", "Model Exchange");
+}
+
+} // extern "C"

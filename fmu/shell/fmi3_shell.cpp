@@ -1,0 +1,441 @@
+// FMI 3.0 entry points, Co-Simulation.
+#include "instance.hpp"
+
+#include <fmi3Functions.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <new>
+
+namespace {
+
+using giveway::Instance;
+using giveway::State;
+
+struct Fmi3Instance {
+    fmi3InstanceEnvironment environment;
+    fmi3LogMessageCallback log_message;
+    Instance instance;
+
+    static void log(void *context, const char *text) {
+        const Fmi3Instance *self = static_cast<const Fmi3Instance *>(context);
+        if (self->log_message != nullptr) {
+            self->log_message(self->environment, fmi3Error, "logStatusError", text);
+        }
+    }
+
+    Fmi3Instance(fmi3InstanceEnvironment environment_, fmi3LogMessageCallback log_message_,
+                 giveway::Model *model)
+        : environment(environment_), log_message(log_message_), instance(model, true, log, this) {}
+};
+
+Instance *unwrap(fmi3Instance instance) {
+    return instance == nullptr ? nullptr : &static_cast<Fmi3Instance *>(instance)->instance;
+}
+
+fmi3Status status(bool ok) { return ok ? fmi3OK : fmi3Error; }
+
+fmi3Status unsupported(fmi3Instance instance, const char *function, const char *what) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->unsupported(function, what));
+}
+
+fmi3Instance refuse_instance(fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message,
+                             const char *text) {
+    if (log_message != nullptr) {
+        log_message(environment, fmi3Error, "logStatusError", text);
+    }
+    return nullptr;
+}
+
+// Scalars only: every value reference stands for one value.
+bool check_count(Instance &self, const char *function, size_t references, size_t values) {
+    return references == values ||
+           self.refuse(function, "%zu value references but %zu values", references, values);
+}
+
+fmi3Status no_such_type(fmi3Instance instance, const char *function, size_t count, const char *type) {
+    Instance *self = unwrap(instance);
+    if (self == nullptr) {
+        return fmi3Error;
+    }
+    return status(count == 0 || self->refuse(function, "no variable is of type %s", type));
+}
+
+} // namespace
+
+extern "C" {
+
+const char *fmi3GetVersion(void) { return fmi3Version; }
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean, size_t count,
+                               const fmi3String categories[]) {
+    Instance *self = unwrap(instance);
+    if (self == nullptr) {
+        return fmi3Error;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (categories == nullptr || categories[i] == nullptr ||
+            std::strcmp(categories[i], "logStatusError") != 0) {
+            return status(self->refuse("fmi3SetDebugLogging", "unknown log category '%s'",
+                                       categories != nullptr && categories[i] != nullptr
+                                           ? categories[i]
+                                           : "(null)"));
+        }
+    }
+    return fmi3OK; // errors, the only category, are always logged
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
+                                          fmi3InstanceEnvironment environment,
+                                          fmi3LogMessageCallback log_message) {
+    return refuse_instance(environment, log_message,
+                           "fmi3InstantiateModelExchange: this FMU does not support Model Exchange");
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean,
+                                               fmi3Boolean, fmi3InstanceEnvironment environment,
+                                               fmi3LogMessageCallback log_message,
+                                               fmi3ClockUpdateCallback, fmi3LockPreemptionCallback,
+                                               fmi3UnlockPreemptionCallback) {
+    return refuse_instance(
+        environment, log_message,
+        "fmi3InstantiateScheduledExecution: this FMU does not support Scheduled Execution");
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String, fmi3Boolean,
+                                         fmi3Boolean, fmi3Boolean event_mode_used, fmi3Boolean,
+                                         const fmi3ValueReference[], size_t intermediate_count,
+                                         fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log_message,
+                                         fmi3IntermediateUpdateCallback) {
+    if (name == nullptr || name[0] == '\0') {
+        return refuse_instance(environment, log_message,
+                               "fmi3InstantiateCoSimulation: the instance name is missing");
+    }
+    if (token == nullptr || std::strcmp(token, giveway::model_info().token) != 0) {
+        return refuse_instance(environment, log_message,
+                               "fmi3InstantiateCoSimulation: the instantiation token does not match; "
+                               "model description and binary are of different builds");
+    }
+    if (event_mode_used) {
+        return refuse_instance(environment, log_message,
+                               "fmi3InstantiateCoSimulation: this FMU has no event mode");
+    }
+    if (intermediate_count != 0) {
+        return refuse_instance(environment, log_message,
+                               "fmi3InstantiateCoSimulation: this FMU has no intermediate update");
+    }
+    giveway::Model *model = giveway::create_model();
+    if (model != nullptr) {
+        Fmi3Instance *self = new (std::nothrow) Fmi3Instance(environment, log_message, model);
+        if (self != nullptr) {
+            return self;
+        }
+        delete model;
+    }
+    return refuse_instance(environment, log_message, "fmi3InstantiateCoSimulation: out of memory");
+}
+
+void fmi3FreeInstance(fmi3Instance instance) { delete static_cast<Fmi3Instance *>(instance); }
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined,
+                                       fmi3Float64 tolerance, fmi3Float64 start_time,
+                                       fmi3Boolean stop_time_defined, fmi3Float64 stop_time) {
+    Instance *self = unwrap(instance);
+    if (self == nullptr) {
+        return fmi3Error;
+    }
+    // The tolerances of a model's solver are its parameters; a given one is checked, not used.
+    if (tolerance_defined && !(tolerance > 0.0)) {
+        return status(self->refuse("fmi3EnterInitializationMode",
+                                   "tolerance is %g, but must be positive", tolerance));
+    }
+    const double stop = stop_time_defined ? stop_time : std::numeric_limits<double>::infinity();
+    return status(self->enter_initialisation("fmi3EnterInitializationMode", start_time, stop));
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->exit_initialisation("fmi3ExitInitializationMode"));
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->terminate("fmi3Terminate"));
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->reset("fmi3Reset"));
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 step_size, fmi3Boolean,
+                      fmi3Boolean *event_handling_needed, fmi3Boolean *terminate_simulation,
+                      fmi3Boolean *early_return, fmi3Float64 *last_successful_time) {
+    Instance *self = unwrap(instance);
+    if (self == nullptr) {
+        return fmi3Error;
+    }
+    const bool ok = self->step("fmi3DoStep", time, step_size);
+    if (event_handling_needed != nullptr) {
+        *event_handling_needed = fmi3False;
+    }
+    if (terminate_simulation != nullptr) {
+        *terminate_simulation = fmi3False;
+    }
+    if (early_return != nullptr) {
+        *early_return = fmi3False;
+    }
+    if (last_successful_time != nullptr) {
+        *last_successful_time = self->time();
+    }
+    return status(ok);
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                          fmi3Float64 values[], size_t value_count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && check_count(*self, "fmi3GetFloat64", count, value_count) &&
+                  self->get_real("fmi3GetFloat64", references, count, values));
+}
+
+fmi3Status fmi3GetInt32(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                        fmi3Int32 values[], size_t value_count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && check_count(*self, "fmi3GetInt32", count, value_count) &&
+                  self->get_integer("fmi3GetInt32", references, count, values));
+}
+
+fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                          fmi3Boolean values[], size_t value_count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && check_count(*self, "fmi3GetBoolean", count, value_count) &&
+                  self->get_boolean("fmi3GetBoolean", references, count, values));
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                          const fmi3Float64 values[], size_t value_count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && check_count(*self, "fmi3SetFloat64", count, value_count) &&
+                  self->set_real("fmi3SetFloat64", references, count, values));
+}
+
+fmi3Status fmi3SetInt32(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                        const fmi3Int32 values[], size_t value_count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && check_count(*self, "fmi3SetInt32", count, value_count) &&
+                  self->set_integer("fmi3SetInt32", references, count, values));
+}
+
+fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                          const fmi3Boolean values[], size_t value_count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && check_count(*self, "fmi3SetBoolean", count, value_count) &&
+                  self->set_boolean("fmi3SetBoolean", references, count, values));
+}
+
+// Types that no giveway FMU has a variable of.
+#define GIVEWAY_NO_TYPE(Type)                                                                          \
+    fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count,          \
+                             fmi3##Type[], size_t) {                                                   \
+        return no_such_type(instance, "fmi3Get" #Type, count, #Type);                                  \
+    }                                                                                                  \
+    fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count,          \
+                             const fmi3##Type[], size_t) {                                             \
+        return no_such_type(instance, "fmi3Set" #Type, count, #Type);                                  \
+    }
+GIVEWAY_NO_TYPE(Float32)
+GIVEWAY_NO_TYPE(Int8)
+GIVEWAY_NO_TYPE(UInt8)
+GIVEWAY_NO_TYPE(Int16)
+GIVEWAY_NO_TYPE(UInt16)
+GIVEWAY_NO_TYPE(UInt32)
+GIVEWAY_NO_TYPE(Int64)
+GIVEWAY_NO_TYPE(UInt64)
+GIVEWAY_NO_TYPE(String)
+#undef GIVEWAY_NO_TYPE
+
+fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count, size_t[],
+                         fmi3Binary[], size_t) {
+    return no_such_type(instance, "fmi3GetBinary", count, "Binary");
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count,
+                         const size_t[], const fmi3Binary[], size_t) {
+    return no_such_type(instance, "fmi3SetBinary", count, "Binary");
+}
+
+fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference[], size_t count, fmi3Clock[]) {
+    return no_such_type(instance, "fmi3GetClock", count, "Clock");
+}
+
+fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference[], size_t count,
+                        const fmi3Clock[]) {
+    return no_such_type(instance, "fmi3SetClock", count, "Clock");
+}
+
+// What the model description does not offer.
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
+    return unsupported(instance, "fmi3EnterConfigurationMode", "a configuration mode");
+}
+
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
+    return unsupported(instance, "fmi3ExitConfigurationMode", "a configuration mode");
+}
+
+fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
+    return unsupported(instance, "fmi3EnterEventMode", "an event mode");
+}
+
+fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
+    return unsupported(instance, "fmi3EnterStepMode", "an event mode to leave");
+}
+
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
+    return unsupported(instance, "fmi3EvaluateDiscreteStates", "an event mode");
+}
+
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *, fmi3Boolean *, fmi3Boolean *,
+                                    fmi3Boolean *, fmi3Boolean *, fmi3Float64 *) {
+    return unsupported(instance, "fmi3UpdateDiscreteStates", "an event mode");
+}
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *) {
+    return unsupported(instance, "fmi3GetFMUState", "getting its state");
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState) {
+    return unsupported(instance, "fmi3SetFMUState", "setting its state");
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *) {
+    return unsupported(instance, "fmi3FreeFMUState", "getting its state");
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState, size_t *) {
+    return unsupported(instance, "fmi3SerializedFMUStateSize", "serialising its state");
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState, fmi3Byte[], size_t) {
+    return unsupported(instance, "fmi3SerializeFMUState", "serialising its state");
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte[], size_t, fmi3FMUState *) {
+    return unsupported(instance, "fmi3DeserializeFMUState", "serialising its state");
+}
+
+fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference, size_t *) {
+    return unsupported(instance, "fmi3GetNumberOfVariableDependencies", "variable dependencies");
+}
+
+fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference, size_t[],
+                                       fmi3ValueReference[], size_t[], fmi3DependencyKind[], size_t) {
+    return unsupported(instance, "fmi3GetVariableDependencies", "variable dependencies");
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                        const fmi3ValueReference[], size_t, const fmi3Float64[],
+                                        size_t, fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetDirectionalDerivative", "directional derivatives");
+}
+
+fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                    const fmi3ValueReference[], size_t, const fmi3Float64[], size_t,
+                                    fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetAdjointDerivative", "adjoint derivatives");
+}
+
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                    const fmi3Int32[], fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetOutputDerivatives", "output derivatives");
+}
+
+fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                  fmi3Float64[], fmi3IntervalQualifier[]) {
+    return unsupported(instance, "fmi3GetIntervalDecimal", "clocks");
+}
+
+fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                   fmi3UInt64[], fmi3UInt64[], fmi3IntervalQualifier[]) {
+    return unsupported(instance, "fmi3GetIntervalFraction", "clocks");
+}
+
+fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                               fmi3Float64[]) {
+    return unsupported(instance, "fmi3GetShiftDecimal", "clocks");
+}
+
+fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                fmi3UInt64[], fmi3UInt64[]) {
+    return unsupported(instance, "fmi3GetShiftFraction", "clocks");
+}
+
+fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                  const fmi3Float64[]) {
+    return unsupported(instance, "fmi3SetIntervalDecimal", "clocks");
+}
+
+fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                   const fmi3UInt64[], const fmi3UInt64[]) {
+    return unsupported(instance, "fmi3SetIntervalFraction", "clocks");
+}
+
+fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                               const fmi3Float64[]) {
+    return unsupported(instance, "fmi3SetShiftDecimal", "clocks");
+}
+
+fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
+                                const fmi3UInt64[], const fmi3UInt64[]) {
+    return unsupported(instance, "fmi3SetShiftFraction", "clocks");
+}
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference, fmi3Float64) {
+    return unsupported(instance, "fmi3ActivateModelPartition", "Scheduled Execution");
+}
+
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
+    return unsupported(instance, "fmi3EnterContinuousTimeMode", "Model Exchange");
+}
+
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean, fmi3Boolean *,
+                                       fmi3Boolean *) {
+    return unsupported(instance, "fmi3CompletedIntegratorStep", "Model Exchange");
+}
+
+fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64) {
+    return unsupported(instance, "fmi3SetTime", "Model Exchange");
+}
+
+fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3SetContinuousStates", "Model Exchange");
+}
+
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetContinuousStateDerivatives", "Model Exchange");
+}
+
+fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetEventIndicators", "Model Exchange");
+}
+
+fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetContinuousStates", "Model Exchange");
+}
+
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64[], size_t) {
+    return unsupported(instance, "fmi3GetNominalsOfContinuousStates", "Model Exchange");
+}
+
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *) {
+    return unsupported(instance, "fmi3GetNumberOfEventIndicators", "Model Exchange");
+}
+
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *) {
+    return unsupported(instance, "fmi3GetNumberOfContinuousStates", "Model Exchange");
+}
+
+} // extern "C"
