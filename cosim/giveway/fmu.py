@@ -10,9 +10,11 @@ import atexit
 import ctypes
 import functools
 import hashlib
+import itertools
 import logging
 import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -106,6 +108,32 @@ def _unpack(path: Path, _modified_ns: int) -> FmuFile:
     )
 
 
+# FMI 2 log messages come with printf arguments, which Python callbacks cannot receive. FMPy's native proxy formats
+# them, but knows only the callback that was registered last: so one callback serves every instance of the process.
+_environments = itertools.count(1)
+_listeners: weakref.WeakValueDictionary[int, Instance] = weakref.WeakValueDictionary()
+
+
+@functools.cache
+def _shared_fmi2_callbacks() -> Any:
+    from fmpy import fmi2
+    from fmpy.logging import addLoggerProxy
+
+    def dispatch(environment: int | None, name: bytes, status: int, category: bytes, text: bytes) -> None:
+        listener = _listeners.get(environment or 0)
+        if listener is None:  # an instance that someone else made through FMPy
+            fmi2.printLogMessage(environment, name, status, category, text)
+        else:
+            listener._logged(status, text)
+
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(dispatch)
+    callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
+    callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
+    addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
+
+
 class Instance:
     """One co-simulation instance; a context manager that always terminates and frees it."""
 
@@ -135,16 +163,20 @@ class Instance:
                 slave3.instantiate(logMessage=lambda _env, status, _category, text: self._logged(status, text))
                 return slave3
             slave2 = fmi2.FMU2Slave(**arguments)
-            callbacks = fmi2.fmi2CallbackFunctions()
-            callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-                lambda _env, _name, status, _category, text: self._logged(status, text)
-            )
-            callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
-            callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
-            slave2.instantiate(callbacks=callbacks)
+            slave2.instantiate(callbacks=self._fmi2_callbacks())
             return slave2
         except Exception as error:  # FMPy raises plain Exception
             raise SimulationError(self.name, " ".join([str(error), *self._messages]), 0.0) from None
+
+    def _fmi2_callbacks(self) -> Any:
+        """FMI 2 callbacks of this instance: the shared logger, told apart by the component environment."""
+        from fmpy import fmi2
+
+        shared = _shared_fmi2_callbacks()
+        callbacks = fmi2.fmi2CallbackFunctions(shared.logger, shared.allocateMemory, shared.freeMemory)
+        callbacks.componentEnvironment = next(_environments)
+        _listeners[callbacks.componentEnvironment] = self
+        return callbacks
 
     def _logged(self, status: int, text: bytes) -> None:
         message = text.decode("utf-8", "replace")

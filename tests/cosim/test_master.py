@@ -74,9 +74,10 @@ def test_a_plan_with_nan_is_refused() -> None:
         giveway.run(short(plan=lambda time: np.full((len(time), 9), np.nan)))
 
 
-def test_an_fmus_refusal_carries_its_words_and_the_time() -> None:
+@pytest.mark.parametrize("fmi_version", [2, 3])
+def test_an_fmus_refusal_carries_its_words_and_the_time(fmi_version: int) -> None:
     with pytest.raises(SimulationError) as caught:
-        giveway.run(short(testbed={"outline.count": 4}))
+        giveway.run(short(fmi_version=fmi_version, testbed={"outline.count": 4}))
     assert caught.value.time_s == 0.0
     assert "outline" in str(caught.value)
 

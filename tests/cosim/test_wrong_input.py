@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
+import giveway
 import pytest
 from conftest import Cli, folder_content
+from giveway import native
 
 RUN = ("run", "motionless", "--out", "out/run")
 WRONG = {
@@ -77,15 +80,16 @@ def test_broken_robot_files_name_the_key(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_missing_native_parts_name_both_places(cli: Cli, tmp_path: Path) -> None:
-    from giveway import native
-
-    if (Path(native.__file__).parent / "native").is_dir():
-        pytest.skip("the native parts are installed in the package: there is no way to miss them")
-    done = cli(*RUN, environment={native.ENVIRONMENT_VARIABLE: str(tmp_path)})
+    # A copy of the package without its native folder, as a source tree has it.
+    package = Path(giveway.__file__).parent
+    shutil.copytree(package, tmp_path / "source" / "giveway", ignore=shutil.ignore_patterns("native", "__pycache__"))
+    environment = {"PYTHONPATH": str(tmp_path / "source"), native.ENVIRONMENT_VARIABLE: str(tmp_path)}
+    done = cli(*RUN, environment=environment)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert f"{native.ENVIRONMENT_VARIABLE}={tmp_path}" in done.stderr
-    assert "giveway/native" in done.stderr
+    assert str(tmp_path / "source" / "giveway" / "native") in done.stderr
+    assert not (tmp_path / "out").exists()
 
 
 def test_an_fmu_that_refuses_its_parameters_is_one_line(cli: Cli, tmp_path: Path) -> None:
