@@ -1,0 +1,65 @@
+# Thin: it prepares the tools, and CMake, ruff, ctest and pytest do the work. `make help` lists the targets.
+#
+#   .venv/   Python environment: pinned packages, CMake and Ninja, and this package installed in place
+#   build/   the one build tree
+#   out/     what the targets below leave for you
+
+PYTHON ?= python3
+JOBS ?= $(shell nproc)
+BIN := .venv/bin
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
+
+.PHONY: help demo test bench fmus build lint lock clean
+.DEFAULT_GOAL := help
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+demo: build ## the paper's collision experiment as a co-simulation; table, report and summary in out/demo
+	$(BIN)/giveway demo --out out/demo
+
+test: build lint ## every test
+	$(BIN)/ctest --test-dir build --output-on-failure -j $(JOBS)
+	$(BIN)/pytest
+
+bench: build ## how fast a co-simulated second runs
+	$(BIN)/giveway bench
+
+fmus: build ## the FMUs, copied to out/fmus
+	@mkdir -p out/fmus && cp -p build/fmus/*.fmu out/fmus/ && ls -l out/fmus
+
+# Ninja does nothing when nothing changed; the install step copies what the Python package needs beside it.
+build: build/CMakeCache.txt .venv/package-installed ## compile everything and prepare .venv/bin/giveway
+	@$(BIN)/cmake --build build -j $(JOBS) -- --quiet
+	@$(BIN)/cmake --install build --component native --prefix cosim > build/install.log
+
+lint: .venv/packages-installed ## ruff and mypy
+	$(BIN)/ruff check --quiet .
+	$(BIN)/ruff format --check --quiet .
+	$(BIN)/mypy --no-error-summary
+
+lock: requirements.in ## new requirements.lock (needs uv)
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate --no-header --upgrade \
+	    --no-emit-index-url --no-emit-find-links --quiet requirements.in --output-file requirements.lock
+	@sed -i '1i # Made by `make lock` from requirements.in; do not edit.' requirements.lock
+
+clean: ## remove everything that was built or installed here
+	rm -rf .venv build out cosim/giveway/native
+
+build/CMakeCache.txt: .venv/packages-installed
+	$(BIN)/cmake -G Ninja -S . -B build -DGIVEWAY_BUILD_TESTS=ON -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+	    -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja
+	@touch $@
+
+# In place: the sources under cosim/ are the package, so that edits need no new install.
+.venv/package-installed: .venv/packages-installed pyproject.toml
+	$(BIN)/pip install --quiet --no-build-isolation --no-deps -C wheel.cmake=false -C editable.mode=inplace \
+	    --editable .
+	@touch $@
+
+.venv/packages-installed: requirements.lock cmake/system_packages.sh
+	PYTHON="$(PYTHON)" bash cmake/system_packages.sh
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --require-hashes -r requirements.lock
+	@touch $@
