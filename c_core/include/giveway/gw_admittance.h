@@ -1,0 +1,73 @@
+/* The motion that gives way, (1)-(4), in the world frame.
+ *
+ * Frozen impulse: at a hit the robot aims at x_inf = x + (p/B) u and goes there as v = (B/M) (x_inf - x): without
+ * limits exactly (2) with p as the impulse; with limits it still ends at exactly p/B.
+ * Live force: (1), M v' + B v = F, with the force of each tick.
+ * Both steps are exact for an input held over the tick; speed and acceleration vectors are limited in length.
+ *
+ * Life cycle: gw_admittance_init; gw_admittance_start at a hit; gw_admittance_step per tick. All members are private.
+ */
+#ifndef GW_ADMITTANCE_H
+#define GW_ADMITTANCE_H
+
+#include "giveway/gw_config.h"
+#include "giveway/gw_sum.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GW_ADMITTANCE_FROZEN_IMPULSE 0U
+#define GW_ADMITTANCE_LIVE_FORCE 1U
+
+typedef struct {
+    /* GW_ADMITTANCE_FROZEN_IMPULSE (0) or GW_ADMITTANCE_LIVE_FORCE (1). */
+    uint32_t kind;
+    /* M_des, kg, [0.01, 10000]. */
+    gw_real_t mass_kg;
+    /* B_des, N s/m, [0.01, 10000]. */
+    gw_real_t damping_newton_s_per_m;
+    /* p, N s, [0, 1000]. */
+    gw_real_t escape_impulse_newton_s;
+    /* Longest velocity, m/s, [0.001, 10]. */
+    gw_real_t speed_limit_mps;
+    /* Longest acceleration, m/s^2, [0.001, 1000]. */
+    gw_real_t acceleration_limit_mps2;
+} gw_admittance_config_t;
+
+typedef struct {
+    gw_admittance_config_t config;
+    gw_real_t period_s;
+    gw_real_t decay;     /* e^(-B T/M) */
+    gw_real_t approach;  /* 1 - decay, without cancellation */
+    gw_real_t rate_per_s; /* B/M */
+    gw_vector_t goal_m; /* displacement aimed at since the start */
+    gw_sum_t moved_x_m; /* displacement made since the start */
+    gw_sum_t moved_y_m;
+    gw_vector_t velocity_mps;
+    bool initialised;
+} gw_admittance_t;
+
+typedef struct {
+    /* Velocity at the end of the tick and displacement over it. */
+    gw_vector_t velocity_mps;
+    gw_vector_t displacement_m;
+} gw_admittance_output_t;
+
+void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error);
+/* period: s, [0.0001, 0.1]. */
+gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s);
+bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
+/* A hit: from the present velocity along the unit vector direction; (0, 0) means come to rest where you are.
+ * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
+gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction);
+/* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
+ * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */
+gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,114 @@
+/* The whole 1 kHz step: sensors, plan and requests in; wheel references, estimate, detection, mode and status out.
+ *
+ * Life cycle: fill gw_controller_config_t (gw_controller_config_trikey gives the paper's), gw_controller_init, then
+ * gw_controller_step once per period. All members of gw_controller_t are private; a copy of it is a checkpoint.
+ * Bad sensors never command motion: their output is the last wheel angle at zero speed, at once.
+ * The time of a step does not depend on how long the controller has run.
+ */
+#ifndef GW_CONTROLLER_H
+#define GW_CONTROLLER_H
+
+#include "giveway/gw_admittance.h"
+#include "giveway/gw_config.h"
+#include "giveway/gw_contact.h"
+#include "giveway/gw_detector.h"
+#include "giveway/gw_estimator.h"
+#include "giveway/gw_joint.h"
+#include "giveway/gw_reference.h"
+#include "giveway/gw_sensor_check.h"
+#include "giveway/gw_supervisor.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    /* Control period, s, [0.0001, 0.1]. All tick counts below are in this period. */
+    gw_real_t period_s;
+    gw_geometry_config_t geometry;
+    gw_inertia_config_t base;
+    gw_friction_config_t friction;
+    gw_sensor_check_config_t sensor_check;
+    gw_estimator_config_t estimator;
+    gw_contact_config_t contact;
+    gw_detector_config_t detector;
+    gw_admittance_config_t admittance;
+    gw_reference_config_t reference;
+    gw_supervisor_config_t supervisor;
+    /* False: the drives are never enabled; the robot estimates and detects only. */
+    bool drives_enabled;
+} gw_controller_config_t;
+
+typedef struct {
+    gw_sensor_sample_t sensor;
+    /* Plan at the present reading of the path clock. */
+    gw_plan_t plan;
+    bool stop_request;
+    /* A rising edge asks for a new tare of the run; granted in TRACKING at planned rest and in SETTLED. */
+    bool tare_request;
+} gw_controller_input_t;
+
+typedef struct {
+    /* Wheel references for the drives. */
+    gw_joint_command_t command;
+    bool enable;
+    /* Averaged external wrench and where it acts, base frame. */
+    gw_wrench_t estimate;
+    gw_contact_estimate_t contact;
+    /* Detection: active from a hit until the detector is armed again. */
+    bool detection_active;
+    gw_real_t detection_statistic;
+    /* Hits so far modulo 2^31, the tick of the last one (-1: none yet), its mean wrench and place. */
+    uint32_t detection_count;
+    int32_t detection_tick;
+    gw_wrench_t detection_wrench;
+    gw_contact_estimate_t detection_contact;
+    /* Reference, world frame. */
+    gw_pose_t reference_pose;
+    gw_twist_t reference_twist;
+    gw_mode_t mode;
+    /* Ticks of the path clock and of the controller, modulo 2^31. */
+    uint32_t path_ticks;
+    uint32_t tick;
+} gw_controller_output_t;
+
+typedef struct {
+    gw_controller_config_t config;
+    gw_sensor_check_t sensor_check;
+    gw_estimator_t estimator;
+    gw_contact_t contact;
+    gw_detector_t detector;
+    gw_admittance_t admittance;
+    gw_reference_t reference;
+    gw_joint_t joint;
+    gw_supervisor_t supervisor;
+    gw_wrench_t detection_wrench;
+    gw_contact_estimate_t detection_contact;
+    uint32_t detection_count;
+    int32_t detection_tick;
+    uint32_t tick;
+    bool tare_request_before;
+    bool on_plan; /* the reference was placed on the plan */
+    bool initialised;
+} gw_controller_t;
+
+/* The paper's robot and mode: planned acceleration, impulse detector, frozen impulse. Pointer not NULL. */
+void gw_controller_config_trikey(gw_controller_config_t *config);
+/* GW_STATUS_OK if every field is in range; else GW_STATUS_CONFIG_INVALID and the first bad field. Pointers not NULL. */
+gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error);
+/* error may be NULL. After a refusal the controller answers every step with zero motion. */
+gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
+                               gw_config_error_t *error);
+/* An output that means: do not move, drives off. Pointer not NULL. */
+void gw_controller_safe_output(gw_controller_output_t *output);
+gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_input_t *input,
+                               gw_controller_output_t *output);
+/* True for every controller that init accepted, after any number of steps with any input. */
+bool gw_controller_invariant_holds(const gw_controller_t *controller);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

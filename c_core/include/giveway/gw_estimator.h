@@ -1,0 +1,118 @@
+/* The external wrench at every tick: nominal torques, tares, rest or motion, (40), moving average.
+ *
+ * Rest: the planned speed was at most rest_speed for rest_ticks AND a quiet tare was taken in the end of that while.
+ * Then T|0 is that tare (with measured sources: plus the model). Motion: T|0 is the model (38) plus the tare of the run.
+ * Just after a stop neither is right, because stuck rollers hold wind-up: the estimator says that it is blind, for at
+ * most 2 rest_ticks. Every change of mode empties the average.
+ *
+ * Life cycle: gw_estimator_init; gw_estimator_tare per tick until done (at once if tare_ticks is 0); then
+ * gw_estimator_step per tick; gw_estimator_restart after a gap in the samples. All members are private.
+ */
+#ifndef GW_ESTIMATOR_H
+#define GW_ESTIMATOR_H
+
+#include "giveway/gw_config.h"
+#include "giveway/gw_kinematics.h"
+#include "giveway/gw_moving_average.h"
+#include "giveway/gw_nominal.h"
+#include "giveway/gw_rate_filter.h"
+#include "giveway/gw_tare.h"
+#include "giveway/gw_types.h"
+#include "giveway/gw_wrench.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GW_SOURCE_PLANNED 0U
+#define GW_SOURCE_MEASURED 1U
+#define GW_SOURCE_ZERO 2U
+
+typedef struct {
+    /* Velocity of the friction model: GW_SOURCE_PLANNED (0) or GW_SOURCE_MEASURED (1). */
+    uint32_t velocity_source;
+    /* Acceleration in (38): GW_SOURCE_PLANNED (0), GW_SOURCE_MEASURED (1) or GW_SOURCE_ZERO (2). */
+    uint32_t acceleration_source;
+    /* Standard deviation of one torque sample, N m, [0, 100]. */
+    gw_real_t torque_noise_nm;
+    /* Corner of the rate filters, rad/s, [0.1, 10000]. */
+    gw_real_t rate_cutoff_radps;
+    /* Stiffness between encoder and wheel, N m/rad, [0, 10000000]; 0: rigid. */
+    gw_real_t drivetrain_stiffness_nm_per_rad;
+    /* Encoder counts per turn of the wheel, [4, 1000000]. */
+    uint32_t encoder_counts;
+    /* Window of the moving average, samples, [1, 1024]. */
+    uint32_t average_window;
+    /* Planned speed (and speed of the wheels' circle) up to which the robot counts as standing, m/s, [0, 1]. */
+    gw_real_t rest_speed_mps;
+    /* Ticks of standing before the mode is rest, [1, 100000]. */
+    uint32_t rest_ticks;
+    /* Length of the tare of the run, ticks, [0, 100000]; 0: none, the sensors are taken to have no offset. */
+    uint32_t tare_ticks;
+    /* Length of the tare after each stop, ticks, [1, 100000]. */
+    uint32_t retare_ticks;
+    /* Largest variation of a torque within a tare, N m, [0, 100]. */
+    gw_real_t tare_variation_nm;
+} gw_estimator_config_t;
+
+typedef struct {
+    gw_estimator_config_t config;
+    gw_kinematics_t kinematics;
+    gw_nominal_t nominal;
+    gw_rate_filter_constants_t rate_constants;
+    gw_rate_filter_t rate[GW_WHEEL_COUNT];
+    gw_moving_average_t average;
+    gw_tare_t run_tare;
+    gw_tare_t stop_tare;
+    gw_wheels_t run_zero_nm;
+    gw_wheels_t rest_zero_nm;
+    gw_wrench_sigma_t sigma; /* of one sample */
+    uint32_t slow_ticks;     /* ticks of standing, saturating */
+    bool rest;
+    bool initialised;
+} gw_estimator_t;
+
+typedef struct {
+    gw_wheels_t torque_nm;
+    int32_t encoder_count[GW_WHEEL_COUNT];
+    /* Planned motion at the time of the sample, along the base's axes. */
+    gw_twist_t planned_twist;
+    gw_acceleration_t planned_acceleration;
+} gw_estimator_input_t;
+
+typedef struct {
+    gw_wrench_t wrench;      /* of this tick */
+    gw_wrench_t mean;        /* over the samples held */
+    gw_wrench_t window_mean; /* over the whole window */
+    uint32_t mean_samples;
+    gw_wrench_sigma_t sigma; /* of wrench; that of a mean of n is sqrt(n) smaller */
+    gw_wheels_t nominal_nm;  /* T|0 */
+    gw_twist_t measured_twist;
+    bool rest;
+    bool blind;        /* just after a stop: the wrench means nothing */
+    bool mode_changed; /* rest to motion or back in this tick */
+} gw_estimator_output_t;
+
+void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error);
+gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
+                              const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
+                              const gw_friction_config_t *friction, gw_real_t period_s);
+bool gw_estimator_invariant_holds(const gw_estimator_t *estimator);
+/* Starts a new tare of the run; the old zero stays in use until it is done. Pointers not NULL here and below. */
+void gw_estimator_start_tare(gw_estimator_t *estimator);
+/* One tick of the tare of the run, standing still. DONE: this torque is the zero, the mode is rest. */
+gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm);
+/* Filters and average start afresh after a gap; zeros and mode stay. */
+void gw_estimator_restart(gw_estimator_t *estimator);
+/* One tick. Input that is not finite, or a wrench that is not gw_wrench_is_valid: GW_STATUS_INPUT_INVALID, wrench zero,
+ * blind, filters and average start afresh. */
+gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                              gw_estimator_output_t *output);
+/* Angle of the motor side of a wheel from its count, rad, [-pi, pi). */
+gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

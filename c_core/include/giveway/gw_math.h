@@ -1,0 +1,64 @@
+/* Scalar functions from + - * / alone, so that every compiler and processor gives the same bits.
+ *
+ * Every function is defined for every input. Errors over the domain: sqrt is correctly rounded, the others are within
+ * a few units in the last place (tests/c_core/test_math.cpp measures them).
+ */
+#ifndef GW_MATH_H
+#define GW_MATH_H
+
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GW_ZERO ((gw_real_t)0.0)
+#define GW_HALF ((gw_real_t)0.5)
+#define GW_ONE ((gw_real_t)1.0)
+#define GW_TWO ((gw_real_t)2.0)
+#define GW_PI ((gw_real_t)3.141592653589793238462643)
+/* Largest magnitude that gw_sincos and gw_wrap_angle take. */
+#define GW_ANGLE_MAX ((gw_real_t)1.0e4)
+
+/* True unless x is NaN or infinite. */
+bool gw_is_finite(gw_real_t x);
+/* True if low <= x <= high; false for NaN. */
+bool gw_in_range(gw_real_t x, gw_real_t low, gw_real_t high);
+/* |x|; NaN stays NaN. */
+gw_real_t gw_abs(gw_real_t x);
+/* The smaller and the larger argument; b if a is NaN. */
+gw_real_t gw_min(gw_real_t a, gw_real_t b);
+gw_real_t gw_max(gw_real_t a, gw_real_t b);
+/* x limited to [low, high], low <= high; low if x is NaN. */
+gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high);
+/* Square root, correctly rounded; 0 for negative x and NaN; infinity stays GW_REAL_MAX's root at most. */
+gw_real_t gw_sqrt(gw_real_t x);
+/* e^x; 0 below the smallest normal number and for NaN, GW_REAL_MAX where it would overflow. */
+gw_real_t gw_exp(gw_real_t x);
+/* e^x - 1 without cancellation near 0; -1 far below 0, GW_REAL_MAX where it would overflow, 0 for NaN. */
+gw_real_t gw_expm1(gw_real_t x);
+/* tanh x; exactly +-1 far from 0; 0 for NaN. */
+gw_real_t gw_tanh(gw_real_t x);
+/* Sine and cosine for |angle| <= GW_ANGLE_MAX; else (0, 1). */
+gw_rotation_t gw_sincos(gw_real_t angle_rad);
+/* Angle of the vector (x, y) in [-pi, pi]; 0 for (0, 0) and where an argument is not finite. */
+gw_real_t gw_atan2(gw_real_t y, gw_real_t x);
+/* The angle modulo one turn, in [-pi, pi), for |angle| <= GW_ANGLE_MAX; else 0. */
+gw_real_t gw_wrap_angle(gw_real_t angle_rad);
+
+/* later - earlier of two counters that wrap at 32 bits, for steps below 2^31 counts. */
+int32_t gw_count_difference(int32_t later, int32_t earlier);
+
+/* The vector turned by the angle, and turned back. */
+gw_vector_t gw_rotate(gw_rotation_t rotation, gw_vector_t vector);
+gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vector);
+/* Length of the vector, for components below 1e18 in magnitude. */
+gw_real_t gw_length(gw_vector_t vector);
+/* The vector, shortened to the limit if it is longer; limit >= 0. */
+gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,45 @@
+/* Mean of the last 1 to GW_MOVING_AVERAGE_CAPACITY wrenches, in constant time and without drift.
+ *
+ * Two sums run: one over the window, one over the samples since the ring last wrapped. At every wrap the second,
+ * which never saw a subtraction, replaces the first, so rounding errors live for one window at most.
+ *
+ * Life cycle: gw_moving_average_init, then adds; gw_moving_average_reset empties it. All members are private.
+ */
+#ifndef GW_MOVING_AVERAGE_H
+#define GW_MOVING_AVERAGE_H
+
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Compile-time capacity: 12 bytes of RAM per sample in float. */
+#define GW_MOVING_AVERAGE_CAPACITY 1024U
+
+typedef struct {
+    gw_wrench_t sample[GW_MOVING_AVERAGE_CAPACITY];
+    gw_wrench_t window_sum;
+    gw_wrench_t fresh_sum;
+    uint32_t window;
+    uint32_t index;
+    uint32_t count;
+} gw_moving_average_t;
+
+/* window: samples, [1, 1024]. */
+gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window);
+void gw_moving_average_reset(gw_moving_average_t *average);
+/* Adds one sample; not gw_wrench_is_valid: refused with GW_STATUS_INPUT_INVALID. */
+gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t sample);
+/* Mean of the samples held (fewer than the window after a reset); zero if there are none. Pointers not NULL. */
+gw_wrench_t gw_moving_average_mean(const gw_moving_average_t *average);
+/* Mean over the whole window, with zeros for samples that have not come yet. */
+gw_wrench_t gw_moving_average_window_mean(const gw_moving_average_t *average);
+uint32_t gw_moving_average_count(const gw_moving_average_t *average);
+bool gw_moving_average_invariant_holds(const gw_moving_average_t *average);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

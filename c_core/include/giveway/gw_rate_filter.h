@@ -1,0 +1,50 @@
+/* Rate of a wheel and its derivative, from encoder counts.
+ *
+ * A critically damped second-order low-pass w^2/(s + w)^2 of the wheel's rate; its input is held over each sample,
+ * its step is exact. Counts enter as wrapped differences, so a counter may wrap at any time.
+ *
+ * Life cycle: gw_rate_filter_init, then gw_rate_filter_step once per tick; gw_rate_filter_restart after a gap.
+ * All members are private; a copy of the struct is a checkpoint.
+ */
+#ifndef GW_RATE_FILTER_H
+#define GW_RATE_FILTER_H
+
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Constants shared by the three wheels. */
+typedef struct {
+    gw_real_t period_s;
+    gw_real_t cutoff_radps;
+    gw_real_t decay;             /* e^(-w T) */
+    gw_real_t rad_per_count;
+    gw_real_t compliance_rad_per_nm; /* 1/k, or 0 for a rigid drivetrain */
+} gw_rate_filter_constants_t;
+
+typedef struct {
+    int32_t last_count;
+    gw_real_t last_torque_nm;
+    gw_real_t rate_radps;
+    gw_real_t derivative_radps2;
+    bool started;
+} gw_rate_filter_t;
+
+/* Constants from checked configuration values: period [0.0001, 0.1] s, cutoff [0.1, 10000] rad/s, counts per turn
+ * [4, 1000000], stiffness [0, 1e7] N m/rad (0: rigid). */
+gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
+                                     uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad);
+/* Forgets the past: the next sample starts the filter at rate zero. Pointer not NULL. */
+void gw_rate_filter_restart(gw_rate_filter_t *filter);
+/* One tick. The wheel angle is the motor angle less the twist torque/k of the drivetrain. torque finite. */
+void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constants_t *constants, int32_t count,
+                         gw_real_t torque_nm);
+bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

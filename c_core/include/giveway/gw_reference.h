@@ -1,0 +1,80 @@
+/* The pose and velocity that the robot is told to have, in the world frame.
+ *
+ * Following: the plan's velocity plus a correction towards the plan's pose, limited in speed and acceleration; a smooth
+ * plan is followed exactly. The reference moves by trapezoids and its position is a compensated sum.
+ *
+ * Life cycle: gw_reference_init, gw_reference_place, then one of follow, escape, brake or freeze per tick.
+ * All members are private; a copy of the struct is a checkpoint. Pointers not NULL except in init.
+ */
+#ifndef GW_REFERENCE_H
+#define GW_REFERENCE_H
+
+#include "giveway/gw_config.h"
+#include "giveway/gw_sum.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    /* Correction speed per distance from the plan, 1/s, [0, 100]; times the period at most 0.5. */
+    gw_real_t follow_gain_per_s;
+    /* Limits on the path, m/s, [0.001, 10] and m/s^2, [0.001, 1000]. */
+    gw_real_t speed_limit_mps;
+    gw_real_t acceleration_limit_mps2;
+    /* Limits of the yaw, rad/s, [0.001, 100] and rad/s^2, [0.001, 10000]. */
+    gw_real_t yaw_rate_limit_radps;
+    gw_real_t yaw_acceleration_limit_radps2;
+    /* Speed limit while the path is rejoined, m/s, [0.001, 10]. */
+    gw_real_t rejoin_speed_mps;
+} gw_reference_config_t;
+
+/* A planned state, world frame. */
+typedef struct {
+    gw_pose_t pose;
+    gw_twist_t twist;
+    gw_acceleration_t acceleration;
+} gw_plan_t;
+
+typedef struct {
+    gw_reference_config_t config;
+    gw_real_t period_s;
+    gw_sum_t x_m;
+    gw_sum_t y_m;
+    gw_sum_t theta_rad;
+    gw_twist_t twist;
+    gw_acceleration_t acceleration;
+    /* What the last tick moved. */
+    gw_pose_t displacement;
+    bool initialised;
+} gw_reference_t;
+
+void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error);
+/* period: s, [0.0001, 0.1]. The reference starts at the origin, at rest. */
+gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s);
+bool gw_reference_invariant_holds(const gw_reference_t *reference);
+/* True if every number is finite, positions within 1e4 m, angles within 1e4 rad, speeds within 100 m/s and 1000 rad/s,
+ * accelerations within 1e4. */
+bool gw_plan_is_valid(const gw_plan_t *plan);
+/* Puts the reference on the plan without motion of the wheels. plan valid. moving: with the plan's velocity, within the
+ * limits; else at rest. */
+void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving);
+/* Follows a valid plan, with its velocity (tracking) or only towards its pose, at rejoin speed (rejoining). */
+void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool rejoining);
+/* Moves as the admittance says; the yaw rate goes to zero within its limit. */
+void gw_reference_escape(gw_reference_t *reference, gw_vector_t displacement_m, gw_vector_t velocity_mps);
+/* Slows to a stop within the limits. */
+void gw_reference_brake(gw_reference_t *reference);
+/* Stops at once. */
+void gw_reference_freeze(gw_reference_t *reference);
+gw_pose_t gw_reference_pose(const gw_reference_t *reference);
+/* Distance and angle (unsigned) from the plan's pose. */
+gw_real_t gw_reference_distance(const gw_reference_t *reference, const gw_plan_t *plan);
+gw_real_t gw_reference_angle(const gw_reference_t *reference, const gw_plan_t *plan);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,113 @@
+/* Types that every part of giveway shares.
+ *
+ * Frames, stated once. Base frame: x forward, y left, z up, origin at the centre of the wheels. World frame: z up.
+ * Wrenches, contact points and sensed motion are in the base frame; plans and references are in the world frame.
+ * F_ext is the wrench that the environment exerts ON the robot. The sensed torque T_s is the torque that the
+ * drivetrain delivers to the wheel. Units are in the names: _m, _mps, _rad, _radps, _n, _nm, _newton_s, _kg, _s.
+ *
+ * Real type: float. Build every file with -DGW_REAL_DOUBLE=1 for double.
+ */
+#ifndef GW_TYPES_H
+#define GW_TYPES_H
+
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if !defined(FLT_EVAL_METHOD) || (FLT_EVAL_METHOD != 0)
+#error "giveway needs arithmetic in the declared type (FLT_EVAL_METHOD 0); on 32-bit x86 use -msse2 -mfpmath=sse"
+#endif
+#ifdef __FAST_MATH__
+#error "giveway needs IEEE arithmetic: build without -ffast-math"
+#endif
+
+#ifndef GW_REAL_DOUBLE
+#define GW_REAL_DOUBLE 0
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if (GW_REAL_DOUBLE == 1)
+typedef double gw_real_t;
+#define GW_REAL_MAX DBL_MAX
+#else
+typedef float gw_real_t;
+#define GW_REAL_MAX FLT_MAX
+#endif
+
+/* Number of wheels; their radial directions are 120 degrees apart. */
+#define GW_WHEEL_COUNT 3U
+/* Most vertices that an outline may have. */
+#define GW_OUTLINE_VERTEX_MAX 16U
+/* Tick counters run modulo 2^31 (24.8 days at 1 kHz), so that they fit a signed 32-bit integer. */
+#define GW_TICK_MASK 0x7FFFFFFFU
+
+/* What a function tells its caller. Unless a function says otherwise, its outputs are written in every case, and they
+ * mean zero motion and zero torque whenever the status is not GW_STATUS_OK. */
+typedef enum {
+    GW_STATUS_OK = 0,                 /* everything as documented */
+    GW_STATUS_NULL_POINTER = 1,       /* a pointer was NULL; the outputs that could be reached are safe */
+    GW_STATUS_CONFIG_INVALID = 2,     /* a configuration value is out of range; the state cannot be used */
+    GW_STATUS_NOT_INITIALISED = 3,    /* the state was never initialised, or its init failed */
+    GW_STATUS_SENSOR_MISSING = 4,     /* no sensor sample present; motion is zero */
+    GW_STATUS_SENSOR_STALE = 5,       /* the sample counter stopped; motion is zero */
+    GW_STATUS_SENSOR_NONFINITE = 6,   /* a torque is NaN or infinite; motion is zero */
+    GW_STATUS_SENSOR_SATURATED = 7,   /* a torque is at the sensor's limit; motion is zero */
+    GW_STATUS_ENCODER_JUMP = 8,       /* an encoder moved faster than any wheel can; motion is zero */
+    GW_STATUS_SENSOR_RECOVERING = 9,  /* sensors are good again but not yet for long enough; motion is zero */
+    GW_STATUS_PLAN_INVALID = 10,      /* the plan is not finite or out of range; the reference slows to a stop */
+    GW_STATUS_TARE_REFUSED = 11,      /* torques vary too much, or a tare was asked for in motion; old zero kept */
+    GW_STATUS_REFERENCE_INVALID = 12, /* servo: the reference is not finite; the last angle is held at zero speed */
+    GW_STATUS_REFERENCE_STALE = 13,   /* servo: no new reference for too long; the last angle is held at zero speed */
+    GW_STATUS_INPUT_INVALID = 14      /* an argument is not finite; the output is zero and the state is unchanged */
+} gw_status_t;
+
+typedef struct {
+    gw_real_t x;
+    gw_real_t y;
+} gw_vector_t;
+
+/* One value per wheel, in the order of the caller's wires. */
+typedef struct {
+    gw_real_t wheel[GW_WHEEL_COUNT];
+} gw_wheels_t;
+
+typedef struct {
+    gw_real_t x_m;
+    gw_real_t y_m;
+    gw_real_t theta_rad;
+} gw_pose_t;
+
+typedef struct {
+    gw_real_t vx_mps;
+    gw_real_t vy_mps;
+    gw_real_t omega_radps;
+} gw_twist_t;
+
+typedef struct {
+    gw_real_t ax_mps2;
+    gw_real_t ay_mps2;
+    gw_real_t alpha_radps2;
+} gw_acceleration_t;
+
+/* Planar force and the torque about the centre of the base. */
+typedef struct {
+    gw_real_t force_x_n;
+    gw_real_t force_y_n;
+    gw_real_t torque_nm;
+} gw_wrench_t;
+
+/* Sine and cosine of one angle. */
+typedef struct {
+    gw_real_t sine;
+    gw_real_t cosine;
+} gw_rotation_t;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

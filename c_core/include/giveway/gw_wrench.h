@@ -1,0 +1,33 @@
+/* The external wrench, (40): J_ext^T F_ext = J_w^T (T|0 - T_s), and how torque noise shows in it. */
+#ifndef GW_WRENCH_H
+#define GW_WRENCH_H
+
+#include "giveway/gw_kinematics.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Standard deviations of one force component and of the torque about the centre. */
+typedef struct {
+    gw_real_t force_n;
+    gw_real_t torque_nm;
+} gw_wrench_sigma_t;
+
+/* Largest force, N, and torque, N m, that the library works with; beyond it a value is a fault, not a push. */
+#define GW_WRENCH_MAX ((gw_real_t)1.0e9)
+
+/* True if no component is NaN or beyond GW_WRENCH_MAX. */
+bool gw_wrench_is_valid(gw_wrench_t wrench);
+/* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
+gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
+                               const gw_wheels_t *sensed_nm);
+/* sigma_F = sigma_tau sqrt(1.5)/r_w per axis, sigma_M = sqrt(3) R sigma_tau/r_w, for independent equal noise. */
+gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

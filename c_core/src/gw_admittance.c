@@ -1,0 +1,155 @@
+#include "giveway/gw_admittance.h"
+
+#include "giveway/gw_math.h"
+#include "giveway/gw_wrench.h"
+
+#define SPEED_MAX ((gw_real_t)100.0)
+
+void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
+{
+    gw_config_check_count(error, GW_FIELD_ADMITTANCE_KIND, 0U, config->kind);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_MASS, 0U, config->mass_kg);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_DAMPING, 0U, config->damping_newton_s_per_m);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, 0U, config->escape_impulse_newton_s);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, 0U, config->speed_limit_mps);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, 0U, config->acceleration_limit_mps2);
+}
+
+gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
+{
+    static const gw_vector_t zero = {(gw_real_t)0.0, (gw_real_t)0.0};
+    gw_status_t status = GW_STATUS_OK;
+    if ((admittance == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
+        gw_admittance_config_check(config, &error);
+        admittance->initialised = (error.field == GW_FIELD_NONE);
+        if (admittance->initialised) {
+            admittance->config = *config;
+            admittance->period_s = period_s;
+            admittance->rate_per_s = config->damping_newton_s_per_m / config->mass_kg;
+            admittance->decay = gw_exp(-admittance->rate_per_s * period_s);
+            admittance->approach = -gw_expm1(-admittance->rate_per_s * period_s);
+            admittance->goal_m = zero;
+            admittance->moved_x_m = gw_sum_of(GW_ZERO);
+            admittance->moved_y_m = gw_sum_of(GW_ZERO);
+            admittance->velocity_mps = zero;
+        } else {
+            status = GW_STATUS_CONFIG_INVALID;
+        }
+    }
+    return status;
+}
+
+bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
+{
+    bool holds = (admittance != NULL);
+    if (holds) {
+        holds = admittance->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, admittance->period_s);
+        gw_admittance_config_check(&admittance->config, &error);
+        holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
+                gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
+                gw_is_finite(admittance->goal_m.x) && gw_is_finite(admittance->goal_m.y) &&
+                gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
+                gw_is_finite(admittance->velocity_mps.x) && gw_is_finite(admittance->velocity_mps.y);
+    }
+    return holds;
+}
+
+gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction)
+{
+    gw_status_t status = GW_STATUS_OK;
+    const gw_real_t one = (gw_real_t)1.01; /* a unit vector, rounded */
+    if (admittance == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else if (!admittance->initialised) {
+        status = GW_STATUS_NOT_INITIALISED;
+    } else if (!(gw_in_range(direction.x, -one, one) && gw_in_range(direction.y, -one, one) &&
+                 (gw_length(direction) <= one) && gw_in_range(velocity_mps.x, -SPEED_MAX, SPEED_MAX) &&
+                 gw_in_range(velocity_mps.y, -SPEED_MAX, SPEED_MAX))) {
+        status = GW_STATUS_INPUT_INVALID;
+    } else {
+        const gw_real_t distance_m =
+            admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
+        admittance->goal_m.x = distance_m * direction.x;
+        admittance->goal_m.y = distance_m * direction.y;
+        admittance->moved_x_m = gw_sum_of(GW_ZERO);
+        admittance->moved_y_m = gw_sum_of(GW_ZERO);
+        admittance->velocity_mps = velocity_mps;
+    }
+    return status;
+}
+
+/* The exact end of the tick without limits. */
+static gw_admittance_output_t unlimited(const gw_admittance_t *admittance, gw_vector_t force_n)
+{
+    gw_admittance_output_t next;
+    if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
+        const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
+                                   gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
+        const gw_real_t end_rate = admittance->rate_per_s * admittance->decay;
+        next.displacement_m.x = admittance->approach * ahead.x;
+        next.displacement_m.y = admittance->approach * ahead.y;
+        next.velocity_mps.x = end_rate * ahead.x;
+        next.velocity_mps.y = end_rate * ahead.y;
+    } else {
+        /* Final velocity F/B, and what is left to it. */
+        const gw_vector_t final = {force_n.x / admittance->config.damping_newton_s_per_m,
+                                   force_n.y / admittance->config.damping_newton_s_per_m};
+        const gw_vector_t excess = {admittance->velocity_mps.x - final.x, admittance->velocity_mps.y - final.y};
+        const gw_real_t span_s = admittance->approach / admittance->rate_per_s;
+        next.displacement_m.x = (final.x * admittance->period_s) + (excess.x * span_s);
+        next.displacement_m.y = (final.y * admittance->period_s) + (excess.y * span_s);
+        next.velocity_mps.x = final.x + (admittance->decay * excess.x);
+        next.velocity_mps.y = final.y + (admittance->decay * excess.y);
+    }
+    return next;
+}
+
+gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output)
+{
+    static const gw_admittance_output_t still = {{(gw_real_t)0.0, (gw_real_t)0.0}, {(gw_real_t)0.0, (gw_real_t)0.0}};
+    gw_status_t status = GW_STATUS_OK;
+    if (output == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        *output = still;
+        if (admittance == NULL) {
+            status = GW_STATUS_NULL_POINTER;
+        } else if (!admittance->initialised) {
+            status = GW_STATUS_NOT_INITIALISED;
+        } else if (!(gw_in_range(force_n.x, -GW_WRENCH_MAX, GW_WRENCH_MAX) &&
+                     gw_in_range(force_n.y, -GW_WRENCH_MAX, GW_WRENCH_MAX))) {
+            status = GW_STATUS_INPUT_INVALID;
+        } else {
+            const gw_vector_t before = admittance->velocity_mps;
+            const gw_real_t most_change = admittance->config.acceleration_limit_mps2 * admittance->period_s;
+            gw_admittance_output_t next = unlimited(admittance, force_n);
+            const gw_vector_t slowed = gw_limit_length(next.velocity_mps, admittance->config.speed_limit_mps);
+            const gw_vector_t change = {slowed.x - before.x, slowed.y - before.y};
+            if ((gw_length(next.velocity_mps) > admittance->config.speed_limit_mps) ||
+                (gw_length(change) > most_change)) {
+                const gw_vector_t allowed = gw_limit_length(change, most_change);
+                next.velocity_mps.x = before.x + allowed.x;
+                next.velocity_mps.y = before.y + allowed.y;
+                next.displacement_m.x = (GW_HALF * admittance->period_s) * (before.x + next.velocity_mps.x);
+                next.displacement_m.y = (GW_HALF * admittance->period_s) * (before.y + next.velocity_mps.y);
+            }
+            if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
+                admittance->moved_x_m = gw_sum_add(admittance->moved_x_m, next.displacement_m.x);
+                admittance->moved_y_m = gw_sum_add(admittance->moved_y_m, next.displacement_m.y);
+            }
+            admittance->velocity_mps = next.velocity_mps;
+            *output = next;
+        }
+    }
+    return status;
+}

@@ -1,0 +1,112 @@
+#include "giveway/gw_config.h"
+
+#include "giveway/gw_math.h"
+
+/* In the order of gw_config_field_t. */
+static const gw_config_limit_t limits[GW_FIELD_COUNT] = {
+    {"none", (gw_real_t)0.0, (gw_real_t)0.0},
+    {"controller.period", (gw_real_t)0.0001, (gw_real_t)0.1},
+    {"geometry.wheel_radius", (gw_real_t)0.005, (gw_real_t)1.0},
+    {"geometry.roller_radius", (gw_real_t)0.001, (gw_real_t)0.5},
+    {"geometry.wheel_distance", (gw_real_t)0.01, (gw_real_t)5.0},
+    {"geometry.wheel_slot", (gw_real_t)0.0, (gw_real_t)2.0},
+    {"geometry.azimuth", (gw_real_t)-3.2, (gw_real_t)3.2},
+    {"base.mass", (gw_real_t)0.1, (gw_real_t)2000.0},
+    {"base.yaw_inertia", (gw_real_t)0.0001, (gw_real_t)10000.0},
+    {"base.wheel_inertia", (gw_real_t)0.0, (gw_real_t)10.0},
+    {"base.roller_inertia", (gw_real_t)0.0, (gw_real_t)1.0},
+    {"friction.coulomb_torque", (gw_real_t)0.0, (gw_real_t)100.0},
+    {"friction.tanh_slope", (gw_real_t)0.0, (gw_real_t)1000.0},
+    {"sensor_check.torque_limit", (gw_real_t)0.1, (gw_real_t)10000.0},
+    {"sensor_check.stale_ticks_max", (gw_real_t)1.0, (gw_real_t)1000.0},
+    {"sensor_check.encoder_jump", (gw_real_t)1.0, (gw_real_t)1000000.0},
+    {"sensor_check.recover_ticks", (gw_real_t)1.0, (gw_real_t)100000.0},
+    {"estimator.velocity_source", (gw_real_t)0.0, (gw_real_t)1.0},
+    {"estimator.acceleration_source", (gw_real_t)0.0, (gw_real_t)2.0},
+    {"estimator.torque_noise", (gw_real_t)0.0, (gw_real_t)100.0},
+    {"estimator.rate_cutoff", (gw_real_t)0.1, (gw_real_t)10000.0},
+    {"estimator.drivetrain_stiffness", (gw_real_t)0.0, (gw_real_t)10000000.0},
+    {"estimator.encoder_counts", (gw_real_t)4.0, (gw_real_t)1000000.0},
+    {"estimator.average_window", (gw_real_t)1.0, (gw_real_t)1024.0},
+    {"estimator.rest_speed", (gw_real_t)0.0, (gw_real_t)1.0},
+    {"estimator.rest_ticks", (gw_real_t)1.0, (gw_real_t)100000.0},
+    {"estimator.tare_ticks", (gw_real_t)0.0, (gw_real_t)100000.0},
+    {"estimator.retare_ticks", (gw_real_t)1.0, (gw_real_t)100000.0},
+    {"estimator.tare_variation", (gw_real_t)0.0, (gw_real_t)100.0},
+    {"contact.minimum_force", (gw_real_t)0.001, (gw_real_t)1000.0},
+    {"outline.count", (gw_real_t)3.0, (gw_real_t)16.0},
+    {"outline.x", (gw_real_t)-10.0, (gw_real_t)10.0},
+    {"outline.y", (gw_real_t)-10.0, (gw_real_t)10.0},
+    {"outline (counter-clockwise, strictly convex)", (gw_real_t)0.0, (gw_real_t)0.0},
+    {"detector.kind", (gw_real_t)0.0, (gw_real_t)1.0},
+    {"detector.force_threshold", (gw_real_t)0.01, (gw_real_t)10000.0},
+    {"detector.impulse_threshold", (gw_real_t)0.001, (gw_real_t)1000.0},
+    {"detector.leak_rest", (gw_real_t)0.0, (gw_real_t)1000.0},
+    {"detector.leak_motion", (gw_real_t)0.0, (gw_real_t)1000.0},
+    {"detector.release_force", (gw_real_t)0.0, (gw_real_t)10000.0},
+    {"detector.blanking_ticks", (gw_real_t)0.0, (gw_real_t)100000.0},
+    {"admittance.kind", (gw_real_t)0.0, (gw_real_t)1.0},
+    {"admittance.mass", (gw_real_t)0.01, (gw_real_t)10000.0},
+    {"admittance.damping", (gw_real_t)0.01, (gw_real_t)10000.0},
+    {"admittance.escape_impulse", (gw_real_t)0.0, (gw_real_t)1000.0},
+    {"admittance.speed_limit", (gw_real_t)0.001, (gw_real_t)10.0},
+    {"admittance.acceleration_limit", (gw_real_t)0.001, (gw_real_t)1000.0},
+    {"reference.follow_gain", (gw_real_t)0.0, (gw_real_t)100.0},
+    {"reference.speed_limit", (gw_real_t)0.001, (gw_real_t)10.0},
+    {"reference.acceleration_limit", (gw_real_t)0.001, (gw_real_t)1000.0},
+    {"reference.yaw_rate_limit", (gw_real_t)0.001, (gw_real_t)100.0},
+    {"reference.yaw_acceleration_limit", (gw_real_t)0.001, (gw_real_t)10000.0},
+    {"reference.rejoin_speed", (gw_real_t)0.001, (gw_real_t)10.0},
+    {"supervisor.settled_speed", (gw_real_t)0.000001, (gw_real_t)1.0},
+    {"supervisor.settled_ticks", (gw_real_t)1.0, (gw_real_t)100000.0},
+    {"supervisor.after_settled", (gw_real_t)0.0, (gw_real_t)1.0},
+    {"supervisor.rejoin_distance", (gw_real_t)0.00001, (gw_real_t)1.0},
+    {"supervisor.rejoin_angle", (gw_real_t)0.0001, (gw_real_t)1.0},
+    {"servo.period", (gw_real_t)0.00001, (gw_real_t)0.1},
+    {"servo.kp", (gw_real_t)0.0, (gw_real_t)1000000.0},
+    {"servo.kd", (gw_real_t)0.0, (gw_real_t)100000.0},
+    {"servo.torque_limit", (gw_real_t)0.01, (gw_real_t)10000.0},
+    {"servo.torque_rate_limit", (gw_real_t)0.0, (gw_real_t)10000000.0},
+    {"servo.encoder_counts", (gw_real_t)4.0, (gw_real_t)1000000.0},
+    {"servo.derivative_cutoff", (gw_real_t)0.1, (gw_real_t)10000.0},
+    {"servo.stale_ticks_max", (gw_real_t)1.0, (gw_real_t)100000.0},
+};
+
+const gw_config_limit_t *gw_config_limit(gw_config_field_t field)
+{
+    const uint32_t row = (uint32_t)field;
+    return &limits[(row < (uint32_t)GW_FIELD_COUNT) ? row : 0U];
+}
+
+void gw_config_check_begin(gw_config_error_t *error)
+{
+    error->field = GW_FIELD_NONE;
+    error->index = 0U;
+    error->value = GW_ZERO;
+    error->minimum = GW_ZERO;
+    error->maximum = GW_ZERO;
+}
+
+void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value,
+                              gw_real_t minimum, gw_real_t maximum)
+{
+    if ((error->field == GW_FIELD_NONE) && (!gw_in_range(value, minimum, maximum))) {
+        error->field = field;
+        error->index = index;
+        error->value = value;
+        error->minimum = minimum;
+        error->maximum = maximum;
+    }
+}
+
+void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value)
+{
+    const gw_config_limit_t *const limit = gw_config_limit(field);
+    gw_config_check_relation(error, field, index, value, limit->minimum, limit->maximum);
+}
+
+void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t index, uint32_t value)
+{
+    /* No bound of a count exceeds 2^24, so rounding to the real type cannot bring one back into range. */
+    gw_config_check_real(error, field, index, (gw_real_t)value);
+}

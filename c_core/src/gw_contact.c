@@ -1,0 +1,161 @@
+#include "giveway/gw_contact.h"
+
+#include "giveway/gw_math.h"
+
+static gw_real_t cross(gw_vector_t a, gw_vector_t b)
+{
+    return (a.x * b.y) - (a.y * b.x);
+}
+
+static gw_vector_t from_to(gw_vector_t a, gw_vector_t b)
+{
+    const gw_vector_t difference = {b.x - a.x, b.y - a.y};
+    return difference;
+}
+
+void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error)
+{
+    const uint32_t count = config->vertex_count;
+    gw_config_check_real(error, GW_FIELD_CONTACT_MINIMUM_FORCE, 0U, config->minimum_force_n);
+    gw_config_check_count(error, GW_FIELD_OUTLINE_COUNT, 0U, count);
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+        if (i < count) {
+            gw_config_check_real(error, GW_FIELD_OUTLINE_X, i, config->vertex_m[i].x);
+            gw_config_check_real(error, GW_FIELD_OUTLINE_Y, i, config->vertex_m[i].y);
+        }
+    }
+    /* Strictly convex and counter-clockwise: every other vertex lies to the left of every edge. Checking neighbours
+     * only would accept a star. */
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+        for (uint32_t j = 0U; j < GW_OUTLINE_VERTEX_MAX; j++) {
+            const uint32_t next = ((i + 1U) < count) ? (i + 1U) : 0U;
+            if ((i < count) && (j < count) && (j != i) && (j != next) && (error->field == GW_FIELD_NONE)) {
+                const gw_vector_t edge = from_to(config->vertex_m[i], config->vertex_m[next]);
+                const gw_real_t area = cross(edge, from_to(config->vertex_m[i], config->vertex_m[j]));
+                if (!(area > GW_ZERO)) {
+                    error->field = GW_FIELD_OUTLINE_CONVEX;
+                    error->index = i;
+                    error->value = area;
+                }
+            }
+        }
+    }
+}
+
+gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if ((contact == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_contact_config_check(config, &error);
+        if (error.field != GW_FIELD_NONE) {
+            status = GW_STATUS_CONFIG_INVALID;
+            contact->initialised = false;
+        } else {
+            contact->config = *config;
+            contact->initialised = true;
+        }
+    }
+    return status;
+}
+
+bool gw_contact_invariant_holds(const gw_contact_t *contact)
+{
+    bool holds = (contact != NULL);
+    if (holds) {
+        holds = contact->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_contact_config_check(&contact->config, &error);
+        holds = (error.field == GW_FIELD_NONE);
+    }
+    return holds;
+}
+
+/* The point where the line p x u = offset enters the outline in direction u, or the vertex nearest to the line. */
+static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction, gw_real_t offset_m,
+                        gw_contact_estimate_t *estimate)
+{
+    gw_real_t nearest_m = GW_REAL_MAX;
+    gw_real_t nearest_along_m = GW_ZERO;
+    gw_vector_t previous = config->vertex_m[config->vertex_count - 1U];
+    gw_real_t previous_side_m = cross(previous, direction) - offset_m;
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+        if (i < config->vertex_count) {
+            const gw_vector_t vertex = config->vertex_m[i];
+            const gw_real_t side_m = cross(vertex, direction) - offset_m;
+            const gw_real_t along_m = (vertex.x * direction.x) + (vertex.y * direction.y);
+            /* Going counter-clockwise, the side grows exactly on the edges that the direction enters. */
+            if ((previous_side_m <= GW_ZERO) && (side_m > GW_ZERO)) {
+                const gw_real_t fraction = -previous_side_m / (side_m - previous_side_m);
+                const gw_vector_t edge = from_to(previous, vertex);
+                estimate->point_m.x = previous.x + (fraction * edge.x);
+                estimate->point_m.y = previous.y + (fraction * edge.y);
+                estimate->on_outline = true;
+            }
+            if (!estimate->on_outline) {
+                const gw_real_t distance_m = gw_abs(side_m);
+                /* On a tie (an edge parallel to the line) the end that the force meets first. */
+                if ((distance_m < nearest_m) || ((distance_m == nearest_m) && (along_m < nearest_along_m))) {
+                    nearest_m = distance_m;
+                    nearest_along_m = along_m;
+                    estimate->point_m = vertex;
+                }
+            }
+            previous = vertex;
+            previous_side_m = side_m;
+        }
+    }
+}
+
+static void no_contact(gw_contact_estimate_t *estimate)
+{
+    estimate->valid = false;
+    estimate->on_outline = false;
+    estimate->point_m.x = GW_ZERO;
+    estimate->point_m.y = GW_ZERO;
+    estimate->force_n = GW_ZERO;
+    estimate->direction_rad = GW_ZERO;
+    estimate->lever_arm_m = GW_ZERO;
+    estimate->lever_arm_sigma_m = GW_ZERO;
+}
+
+gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, gw_wrench_sigma_t sigma,
+                              gw_contact_estimate_t *estimate)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if (estimate == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        no_contact(estimate);
+        if (contact == NULL) {
+            status = GW_STATUS_NULL_POINTER;
+        } else if (!contact->initialised) {
+            status = GW_STATUS_NOT_INITIALISED;
+        } else if (!(gw_wrench_is_valid(wrench) && gw_in_range(sigma.force_n, GW_ZERO, GW_WRENCH_MAX) &&
+                     gw_in_range(sigma.torque_nm, GW_ZERO, GW_WRENCH_MAX))) {
+            status = GW_STATUS_INPUT_INVALID;
+        } else {
+            const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};
+            const gw_real_t force_n = gw_length(force);
+            if (force_n >= contact->config.minimum_force_n) {
+                const gw_vector_t direction = {force.x / force_n, force.y / force_n};
+                const gw_real_t arm_m = wrench.torque_nm / force_n;
+                /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
+                const gw_vector_t spread = {sigma.torque_nm / force_n, (arm_m * sigma.force_n) / force_n};
+                estimate->valid = true;
+                estimate->force_n = force_n;
+                estimate->direction_rad = gw_atan2(force.y, force.x);
+                estimate->lever_arm_m = arm_m;
+                estimate->lever_arm_sigma_m = gw_length(spread);
+                cut_outline(&contact->config, direction, arm_m, estimate);
+            }
+        }
+    }
+    return status;
+}

@@ -1,0 +1,527 @@
+#include "giveway/gw_controller.h"
+
+#include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
+
+void gw_controller_config_trikey(gw_controller_config_t *config)
+{
+    static const gw_vector_t outline[GW_TRIKEY_OUTLINE_COUNT] = {
+        {GW_TRIKEY_OUTLINE_X0_M, GW_TRIKEY_OUTLINE_Y0_M},
+        {GW_TRIKEY_OUTLINE_X1_M, GW_TRIKEY_OUTLINE_Y1_M},
+        {GW_TRIKEY_OUTLINE_X2_M, GW_TRIKEY_OUTLINE_Y2_M},
+    };
+    config->period_s = (gw_real_t)0.001;
+
+    config->geometry.wheel_radius_m = GW_TRIKEY_WHEEL_RADIUS_M;
+    config->geometry.roller_radius_m = GW_TRIKEY_ROLLER_RADIUS_M;
+    config->geometry.wheel_distance_m = GW_TRIKEY_WHEEL_DISTANCE_M;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        config->geometry.wheel_slot[i] = i;
+    }
+    config->geometry.azimuth_rad = GW_ZERO;
+
+    config->base.mass_kg = GW_TRIKEY_BASE_MASS_KG;
+    config->base.yaw_inertia_kgm2 = GW_TRIKEY_BASE_YAW_INERTIA_KGM2;
+    config->base.wheel_inertia_kgm2 = GW_TRIKEY_WHEEL_INERTIA_KGM2;
+    config->base.roller_inertia_kgm2 = GW_TRIKEY_ROLLER_INERTIA_KGM2;
+
+    config->friction.coulomb_torque_nm = GW_TRIKEY_ROLLER_COULOMB_TORQUE_NM;
+    config->friction.tanh_slope_s_per_rad = GW_TRIKEY_ROLLER_TANH_SLOPE_S_PER_RAD;
+
+    config->sensor_check.torque_limit_nm = GW_TRIKEY_DRIVETRAIN_TORQUE_SENSOR_LIMIT_NM;
+    config->sensor_check.stale_ticks_max = 3U;
+    config->sensor_check.encoder_jump_counts = 200U; /* 148 rad/s */
+    config->sensor_check.recover_ticks = 10U;
+
+    config->estimator.velocity_source = GW_SOURCE_PLANNED;
+    config->estimator.acceleration_source = GW_SOURCE_PLANNED;
+    config->estimator.torque_noise_nm = GW_TRIKEY_DRIVETRAIN_TORQUE_NOISE_NM;
+    config->estimator.rate_cutoff_radps = (gw_real_t)200.0;
+    config->estimator.drivetrain_stiffness_nm_per_rad = GW_TRIKEY_DRIVETRAIN_STIFFNESS_NM_PER_RAD;
+    config->estimator.encoder_counts = GW_TRIKEY_DRIVETRAIN_ENCODER_COUNTS;
+    config->estimator.average_window = 20U;
+    config->estimator.rest_speed_mps = (gw_real_t)0.002;
+    config->estimator.rest_ticks = 300U;
+    config->estimator.tare_ticks = 100U;
+    config->estimator.retare_ticks = 100U;
+    config->estimator.tare_variation_nm = (gw_real_t)0.5;
+
+    config->contact.minimum_force_n = GW_ONE;
+    config->contact.vertex_count = GW_TRIKEY_OUTLINE_COUNT;
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+        config->contact.vertex_m[i].x = (i < GW_TRIKEY_OUTLINE_COUNT) ? outline[i].x : GW_ZERO;
+        config->contact.vertex_m[i].y = (i < GW_TRIKEY_OUTLINE_COUNT) ? outline[i].y : GW_ZERO;
+    }
+
+    config->detector.kind = GW_DETECTOR_IMPULSE;
+    config->detector.force_threshold_n = (gw_real_t)10.0;
+    config->detector.impulse_threshold_newton_s = GW_TRIKEY_DETECTOR_IMPULSE_THRESHOLD_NEWTON_S;
+    config->detector.leak_rest_n = GW_TRIKEY_DETECTOR_LEAK_REST_N;
+    config->detector.leak_motion_n = GW_TRIKEY_DETECTOR_LEAK_MOTION_N;
+    config->detector.release_force_n = (gw_real_t)6.0; /* twice the error of the friction model */
+    config->detector.blanking_ticks = 300U;            /* the reaction's own acceleration */
+
+    config->admittance.kind = GW_ADMITTANCE_FROZEN_IMPULSE;
+    config->admittance.mass_kg = GW_TRIKEY_ADMITTANCE_MASS_KG;
+    config->admittance.damping_newton_s_per_m = GW_TRIKEY_ADMITTANCE_DAMPING_NEWTON_S_PER_M;
+    config->admittance.escape_impulse_newton_s = GW_TRIKEY_ADMITTANCE_ESCAPE_IMPULSE_NEWTON_S;
+    config->admittance.speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
+    config->admittance.acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
+
+    config->reference.follow_gain_per_s = GW_TWO;
+    config->reference.speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
+    config->reference.acceleration_limit_mps2 = (gw_real_t)1.5;
+    config->reference.yaw_rate_limit_radps = (gw_real_t)1.5;
+    config->reference.yaw_acceleration_limit_radps2 = (gw_real_t)6.0;
+    config->reference.rejoin_speed_mps = (gw_real_t)0.1;
+
+    config->supervisor.settled_speed_mps = (gw_real_t)0.005;
+    config->supervisor.settled_ticks = 500U;
+    config->supervisor.after_settled = GW_AFTER_SETTLED_REJOIN;
+    config->supervisor.rejoin_distance_m = (gw_real_t)0.002;
+    config->supervisor.rejoin_angle_rad = (gw_real_t)0.005;
+
+    config->drives_enabled = true;
+}
+
+gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)
+{
+    gw_config_check_begin(error);
+    gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, 0U, config->period_s);
+    gw_geometry_config_check(&config->geometry, error);
+    gw_inertia_config_check(&config->base, error);
+    gw_friction_config_check(&config->friction, error);
+    gw_sensor_check_config_check(&config->sensor_check, error);
+    gw_estimator_config_check(&config->estimator, error);
+    gw_contact_config_check(&config->contact, error);
+    gw_detector_config_check(&config->detector, error);
+    gw_admittance_config_check(&config->admittance, error);
+    gw_reference_config_check(&config->reference, config->period_s, error);
+    gw_supervisor_config_check(&config->supervisor, error);
+    return (error->field == GW_FIELD_NONE) ? GW_STATUS_OK : GW_STATUS_CONFIG_INVALID;
+}
+
+static void forget_detection(gw_controller_t *controller)
+{
+    static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+    static const gw_contact_estimate_t no_contact = {false,
+                                                     false,
+                                                     {(gw_real_t)0.0, (gw_real_t)0.0},
+                                                     (gw_real_t)0.0,
+                                                     (gw_real_t)0.0,
+                                                     (gw_real_t)0.0,
+                                                     (gw_real_t)0.0};
+    controller->detection_wrench = no_wrench;
+    controller->detection_contact = no_contact;
+    controller->detection_count = 0U;
+    controller->detection_tick = -1;
+}
+
+gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
+                               gw_config_error_t *error)
+{
+    gw_status_t status = GW_STATUS_OK;
+    gw_config_error_t found;
+    gw_config_check_begin(&found);
+    if ((controller == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        status = gw_controller_config_check(config, &found);
+    }
+    if (controller != NULL) {
+        controller->initialised = (status == GW_STATUS_OK);
+        if (controller->initialised) {
+            controller->config = *config;
+            /* The configuration was checked as a whole, so none of these can refuse it. */
+            (void)gw_sensor_check_init(&controller->sensor_check, &config->sensor_check);
+            (void)gw_estimator_init(&controller->estimator, &config->estimator, &config->geometry, &config->base,
+                                    &config->friction, config->period_s);
+            (void)gw_contact_init(&controller->contact, &config->contact);
+            (void)gw_detector_init(&controller->detector, &config->detector, config->period_s);
+            (void)gw_admittance_init(&controller->admittance, &config->admittance, config->period_s);
+            (void)gw_reference_init(&controller->reference, &config->reference, config->period_s);
+            (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
+            gw_joint_init(&controller->joint);
+            forget_detection(controller);
+            controller->tick = 0U;
+            controller->tare_request_before = false;
+            controller->on_plan = false;
+        }
+    }
+    if (error != NULL) {
+        *error = found;
+    }
+    return status;
+}
+
+void gw_controller_safe_output(gw_controller_output_t *output)
+{
+    static const gw_controller_output_t safe = {
+        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
+        false,
+        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+        {false,
+         false,
+         {(gw_real_t)0.0, (gw_real_t)0.0},
+         (gw_real_t)0.0,
+         (gw_real_t)0.0,
+         (gw_real_t)0.0,
+         (gw_real_t)0.0},
+        false,
+        (gw_real_t)0.0,
+        0U,
+        -1,
+        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+        {false,
+         false,
+         {(gw_real_t)0.0, (gw_real_t)0.0},
+         (gw_real_t)0.0,
+         (gw_real_t)0.0,
+         (gw_real_t)0.0,
+         (gw_real_t)0.0},
+        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+        GW_MODE_FAULT,
+        0U,
+        0U,
+    };
+    *output = safe;
+}
+
+/* What one tick knows before the mode is decided. */
+typedef struct {
+    gw_wheels_t torque_nm;
+    gw_estimator_output_t estimate;
+    gw_detector_output_t detection;
+    bool sensors_good;
+    bool plan_valid;
+} tick_t;
+
+static gw_rotation_t reference_rotation(const gw_controller_t *controller)
+{
+    return gw_sincos(gw_reference_pose(&controller->reference).theta_rad);
+}
+
+static gw_real_t reference_speed(const gw_controller_t *controller)
+{
+    const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
+    const gw_real_t rim =
+        gw_abs(controller->reference.twist.omega_radps) * controller->config.geometry.wheel_distance_m;
+    return gw_max(gw_length(velocity), rim);
+}
+
+static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples)
+{
+    gw_wrench_sigma_t result = sigma;
+    if (samples > 1U) {
+        const gw_real_t root = gw_sqrt((gw_real_t)samples);
+        result.force_n = sigma.force_n / root;
+        result.torque_nm = sigma.torque_nm / root;
+    }
+    return result;
+}
+
+/* The external wrench of this tick. */
+static gw_status_t estimate(gw_controller_t *controller, const gw_controller_input_t *input, tick_t *now)
+{
+    gw_estimator_input_t estimator_input;
+    const gw_rotation_t yaw = reference_rotation(controller);
+    const gw_twist_t twist = controller->reference.twist;
+    const gw_acceleration_t acceleration = controller->reference.acceleration;
+    const gw_vector_t world_velocity = {twist.vx_mps, twist.vy_mps};
+    const gw_vector_t world_acceleration = {acceleration.ax_mps2, acceleration.ay_mps2};
+    const gw_vector_t velocity = gw_rotate_back(yaw, world_velocity);
+    const gw_vector_t change = gw_rotate_back(yaw, world_acceleration);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        estimator_input.torque_nm.wheel[i] = input->sensor.torque_nm[i];
+        estimator_input.encoder_count[i] = input->sensor.encoder_count[i];
+    }
+    estimator_input.planned_twist.vx_mps = velocity.x;
+    estimator_input.planned_twist.vy_mps = velocity.y;
+    estimator_input.planned_twist.omega_radps = twist.omega_radps;
+    estimator_input.planned_acceleration.ax_mps2 = change.x;
+    estimator_input.planned_acceleration.ay_mps2 = change.y;
+    estimator_input.planned_acceleration.alpha_radps2 = acceleration.alpha_radps2;
+    now->torque_nm = estimator_input.torque_nm;
+    return gw_estimator_step(&controller->estimator, &estimator_input, &now->estimate);
+}
+
+/* Is the robot being hit? */
+static void detect(gw_controller_t *controller, tick_t *now)
+{
+    const gw_mode_t mode = controller->supervisor.mode;
+    gw_detector_input_t detector_input;
+    if (now->estimate.mode_changed) {
+        gw_detector_clear(&controller->detector);
+    }
+    detector_input.wrench = now->estimate.wrench;
+    detector_input.window_mean = now->estimate.window_mean;
+    detector_input.mean = now->estimate.mean;
+    detector_input.mean_samples = now->estimate.mean_samples;
+    detector_input.rest = now->estimate.rest;
+    detector_input.enabled = (!now->estimate.blind) && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
+                                                        (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING));
+    detector_input.reaction_over = reference_speed(controller) < controller->config.supervisor.settled_speed_mps;
+    /* The estimate is valid, so the detector cannot refuse it. */
+    (void)gw_detector_step(&controller->detector, &detector_input, &now->detection);
+    if (now->detection.tripped) {
+        controller->detection_count = (controller->detection_count + 1U) & GW_TICK_MASK;
+        controller->detection_tick = (int32_t)controller->tick;
+        controller->detection_wrench = now->detection.mean_wrench;
+        (void)gw_contact_locate(&controller->contact, now->detection.mean_wrench,
+                                sigma_of_mean(now->estimate.sigma, now->detection.samples),
+                                &controller->detection_contact);
+    }
+}
+
+/* A new tare of the run was asked for: only a robot that stands may take one. */
+static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, const tick_t *now, bool *accepted)
+{
+    const gw_mode_t mode = controller->supervisor.mode;
+    const bool asked = requested && (!controller->tare_request_before);
+    gw_status_t status = GW_STATUS_OK;
+    controller->tare_request_before = requested;
+    *accepted = asked && now->estimate.rest && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
+    if (asked && (!*accepted)) {
+        status = GW_STATUS_TARE_REFUSED;
+    }
+    return status;
+}
+
+/* The direction of the hit in the world frame, as a unit vector. */
+static gw_vector_t hit_direction(const gw_controller_t *controller, const tick_t *now)
+{
+    const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
+    const gw_real_t length = gw_length(force);
+    const gw_vector_t unit = {force.x / length, force.y / length};
+    return gw_rotate(reference_rotation(controller), unit);
+}
+
+/* What changes once, when a mode begins. */
+static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick_t *now)
+{
+    const gw_mode_t mode = controller->supervisor.mode;
+    const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
+    if ((mode == GW_MODE_REACTING) && now->detection.tripped) {
+        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller, now));
+    } else if (mode != before) {
+        if (mode == GW_MODE_REACTING) {
+            /* Resumed: nobody knows whether the way is still free, so the escape is not. */
+            const gw_vector_t nowhere = {GW_ZERO, GW_ZERO};
+            (void)gw_admittance_start(&controller->admittance, velocity, nowhere);
+        } else if (mode == GW_MODE_TARING) {
+            gw_estimator_start_tare(&controller->estimator);
+            gw_detector_reset(&controller->detector);
+        } else {
+            gw_detector_reset(&controller->detector);
+        }
+        if (mode == GW_MODE_FAULT) {
+            gw_estimator_restart(&controller->estimator);
+        }
+    } else {
+        /* nothing begins */
+    }
+}
+
+/* The force that live admittance feels: what exceeds the error that the detector forgives. World frame. */
+static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *now)
+{
+    const gw_vector_t base = {now->estimate.mean.force_x_n, now->estimate.mean.force_y_n};
+    const gw_real_t length = gw_length(base);
+    const gw_real_t left = length - gw_detector_leak(&controller->detector, now->estimate.rest);
+    gw_vector_t felt = {GW_ZERO, GW_ZERO};
+    if ((left > GW_ZERO) && (!now->estimate.blind) && (controller->supervisor.mode == GW_MODE_REACTING)) {
+        felt.x = base.x * (left / length);
+        felt.y = base.y * (left / length);
+    }
+    return gw_rotate(reference_rotation(controller), felt);
+}
+
+static void give_way(gw_controller_t *controller, const tick_t *now)
+{
+    gw_admittance_output_t motion;
+    const gw_status_t status = gw_admittance_step(&controller->admittance, live_force(controller, now), &motion);
+    if (status == GW_STATUS_OK) {
+        gw_reference_escape(&controller->reference, motion.displacement_m, motion.velocity_mps);
+    } else {
+        gw_reference_brake(&controller->reference);
+    }
+}
+
+/* Moves the reference by one tick, as the mode says. */
+static void move_reference(gw_controller_t *controller, const gw_controller_input_t *input, const tick_t *now)
+{
+    const gw_mode_t mode = controller->supervisor.mode;
+    const bool on_the_path = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REJOINING);
+    if (on_the_path && now->plan_valid && (!controller->on_plan)) {
+        /* Without a tare the robot may already be moving along its plan. */
+        const bool moving = (controller->config.estimator.tare_ticks == 0U) && controller->config.drives_enabled;
+        gw_reference_place(&controller->reference, &input->plan, moving);
+        controller->on_plan = true;
+    } else if ((mode == GW_MODE_FAULT) || (!controller->config.drives_enabled)) {
+        gw_reference_freeze(&controller->reference);
+    } else if ((mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED)) {
+        give_way(controller, now);
+    } else if (on_the_path && now->plan_valid) {
+        gw_reference_follow(&controller->reference, &input->plan, mode == GW_MODE_REJOINING);
+    } else {
+        gw_reference_brake(&controller->reference);
+    }
+}
+
+static void command_wheels(gw_controller_t *controller, const gw_controller_input_t *input, const tick_t *now,
+                           gw_controller_output_t *output)
+{
+    const gw_kinematics_t *const kinematics = &controller->estimator.kinematics;
+    if (now->sensors_good && ((!gw_joint_is_placed(&controller->joint)) || (!controller->config.drives_enabled))) {
+        gw_wheels_t measured;
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            measured.wheel[i] = gw_estimator_encoder_angle(&controller->estimator, input->sensor.encoder_count[i]);
+        }
+        gw_joint_place(&controller->joint, &measured);
+    }
+    if (gw_joint_is_placed(&controller->joint) && (controller->supervisor.mode != GW_MODE_FAULT)) {
+        gw_joint_step(&controller->joint, kinematics, controller->reference.displacement,
+                      gw_reference_pose(&controller->reference).theta_rad, controller->reference.twist,
+                      &output->command);
+    } else {
+        gw_joint_hold(&controller->joint, &output->command);
+    }
+    output->enable = controller->config.drives_enabled && gw_joint_is_placed(&controller->joint);
+}
+
+static void report(const gw_controller_t *controller, const tick_t *now, gw_controller_output_t *output)
+{
+    output->estimate = now->estimate.mean;
+    /* The estimate is valid or zero; both are accepted. */
+    (void)gw_contact_locate(&controller->contact, now->estimate.mean,
+                            sigma_of_mean(now->estimate.sigma, now->estimate.mean_samples), &output->contact);
+    output->detection_active = controller->detector.active;
+    output->detection_statistic = now->detection.statistic;
+    output->detection_count = controller->detection_count;
+    output->detection_tick = controller->detection_tick;
+    output->detection_wrench = controller->detection_wrench;
+    output->detection_contact = controller->detection_contact;
+    output->reference_pose = gw_reference_pose(&controller->reference);
+    output->reference_twist = controller->reference.twist;
+    output->mode = controller->supervisor.mode;
+    output->path_ticks = controller->supervisor.path_ticks;
+    output->tick = controller->tick;
+}
+
+static void nothing_known(tick_t *now)
+{
+    static const tick_t nothing = {
+        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
+        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+         0U,
+         {(gw_real_t)0.0, (gw_real_t)0.0},
+         {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
+         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+         false,
+         true,
+         false},
+        {false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U},
+        false,
+        false,
+    };
+    *now = nothing;
+}
+
+static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
+                        gw_controller_output_t *output)
+{
+    tick_t now;
+    gw_supervisor_events_t events;
+    gw_status_t tare_status;
+    gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
+    const gw_mode_t before = controller->supervisor.mode;
+    nothing_known(&now);
+    now.plan_valid = gw_plan_is_valid(&input->plan);
+    if (status == GW_STATUS_OK) {
+        status = estimate(controller, input, &now);
+    }
+    now.sensors_good = (status == GW_STATUS_OK);
+    if (now.sensors_good) {
+        detect(controller, &now);
+        if (!now.plan_valid) {
+            status = GW_STATUS_PLAN_INVALID;
+        }
+    }
+    tare_status = judge_tare_request(controller, input->tare_request, &now, &events.tare_accepted);
+    events.sensors_good = now.sensors_good;
+    events.stop_request = input->stop_request;
+    events.hit = now.detection.tripped;
+    events.plan_valid = now.plan_valid;
+    events.tare_done = false;
+    if (now.sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
+        const gw_tare_progress_t progress = gw_estimator_tare(&controller->estimator, &now.torque_nm);
+        events.tare_done = (progress == GW_TARE_DONE);
+        if (progress == GW_TARE_REFUSED) {
+            tare_status = GW_STATUS_TARE_REFUSED;
+        }
+    }
+    if (status == GW_STATUS_OK) {
+        status = tare_status;
+    }
+    const gw_vector_t force = {now.estimate.mean.force_x_n, now.estimate.mean.force_y_n};
+    const bool slow = reference_speed(controller) < controller->config.supervisor.settled_speed_mps;
+    events.quiet = slow && (!now.estimate.blind) &&
+                   (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.rest));
+    events.on_path =
+        now.plan_valid && slow &&
+        (gw_reference_distance(&controller->reference, &input->plan) <
+         controller->config.supervisor.rejoin_distance_m) &&
+        (gw_reference_angle(&controller->reference, &input->plan) < controller->config.supervisor.rejoin_angle_rad);
+    (void)gw_supervisor_step(&controller->supervisor, &events);
+    enter_mode(controller, before, &now);
+    move_reference(controller, input, &now);
+    command_wheels(controller, input, &now, output);
+    report(controller, &now, output);
+    controller->tick = (controller->tick + 1U) & GW_TICK_MASK;
+    return status;
+}
+
+gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_input_t *input,
+                               gw_controller_output_t *output)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if (output == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_controller_safe_output(output);
+        if ((controller == NULL) || (input == NULL)) {
+            status = GW_STATUS_NULL_POINTER;
+        } else if (!controller->initialised) {
+            status = GW_STATUS_NOT_INITIALISED;
+        } else {
+            status = step(controller, input, output);
+        }
+    }
+    return status;
+}
+
+bool gw_controller_invariant_holds(const gw_controller_t *controller)
+{
+    bool holds = (controller != NULL);
+    if (holds) {
+        holds = controller->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        holds = (gw_controller_config_check(&controller->config, &error) == GW_STATUS_OK) &&
+                gw_sensor_check_invariant_holds(&controller->sensor_check) &&
+                gw_estimator_invariant_holds(&controller->estimator) &&
+                gw_contact_invariant_holds(&controller->contact) &&
+                gw_detector_invariant_holds(&controller->detector) &&
+                gw_admittance_invariant_holds(&controller->admittance) &&
+                gw_reference_invariant_holds(&controller->reference) &&
+                gw_joint_invariant_holds(&controller->joint) &&
+                gw_supervisor_invariant_holds(&controller->supervisor) &&
+                (controller->detection_count <= GW_TICK_MASK) && (controller->detection_tick >= -1) &&
+                (controller->tick <= GW_TICK_MASK);
+    }
+    return holds;
+}

@@ -1,0 +1,167 @@
+#include "giveway/gw_detector.h"
+
+#include "giveway/gw_math.h"
+#include "giveway/gw_wrench.h"
+
+void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
+{
+    gw_config_check_count(error, GW_FIELD_DETECTOR_KIND, 0U, config->kind);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_FORCE_THRESHOLD, 0U, config->force_threshold_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, 0U, config->impulse_threshold_newton_s);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_REST, 0U, config->leak_rest_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_MOTION, 0U, config->leak_motion_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_RELEASE_FORCE, 0U, config->release_force_n);
+    gw_config_check_count(error, GW_FIELD_DETECTOR_BLANKING_TICKS, 0U, config->blanking_ticks);
+}
+
+gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if ((detector == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
+        gw_detector_config_check(config, &error);
+        detector->initialised = (error.field == GW_FIELD_NONE);
+        gw_detector_reset(detector);
+        if (detector->initialised) {
+            detector->config = *config;
+            detector->period_s = period_s;
+        } else {
+            status = GW_STATUS_CONFIG_INVALID;
+        }
+    }
+    return status;
+}
+
+bool gw_detector_invariant_holds(const gw_detector_t *detector)
+{
+    bool holds = (detector != NULL);
+    if (holds) {
+        holds = detector->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, detector->period_s);
+        gw_detector_config_check(&detector->config, &error);
+        holds = (error.field == GW_FIELD_NONE) && gw_is_finite(detector->impulse_x_newton_s) &&
+                gw_is_finite(detector->impulse_y_newton_s) && gw_is_finite(detector->impulse_moment_nms) &&
+                (detector->ticks_since_trip <= detector->config.blanking_ticks);
+    }
+    return holds;
+}
+
+void gw_detector_clear(gw_detector_t *detector)
+{
+    detector->impulse_x_newton_s = GW_ZERO;
+    detector->impulse_y_newton_s = GW_ZERO;
+    detector->impulse_moment_nms = GW_ZERO;
+    detector->samples = 0U;
+}
+
+void gw_detector_reset(gw_detector_t *detector)
+{
+    gw_detector_clear(detector);
+    detector->ticks_since_trip = 0U;
+    detector->active = false;
+}
+
+gw_real_t gw_detector_leak(const gw_detector_t *detector, bool rest)
+{
+    return rest ? detector->config.leak_rest_n : detector->config.leak_motion_n;
+}
+
+static gw_real_t force_length(gw_wrench_t wrench)
+{
+    const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};
+    return gw_length(force);
+}
+
+/* May an active detector trip again? */
+static bool may_release(const gw_detector_t *detector, const gw_detector_input_t *input)
+{
+    gw_real_t release_n = detector->config.release_force_n;
+    if (detector->config.kind == GW_DETECTOR_FORCE_AVERAGE) {
+        release_n = gw_min(release_n, detector->config.force_threshold_n);
+    }
+    return (detector->ticks_since_trip >= detector->config.blanking_ticks) &&
+           (input->reaction_over || (force_length(input->mean) < release_n));
+}
+
+/* One step of the leaky vector integral; true if it trips. */
+static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
+{
+    const gw_real_t leak_n = gw_detector_leak(detector, input->rest);
+    const gw_vector_t sum = {detector->impulse_x_newton_s + (input->wrench.force_x_n * detector->period_s),
+                             detector->impulse_y_newton_s + (input->wrench.force_y_n * detector->period_s)};
+    const gw_real_t moment = detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s);
+    const gw_real_t length = gw_length(sum);
+    const gw_real_t left = length - (leak_n * detector->period_s);
+    bool trips = false;
+    if (left > GW_ZERO) {
+        const gw_real_t shrink = left / length;
+        detector->impulse_x_newton_s = sum.x * shrink;
+        detector->impulse_y_newton_s = sum.y * shrink;
+        detector->impulse_moment_nms = moment * shrink;
+        if (detector->samples < GW_TICK_MASK) {
+            detector->samples++;
+        }
+        /* What leaked away is part of the mean force. */
+        const gw_real_t mean_n = (left / ((gw_real_t)detector->samples * detector->period_s)) + leak_n;
+        output->mean_wrench.force_x_n = (sum.x / length) * mean_n;
+        output->mean_wrench.force_y_n = (sum.y / length) * mean_n;
+        output->mean_wrench.torque_nm = (moment / length) * mean_n;
+        output->samples = detector->samples;
+        output->statistic = left;
+        trips = (left > detector->config.impulse_threshold_newton_s);
+    } else {
+        gw_detector_clear(detector);
+    }
+    return trips;
+}
+
+gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
+{
+    static const gw_detector_output_t nothing = {false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
+    gw_status_t status = GW_STATUS_OK;
+    if (output == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        *output = nothing;
+        if ((detector == NULL) || (input == NULL)) {
+            status = GW_STATUS_NULL_POINTER;
+        } else if (!detector->initialised) {
+            status = GW_STATUS_NOT_INITIALISED;
+        } else if (!(gw_wrench_is_valid(input->wrench) && gw_wrench_is_valid(input->mean) &&
+                     gw_wrench_is_valid(input->window_mean))) {
+            status = GW_STATUS_INPUT_INVALID;
+            output->active = detector->active;
+        } else {
+            if (detector->active) {
+                if (detector->ticks_since_trip < detector->config.blanking_ticks) {
+                    detector->ticks_since_trip++;
+                }
+                detector->active = !may_release(detector, input);
+            }
+            if (detector->active || (!input->enabled)) {
+                gw_detector_clear(detector);
+            } else if (detector->config.kind == GW_DETECTOR_IMPULSE) {
+                output->tripped = integrate(detector, input, output);
+            } else {
+                output->statistic = force_length(input->window_mean);
+                output->mean_wrench = input->mean;
+                output->samples = input->mean_samples;
+                output->tripped = (output->statistic > detector->config.force_threshold_n);
+            }
+            if (output->tripped) {
+                gw_detector_reset(detector);
+                detector->active = true;
+            }
+            output->active = detector->active;
+        }
+    }
+    return status;
+}

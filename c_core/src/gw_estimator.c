@@ -1,0 +1,255 @@
+#include "giveway/gw_estimator.h"
+
+#include "giveway/gw_math.h"
+
+static const gw_wheels_t no_torque = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
+static const gw_twist_t no_twist = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+static const gw_acceleration_t no_acceleration = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+
+void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
+{
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, 0U, config->velocity_source);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, 0U, config->acceleration_source);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_TORQUE_NOISE, 0U, config->torque_noise_nm);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_RATE_CUTOFF, 0U, config->rate_cutoff_radps);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, 0U, config->drivetrain_stiffness_nm_per_rad);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, 0U, config->encoder_counts);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, 0U, config->average_window);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_REST_SPEED, 0U, config->rest_speed_mps);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_REST_TICKS, 0U, config->rest_ticks);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_TARE_TICKS, 0U, config->tare_ticks);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_RETARE_TICKS, 0U, config->retare_ticks);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, 0U, config->tare_variation_nm);
+}
+
+gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
+                              const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
+                              const gw_friction_config_t *friction, gw_real_t period_s)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if ((estimator == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_estimator_config_check(config, &error);
+        if (error.field != GW_FIELD_NONE) {
+            status = GW_STATUS_CONFIG_INVALID;
+        } else {
+            status = gw_kinematics_init(&estimator->kinematics, geometry);
+        }
+        if (status == GW_STATUS_OK) {
+            status = gw_nominal_init(&estimator->nominal, inertia, friction, &estimator->kinematics);
+        }
+        if (status == GW_STATUS_OK) {
+            status = gw_rate_filter_constants(&estimator->rate_constants, period_s, config->rate_cutoff_radps,
+                                              config->encoder_counts, config->drivetrain_stiffness_nm_per_rad);
+        }
+        estimator->initialised = (status == GW_STATUS_OK);
+        if (estimator->initialised) {
+            estimator->config = *config;
+            (void)gw_moving_average_init(&estimator->average, config->average_window); /* window was checked */
+            estimator->run_zero_nm = no_torque;
+            estimator->rest_zero_nm = no_torque;
+            estimator->sigma = gw_wrench_noise(&estimator->kinematics, config->torque_noise_nm);
+            estimator->slow_ticks = 0U;
+            estimator->rest = true;
+            gw_tare_start(&estimator->run_tare);
+            gw_tare_start(&estimator->stop_tare);
+            gw_estimator_restart(estimator);
+        }
+    }
+    return status;
+}
+
+bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
+{
+    bool holds = (estimator != NULL);
+    if (holds) {
+        holds = estimator->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_estimator_config_check(&estimator->config, &error);
+        holds = (error.field == GW_FIELD_NONE) && gw_kinematics_invariant_holds(&estimator->kinematics) &&
+                gw_nominal_invariant_holds(&estimator->nominal) && gw_tare_invariant_holds(&estimator->run_tare) &&
+                gw_tare_invariant_holds(&estimator->stop_tare) &&
+                gw_moving_average_invariant_holds(&estimator->average) &&
+                (estimator->average.window == estimator->config.average_window);
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            holds = holds && gw_rate_filter_invariant_holds(&estimator->rate[i]) &&
+                    gw_is_finite(estimator->run_zero_nm.wheel[i]) && gw_is_finite(estimator->rest_zero_nm.wheel[i]);
+        }
+    }
+    return holds;
+}
+
+void gw_estimator_restart(gw_estimator_t *estimator)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        gw_rate_filter_restart(&estimator->rate[i]);
+    }
+    gw_moving_average_reset(&estimator->average);
+}
+
+void gw_estimator_start_tare(gw_estimator_t *estimator)
+{
+    gw_tare_start(&estimator->run_tare);
+}
+
+gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm)
+{
+    gw_tare_progress_t progress = GW_TARE_DONE;
+    gw_wheels_t mean_nm = no_torque;
+    if (estimator->config.tare_ticks > 0U) {
+        progress = gw_tare_add(&estimator->run_tare, torque_nm, estimator->config.tare_ticks,
+                               estimator->config.tare_variation_nm, &mean_nm);
+    }
+    if (progress == GW_TARE_DONE) {
+        estimator->run_zero_nm = mean_nm;
+        estimator->rest_zero_nm = mean_nm;
+        estimator->rest = true;
+        estimator->slow_ticks = estimator->config.rest_ticks;
+        gw_estimator_restart(estimator);
+    }
+    return progress;
+}
+
+gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count)
+{
+    const int32_t within_turn = count % (int32_t)estimator->config.encoder_counts;
+    return gw_wrap_angle((gw_real_t)within_turn * estimator->rate_constants.rad_per_count);
+}
+
+static bool input_is_finite(const gw_estimator_input_t *input)
+{
+    bool finite = gw_is_finite(input->planned_twist.vx_mps) && gw_is_finite(input->planned_twist.vy_mps) &&
+                  gw_is_finite(input->planned_twist.omega_radps) &&
+                  gw_is_finite(input->planned_acceleration.ax_mps2) &&
+                  gw_is_finite(input->planned_acceleration.ay_mps2) &&
+                  gw_is_finite(input->planned_acceleration.alpha_radps2);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        finite = finite && gw_is_finite(input->torque_nm.wheel[i]);
+    }
+    return finite;
+}
+
+/* Rest or motion, and the tare after a stop. Returns true if the mode changed. */
+static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *input)
+{
+    const gw_vector_t velocity = {input->planned_twist.vx_mps, input->planned_twist.vy_mps};
+    const gw_real_t limit = estimator->config.rest_speed_mps;
+    const gw_real_t rim = gw_abs(input->planned_twist.omega_radps) * estimator->kinematics.wheel_distance_m;
+    const bool slow = (gw_length(velocity) <= limit) && (rim <= limit);
+    const bool was_at_rest = estimator->rest;
+    if (!slow) {
+        estimator->slow_ticks = 0U;
+        estimator->rest = false;
+        gw_tare_start(&estimator->stop_tare);
+    } else {
+        if (estimator->slow_ticks < GW_TICK_MASK) {
+            estimator->slow_ticks++;
+        }
+        /* The tare is taken in the last retare_ticks of the wait, or for as long as it takes to become quiet. */
+        if ((!estimator->rest) &&
+            ((estimator->slow_ticks + estimator->config.retare_ticks) > estimator->config.rest_ticks)) {
+            gw_wheels_t mean_nm = no_torque;
+            const gw_tare_progress_t progress =
+                gw_tare_add(&estimator->stop_tare, &input->torque_nm, estimator->config.retare_ticks,
+                            estimator->config.tare_variation_nm, &mean_nm);
+            if (progress == GW_TARE_DONE) {
+                estimator->rest_zero_nm = mean_nm;
+                estimator->rest = true;
+            }
+        }
+    }
+    return estimator->rest != was_at_rest;
+}
+
+/* T|0 from the present zero and the model. */
+static gw_wheels_t nominal_with_zero(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                                     gw_twist_t measured_twist, gw_acceleration_t measured_acceleration)
+{
+    const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
+    /* At planned rest the tare is all there is to plan. */
+    gw_twist_t twist = estimator->rest ? no_twist : input->planned_twist;
+    gw_acceleration_t acceleration = estimator->rest ? no_acceleration : input->planned_acceleration;
+    if (estimator->config.velocity_source == GW_SOURCE_MEASURED) {
+        twist = measured_twist;
+    }
+    if (estimator->config.acceleration_source == GW_SOURCE_MEASURED) {
+        acceleration = measured_acceleration;
+    } else if (estimator->config.acceleration_source == GW_SOURCE_ZERO) {
+        acceleration = no_acceleration;
+    } else {
+        /* planned */
+    }
+    gw_wheels_t nominal = gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist, acceleration);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        nominal.wheel[i] += zero->wheel[i];
+    }
+    return nominal;
+}
+
+static void nothing_known(gw_estimator_output_t *output)
+{
+    output->wrench = no_wrench;
+    output->mean = no_wrench;
+    output->window_mean = no_wrench;
+    output->mean_samples = 0U;
+    output->sigma.force_n = GW_ZERO;
+    output->sigma.torque_nm = GW_ZERO;
+    output->nominal_nm = no_torque;
+    output->measured_twist = no_twist;
+    output->rest = false;
+    output->blind = true;
+    output->mode_changed = false;
+}
+
+gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                              gw_estimator_output_t *output)
+{
+    gw_status_t status = GW_STATUS_OK;
+    nothing_known(output);
+    if (!estimator->initialised) {
+        status = GW_STATUS_NOT_INITIALISED;
+    } else if (!input_is_finite(input)) {
+        status = GW_STATUS_INPUT_INVALID;
+        gw_estimator_restart(estimator);
+    } else {
+        gw_wheels_t rates = no_torque;
+        gw_wheels_t derivatives = no_torque;
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            gw_rate_filter_step(&estimator->rate[i], &estimator->rate_constants, input->encoder_count[i],
+                                input->torque_nm.wheel[i]);
+            rates.wheel[i] = estimator->rate[i].rate_radps;
+            derivatives.wheel[i] = estimator->rate[i].derivative_radps2;
+        }
+        output->mode_changed = judge_rest(estimator, input);
+        if (output->mode_changed) {
+            gw_moving_average_reset(&estimator->average);
+        }
+        output->rest = estimator->rest;
+        output->blind = (!estimator->rest) && (estimator->slow_ticks > 0U) &&
+                        (estimator->slow_ticks < (2U * estimator->config.rest_ticks));
+        output->measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
+        output->nominal_nm =
+            nominal_with_zero(estimator, input, output->measured_twist,
+                              gw_kinematics_acceleration(&estimator->kinematics, &rates, &derivatives));
+        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &input->torque_nm);
+        output->sigma = estimator->sigma;
+        status = gw_moving_average_add(&estimator->average, output->wrench);
+        if (status == GW_STATUS_OK) {
+            output->mean = gw_moving_average_mean(&estimator->average);
+            output->window_mean = gw_moving_average_window_mean(&estimator->average);
+            output->mean_samples = gw_moving_average_count(&estimator->average);
+        } else {
+            /* Torque or measured motion beyond any robot. */
+            nothing_known(output);
+            gw_estimator_restart(estimator);
+        }
+    }
+    return status;
+}

@@ -1,0 +1,429 @@
+#include "giveway/gw_math.h"
+
+/* Series lengths and range limits for the real type. Cody-Waite parts: the leading ones have so few bits that their
+ * product with the quotient (13 bits for angles, 11 for exponents) is exact. */
+#if (GW_REAL_DOUBLE == 1)
+#define EXP_TERMS 13U  /* truncation (ln 2/2)^13/14! of expm1: 1e-17 */
+#define SIN_TERMS 8U   /* (pi/4)^18/19!: 1e-19 */
+#define ATAN_TERMS 9U  /* (1/8)^20/21: 4e-20 */
+#define LN2_HIGH ((gw_real_t)0.6931471805592082)
+#define LN2_LOW ((gw_real_t)7.371002565167799e-13)
+#define HALF_PI_HIGH ((gw_real_t)1.5707963267923333)
+#define HALF_PI_MIDDLE ((gw_real_t)2.5633441515839558e-12)
+#define HALF_PI_LOW ((gw_real_t)1.0562999066987428e-23)
+#define EXP_LOWEST ((gw_real_t)-708.0)
+#define EXP_HIGHEST ((gw_real_t)709.0)
+#define EXPM1_LOWEST ((gw_real_t)-40.0) /* e^x is below half an ulp of 1 */
+#define TANH_SATURATED ((gw_real_t)20.0)
+#define EXPONENT_BITS 10U
+#define SQRT_SCALINGS 9U
+#define SQRT_LIFT ((gw_real_t)4.149515568880993e180) /* 2^600 */
+#define SQRT_LIFT_ROOT ((gw_real_t)4.909093465297727e-91) /* 2^-300 */
+#define SQRT_NEWTON_STEPS 4U
+#define SPLITTER ((gw_real_t)134217729.0) /* 2^27 + 1 */
+#else
+#define EXP_TERMS 7U
+#define SIN_TERMS 5U
+#define ATAN_TERMS 4U
+#define LN2_HIGH ((gw_real_t)0.693115234375)
+#define LN2_LOW ((gw_real_t)3.1946184945309415e-05)
+#define HALF_PI_HIGH ((gw_real_t)1.5703125)
+#define HALF_PI_MIDDLE ((gw_real_t)0.00048351287841796875)
+#define HALF_PI_LOW ((gw_real_t)3.139164786504813e-07)
+#define EXP_LOWEST ((gw_real_t)-87.0)
+#define EXP_HIGHEST ((gw_real_t)88.0)
+#define EXPM1_LOWEST ((gw_real_t)-20.0)
+#define TANH_SATURATED ((gw_real_t)10.0)
+#define EXPONENT_BITS 7U
+#define SQRT_SCALINGS 6U
+#define SQRT_LIFT ((gw_real_t)7.922816251426434e28)       /* 2^96 */
+#define SQRT_LIFT_ROOT ((gw_real_t)3.552713678800501e-15) /* 2^-48 */
+#define SQRT_NEWTON_STEPS 3U
+#define SPLITTER ((gw_real_t)4097.0) /* 2^12 + 1 */
+#endif
+
+#define LOG2_E ((gw_real_t)1.44269504088896340736)
+#define TWO_OVER_PI ((gw_real_t)0.6366197723675813430755)
+
+/* Powers of 4 with their inverses and roots: exact in either type. */
+typedef struct {
+    gw_real_t power;
+    gw_real_t inverse;
+    gw_real_t root;
+} power_of_four_t;
+
+static const power_of_four_t powers_of_four[SQRT_SCALINGS] = {
+#if (GW_REAL_DOUBLE == 1)
+    {(gw_real_t)1.3407807929942597e+154, (gw_real_t)7.458340731200207e-155, (gw_real_t)1.157920892373162e+77}, /* 2^512 */
+    {(gw_real_t)1.157920892373162e+77, (gw_real_t)8.636168555094445e-78, (gw_real_t)3.402823669209385e+38}, /* 2^256 */
+    {(gw_real_t)3.402823669209385e+38, (gw_real_t)2.938735877055719e-39, (gw_real_t)1.8446744073709552e+19}, /* 2^128 */
+#endif
+    {(gw_real_t)1.8446744073709552e+19, (gw_real_t)5.421010862427522e-20, (gw_real_t)4294967296.0}, /* 2^64 */
+    {(gw_real_t)4294967296.0, (gw_real_t)2.3283064365386963e-10, (gw_real_t)65536.0}, /* 2^32 */
+    {(gw_real_t)65536.0, (gw_real_t)1.52587890625e-05, (gw_real_t)256.0}, /* 2^16 */
+    {(gw_real_t)256.0, (gw_real_t)0.00390625, (gw_real_t)16.0}, /* 2^8 */
+    {(gw_real_t)16.0, (gw_real_t)0.0625, (gw_real_t)4.0}, /* 2^4 */
+    {(gw_real_t)4.0, (gw_real_t)0.25, (gw_real_t)2.0}, /* 2^2 */
+};
+
+/* Taylor coefficients, lowest power first: of (e^r - 1 - r)/r^2, (sin r - r)/r^3, (cos r - 1)/r^2, (atan z - z)/z^3. */
+static const gw_real_t exp_series[EXP_TERMS] = {
+    (gw_real_t)(1.0 / 2.0),
+    (gw_real_t)(1.0 / 6.0),
+    (gw_real_t)(1.0 / 24.0),
+    (gw_real_t)(1.0 / 120.0),
+    (gw_real_t)(1.0 / 720.0),
+    (gw_real_t)(1.0 / 5040.0),
+    (gw_real_t)(1.0 / 40320.0),
+#if (GW_REAL_DOUBLE == 1)
+    (gw_real_t)(1.0 / 362880.0),
+    (gw_real_t)(1.0 / 3628800.0),
+    (gw_real_t)(1.0 / 39916800.0),
+    (gw_real_t)(1.0 / 479001600.0),
+    (gw_real_t)(1.0 / 6227020800.0),
+    (gw_real_t)(1.0 / 87178291200.0),
+#endif
+};
+
+static const gw_real_t sin_series[SIN_TERMS] = {
+    (gw_real_t)(-1.0 / 6.0),
+    (gw_real_t)(1.0 / 120.0),
+    (gw_real_t)(-1.0 / 5040.0),
+    (gw_real_t)(1.0 / 362880.0),
+    (gw_real_t)(-1.0 / 39916800.0),
+#if (GW_REAL_DOUBLE == 1)
+    (gw_real_t)(1.0 / 6227020800.0),
+    (gw_real_t)(-1.0 / 1307674368000.0),
+    (gw_real_t)(1.0 / 355687428096000.0),
+#endif
+};
+
+static const gw_real_t cos_series[SIN_TERMS] = {
+    (gw_real_t)(-1.0 / 2.0),
+    (gw_real_t)(1.0 / 24.0),
+    (gw_real_t)(-1.0 / 720.0),
+    (gw_real_t)(1.0 / 40320.0),
+    (gw_real_t)(-1.0 / 3628800.0),
+#if (GW_REAL_DOUBLE == 1)
+    (gw_real_t)(1.0 / 479001600.0),
+    (gw_real_t)(-1.0 / 87178291200.0),
+    (gw_real_t)(1.0 / 20922789888000.0),
+#endif
+};
+
+static const gw_real_t atan_series[ATAN_TERMS] = {
+    (gw_real_t)(-1.0 / 3.0),
+    (gw_real_t)(1.0 / 5.0),
+    (gw_real_t)(-1.0 / 7.0),
+    (gw_real_t)(1.0 / 9.0),
+#if (GW_REAL_DOUBLE == 1)
+    (gw_real_t)(-1.0 / 11.0),
+    (gw_real_t)(1.0 / 13.0),
+    (gw_real_t)(-1.0 / 15.0),
+    (gw_real_t)(1.0 / 17.0),
+    (gw_real_t)(-1.0 / 19.0),
+#endif
+};
+
+/* atan(k/4). */
+static const gw_real_t atan_quarters[5] = {
+    (gw_real_t)0.0,
+    (gw_real_t)0.2449786631268641541721,
+    (gw_real_t)0.4636476090008061162143,
+    (gw_real_t)0.6435011087932843868028,
+    (gw_real_t)0.7853981633974483096157,
+};
+
+bool gw_is_finite(gw_real_t x)
+{
+    return (x >= -GW_REAL_MAX) && (x <= GW_REAL_MAX);
+}
+
+bool gw_in_range(gw_real_t x, gw_real_t low, gw_real_t high)
+{
+    return (x >= low) && (x <= high);
+}
+
+gw_real_t gw_abs(gw_real_t x)
+{
+    return (x < GW_ZERO) ? -x : x;
+}
+
+gw_real_t gw_min(gw_real_t a, gw_real_t b)
+{
+    return (a < b) ? a : b;
+}
+
+gw_real_t gw_max(gw_real_t a, gw_real_t b)
+{
+    return (a > b) ? a : b;
+}
+
+gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
+{
+    return gw_min(gw_max(x, low), high);
+}
+
+/* Nearest integer for |x| < 2^30, ties away from zero. */
+static int32_t nearest_integer(gw_real_t x)
+{
+    const gw_real_t shifted = (x < GW_ZERO) ? (x - GW_HALF) : (x + GW_HALF);
+    return (int32_t)shifted;
+}
+
+/* x - root * root without rounding error (Dekker's product), for root in [1, 2). */
+static gw_real_t exact_residual(gw_real_t x, gw_real_t root)
+{
+    const gw_real_t spread = SPLITTER * root;
+    const gw_real_t high = spread - (spread - root);
+    const gw_real_t low = root - high;
+    const gw_real_t square = root * root;
+    const gw_real_t square_error = (((high * high) - square) + (GW_TWO * high * low)) + (low * low);
+    return (x - square) - square_error;
+}
+
+gw_real_t gw_sqrt(gw_real_t x)
+{
+    gw_real_t result = GW_ZERO;
+    if (x > GW_ZERO) {
+        /* x = reduced * scale^2 with reduced in [1, 4). Factors are powers of 4, so nothing is rounded. */
+        gw_real_t reduced = gw_min(x, GW_REAL_MAX);
+        gw_real_t scale = GW_ONE;
+        for (uint32_t i = 0U; i < 2U; i++) { /* the smallest subnormal number needs both */
+            if (reduced < GW_ONE) {
+                reduced *= SQRT_LIFT;
+                scale *= SQRT_LIFT_ROOT;
+            }
+        }
+        for (uint32_t i = 0U; i < SQRT_SCALINGS; i++) {
+            if (reduced >= powers_of_four[i].power) {
+                reduced *= powers_of_four[i].inverse;
+                scale *= powers_of_four[i].root;
+            }
+        }
+        /* Within 4 %, then Newton's steps square the error. */
+        gw_real_t root = (gw_real_t)(17.0 / 24.0) + (reduced * (gw_real_t)(1.0 / 3.0));
+        for (uint32_t i = 0U; i < SQRT_NEWTON_STEPS; i++) {
+            root = GW_HALF * (root + (reduced / root));
+        }
+        /* The exact residual makes the last rounding the correct one. */
+        root += GW_HALF * (exact_residual(reduced, root) / root);
+        result = root * scale;
+    }
+    return result;
+}
+
+/* y * 2^exponent for results that are normal numbers. */
+static gw_real_t scale_by_power_of_two(gw_real_t y, int32_t exponent)
+{
+    gw_real_t result = y;
+    gw_real_t factor = (exponent < 0) ? GW_HALF : GW_TWO;
+    uint32_t remaining = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
+    for (uint32_t i = 0U; i < EXPONENT_BITS; i++) {
+        if ((remaining & 1U) != 0U) {
+            result *= factor;
+        }
+        remaining >>= 1U;
+        if (remaining != 0U) {
+            factor *= factor;
+        }
+    }
+    return result;
+}
+
+static gw_real_t polynomial(const gw_real_t *coefficients, uint32_t count, gw_real_t x)
+{
+    gw_real_t value = coefficients[count - 1U];
+    for (uint32_t i = 1U; i < count; i++) {
+        value = (value * x) + coefficients[(count - 1U) - i];
+    }
+    return value;
+}
+
+/* x = exponent * ln 2 + remainder, for EXP_LOWEST <= x <= EXP_HIGHEST. */
+typedef struct {
+    int32_t exponent;
+    gw_real_t remainder_expm1; /* e^remainder - 1 */
+} reduced_exp_t;
+
+static reduced_exp_t reduce_exp(gw_real_t x)
+{
+    reduced_exp_t reduced;
+    reduced.exponent = nearest_integer(x * LOG2_E);
+    const gw_real_t k = (gw_real_t)reduced.exponent;
+    const gw_real_t r = (x - (k * LN2_HIGH)) - (k * LN2_LOW);
+    reduced.remainder_expm1 = r + ((r * r) * polynomial(exp_series, EXP_TERMS, r));
+    return reduced;
+}
+
+gw_real_t gw_exp(gw_real_t x)
+{
+    gw_real_t result = GW_ZERO;
+    if (x > EXP_HIGHEST) {
+        result = GW_REAL_MAX;
+    } else if (x >= EXP_LOWEST) {
+        const reduced_exp_t reduced = reduce_exp(x);
+        result = scale_by_power_of_two(GW_ONE + reduced.remainder_expm1, reduced.exponent);
+    } else {
+        /* NaN or far below: 0 */
+    }
+    return result;
+}
+
+gw_real_t gw_expm1(gw_real_t x)
+{
+    gw_real_t result = GW_ZERO;
+    if (x > EXP_HIGHEST) {
+        result = GW_REAL_MAX;
+    } else if (x >= EXPM1_LOWEST) {
+        const reduced_exp_t reduced = reduce_exp(x);
+        const gw_real_t scale = scale_by_power_of_two(GW_ONE, reduced.exponent);
+        result = (reduced.remainder_expm1 * scale) + (scale - GW_ONE);
+    } else if (x < EXPM1_LOWEST) {
+        result = -GW_ONE;
+    } else {
+        /* NaN: 0 */
+    }
+    return result;
+}
+
+gw_real_t gw_tanh(gw_real_t x)
+{
+    gw_real_t result = GW_ZERO;
+    if (gw_abs(x) >= TANH_SATURATED) {
+        result = (x < GW_ZERO) ? -GW_ONE : GW_ONE;
+    } else {
+        const gw_real_t e = gw_expm1(-GW_TWO * gw_abs(x)); /* 0 for NaN */
+        const gw_real_t magnitude = -e / (e + GW_TWO);
+        result = (x < GW_ZERO) ? -magnitude : magnitude;
+    }
+    return result;
+}
+
+/* angle - quarter_turns * pi/2, for at most 13 bits of quarter turns. */
+static gw_real_t less_quarter_turns(gw_real_t angle_rad, int32_t quarter_turns)
+{
+    const gw_real_t n = (gw_real_t)quarter_turns;
+    return ((angle_rad - (n * HALF_PI_HIGH)) - (n * HALF_PI_MIDDLE)) - (n * HALF_PI_LOW);
+}
+
+gw_rotation_t gw_sincos(gw_real_t angle_rad)
+{
+    gw_rotation_t result = {GW_ZERO, GW_ONE};
+    if (gw_in_range(angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX)) {
+        const int32_t quarter_turns = nearest_integer(angle_rad * TWO_OVER_PI);
+        const gw_real_t r = less_quarter_turns(angle_rad, quarter_turns);
+        const gw_real_t square = r * r;
+        const gw_real_t sine = r + ((r * square) * polynomial(sin_series, SIN_TERMS, square));
+        const gw_real_t cosine = GW_ONE + (square * polynomial(cos_series, SIN_TERMS, square));
+        const uint32_t quadrant = (uint32_t)quarter_turns & 3U; /* two's complement keeps the residue */
+        if (quadrant == 0U) {
+            result.sine = sine;
+            result.cosine = cosine;
+        } else if (quadrant == 1U) {
+            result.sine = cosine;
+            result.cosine = -sine;
+        } else if (quadrant == 2U) {
+            result.sine = -sine;
+            result.cosine = -cosine;
+        } else {
+            result.sine = -cosine;
+            result.cosine = sine;
+        }
+    }
+    return result;
+}
+
+/* atan of x in [0, 1]: atan(c) + atan((x - c)/(1 + x c)) with c the nearest quarter. */
+static gw_real_t atan_of_fraction(gw_real_t x)
+{
+    const int32_t quarter = nearest_integer(x * (gw_real_t)4.0);
+    const gw_real_t c = (gw_real_t)quarter * (gw_real_t)0.25;
+    const gw_real_t z = (x - c) / (GW_ONE + (x * c));
+    const gw_real_t square = z * z;
+    return atan_quarters[quarter] + (z + ((z * square) * polynomial(atan_series, ATAN_TERMS, square)));
+}
+
+gw_real_t gw_atan2(gw_real_t y, gw_real_t x)
+{
+    gw_real_t angle = GW_ZERO;
+    const gw_real_t x_size = gw_abs(x);
+    const gw_real_t y_size = gw_abs(y);
+    const gw_real_t larger = gw_max(x_size, y_size);
+    if (gw_is_finite(x) && gw_is_finite(y) && (larger > GW_ZERO)) {
+        angle = atan_of_fraction(gw_min(x_size, y_size) / larger);
+        if (y_size > x_size) {
+            angle = (GW_HALF * GW_PI) - angle;
+        }
+        if (x < GW_ZERO) {
+            angle = GW_PI - angle;
+        }
+        if (y < GW_ZERO) {
+            angle = -angle;
+        }
+    }
+    return angle;
+}
+
+gw_real_t gw_wrap_angle(gw_real_t angle_rad)
+{
+    gw_real_t wrapped = GW_ZERO;
+    if (gw_in_range(angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX)) {
+        const int32_t turns = nearest_integer(angle_rad * (TWO_OVER_PI * (gw_real_t)0.25));
+        wrapped = less_quarter_turns(angle_rad, 4 * turns);
+        /* Rounding may leave it a little outside; these differences are exact. */
+        if (wrapped >= GW_PI) {
+            wrapped -= GW_TWO * GW_PI;
+        }
+        if (wrapped < -GW_PI) {
+            wrapped += GW_TWO * GW_PI;
+        }
+    }
+    return wrapped;
+}
+
+int32_t gw_count_difference(int32_t later, int32_t earlier)
+{
+    const uint32_t difference = (uint32_t)later - (uint32_t)earlier; /* modulo 2^32 by definition */
+    int32_t result;
+    /* A plain cast of the upper half would be implementation-defined. */
+    if (difference <= 0x7FFFFFFFU) {
+        result = (int32_t)difference;
+    } else {
+        result = -(int32_t)(0xFFFFFFFFU - difference) - 1;
+    }
+    return result;
+}
+
+gw_vector_t gw_rotate(gw_rotation_t rotation, gw_vector_t vector)
+{
+    gw_vector_t result;
+    result.x = (rotation.cosine * vector.x) - (rotation.sine * vector.y);
+    result.y = (rotation.sine * vector.x) + (rotation.cosine * vector.y);
+    return result;
+}
+
+gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vector)
+{
+    gw_vector_t result;
+    result.x = (rotation.cosine * vector.x) + (rotation.sine * vector.y);
+    result.y = (rotation.cosine * vector.y) - (rotation.sine * vector.x);
+    return result;
+}
+
+gw_real_t gw_length(gw_vector_t vector)
+{
+    return gw_sqrt((vector.x * vector.x) + (vector.y * vector.y));
+}
+
+gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
+{
+    gw_vector_t result = vector;
+    const gw_real_t length = gw_length(vector);
+    if (length > limit) {
+        const gw_real_t factor = limit / length;
+        result.x = vector.x * factor;
+        result.y = vector.y * factor;
+    }
+    return result;
+}

@@ -1,0 +1,108 @@
+#include "giveway/gw_moving_average.h"
+
+#include "giveway/gw_math.h"
+#include "giveway/gw_wrench.h"
+
+static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+
+static gw_wrench_t plus(gw_wrench_t a, gw_wrench_t b)
+{
+    const gw_wrench_t sum = {a.force_x_n + b.force_x_n, a.force_y_n + b.force_y_n, a.torque_nm + b.torque_nm};
+    return sum;
+}
+
+static gw_wrench_t minus(gw_wrench_t a, gw_wrench_t b)
+{
+    const gw_wrench_t difference = {a.force_x_n - b.force_x_n, a.force_y_n - b.force_y_n, a.torque_nm - b.torque_nm};
+    return difference;
+}
+
+static gw_wrench_t divided(gw_wrench_t a, gw_real_t divisor)
+{
+    const gw_wrench_t quotient = {a.force_x_n / divisor, a.force_y_n / divisor, a.torque_nm / divisor};
+    return quotient;
+}
+
+gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if (average == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        const bool in_range = (window >= 1U) && (window <= GW_MOVING_AVERAGE_CAPACITY);
+        average->window = in_range ? window : 1U;
+        for (uint32_t i = 0U; i < GW_MOVING_AVERAGE_CAPACITY; i++) {
+            average->sample[i] = no_wrench;
+        }
+        gw_moving_average_reset(average);
+        status = in_range ? GW_STATUS_OK : GW_STATUS_CONFIG_INVALID;
+    }
+    return status;
+}
+
+void gw_moving_average_reset(gw_moving_average_t *average)
+{
+    /* Old samples need not be erased: none is subtracted before it was overwritten. */
+    average->window_sum = no_wrench;
+    average->fresh_sum = no_wrench;
+    average->index = 0U;
+    average->count = 0U;
+}
+
+gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t sample)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if (average == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else if (!gw_wrench_is_valid(sample)) {
+        status = GW_STATUS_INPUT_INVALID;
+    } else {
+        if (average->count < average->window) {
+            average->count++;
+        } else {
+            average->window_sum = minus(average->window_sum, average->sample[average->index]);
+        }
+        average->sample[average->index] = sample;
+        average->window_sum = plus(average->window_sum, sample);
+        average->fresh_sum = plus(average->fresh_sum, sample);
+        average->index++;
+        if (average->index >= average->window) {
+            average->index = 0U;
+            average->window_sum = average->fresh_sum;
+            average->fresh_sum = no_wrench;
+        }
+    }
+    return status;
+}
+
+gw_wrench_t gw_moving_average_mean(const gw_moving_average_t *average)
+{
+    gw_wrench_t mean = no_wrench;
+    if (average->count > 0U) {
+        mean = divided(average->window_sum, (gw_real_t)average->count);
+    }
+    return mean;
+}
+
+gw_wrench_t gw_moving_average_window_mean(const gw_moving_average_t *average)
+{
+    return divided(average->window_sum, (gw_real_t)average->window);
+}
+
+uint32_t gw_moving_average_count(const gw_moving_average_t *average)
+{
+    return average->count;
+}
+
+bool gw_moving_average_invariant_holds(const gw_moving_average_t *average)
+{
+    bool holds = (average != NULL);
+    if (holds) {
+        holds = (average->window >= 1U) && (average->window <= GW_MOVING_AVERAGE_CAPACITY) &&
+                (average->index < average->window) && (average->count <= average->window) &&
+                gw_is_finite(gw_moving_average_mean(average).force_x_n) &&
+                gw_is_finite(gw_moving_average_mean(average).force_y_n) &&
+                gw_is_finite(gw_moving_average_mean(average).torque_nm);
+    }
+    return holds;
+}

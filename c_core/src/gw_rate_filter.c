@@ -1,0 +1,68 @@
+#include "giveway/gw_rate_filter.h"
+
+#include "giveway/gw_config.h"
+#include "giveway/gw_math.h"
+
+gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
+                                     uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if (constants == NULL) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
+        gw_config_check_real(&error, GW_FIELD_ESTIMATOR_RATE_CUTOFF, 0U, cutoff_radps);
+        gw_config_check_count(&error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, 0U, counts_per_turn);
+        gw_config_check_real(&error, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, 0U, stiffness_nm_per_rad);
+        if (error.field != GW_FIELD_NONE) {
+            status = GW_STATUS_CONFIG_INVALID;
+        } else {
+            constants->period_s = period_s;
+            constants->cutoff_radps = cutoff_radps;
+            constants->decay = gw_exp(-cutoff_radps * period_s);
+            constants->rad_per_count = (GW_TWO * GW_PI) / (gw_real_t)counts_per_turn;
+            /* A stiffness below one millionth would only amplify noise beyond any number: rigid as well. */
+            constants->compliance_rad_per_nm =
+                (stiffness_nm_per_rad >= (gw_real_t)0.000001) ? (GW_ONE / stiffness_nm_per_rad) : GW_ZERO;
+        }
+    }
+    return status;
+}
+
+void gw_rate_filter_restart(gw_rate_filter_t *filter)
+{
+    filter->last_count = 0;
+    filter->last_torque_nm = GW_ZERO;
+    filter->rate_radps = GW_ZERO;
+    filter->derivative_radps2 = GW_ZERO;
+    filter->started = false;
+}
+
+void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constants_t *constants, int32_t count,
+                         gw_real_t torque_nm)
+{
+    if (filter->started) {
+        const gw_real_t turned_rad =
+            ((gw_real_t)gw_count_difference(count, filter->last_count) * constants->rad_per_count) -
+            ((torque_nm - filter->last_torque_nm) * constants->compliance_rad_per_nm);
+        const gw_real_t input = turned_rad / constants->period_s;
+        /* Exact step of y'' = w^2 (u - y) - 2 w y' with u held. */
+        const gw_real_t error = filter->rate_radps - input;
+        const gw_real_t mixed = filter->derivative_radps2 + (constants->cutoff_radps * error);
+        filter->rate_radps = input + (constants->decay * (error + (constants->period_s * mixed)));
+        filter->derivative_radps2 =
+            constants->decay *
+            (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
+    }
+    filter->last_count = count;
+    filter->last_torque_nm = torque_nm;
+    filter->started = true;
+}
+
+bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
+{
+    return (filter != NULL) && gw_is_finite(filter->last_torque_nm) && gw_is_finite(filter->rate_radps) &&
+           gw_is_finite(filter->derivative_radps2);
+}

@@ -1,0 +1,224 @@
+#include "giveway/gw_reference.h"
+
+#include "giveway/gw_math.h"
+
+#define POSITION_MAX ((gw_real_t)1.0e4)
+#define SPEED_MAX ((gw_real_t)100.0)
+#define YAW_RATE_MAX ((gw_real_t)1000.0)
+#define ACCELERATION_MAX ((gw_real_t)1.0e4)
+
+static bool within(gw_real_t value, gw_real_t limit)
+{
+    return gw_in_range(value, -limit, limit);
+}
+
+void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error)
+{
+    gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, 0U, config->follow_gain_per_s);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_SPEED_LIMIT, 0U, config->speed_limit_mps);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_ACCELERATION_LIMIT, 0U, config->acceleration_limit_mps2);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_RATE_LIMIT, 0U, config->yaw_rate_limit_radps);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, 0U, config->yaw_acceleration_limit_radps2);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_REJOIN_SPEED, 0U, config->rejoin_speed_mps);
+    if (error->field == GW_FIELD_NONE) {
+        /* A correction of more than half the distance per tick would overshoot. */
+        gw_config_check_relation(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, 0U, config->follow_gain_per_s, GW_ZERO,
+                                 GW_HALF / period_s);
+    }
+}
+
+gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s)
+{
+    static const gw_plan_t origin = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                     {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                     {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
+    gw_status_t status = GW_STATUS_OK;
+    if ((reference == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_reference_config_check(config, period_s, &error);
+        reference->initialised = (error.field == GW_FIELD_NONE);
+        if (reference->initialised) {
+            reference->config = *config;
+            reference->period_s = period_s;
+            gw_reference_place(reference, &origin, false);
+        } else {
+            status = GW_STATUS_CONFIG_INVALID;
+        }
+    }
+    return status;
+}
+
+bool gw_reference_invariant_holds(const gw_reference_t *reference)
+{
+    bool holds = (reference != NULL);
+    if (holds) {
+        holds = reference->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_reference_config_check(&reference->config, reference->period_s, &error);
+        holds = (error.field == GW_FIELD_NONE) && gw_sum_invariant_holds(reference->x_m) &&
+                gw_sum_invariant_holds(reference->y_m) && gw_sum_invariant_holds(reference->theta_rad) &&
+                within(reference->theta_rad.value, GW_PI) && within(reference->twist.vx_mps, SPEED_MAX) &&
+                within(reference->twist.vy_mps, SPEED_MAX) && within(reference->twist.omega_radps, YAW_RATE_MAX) &&
+                gw_is_finite(reference->acceleration.ax_mps2) && gw_is_finite(reference->acceleration.ay_mps2) &&
+                gw_is_finite(reference->acceleration.alpha_radps2);
+    }
+    return holds;
+}
+
+bool gw_plan_is_valid(const gw_plan_t *plan)
+{
+    return within(plan->pose.x_m, POSITION_MAX) && within(plan->pose.y_m, POSITION_MAX) &&
+           within(plan->pose.theta_rad, GW_ANGLE_MAX) && within(plan->twist.vx_mps, SPEED_MAX) &&
+           within(plan->twist.vy_mps, SPEED_MAX) && within(plan->twist.omega_radps, YAW_RATE_MAX) &&
+           within(plan->acceleration.ax_mps2, ACCELERATION_MAX) &&
+           within(plan->acceleration.ay_mps2, ACCELERATION_MAX) &&
+           within(plan->acceleration.alpha_radps2, ACCELERATION_MAX);
+}
+
+static void stand(gw_reference_t *reference)
+{
+    reference->twist.vx_mps = GW_ZERO;
+    reference->twist.vy_mps = GW_ZERO;
+    reference->twist.omega_radps = GW_ZERO;
+    reference->acceleration.ax_mps2 = GW_ZERO;
+    reference->acceleration.ay_mps2 = GW_ZERO;
+    reference->acceleration.alpha_radps2 = GW_ZERO;
+    reference->displacement.x_m = GW_ZERO;
+    reference->displacement.y_m = GW_ZERO;
+    reference->displacement.theta_rad = GW_ZERO;
+}
+
+void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving)
+{
+    stand(reference);
+    reference->x_m = gw_sum_of(plan->pose.x_m);
+    reference->y_m = gw_sum_of(plan->pose.y_m);
+    reference->theta_rad = gw_sum_of(gw_wrap_angle(plan->pose.theta_rad));
+    if (moving) {
+        const gw_vector_t planned = {plan->twist.vx_mps, plan->twist.vy_mps};
+        const gw_vector_t velocity = gw_limit_length(planned, reference->config.speed_limit_mps);
+        reference->twist.vx_mps = velocity.x;
+        reference->twist.vy_mps = velocity.y;
+        reference->twist.omega_radps =
+            gw_clamp(plan->twist.omega_radps, -reference->config.yaw_rate_limit_radps,
+                     reference->config.yaw_rate_limit_radps);
+        reference->acceleration = plan->acceleration;
+    }
+}
+
+/* One tick to these planar and yaw speeds, as far as the limits allow. The acceleration is that of the plan where the
+ * plan is being followed freely (planned not NULL), else that of the step. */
+static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, const gw_acceleration_t *planned)
+{
+    const gw_real_t most = reference->config.acceleration_limit_mps2 * reference->period_s;
+    const gw_vector_t change = {wanted_mps.x - reference->twist.vx_mps, wanted_mps.y - reference->twist.vy_mps};
+    const gw_vector_t allowed = gw_limit_length(change, most);
+    const gw_real_t half_s = GW_HALF * reference->period_s;
+    const gw_vector_t velocity = {reference->twist.vx_mps + allowed.x, reference->twist.vy_mps + allowed.y};
+    if ((planned != NULL) && (gw_length(change) <= most)) {
+        reference->acceleration.ax_mps2 = planned->ax_mps2;
+        reference->acceleration.ay_mps2 = planned->ay_mps2;
+    } else {
+        reference->acceleration.ax_mps2 = allowed.x / reference->period_s;
+        reference->acceleration.ay_mps2 = allowed.y / reference->period_s;
+    }
+    reference->displacement.x_m = half_s * (reference->twist.vx_mps + velocity.x);
+    reference->displacement.y_m = half_s * (reference->twist.vy_mps + velocity.y);
+    reference->twist.vx_mps = velocity.x;
+    reference->twist.vy_mps = velocity.y;
+}
+
+static void move_yaw(gw_reference_t *reference, gw_real_t wanted_radps, const gw_acceleration_t *planned)
+{
+    const gw_real_t most = reference->config.yaw_acceleration_limit_radps2 * reference->period_s;
+    const gw_real_t change = wanted_radps - reference->twist.omega_radps;
+    const gw_real_t allowed = gw_clamp(change, -most, most);
+    const gw_real_t omega = reference->twist.omega_radps + allowed;
+    if ((planned != NULL) && (gw_abs(change) <= most)) {
+        reference->acceleration.alpha_radps2 = planned->alpha_radps2;
+    } else {
+        reference->acceleration.alpha_radps2 = allowed / reference->period_s;
+    }
+    reference->displacement.theta_rad = (GW_HALF * reference->period_s) * (reference->twist.omega_radps + omega);
+    reference->twist.omega_radps = omega;
+}
+
+static void add_displacement(gw_reference_t *reference)
+{
+    reference->x_m = gw_sum_add(reference->x_m, reference->displacement.x_m);
+    reference->y_m = gw_sum_add(reference->y_m, reference->displacement.y_m);
+    reference->theta_rad = gw_sum_add_angle(reference->theta_rad, reference->displacement.theta_rad);
+}
+
+void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool rejoining)
+{
+    const gw_reference_config_t *const config = &reference->config;
+    const gw_real_t half_s = GW_HALF * reference->period_s;
+    const gw_vector_t planned = {rejoining ? GW_ZERO : plan->twist.vx_mps, rejoining ? GW_ZERO : plan->twist.vy_mps};
+    const gw_real_t planned_omega = rejoining ? GW_ZERO : plan->twist.omega_radps;
+    const gw_real_t speed_limit = rejoining ? config->rejoin_speed_mps : config->speed_limit_mps;
+    /* Where the reference will be after this tick at the planned velocity; a smooth plan leaves no error. */
+    const gw_vector_t error = {
+        gw_sum_subtract_from(plan->pose.x_m, reference->x_m) - (half_s * (reference->twist.vx_mps + planned.x)),
+        gw_sum_subtract_from(plan->pose.y_m, reference->y_m) - (half_s * (reference->twist.vy_mps + planned.y))};
+    const gw_real_t yaw_error = gw_wrap_angle(gw_sum_subtract_from(plan->pose.theta_rad, reference->theta_rad) -
+                                              (half_s * (reference->twist.omega_radps + planned_omega)));
+    const gw_vector_t wanted = {planned.x + (config->follow_gain_per_s * error.x),
+                                planned.y + (config->follow_gain_per_s * error.y)};
+    const gw_real_t wanted_omega = planned_omega + (config->follow_gain_per_s * yaw_error);
+    const gw_acceleration_t *const planned_acceleration = rejoining ? NULL : &plan->acceleration;
+    move_planar(reference, gw_limit_length(wanted, speed_limit), planned_acceleration);
+    move_yaw(reference, gw_clamp(wanted_omega, -config->yaw_rate_limit_radps, config->yaw_rate_limit_radps),
+             planned_acceleration);
+    add_displacement(reference);
+}
+
+void gw_reference_escape(gw_reference_t *reference, gw_vector_t displacement_m, gw_vector_t velocity_mps)
+{
+    reference->acceleration.ax_mps2 = (velocity_mps.x - reference->twist.vx_mps) / reference->period_s;
+    reference->acceleration.ay_mps2 = (velocity_mps.y - reference->twist.vy_mps) / reference->period_s;
+    reference->twist.vx_mps = velocity_mps.x;
+    reference->twist.vy_mps = velocity_mps.y;
+    reference->displacement.x_m = displacement_m.x;
+    reference->displacement.y_m = displacement_m.y;
+    move_yaw(reference, GW_ZERO, NULL);
+    add_displacement(reference);
+}
+
+void gw_reference_brake(gw_reference_t *reference)
+{
+    const gw_vector_t zero = {GW_ZERO, GW_ZERO};
+    move_planar(reference, zero, NULL);
+    move_yaw(reference, GW_ZERO, NULL);
+    add_displacement(reference);
+}
+
+void gw_reference_freeze(gw_reference_t *reference)
+{
+    stand(reference);
+}
+
+gw_pose_t gw_reference_pose(const gw_reference_t *reference)
+{
+    const gw_pose_t pose = {reference->x_m.value, reference->y_m.value, reference->theta_rad.value};
+    return pose;
+}
+
+gw_real_t gw_reference_distance(const gw_reference_t *reference, const gw_plan_t *plan)
+{
+    const gw_vector_t error = {gw_sum_subtract_from(plan->pose.x_m, reference->x_m),
+                               gw_sum_subtract_from(plan->pose.y_m, reference->y_m)};
+    return gw_length(error);
+}
+
+gw_real_t gw_reference_angle(const gw_reference_t *reference, const gw_plan_t *plan)
+{
+    return gw_abs(gw_wrap_angle(gw_sum_subtract_from(plan->pose.theta_rad, reference->theta_rad)));
+}
