@@ -16,7 +16,7 @@ using giveway::Model;
 using giveway::Status;
 using giveway::testbed::Variables;
 
-struct Run {
+struct Bench {
     std::unique_ptr<Model> model{giveway::create_model()};
     Message message{};
     [[nodiscard]] Variables& v() const { return *static_cast<Variables*>(model->variables()); }
@@ -34,7 +34,7 @@ struct Run {
 TEST(Testbed, CollisionClosesItsEnergyAccount) {
     for (const int kind : {0, 1, 2}) {
         for (const int mount : {0, 1}) {
-            Run run;
+            Bench run;
             run.v().bumper_kind = kind;
             run.v().bumper_mount = mount;
             if (kind != 0 && mount == 1) {
@@ -52,9 +52,9 @@ TEST(Testbed, CollisionClosesItsEnergyAccount) {
 }
 
 TEST(Testbed, StepsOfWholeTicksGiveTheSameBits) {
-    Run one;
-    Run two;
-    Run half;
+    Bench one;
+    Bench two;
+    Bench half;
     one.initialise();
     two.initialise();
     half.initialise();
@@ -66,8 +66,8 @@ TEST(Testbed, StepsOfWholeTicksGiveTheSameBits) {
 }
 
 TEST(Testbed, StepsAcrossTicksAgreeToTheTolerance) {
-    Run one;
-    Run odd;
+    Bench one;
+    Bench odd;
     one.initialise();
     odd.initialise();
     one.step_to(0.21, 1e-3);
@@ -78,7 +78,7 @@ TEST(Testbed, StepsAcrossTicksAgreeToTheTolerance) {
 }
 
 TEST(Testbed, ResetAndRunAgainGivesTheSameBits) {
-    Run run;
+    Bench run;
     run.initialise();
     run.step_to(0.2, 1e-3);
     const Variables first = run.v();
@@ -89,7 +89,7 @@ TEST(Testbed, ResetAndRunAgainGivesTheSameBits) {
 }
 
 TEST(Testbed, UnpoweredDrivesGiveNoTorque) {
-    Run run;
+    Bench run;
     run.v().command_enable = false;
     run.v().start_vx = 0.1;
     run.v().slider_present = false;
@@ -103,7 +103,7 @@ TEST(Testbed, UnpoweredDrivesGiveNoTorque) {
 
 TEST(Testbed, RefusesWhatDoesNotFitTogether) {
     const auto refusal = [](auto change) {
-        Run run;
+        Bench run;
         change(run.v());
         EXPECT_EQ(run.model->initialise(0.0, run.message), Status::error);
         return std::string(run.message.text);
