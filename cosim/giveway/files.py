@@ -60,11 +60,11 @@ def _swap(temporary: Path, folder: Path) -> None:
         if path.is_file():
             _sync(path)
     if not folder.exists() or not any(folder.iterdir()):
-        os.replace(temporary, folder)  # onto an empty folder, too: one atomic rename
+        temporary.replace(folder)  # onto an empty folder, too: one atomic rename
         return
     old = Path(tempfile.mkdtemp(prefix=f".{folder.name}-old-", dir=folder.absolute().parent))
-    os.replace(folder, old)
-    os.replace(temporary, folder)
+    folder.replace(old)
+    temporary.replace(folder)
     shutil.rmtree(old, ignore_errors=True)
 
 
@@ -77,7 +77,7 @@ def write_text(path: Path, text: str) -> None:
             stream.write(text)
         temporary.chmod(0o644)
         _sync(temporary)
-        os.replace(temporary, path)
+        temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise

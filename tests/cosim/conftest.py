@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import giveway
 import pytest
 from giveway.result import Result
 
-Cli = Callable[..., subprocess.CompletedProcess[str]]
+sys.path.insert(0, str(Path(__file__).parent))  # for the helpers beside the tests
+
+from cosim_helpers import Cli, short
 
 
 @pytest.fixture
@@ -34,12 +34,6 @@ def cli(tmp_path: Path) -> Cli:
     return call
 
 
-def short(bumper: str = "magnetic", **changes: object) -> giveway.Scenario:
-    """The motionless experiment up to shortly after the detection."""
-    scenario = giveway.experiment("motionless").scenario(bumper)
-    return dataclasses.replace(scenario, **{"duration_s": 0.5, **changes})  # type: ignore[arg-type]
-
-
 @pytest.fixture(scope="session")
 def short_run() -> Result:
     return giveway.run(short())
@@ -50,8 +44,3 @@ def full_runs() -> dict[str, Result]:
     """The whole experiment with every bumper."""
     experiment = giveway.experiment("motionless")
     return {bumper: giveway.run(experiment.scenario(bumper)) for bumper in experiment.bumpers}
-
-
-def folder_content(folder: Path) -> Sequence[str]:
-    """All names below ``folder``, hidden ones too."""
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))

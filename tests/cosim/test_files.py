@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import folder_content
+from cosim_helpers import folder_content
 from giveway.errors import FileError
 from giveway.files import check_output, replace_folder, write_text
 
@@ -63,7 +63,7 @@ def test_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.Monkey
     def full_disk(*_arguments: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("giveway.files.os.replace", full_disk)
+    monkeypatch.setattr("giveway.files.Path.replace", full_disk)
     with pytest.raises(OSError, match="no space"):
         write_text(path, "new")
     assert path.read_text() == "old"

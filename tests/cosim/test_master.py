@@ -11,7 +11,7 @@ from pathlib import Path
 import giveway
 import numpy as np
 import pytest
-from conftest import short
+from cosim_helpers import short
 from giveway import native
 from giveway.errors import FileError, GivewayError, SimulationError
 from giveway.fmu import open_fmu

@@ -1,11 +1,11 @@
-"""Metrics on a collision in closed form: every expected number follows from tests/cosim/synthetic.py by hand."""
+"""Metrics on a collision in closed form: every expected number follows by hand from synthetic_collision.py."""
 
 from __future__ import annotations
 
 import math
 
 import pytest
-import synthetic
+import synthetic_collision as synthetic
 from giveway.metrics import Collision, Metric, collision
 
 # Sums over a 1 ms grid against integrals: at most one step's worth of force (40 N x 1 ms) on 2 N s.

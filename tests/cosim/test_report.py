@@ -9,7 +9,7 @@ from pathlib import Path
 
 import giveway
 import pytest
-from conftest import Cli, folder_content
+from cosim_helpers import Cli, folder_content
 from giveway.metrics import Metric
 from giveway.report import render
 from giveway.result import Result

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import giveway
 import pytest
-from conftest import Cli, folder_content
+from cosim_helpers import Cli, folder_content
 from giveway import native
 
 RUN = ("run", "motionless", "--out", "out/run")
