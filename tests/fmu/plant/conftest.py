@@ -1,10 +1,14 @@
 import ctypes
+import sys
+from pathlib import Path
 
 import pytest
 
-import plant_probe
+sys.path.insert(0, str(Path(__file__).parent))  # the helpers beside the tests
 
 
 @pytest.fixture(scope="session")
 def library() -> ctypes.CDLL:
+    import plant_probe
+
     return plant_probe.load()

@@ -219,9 +219,7 @@ class Reference:
 
     def plate_locked(self, modes: Modes) -> bool:
         p = self.p
-        return (
-            p.bumper_kind == KIND_NONE or not p.slider_present or bool(self.ideal and modes.latched)
-        )
+        return p.bumper_kind == KIND_NONE or not p.slider_present or bool(self.ideal and modes.latched)
 
     def plate(self, x: np.ndarray) -> tuple[float, ...]:
         """Plate position and velocity, world frame; its outward axis."""
@@ -267,9 +265,7 @@ class Reference:
         else:
             ct, st = math.cos(x[2]), math.sin(x[2])
             dx, dy = cx - x[0], cy - x[1]
-            distance, lx, ly, mx, my = closest_on_outline(
-                ct * dx + st * dy, ct * dy - st * dx, p.outline
-            )
+            distance, lx, ly, mx, my = closest_on_outline(ct * dx + st * dy, ct * dy - st * dx, p.outline)
             rx, ry = ct * lx - st * ly, st * lx + ct * ly
             qx, qy = x[0] + rx, x[1] + ry
             nx, ny = ct * mx - st * my, st * mx + ct * my
@@ -338,9 +334,7 @@ class Reference:
                 load[row] = -p.fault_velocity_term * omega * v_roll / p.roller_radius
 
             twist_rate = x[9 + i] - wheel_speed
-            t_i = (
-                p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * twist_rate
-            )
+            t_i = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * twist_rate
             torque.append(t_i)
             load[3 + i] = t_i
             f_i, zdot = self.roller(i, x[15 + i], v_radial)
@@ -351,9 +345,7 @@ class Reference:
             dissipated += p.drivetrain_damping * twist_rate**2
             if p.wheel_traction[i]:
                 stored_rate = (
-                    p.roller_presliding_stiffness[i] * x[15 + i] * zdot
-                    if p.roller_model == ROLLER_BRISTLE
-                    else 0.0
+                    p.roller_presliding_stiffness[i] * x[15 + i] * zdot if p.roller_model == ROLLER_BRISTLE else 0.0
                 )
                 dissipated += f_i * v_radial - stored_rate
 
@@ -390,10 +382,7 @@ class Reference:
                     floor = one_sided(p.floor_stiffness, depth, x[21], p.floor_damping)
                     dissipated += (floor - p.floor_stiffness * depth) * x[21]
                 load[13] = p.hanging_mass * GRAVITY - tension - floor
-            rail = (
-                p.slider_friction * math.tanh(x[19] / p.slider_friction_speed)
-                + p.slider_damping * x[19]
-            )
+            rail = p.slider_friction * math.tanh(x[19] / p.slider_friction_speed) + p.slider_damping * x[19]
             dissipated += rail * x[19]
             load[9] += self.ex * (tension - rail)
             load[10] += self.ey * (tension - rail)
@@ -542,9 +531,7 @@ class Reference:
         p = self.p
         ci, si = math.cos(x[2] + 2.0 * math.pi * i / 3.0), math.sin(x[2] + 2.0 * math.pi * i / 3.0)
         wheel_speed = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
-        torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (
-            x[9 + i] - wheel_speed
-        )
+        torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (x[9 + i] - wheel_speed)
         return max(-p.torque_limit, min(p.torque_limit, u.motor_torque[i])) - torque
 
     def indicators(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> list[float]:
@@ -552,11 +539,7 @@ class Reference:
         g = [0.0] * INDICATORS
         for i in range(3):
             direction = modes.gear[i]
-            g[i] = (
-                x[9 + i] * direction
-                if direction
-                else p.gear_stiction - abs(self.gear_surplus(i, x, u))
-            )
+            g[i] = x[9 + i] * direction if direction else p.gear_stiction - abs(self.gear_surplus(i, x, u))
         if p.slider_present:
             g[CONTACT] = self.contact(x)[0]
             if p.rope_attached:
@@ -564,9 +547,7 @@ class Reference:
                 g[LANDING] = x[20] - p.drop_height
             if p.bumper_kind != KIND_NONE:
                 if self.ideal and modes.latched:
-                    g[BUMPER] = (
-                        p.latch_force + p.preload - self.evaluate(t, x, u, modes)["internal_force"]
-                    )
+                    g[BUMPER] = p.latch_force + p.preload - self.evaluate(t, x, u, modes)["internal_force"]
                 else:
                     g[BUMPER] = x[22]
                 g[BOTTOM] = x[22] - p.travel
@@ -592,9 +573,7 @@ class Reference:
             return 1 if modes.end_stop else -1
         return 0 if self.plate_locked(modes) else (-1 if modes.bottom_stop else 1)
 
-    def transition(
-        self, t: float, x: np.ndarray, u: Inputs, modes: Modes, index: int
-    ) -> tuple[np.ndarray, Modes]:
+    def transition(self, t: float, x: np.ndarray, u: Inputs, modes: Modes, index: int) -> tuple[np.ndarray, Modes]:
         x, modes = np.array(x), modes.copy()
         if index < 3:
             if modes.gear[index]:
@@ -628,7 +607,7 @@ class Reference:
         x[22] = 0.0
         still = Modes()
         before = self.stored_energy(x, still)
-        # J at this instant, with the plate's lock closed and without the locks of weight and carriage.
+        # J at this instant, the plate's lock closed; the locks of weight and carriage do not exist.
         theta = x[2]
         rows = np.zeros((9, self.N_Q))
         for i in range(3):
@@ -676,9 +655,7 @@ class Reference:
 
     # --- Simulation -------------------------------------------------------------------------------
 
-    def _crossing(
-        self, i: int, left: float, right: float, dense: DenseOutput, u: Inputs, modes: Modes
-    ) -> float:
+    def _crossing(self, i: int, left: float, right: float, dense: DenseOutput, u: Inputs, modes: Modes) -> float:
         def value(t: float) -> float:
             return self.indicators(t, dense(t), u, modes)[i]
 
@@ -702,11 +679,7 @@ class Reference:
         while solver.status == "running":
             solver.step()
             new = self.indicators(solver.t, solver.y.tolist(), u, modes)
-            crossed = [
-                i
-                for i, sign in enumerate(directions)
-                if sign and sign * old[i] <= 0.0 < sign * new[i]
-            ]
+            crossed = [i for i, sign in enumerate(directions) if sign and sign * old[i] <= 0.0 < sign * new[i]]
             if not crossed and not sampling.due(solver.t):
                 old = new
                 continue

@@ -8,7 +8,6 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
-
 from kkt_reference import INDICATORS, STATES, Inputs, Modes, Parameters
 
 MODE_COUNT = 9
@@ -30,9 +29,7 @@ def library_path() -> Path:
 def load() -> ctypes.CDLL:
     path = library_path()
     if not path.exists():
-        raise FileNotFoundError(
-            f"{path}: build the target giveway_plant_probe, or set GIVEWAY_TEST_DIR to where it is"
-        )
+        raise FileNotFoundError(f"{path}: build the target giveway_plant_probe, or set GIVEWAY_TEST_DIR to where it is")
     library = ctypes.CDLL(str(path))
     library.probe_new.restype = ctypes.c_void_p
     library.probe_error.restype = ctypes.c_char_p
@@ -100,21 +97,33 @@ class Plant:
         return self._call("indicators", x, u, modes, INDICATORS)
 
     def outputs(self, x: np.ndarray, u: Inputs, modes: Modes) -> dict[str, float]:
-        return dict(
-            zip(OUTPUTS, self._call("outputs", x, u, modes, len(OUTPUTS)).tolist(), strict=True)
-        )
+        return dict(zip(OUTPUTS, self._call("outputs", x, u, modes, len(OUTPUTS)).tolist(), strict=True))
 
-    def transition(
-        self, x: np.ndarray, u: Inputs, modes: Modes, fired: np.ndarray
-    ) -> tuple[np.ndarray, Modes]:
+    def transition(self, x: np.ndarray, u: Inputs, modes: Modes, fired: np.ndarray) -> tuple[np.ndarray, Modes]:
         state, inputs, mode, fired = (
             np.array(x, dtype=float),
             _array(input_row(u)),
             _array(modes.as_list()),
             _array(fired),
         )
-        self._library.probe_transition(
-            self._handle, _pointer(state), _pointer(inputs), _pointer(mode), _pointer(fired)
+        self._library.probe_transition(self._handle, _pointer(state), _pointer(inputs), _pointer(mode), _pointer(fired))
+        return state, modes_from(mode)
+
+    def accept_inputs(self, x: np.ndarray, u: Inputs, modes: Modes) -> Modes:
+        state, inputs, mode = _array(x), _array(input_row(u)), _array(modes.as_list())
+        self._library.probe_accept_inputs(self._handle, _pointer(state), _pointer(inputs), _pointer(mode))
+        return modes_from(mode)
+
+    def initial_state(self, motion: list[float], u: Inputs) -> tuple[np.ndarray, Modes]:
+        """`motion`: x, y, theta, vx, vy, omega, slider speed."""
+        start, inputs, state, mode = (
+            _array(motion),
+            _array(input_row(u)),
+            np.empty(STATES),
+            np.empty(MODE_COUNT),
+        )
+        self._library.probe_initial_state(
+            self._handle, _pointer(start), _pointer(inputs), _pointer(state), _pointer(mode)
         )
         return state, modes_from(mode)
 
@@ -154,10 +163,7 @@ class Plant:
         )
         if count < 0:
             raise RuntimeError(self._library.probe_error(self._handle).decode())
-        events = [
-            (float(t), int(i))
-            for t, i in zip(event_times[:count], event_indices[:count], strict=True)
-        ]
+        events = [(float(t), int(i)) for t, i in zip(event_times[:count], event_indices[:count], strict=True)]
         return Run(
             times,
             states,

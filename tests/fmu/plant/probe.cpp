@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hybrid_integrator.hpp"
+#include "initial_state.hpp"
 #include "outputs.hpp"
 #include "plant.hpp"
 #include "state.hpp"
@@ -278,6 +279,26 @@ EXPORT void probe_transition(void* handle, double* x, const double* u, double* m
     std::copy_n(fired, direction.size(), direction.begin());
     plant::transition(state, inputs_from(u), modes, direction, probe->p, probe->d);
     std::copy(state.begin(), state.end(), x);
+    modes_to(modes, m);
+}
+
+// motion: x, y, theta, vx, vy, omega, slider speed.
+EXPORT void probe_initial_state(void* handle, const double* motion, const double* u, double* x,
+                                double* m) {
+    const auto* probe = static_cast<const Probe*>(handle);
+    const plant::InitialMotion<double> start = {motion[0], motion[1], motion[2], motion[3],
+                                                motion[4], motion[5], motion[6]};
+    plant::StateVector<double> state = {};
+    Modes modes = {};
+    plant::initial_state(start, inputs_from(u), probe->p, probe->d, state, modes);
+    std::copy(state.begin(), state.end(), x);
+    modes_to(modes, m);
+}
+
+EXPORT void probe_accept_inputs(void* handle, const double* x, const double* u, double* m) {
+    const auto* probe = static_cast<const Probe*>(handle);
+    auto modes = modes_from(m);
+    plant::accept_inputs(state_from(x), inputs_from(u), modes, probe->p, probe->d);
     modes_to(modes, m);
 }
 

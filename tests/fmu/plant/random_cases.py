@@ -7,7 +7,6 @@ import math
 from dataclasses import fields
 
 import numpy as np
-
 from kkt_reference import (
     KIND_MAGNETIC,
     KIND_NONE,
@@ -31,9 +30,7 @@ _NOT_SCALED = {
 }
 
 
-def parameters(
-    rng: np.random.Generator, kind: int, mount: int, latch: int, roller: int
-) -> Parameters:
+def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roller: int) -> Parameters:
     p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, roller_model=roller)
     for f in fields(p):
         if f.type == "float" and f.name not in _NOT_SCALED and not f.name.startswith("fault"):
@@ -55,9 +52,7 @@ def parameters(
         angles = np.sort(rng.uniform(0.0, 2.0 * math.pi, rng.integers(5, 17)))
         angles[:3] = 0.0, 2.1, 4.2  # the centre stays inside
         angles = np.sort(angles)
-        p.outline = list(
-            zip((0.35 * np.cos(angles)).tolist(), (0.25 * np.sin(angles)).tolist(), strict=True)
-        )
+        p.outline = list(zip((0.35 * np.cos(angles)).tolist(), (0.25 * np.sin(angles)).tolist(), strict=True))
     return p
 
 
@@ -96,18 +91,14 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
         plate = np.array(r.plate(x)[0:2])
         away = p.nose_radius - depth
         side = rng.normal(0.0, 0.1)
-        wanted = np.array(
-            [nose_x - away * out_x - side * out_y, nose_y - away * out_y + side * out_x]
-        )
+        wanted = np.array([nose_x - away * out_x - side * out_y, nose_y - away * out_y + side * out_x])
         x[0:2] += wanted - plate
     else:
         k = rng.integers(len(p.outline))
         corner, following = np.array(p.outline[k]), np.array(p.outline[(k + 1) % len(p.outline)])
         along = following - corner
         normal = np.array([along[1], -along[0]]) / np.linalg.norm(along)
-        if (
-            rng.random() < 0.4
-        ):  # a vertex: outside of it, in any direction between its edges' normals
+        if rng.random() < 0.4:  # a vertex: outside of it, in any direction between its edges' normals
             previous = corner - np.array(p.outline[k - 1])
             other = np.array([previous[1], -previous[0]]) / np.linalg.norm(previous)
             share = rng.random()

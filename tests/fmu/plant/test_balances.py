@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 import random_cases
 from kkt_reference import (
     KIND_SPRING,
@@ -17,14 +16,14 @@ from kkt_reference import (
     Reference,
 )
 from plant_probe import Plant
-from scenarios import COLLISIONS, all_runs, collision, disconnected
+from plant_scenarios import COLLISIONS, all_runs, collision, disconnected
 
 RUNS = all_runs()
 # (relative, absolute tolerance of the solver, bound of the residual over the energy turned over)
 PRODUCTION, TIGHT = (1e-6, 1e-9, 1e-6), (1e-9, 1e-11, 1e-8)
 
 
-@pytest.mark.parametrize("rtol, atol, bound", [PRODUCTION, TIGHT], ids=["production", "tight"])
+@pytest.mark.parametrize(("rtol", "atol", "bound"), [PRODUCTION, TIGHT], ids=["production", "tight"])
 @pytest.mark.parametrize("name", RUNS)
 def test_energy_balance_closes(library, name, rtol, atol, bound):
     """W - D - stored = 0, through every event. Measured: 7e-7 at the tolerances used in production,
@@ -56,9 +55,7 @@ def test_the_velocity_term_does_no_work(library):
         turning = wheels / (p.mass + wheels) * x[5]
         speed = np.hypot(x[3], x[4])
         # Some ten operations on numbers of this size.
-        assert rate[3:6] == pytest.approx(
-            [-turning * x[4], turning * x[3], 0.0], abs=1e-13 * (1.0 + speed * abs(x[5]))
-        )
+        assert rate[3:6] == pytest.approx([-turning * x[4], turning * x[3], 0.0], abs=1e-13 * (1.0 + speed * abs(x[5])))
 
 
 def test_free_spinning_base_keeps_its_energy(library):
@@ -70,9 +67,7 @@ def test_free_spinning_base_keeps_its_energy(library):
     energy = [plant.outputs(state, Inputs(), Modes())["stored_energy"] for state in run.states]
     # The velocity has turned by kappa omega t = 0.24 rad meanwhile; integrator at 1e-9.
     assert np.ptp(energy) < 1e-8 * energy[0]
-    assert np.arctan2(run.states[-1, 4], run.states[-1, 3]) - np.arctan2(
-        -0.2, 0.3
-    ) == pytest.approx(0.2431, abs=1e-3)
+    assert np.arctan2(run.states[-1, 4], run.states[-1, 3]) - np.arctan2(-0.2, 0.3) == pytest.approx(0.2431, abs=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -88,9 +83,7 @@ def test_free_spinning_base_keeps_its_energy(library):
 def test_slider_momentum_is_the_contact_impulse(library, name):
     """Rope off, rail smooth: along the rail the contact is the slider's only force."""
     reference, x, modes, inputs = collision(COLLISIONS[name])
-    p = replace(
-        reference.p, rope_attached=0, slider_friction=0.0, slider_damping=0.0, rail_direction=0.2
-    )
+    p = replace(reference.p, rope_attached=0, slider_friction=0.0, slider_damping=0.0, rail_direction=0.2)
     x[20:22], modes.rope_taut = 0.0, 0
     run = Plant(library, p).simulate(x, modes, np.linspace(0.0, 0.6, 61), inputs)
     s = run.states
@@ -112,16 +105,10 @@ def test_robot_momentum_is_the_contact_impulse(library, mount):
     reference = Reference(p)
     x = np.zeros(STATES)
     x[19] = x[21] = 0.5
-    run = Plant(library, p).simulate(
-        x, Modes(rope_taut=1), np.linspace(0.0, 0.6, 61), [(0.0, Inputs())]
-    )
+    run = Plant(library, p).simulate(x, Modes(rope_taut=1), np.linspace(0.0, 0.6, 61), [(0.0, Inputs())])
     s = run.states
-    moved = p.mass + 1.5 * (
-        p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2
-    )
-    momentum = moved * s[:, 3] + (
-        p.plate_mass * (s[:, 3] + s[:, 23]) if reference.on_robot else 0.0
-    )
+    moved = p.mass + 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
+    momentum = moved * s[:, 3] + (p.plate_mass * (s[:, 3] + s[:, 23]) if reference.on_robot else 0.0)
     assert s[-1, 26] > 1.0
     assert np.abs(momentum - s[:, 26]).max() < 1e-8 * s[-1, 26]
 
@@ -134,9 +121,7 @@ def test_impulse_and_spin_are_the_integrals_of_the_contact_force(library):
     plant = Plant(library, p)
     step = 2e-5
     run = plant.simulate(x, modes, np.arange(0.0, 0.2 + step / 2.0, step), inputs)
-    outputs = [
-        plant.outputs(s, inputs[0][1], m) for s, m in zip(run.states, run.modes, strict=True)
-    ]
+    outputs = [plant.outputs(s, inputs[0][1], m) for s, m in zip(run.states, run.modes, strict=True)]
     fx, fy = (np.array([o[f"contact_force_{axis}"] for o in outputs]) for axis in "xy")
     qx, qy = (np.array([o[f"contact_point_{axis}"] for o in outputs]) for axis in "xy")
     moment = (qx - run.states[:, 0]) * fy - (qy - run.states[:, 1]) * fx
@@ -145,7 +130,7 @@ def test_impulse_and_spin_are_the_integrals_of_the_contact_force(library):
     integral = [step / 3.0 * weights @ force for force in (fx, fy, moment)]
     inertia = p.yaw_inertia + 3.0 * p.wheel_inertia * (p.wheel_distance / p.wheel_radius) ** 2
     end = run.states[-1]
-    assert abs(end[26]) > 1.0 and abs(end[27]) > 0.01 and abs(end[5]) > 0.05
+    assert np.all(np.abs(end[[26, 27, 5]]) > [1.0, 0.01, 0.05])
     # The force has a corner where the contact closes: Simpson errs there by step^2 times its slope
     # (5 N/ms), 2e-6 N s.
     assert [end[26], end[27], inertia * end[5]] == pytest.approx(integral, abs=5e-6)

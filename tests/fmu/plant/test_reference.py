@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
 from kkt_reference import (
     KIND_MAGNETIC,
     KIND_NONE,
@@ -19,7 +18,7 @@ from kkt_reference import (
     Reference,
     closest_on_outline,
 )
-from scenarios import COLLISIONS, collision, disconnected, still
+from plant_scenarios import COLLISIONS, collision, disconnected, still
 
 
 def test_free_spinning_base_moves_as_the_closed_form_says():
@@ -48,10 +47,7 @@ def test_static_push_is_shared_between_wheels_and_rollers():
     lever = turn @ point
     push = np.array([*force, lever[0] * force[1] - lever[1] * force[0]])
     angles = theta + np.array([0.0, 2.0, 4.0]) * math.pi / 3.0
-    j_w = (
-        np.stack([-np.sin(angles), np.cos(angles), np.full(3, p.wheel_distance)], axis=1)
-        / p.wheel_radius
-    )
+    j_w = np.stack([-np.sin(angles), np.cos(angles), np.full(3, p.wheel_distance)], axis=1) / p.wheel_radius
     j_n = np.stack([np.cos(angles), np.sin(angles), np.zeros(3)], axis=1)
     k = p.drivetrain_stiffness * j_w.T @ j_w + j_n.T @ np.diag(p.roller_presliding_stiffness) @ j_n
     shift = np.linalg.solve(k, push)
@@ -66,25 +62,19 @@ def test_static_push_is_shared_between_wheels_and_rollers():
 def test_unloaded_state_is_an_equilibrium():
     for mount in (MOUNT_SLIDER, MOUNT_ROBOT):
         for kind in (KIND_NONE, KIND_SPRING, KIND_MAGNETIC):
-            p = Parameters(
-                bumper_mount=mount, bumper_kind=kind, rope_attached=0, latch_model=LATCH_IDEALISED
-            )
+            p = Parameters(bumper_mount=mount, bumper_kind=kind, rope_attached=0, latch_model=LATCH_IDEALISED)
             r, x, modes = still(p)
             assert np.abs(r.rhs(0.0, x, Inputs(), modes)).max() < 1e-12
 
 
-@pytest.mark.parametrize(
-    "name", ["none", "magnetic continuous on robot", "magnetic idealised on slider"]
-)
+@pytest.mark.parametrize("name", ["none", "magnetic continuous on robot", "magnetic idealised on slider"])
 def test_energy_closes(name):
     """D sums what every element takes; stored energy is built from the state alone: nothing makes
     them agree but physics."""
     r, x, modes, inputs = collision(COLLISIONS[name])
     run = r.simulate(x, modes, np.linspace(0.0, 0.6, 31), inputs)
     start = r.stored_energy(x, modes)
-    residual = [
-        s[24] - s[25] - (r.stored_energy(s, m) - start) for s, m in zip(run.states, run.modes)
-    ]
+    residual = [s[24] - s[25] - (r.stored_energy(s, m) - start) for s, m in zip(run.states, run.modes, strict=True)]
     assert len(run.events) > 3
     # Local errors of 1e-10 over some thousand steps against Joules turned over.
     assert np.abs(residual).max() < 1e-8 * run.states[-1, 25]
@@ -95,17 +85,13 @@ def test_closest_point_against_a_finely_sampled_outline():
     outline = Parameters().outline
     corners = np.array(outline)
     share = np.linspace(0.0, 1.0, 4001)[:, None]
-    samples = np.concatenate(
-        [a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0))]
-    )
-    inward = [
-        np.array([-(b - a)[1], (b - a)[0]]) for a, b in zip(corners, np.roll(corners, -1, axis=0))
-    ]
+    samples = np.concatenate([a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)])
+    inward = [np.array([-(b - a)[1], (b - a)[0]]) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
     seen = {True: 0, False: 0}
     for q in rng.uniform(-0.5, 0.5, (400, 2)):
         distance, *rest = closest_on_outline(q[0], q[1], outline)
         point, normal = np.array(rest[0:2]), np.array(rest[2:4])
-        inside = all((q - a) @ w > 0.0 for a, w in zip(corners, inward))
+        inside = all((q - a) @ w > 0.0 for a, w in zip(corners, inward, strict=True))
         seen[inside] += 1
         nearest = np.min(np.linalg.norm(samples - q, axis=1))
         assert (distance < 0.0) == inside

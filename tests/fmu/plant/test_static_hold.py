@@ -16,10 +16,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from kkt_reference import Inputs, Parameters
 from plant_probe import Plant
-from scenarios import still
+from plant_scenarios import still
 
 SETTLED_S, HELD_S = 5.0, 10.0
 # Stiction equal to Coulomb friction, as in the robot file.
@@ -80,7 +79,7 @@ def motion(library, p: Parameters, direction: float, point: tuple[float, float],
 
 
 @pytest.mark.parametrize("dither", DITHERS)
-@pytest.mark.parametrize("direction, point", SIDES)
+@pytest.mark.parametrize(("direction", "point"), SIDES)
 def test_holds(library, direction, point, dither):
     assert motion(library, ROBOT, direction, point, DITHERS[dither]) < 1e-6
 

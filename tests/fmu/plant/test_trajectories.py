@@ -10,10 +10,9 @@ further, the two converge towards each other (3e-9 at 1e-12).
 
 import numpy as np
 import pytest
-
 from kkt_reference import BUMPER, STATES, Reference
 from plant_probe import Plant
-from scenarios import COLLISIONS, all_runs, collision, pushed, spinning
+from plant_scenarios import COLLISIONS, all_runs, collision, pushed, spinning
 
 SIGNAL_TOLERANCE = 1e-6
 EVENT_TOLERANCE_S = 1e-7
@@ -58,7 +57,7 @@ def test_the_collisions_are_collisions():
 
 
 @pytest.mark.parametrize(
-    "run, fault, states",
+    ("run", "fault", "states"),
     [
         (collision(COLLISIONS["spring on slider"]), {"fault_contact_moment": -1.0}, [2, 5]),
         (

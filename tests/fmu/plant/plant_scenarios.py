@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-
 from kkt_reference import (
     KIND_MAGNETIC,
     KIND_NONE,
@@ -74,9 +73,7 @@ def collision(
     """Slider at 0.5 m/s, 6 mm before the robot, off its centre; the robot stands, unpowered."""
     kind, mount, latch, other = case
     p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, run_up=0.006)
-    p = replace(
-        p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04
-    )
+    p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04)
     p = replace(
         p,
         mount_azimuth=math.pi + 0.1,
@@ -120,9 +117,7 @@ def still(p: Parameters) -> tuple[Reference, np.ndarray, Modes]:
     return reference, x, modes
 
 
-def moving(
-    p: Parameters, vx: float, vy: float, omega: float
-) -> tuple[Reference, np.ndarray, Modes]:
+def moving(p: Parameters, vx: float, vy: float, omega: float) -> tuple[Reference, np.ndarray, Modes]:
     """The base in motion, its drivetrains turning along without torque, no slider."""
     reference = Reference(replace(p, slider_present=0))
     x = np.zeros(STATES)
