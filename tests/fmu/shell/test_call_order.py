@@ -1,0 +1,209 @@
+"""The state machine: every call in every state, and what remains possible after the model failed."""
+
+import ctypes
+import math
+
+import pytest
+from fmu_driver import ERROR, OK, Fmu
+
+STATES = {
+    "instantiated": lambda fmu: None,
+    "initialisation mode": lambda fmu: fmu.setup(),
+    "step mode": lambda fmu: (fmu.setup(), fmu.exit_initialisation()),
+    "terminated": lambda fmu: (fmu.setup(), fmu.exit_initialisation(), fmu.call("Terminate")),
+    "failed": lambda fmu: (fmu.set("lag.limit", 0.0), fmu.setup(), fmu.exit_initialisation()),
+}
+
+CALLS = {
+    "EnterInitializationMode": lambda fmu: fmu.setup(),
+    "ExitInitializationMode": lambda fmu: fmu.exit_initialisation(),
+    "DoStep": lambda fmu: fmu.step(0.0, 0.1),
+    "Terminate": lambda fmu: fmu.call("Terminate"),
+    "Reset": lambda fmu: fmu.call("Reset"),
+    "Get": lambda fmu: fmu.get_references("real", [10])[0],
+    "Set": lambda fmu: fmu.set_references("real", [10], [1.0]),
+}
+
+LEGAL = {
+    "instantiated": {"EnterInitializationMode", "Set", "Reset"},
+    "initialisation mode": {"ExitInitializationMode", "Get", "Set", "Reset"},
+    "step mode": {"DoStep", "Terminate", "Get", "Set", "Reset"},
+    "terminated": {"Get", "Reset"},
+    "failed": {"Get", "Reset"},
+}
+
+
+@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.parametrize("state", STATES)
+def test_every_call_in_every_state(lag: Fmu, state: str, call: str) -> None:
+    assert lag.instantiate()
+    STATES[state](lag)
+    lag.messages.clear()
+    status = CALLS[call](lag)
+    if call in LEGAL[state]:
+        assert (status, lag.messages) == (OK, [])
+        return
+    assert status == ERROR
+    first = "SetupExperiment" if call == "EnterInitializationMode" and lag.version == 2 else call
+    assert lag.last_message.startswith(f"fmi{lag.version}{first}")
+    assert lag.last_message.endswith(f": not allowed in state '{state}'")
+
+
+def test_a_refused_call_changes_nothing(lag: Fmu) -> None:
+    lag.start()
+    before = lag.snapshot()
+    assert lag.exit_initialisation() == ERROR
+    assert lag.step(0.5, 0.1) == ERROR
+    assert lag.snapshot() == before
+    assert lag.step(0.0, 0.1) == OK
+
+
+def test_without_an_instance_nothing_crashes(lag: Fmu) -> None:
+    for call in CALLS.values():
+        assert call(lag) == ERROR
+    lag.free()
+
+
+@pytest.mark.parametrize("lag", [2], indirect=True)
+def test_fmi2_needs_an_experiment(lag: Fmu) -> None:
+    assert lag.instantiate()
+    assert lag.call("EnterInitializationMode") == ERROR
+    assert "not allowed before fmi2SetupExperiment" in lag.last_message
+
+
+@pytest.mark.parametrize(
+    ("time", "size", "text"),
+    [
+        (0.2, 0.1, "communication point is 0.2 s, but the last step ended at 0.1 s"),
+        (0.0, 0.1, "communication point is 0 s, but the last step ended at 0.1 s"),
+        (math.nan, 0.1, "communication point is nan s"),
+        (0.1, 0.0, "communication step size is 0 s, but must be positive"),
+        (0.1, -0.1, "communication step size is -0.1 s, but must be positive"),
+        (0.1, math.inf, "communication step size is inf s, but must be positive"),
+        (0.1, 1.0, "the step would end at 1.1 s, after the stop time, 1 s"),
+    ],
+)
+def test_a_wrong_step_is_refused(lag: Fmu, time: float, size: float, text: str) -> None:
+    assert lag.instantiate()
+    assert lag.setup(stop=1.0) == OK
+    assert lag.exit_initialisation() == OK
+    assert lag.step(0.0, 0.1) == OK
+    assert lag.step(time, size) == ERROR
+    assert text in lag.last_message
+    assert lag.step(0.1, 0.9) == OK
+
+
+def test_summed_up_times_are_accepted(lag: Fmu) -> None:
+    """An importer that adds up 0.001 is off by rounding after a while, also from the stop time."""
+    assert lag.instantiate()
+    assert lag.setup(stop=1.0) == OK
+    assert lag.exit_initialisation() == OK
+    time = 0.0
+    for k in range(1000):
+        assert lag.step(time if k % 2 else k * 0.001, 0.001) == OK, lag.last_message
+        time += 0.001
+
+
+@pytest.mark.parametrize(("start", "stop"), [(math.nan, None), (math.inf, None), (1.0, 0.5), (0.0, math.nan)])
+def test_wrong_experiment_times_are_refused(lag: Fmu, start: float, stop: float | None) -> None:
+    assert lag.instantiate()
+    assert lag.setup(start, stop) == ERROR
+    assert "time is" in lag.last_message
+
+
+def test_a_model_that_cannot_start_says_why(lag: Fmu) -> None:
+    assert lag.instantiate()
+    assert lag.set("lag.limit", 0.0) == OK
+    assert lag.setup() == OK
+    assert lag.exit_initialisation() == ERROR
+    assert lag.last_message == f"fmi{lag.version}ExitInitializationMode: lag.limit is 0 N.m, nothing can hold that"
+
+
+def test_a_model_that_fails_says_why_and_steps_no_further_until_reset(lag: Fmu) -> None:
+    assert lag.instantiate()
+    assert lag.set("lag.limit", 0.5) == OK
+    assert lag.setup() == OK
+    assert lag.exit_initialisation() == OK
+    time = 0.0
+    while lag.step(time, 0.1) == OK:
+        time += 0.1
+        assert time < 2.0
+    assert lag.last_message == f"fmi{lag.version}DoStep: the lag broke at {time:g} s: 100% over"
+    assert lag.get("output.y") <= 0.5
+    assert lag.step(time, 0.1) == ERROR
+    assert "not allowed in state 'failed'" in lag.last_message
+    assert lag.call("Reset") == OK
+    assert lag.setup() == OK
+    assert lag.exit_initialisation() == OK
+    assert lag.get("lag.limit") == 10.0
+    assert lag.step(0.0, 0.1) == OK
+
+
+def test_reset_is_a_new_beginning(lag: Fmu) -> None:
+    lag.start()
+    fresh = lag.snapshot()
+    lag.set("input.u", 3.0)
+    lag.set("input.raw[0]", math.nan)
+    assert lag.step(0.0, 0.1) == OK
+    assert lag.snapshot() != fresh
+    assert lag.call("Reset") == OK
+    assert lag.setup() == OK
+    assert lag.exit_initialisation() == OK
+    assert lag.snapshot() == fresh
+
+
+def test_two_instances_do_not_know_each_other(lag: Fmu) -> None:
+    lag.start()
+    first = lag.instance
+    lag.start()
+    second, lag.instance = lag.instance, first
+    assert lag.set("input.u", -4.0) == OK
+    assert lag.step(0.0, 0.1) == OK
+    lag.instance, first = second, lag.instance
+    assert lag.get("input.u") == 1.0
+    assert lag.get("output.y") == 0.25
+    lag.call("FreeInstance")
+    lag.instance = first
+
+
+def test_what_is_not_of_this_build_is_refused(lag: Fmu) -> None:
+    for token in ("", "{00000000-0000-0000-0000-000000000000}", lag.token[:-1]):
+        assert not lag.instantiate(token=token)
+        assert "does not match" in lag.last_message
+
+
+def test_instances_that_cannot_be(lag: Fmu) -> None:
+    assert not lag.instantiate(name="")
+    assert "the instance name is missing" in lag.last_message
+    changes = [{"type": 0}] if lag.version == 2 else [{"event_mode": True}, {"intermediate": 1}]
+    for change in changes:
+        lag.messages.clear()
+        assert not lag.instantiate(**change)
+        assert "this FMU" in lag.last_message
+
+
+# Called with nothing but zeros: what an FMU does not offer, it refuses before it looks at its arguments.
+UNSUPPORTED = {
+    2: """GetStatus GetIntegerStatus GetStringStatus CancelStep GetFMUstate SetFMUstate FreeFMUstate
+        SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate GetDirectionalDerivative SetRealInputDerivatives
+        GetRealOutputDerivatives EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep
+        SetTime SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates
+        GetNominalsOfContinuousStates""",
+    3: """EnterConfigurationMode ExitConfigurationMode EnterEventMode EnterStepMode EvaluateDiscreteStates
+        UpdateDiscreteStates GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState
+        DeserializeFMUState GetNumberOfVariableDependencies GetVariableDependencies GetDirectionalDerivative
+        GetAdjointDerivative GetOutputDerivatives GetIntervalDecimal GetIntervalFraction GetShiftDecimal
+        GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
+        ActivateModelPartition EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
+        GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+        GetNumberOfEventIndicators GetNumberOfContinuousStates""",
+}
+
+
+def test_what_the_fmu_does_not_offer_is_refused_by_name(lag: Fmu) -> None:
+    lag.start()
+    zeros = [ctypes.c_size_t(0)] * 9
+    for name in UNSUPPORTED[lag.version].split():
+        assert lag.call(name, *zeros) != OK
+        assert lag.last_message.startswith(f"fmi{lag.version}{name}: this FMU does not support")
+    assert lag.step(0.0, 0.1) == OK

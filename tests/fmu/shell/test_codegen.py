@@ -1,0 +1,198 @@
+"""The code generator: a wrong table is refused by file, variable and key; a right one means what it says."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmu_driver import ROOT, fmu_path
+
+LAG = ROOT / "tests" / "fmu" / "shell" / "lag"
+
+
+def generate(folder: Path, table: str, robot: str | None = None, name: str = "lag") -> subprocess.CompletedProcess[str]:
+    (folder / "variables.toml").write_text(table)
+    (folder / "robot.toml").write_text(robot if robot is not None else (LAG / "robot.toml").read_text())
+    arguments = ["--table", folder / "variables.toml", "--robot", folder / "robot.toml", "--out", folder / "out"]
+    command = [sys.executable, "-m", "giveway_codegen", "sources", "--name", name, "--version", "1.0", *arguments]
+    return subprocess.run(command, cwd=ROOT / "fmu" / "codegen", capture_output=True, text=True, check=False)
+
+
+def table(variable: str) -> str:
+    return f"""schema_version = 1
+[model]
+name = "lag"
+description = "test"
+step_size_s = 0.01
+[[variable]]
+reference = 1
+name = "first"
+causality = "input"
+type = "real"
+unit = "N"
+start = 0.0
+description = "A good one"
+[[variable]]
+{variable}
+"""
+
+
+def variable(**changes: str | None) -> str:
+    good = {
+        "reference": "5",
+        "name": '"group.second"',
+        "causality": '"parameter"',
+        "type": '"real"',
+        "unit": '"m/s"',
+        "start": "1.0",
+        "minimum": "0.0",
+        "maximum": "2.0",
+        "description": '"Another"',
+    }
+    merged = {**good, **changes}
+    return "\n".join(f"{key} = {value}" for key, value in merged.items() if value is not None)
+
+
+def test_a_good_table_is_accepted(tmp_path: Path) -> None:
+    result = generate(tmp_path, table(variable()))
+    assert (result.returncode, result.stderr) == (0, "")
+    header = (tmp_path / "out" / "lag_variables.hpp").read_text()
+    assert "double group_second; // Another [m/s]" in header
+
+
+WRONG = {
+    "duplicate reference": (variable(reference="1"), "reference: 1 is taken by first"),
+    "reference of time": (variable(reference="0"), "reference: 0, but must be a whole number from 1"),
+    "reference as text": (variable(reference='"5"'), "reference: '5', but must be a whole number"),
+    "element reference taken": (variable(reference="0x0", count="2"), "reference: 0, but"),
+    "duplicate name": (variable(name='"first"'), "name: taken or too like first"),
+    "reserved name": (variable(name='"time"'), "name: 'time', but"),
+    "bad name": (variable(name='"Group.second"'), "name: 'Group.second', but must be words"),
+    "unknown unit": (variable(unit='"furlong"'), "unit: 'furlong': unknown unit symbol 'furlong'"),
+    "malformed unit": (variable(unit='"m/"'), "unit: 'm/': not a product of units"),
+    "no unit": (variable(unit=None), "unit: missing"),
+    "unit of an integer": (variable(type='"integer"', start="1"), "unit: a variable of type integer has no unit"),
+    "start below": (variable(start="-0.5"), "start: -0.5 is outside 0.0 to 2.0"),
+    "start above": (variable(start="2.0000001"), "start: 2.0000001 is outside 0.0 to 2.0"),
+    "start not finite": (variable(start="nan"), "start: nan, but must be a finite number"),
+    "start of the wrong type": (variable(start="true"), "start: True, but must be a finite number"),
+    "no start": (variable(start=None), "start: missing"),
+    "start of an output": (variable(causality='"output"'), "start: an output has no start value"),
+    "start list too short": (variable(count="3", start="[1.0, 1.0]"), "start: a list of 2 values for 3 variables"),
+    "missing robot key": (variable(start='{ robot = "lag.mass" }'), "robot.toml has no value lag.mass"),
+    "robot unit": (
+        variable(start='{ robot = "lag.time_constant" }'),
+        "robot.toml is in 's', the variable in 'm/s'",
+    ),
+    "robot list too long": (
+        variable(unit='"1"', minimum="-9.0", start='{ robot = "lag.weights" }'),
+        "has 2 values for 1 variables",
+    ),
+    "robot reference malformed": (variable(start='{ file = "x" }'), "start: {'file': 'x'}, but must be a value or"),
+    "range upside down": (variable(minimum="3.0"), "minimum: 3.0 is above the maximum 2.0"),
+    "fraction as integer": (
+        variable(type='"integer"', unit=None, start="1.5"),
+        "start: 1.5, but must be a whole number of 32 bits",
+    ),
+    "integer too large": (
+        variable(type='"integer"', unit=None, start="1", maximum="2147483648"),
+        "maximum: 2147483648, but must be a whole number of 32 bits",
+    ),
+    "boolean with range": (
+        variable(type='"boolean"', unit=None, start="true"),
+        "minimum: a boolean has no range",
+    ),
+    "unknown key": (variable(colour='"red"'), "colour: unknown key"),
+    "unknown causality": (variable(causality='"local"'), "causality: 'local', but must be one of"),
+    "unknown type": (variable(type='"string"'), "type: 'string', but must be one of"),
+    "no description": (variable(description=None), "description: missing"),
+    "non-finite parameter": (variable(allow_nonfinite="true"), "allow_nonfinite: True, but"),
+    "nominal": (variable(nominal="0.0"), "nominal: 0.0 is not positive"),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), WRONG.values(), ids=WRONG.keys())
+def test_a_wrong_variable_is_refused_by_file_variable_and_key(text: str, message: str, tmp_path: Path) -> None:
+    result = generate(tmp_path, table(text))
+    assert result.returncode == 1
+    assert result.stderr.startswith(f"error: {tmp_path / 'variables.toml'}: variable ")
+    assert message in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_element_must_not_take_anothers_reference(tmp_path: Path) -> None:
+    text = table(variable(reference="3", count="3")) + "[[variable]]\n" + variable(name='"third"')
+    result = generate(tmp_path, text)
+    assert "variable third: reference: 5 is taken by group.second[2]" in result.stderr
+
+
+def test_wrong_files_and_models_are_named(tmp_path: Path) -> None:
+    good = table(variable())
+    cases = [
+        (good.replace("schema_version = 1", "schema_version = 2"), "schema_version: 2, but this version reads 1"),
+        (good.replace("0.01", "0.0"), "model: step_size_s: 0.0, but must be a positive number"),
+        (good.replace('name = "lag"', 'name = "Lag 1"'), "model: name: 'Lag 1', but"),
+        (good.replace('description = "test"', ""), "model: description: missing"),
+        (good.replace("[model]", "[model]\nauthor = 1"), "model: author: unknown key"),
+        (good.replace('name = "lag"', 'name = "lead"'), "model: name: 'lead', but the build calls it 'lag'"),
+        (good + "]", "not valid TOML"),
+    ]
+    for text, message in cases:
+        result = generate(tmp_path, text)
+        assert result.returncode == 1
+        assert f"{tmp_path / 'variables.toml'}: {message}" in result.stderr
+    result = generate(tmp_path, good, robot="")
+    assert f"{tmp_path / 'robot.toml'}: schema_version: None, but this version reads 1" in result.stderr
+
+
+def test_the_token_follows_every_value(tmp_path: Path) -> None:
+    tokens = set()
+    for text in (variable(), variable(start="1.5"), variable(maximum="3.0"), variable(reference="6")):
+        assert generate(tmp_path, table(text)).returncode == 0
+        description = (tmp_path / "out" / "fmi3" / "modelDescription.xml").read_text()
+        tokens.add(description.split('instantiationToken="')[1].split('"')[0])
+    assert len(tokens) == 4
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_descriptions_say_what_the_table_says(version: int) -> None:
+    description = fmpy.read_model_description(str(fmu_path("lag", version)))
+    variables = {v.name: v for v in description.modelVariables}
+    u = variables["input.u"]
+    assert (u.unit, float(u.min), float(u.max), float(u.nominal), float(u.start)) == ("N.m", -5.0, 5.0, 2.0, 1.0)
+    assert (u.causality, u.variability) == ("input", "continuous")
+    assert variables["input.hold"].variability == "discrete"
+    assert variables["lag.time_constant"].variability == "fixed"
+    assert float(variables["lag.time_constant"].start) == 0.25
+    assert variables["output.y"].start is None
+    units = {unit.name: unit.baseUnit for unit in description.unitDefinitions}
+    torque = units["N.m"]
+    assert (torque.kg, torque.m, torque.s, torque.rad, torque.factor) == (1, 2, -2, 0, 1.0)
+    # Named "none", not left out: an importer would take that for all inputs.
+    assert [unknown.dependencies for unknown in description.outputs] == [[]] * 5
+    parameters = {v.name for v in description.modelVariables if v.causality == "parameter"}
+    assert all({d.name for d in unknown.dependencies} == parameters for unknown in description.initialUnknowns)
+
+
+@pytest.mark.parametrize(
+    ("unit", "exponents"),
+    [
+        ("1", {}),
+        ("N", {"kg": 1, "m": 1, "s": -2}),
+        ("N.m.s/rad", {"kg": 1, "m": 2, "s": -1, "rad": -1}),
+        ("kg.m2", {"kg": 1, "m": 2}),
+        ("m/s2", {"m": 1, "s": -2}),
+        ("s/m", {"s": 1, "m": -1}),
+        ("m.s-1", {"m": 1, "s": -1}),
+        ("J/m2/s", {"kg": 1, "s": -3}),
+        ("Hz.s", {}),
+    ],
+)
+def test_units(unit: str, exponents: dict[str, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "fmu" / "codegen"))
+    from giveway_codegen.units import base_units
+
+    assert base_units(unit) == exponents
