@@ -23,12 +23,23 @@ struct Fmi2Instance {
     double start_time = 0.0;
     double stop_time = 0.0;
 
+    // In FMI 2 the message is a printf format. It goes out complete, with its percent signs doubled,
+    // since some importers show the format as it is.
     static void log(void *context, const char *text) {
         const Fmi2Instance *self = static_cast<const Fmi2Instance *>(context);
-        if (self->logger != nullptr) {
-            // The message is a printf format in FMI 2.
-            self->logger(self->environment, self->name, fmi2Error, "logStatusError", "%s", text);
+        if (self->logger == nullptr) {
+            return;
         }
+        char format[1200];
+        size_t length = 0;
+        for (; *text != '\0' && length + 3 <= sizeof format; ++text) {
+            if (*text == '%') {
+                format[length++] = '%';
+            }
+            format[length++] = *text;
+        }
+        format[length] = '\0';
+        self->logger(self->environment, self->name, fmi2Error, "logStatusError", format);
     }
 
     Fmi2Instance(const fmi2CallbackFunctions &functions, char *name_, giveway::Model *model)
@@ -48,9 +59,9 @@ fmi2Status unsupported(fmi2Component component, const char *function, const char
 
 fmi2Component refuse_instance(const fmi2CallbackFunctions *functions, const char *name,
                               const char *text) {
-    if (functions != nullptr && functions->logger != nullptr) {
+    if (functions->logger != nullptr) {
         functions->logger(functions->componentEnvironment, name != nullptr ? name : "", fmi2Error,
-                          "logStatusError", "fmi2Instantiate: %s", text);
+                          "logStatusError", text);
     }
     return nullptr;
 }
@@ -100,15 +111,16 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         return nullptr; // and there is no logger to say so
     }
     if (name == nullptr || name[0] == '\0') {
-        return refuse_instance(functions, name, "the instance name is missing");
+        return refuse_instance(functions, name, "fmi2Instantiate: the instance name is missing");
     }
     if (type != fmi2CoSimulation) {
-        return refuse_instance(functions, name, "this FMU does not support Model Exchange");
+        return refuse_instance(functions, name,
+                               "fmi2Instantiate: this FMU does not support Model Exchange");
     }
     if (guid == nullptr || std::strcmp(guid, giveway::model_info().token) != 0) {
         return refuse_instance(functions, name,
-                               "the GUID does not match; model description and binary are of "
-                               "different builds");
+                               "fmi2Instantiate: the GUID does not match; model description and "
+                               "binary are of different builds");
     }
     const size_t size = std::strlen(name) + 1;
     char *name_copy = new (std::nothrow) char[size];
@@ -122,7 +134,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     }
     delete model;
     delete[] name_copy;
-    return refuse_instance(functions, name, "out of memory");
+    return refuse_instance(functions, name, "fmi2Instantiate: out of memory");
 }
 
 void fmi2FreeInstance(fmi2Component component) { delete unwrap(component); }
