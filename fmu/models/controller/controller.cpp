@@ -1,0 +1,98 @@
+// The controller: the C library of c_core, unchanged, behind the model interface.
+//
+// A step runs the control ticks that fall into [t, t + h), with the inputs held; tick k is due k periods after the
+// start. A step shorter than the period may run none.
+#include <cstdint>
+#include <cstdio>
+#include <new>
+
+#include "controller_variables.hpp"
+#include "from_variables.hpp"
+#include "model.hpp"
+
+namespace giveway::controller {
+
+namespace {
+
+class Controller final : public Model {
+public:
+    Controller() { set_start_values(v_); }
+
+    void *variables() override { return &v_; }
+
+    void reset() override {
+        v_ = {};
+        set_start_values(v_);
+    }
+
+    Status initialise(double start_time_s, Message &message) override {
+        const gw_controller_config_t config = configuration(v_);
+        gw_config_error_t error{};
+        if (gw_controller_init(&controller_, &config, &error) != GW_STATUS_OK) {
+            explain(error, message);
+            return Status::error;
+        }
+        start_time_s_ = start_time_s;
+        ticks_ = 0;
+        // Before the first tick: do not move, in the mode that comes first.
+        gw_controller_output_t output{};
+        gw_controller_safe_output(&output);
+        output.mode = GW_MODE_TARING;
+        write_outputs(output, GW_STATUS_NOT_INITIALISED, v_);
+        return Status::ok;
+    }
+
+    Status step(double time_s, double step_size_s, Message &) override {
+        // Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
+        constexpr double rounding_ticks = 1e-6;
+        const double end_ticks = (time_s + step_size_s - start_time_s_) / v_.controller_period - rounding_ticks;
+        const gw_controller_input_t in = inputs(v_);
+        while (static_cast<double>(ticks_) < end_ticks) {
+            gw_controller_output_t output{};
+            const gw_status_t status = gw_controller_step(&controller_, &in, &output);
+            write_outputs(output, status, v_);
+            ++ticks_;
+        }
+        return Status::ok;
+    }
+
+private:
+    static void explain(const gw_config_error_t &error, Message &message) {
+        const char *name = gw_config_limit(error.field)->name;
+        const auto value = static_cast<double>(error.value);
+        switch (error.field) {
+        case GW_FIELD_OUTLINE_CONVEX:
+            std::snprintf(message.text, sizeof message.text,
+                          "outline.x, outline.y: the edge from vertex %u has a vertex on its right or on it; the "
+                          "outline must run counter-clockwise, be convex and have no three vertices on a line",
+                          static_cast<unsigned>(error.index));
+            break;
+        case GW_FIELD_GEOMETRY_WHEEL_SLOT:
+            std::snprintf(message.text, sizeof message.text,
+                          "%s[%u] = %g is not allowed: each of 0, 1 and 2 exactly once", name,
+                          static_cast<unsigned>(error.index), value);
+            break;
+        case GW_FIELD_OUTLINE_X:
+        case GW_FIELD_OUTLINE_Y:
+            std::snprintf(message.text, sizeof message.text, "%s[%u] = %.9g is not allowed: [%.9g, %.9g] m", name,
+                          static_cast<unsigned>(error.index), value, static_cast<double>(error.minimum),
+                          static_cast<double>(error.maximum));
+            break;
+        default:
+            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", name, value,
+                          static_cast<double>(error.minimum), static_cast<double>(error.maximum));
+            break;
+        }
+    }
+
+    Variables v_{};
+    gw_controller_t controller_{};
+    double start_time_s_ = 0.0;
+    std::int64_t ticks_ = 0; // since the start
+};
+
+} // namespace
+
+} // namespace giveway::controller
+
+giveway::Model *giveway::create_model() { return new (std::nothrow) controller::Controller; }
