@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 import subprocess
 import sys
@@ -10,7 +11,6 @@ import zipfile
 from pathlib import Path
 
 import fmpy
-import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 from fmu_driver import BINARY_FOLDERS, MODELS, ROOT, Fmu, fmu_path
@@ -105,11 +105,12 @@ def codegen(*arguments: object) -> None:
 def excitation(fmu: Fmu, step: int) -> dict[str, list]:
     """Values for every input, within its range and different at every step."""
     values: dict[str, list] = {"real": [], "integer": [], "boolean": []}
-    for index, (name, variable) in enumerate(fmu.variables.items()):
+    for name, variable in fmu.variables.items():
         if variable.causality != "input":
             continue
         kind = fmu.kind(name)
-        phase = np.sin(0.05 * step * (1 + index % 5) + index)
+        reference = variable.valueReference
+        phase = math.sin(0.05 * step * (1 + reference % 5) + reference)
         if kind == "boolean":
             value = name in ("command.enable", "sensor.present") or phase > 0.8
         elif kind == "integer":
@@ -118,7 +119,7 @@ def excitation(fmu: Fmu, step: int) -> dict[str, list]:
         else:
             low, high = float(variable.min or -1.0), float(variable.max or 1.0)
             value = float(max(low, min(high, 0.2 * phase)))
-        values[kind].append((variable.valueReference, value))
+        values[kind].append((reference, value))
     return values
 
 
