@@ -215,8 +215,8 @@ def _progress(duration_s: float) -> Iterator[Progress | None]:
 def _print_table(experiment: str, results: dict[str, Result]) -> None:
     from giveway.summary import table_rows
 
-    header = ("", *(f"{bumper} bumper" if bumper != "none" else "no bumper" for bumper in results))
-    _print_columns(f"Experiment {experiment}: estimated or measured (true value)", header, table_rows(results))
+    header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
+    _print_columns(f"Experiment {experiment}: estimated or measured (true)", header, table_rows(results))
 
 
 def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
@@ -225,15 +225,16 @@ def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str
     from rich.table import Table
     from rich.text import Text
 
-    console = Console(highlight=False)
+    terminal = Console(highlight=False)
+    # A pipe has no width to fit into: every row keeps its line there.
+    console = terminal if terminal.is_terminal else Console(highlight=False, width=200)
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for index, name in enumerate(header):
         table.add_column(name, no_wrap=index == 0, overflow="fold")
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     console.print(title, style="bold")
-    # A pipe has no width to fit into: let every row keep its line there.
-    console.print(table, width=None if console.is_terminal else 200)
+    console.print(table)
 
 
 def main() -> None:

@@ -21,6 +21,7 @@ __all__ = ["Collision", "Metric", "collision"]
 
 PEAK_WINDOW_S = 0.35
 LOADED_SHARE = 0.5
+CAUSE_WINDOW_S = 0.25
 WHEELS = 3
 
 
@@ -33,14 +34,14 @@ class Metric:
         value: what the robot estimated, did or suffered; None if it did not happen.
         unit: unit of value and truth.
         truth: what the testbed knows it should be; None where there is no such thing.
-        decimals: digits after the point that are worth printing.
+        decimals: digits after the point that are worth printing; None for a number that is judged by its exponent.
     """
 
     name: str
     value: float | None
     unit: str
     truth: float | None = None
-    decimals: int = 2
+    decimals: int | None = 2
 
     def __post_init__(self) -> None:
         for name in ("value", "truth"):
@@ -150,10 +151,12 @@ class Collision:
         return Metric("detection time", 1e3 * (self.time_s[self.detected] - self.contact_s), "ms", decimals=1)
 
     def false_detections(self) -> Metric:
-        """Detections before the first contact (in the whole run if there was none)."""
-        count = self["controller.detection.count"]
-        before = count if self.contact_s is None else count[self.time_s < self.contact_s]
-        return Metric("detections before contact", float(before[-1]) if before.size else 0.0, "1", 0.0, 0)
+        """Detections with no true contact in the 0.25 s before them; a detection is late by design, not by more."""
+        rows = np.flatnonzero(np.diff(self["controller.detection.count"], prepend=0) > 0)
+        touched = self.time_s[self["testbed.truth.contact"]]
+        when = self.time_s[rows]
+        caused = [bool(((touched >= t - CAUSE_WINDOW_S) & (touched <= t)).any()) for t in when]
+        return Metric("false detections", float(len(caused) - sum(caused)), "1", 0.0, 0)
 
     def direction(self) -> Metric:
         """Direction of the detection's mean force against that of the true impulse up to detection, base frame, deg."""
@@ -173,18 +176,18 @@ class Collision:
         return Metric("direction error", _wrapped(direction.value - direction.truth), "deg", 0.0, 1)
 
     def location(self) -> tuple[Metric, Metric, Metric]:
-        """Estimated contact point at detection against the force-weighted true one, base frame x, y and distance, m."""
+        """Contact point at detection against the force-weighted true one: base frame x, y and distance, mm."""
         names = ("contact point x", "contact point y", "location error")
         truth = self.true_point()
         if self.detected is None or truth is None:
-            empty = [Metric(name, None, "m") for name in names]
+            empty = [Metric(name, None, "mm") for name in names]
             return empty[0], empty[1], empty[2]
-        x, y = (float(self[f"controller.detection.point_{axis}"][self.detected]) for axis in "xy")
-        distance = math.hypot(x - truth[0], y - truth[1])
+        x, y = (1e3 * float(self[f"controller.detection.point_{axis}"][self.detected]) for axis in "xy")
+        true_x, true_y = 1e3 * truth
         return (
-            Metric(names[0], x, "m", truth[0], 3),
-            Metric(names[1], y, "m", truth[1], 3),
-            Metric(names[2], distance, "m", 0.0, 3),
+            Metric(names[0], x, "mm", true_x, 1),
+            Metric(names[1], y, "mm", true_y, 1),
+            Metric(names[2], math.hypot(x - true_x, y - true_y), "mm", 0.0, 1),
         )
 
     def magnitude(self) -> Metric:
@@ -219,12 +222,12 @@ class Collision:
         return Metric("peak contact force", float(self["testbed.truth.contact_force"].max()), "N", decimals=1)
 
     def peak_torque(self) -> Metric:
-        """Largest sensed-side wheel torque in the impact's direction within 0.35 s of contact, N m.
+        """Largest wheel torque in the impact's direction within 0.35 s of contact, N m.
 
         True drivetrain torque of the wheels that carry the impact, signed so that the impact makes it positive:
         the paper's "positive" peak of experiment 5.2.
         """
-        name = "peak wheel torque, impact direction"
+        name = "peak wheel torque"
         wheels = self.loaded_wheels()
         if self.contact_s is None or not wheels:
             return Metric(name, None, "N.m")
@@ -234,18 +237,23 @@ class Collision:
 
     def peak_torque_any(self) -> Metric:
         """Largest true drivetrain torque of any wheel, either sign, from contact on, N m."""
-        name = "peak wheel torque, either sign"
+        name = "peak torque, any sign"
         if self.contact_s is None:
             return Metric(name, None, "N.m")
         rows = self.time_s >= self.contact_s
         return Metric(name, float(np.abs(self.wheels("testbed.truth.wheel_torque")[rows]).max()), "N.m")
 
     def escape(self) -> Metric:
-        """Travel of the controller's reference from detection to the end, against the base's own travel, m."""
+        """Travel of the controller's reference from the last detection to the end, against the base's own travel, m.
+
+        The last one, because every new hit starts the escape anew.
+        """
+        count = self["controller.detection.count"]
         if self.detected is None:
             return Metric("escape distance", None, "m")
+        row = int(np.flatnonzero(np.diff(count) > 0)[-1]) + 1
         travel = [
-            math.hypot(*(self[f"{source}.{axis}"][-1] - self[f"{source}.{axis}"][self.detected] for axis in "xy"))
+            math.hypot(*(self[f"{source}.{axis}"][-1] - self[f"{source}.{axis}"][row] for axis in "xy"))
             for source in ("controller.reference", "testbed.truth")
         ]
         return Metric("escape distance", travel[0], "m", travel[1], 3)
@@ -262,7 +270,7 @@ class Collision:
         stored, work = self["testbed.energy.stored"], self["testbed.energy.work_in"]
         scale = max(float(np.abs(work).max()), float(np.ptp(stored)), float(self["testbed.energy.dissipated"].max()))
         worst = float(np.abs(self["testbed.energy.residual"]).max())
-        return Metric("energy residual", worst / scale if scale > 0.0 else worst, "1", 0.0, 9)
+        return Metric("energy residual", worst / scale if scale > 0.0 else worst, "1", 0.0, None)
 
 
 def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]) -> tuple[Metric, ...]:

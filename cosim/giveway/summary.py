@@ -33,15 +33,11 @@ def cell(metric: Metric) -> str:
     return f"{number(metric.value, metric.decimals)} ({number(metric.truth, metric.decimals)})"
 
 
-def number(value: float | None, decimals: int) -> str:
-    """A number with fixed digits, or in exponent form where those would show nothing."""
+def number(value: float | None, decimals: int | None) -> str:
+    """A number with fixed digits after the point, or in exponent form; "-" for what did not happen."""
     if value is None:
         return "-"
-    if value == 0.0:
-        return "0"
-    if abs(value) < 0.5 * 10.0 ** -min(decimals, 4):
-        return f"{value:.1e}"
-    return f"{value:.{min(decimals, 4)}f}"
+    return f"{value:.1e}" if decimals is None else f"{value:z.{decimals}f}"
 
 
 def summary(results: Mapping[str, Result]) -> dict[str, Any]:

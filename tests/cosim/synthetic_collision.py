@@ -44,6 +44,7 @@ def traces(*, hit: bool = True, noticed: bool = True, heading_rad: float = 0.0) 
     nose = SPEED_MPS * (time - CONTACT_S)
     columns: dict[str, Any] = {
         "testbed.truth.theta": np.full_like(time, heading_rad),
+        "testbed.truth.contact": touching,
         "testbed.truth.contact_force": FORCE_N * touching,
         "testbed.truth.contact_base_x": (cos * POINT_M[0] + sin * POINT_M[1]) * touching,
         "testbed.truth.contact_base_y": (-sin * POINT_M[0] + cos * POINT_M[1]) * touching,

@@ -38,9 +38,9 @@ def test_direction_error_wraps() -> None:
 
 def test_location_and_its_error() -> None:
     x, y, error = hit().location()
-    assert (x.value, y.value) == pytest.approx(synthetic.ESTIMATED_POINT_M)
-    assert (x.truth, y.truth) == pytest.approx(synthetic.POINT_M)
-    assert error.value == pytest.approx(0.05)  # 3-4-5 triangle of 3 and 4 cm
+    assert (x.value, y.value) == pytest.approx([1e3 * m for m in synthetic.ESTIMATED_POINT_M])
+    assert (x.truth, y.truth) == pytest.approx([1e3 * m for m in synthetic.POINT_M])
+    assert error.value == pytest.approx(50.0)  # 3-4-5 triangle of 3 and 4 cm
 
 
 def test_magnitude_averages_the_truth_over_the_filter_window() -> None:
@@ -92,24 +92,40 @@ def test_energy_residual_is_relative_to_the_energy_in_play() -> None:
 
 def test_nothing_hit_gives_no_numbers_but_no_error() -> None:
     numbers = {metric.name: metric for metric in collision(synthetic.traces(hit=False), synthetic.PARAMETERS)}
-    for name in ("detection time", "force direction", "escape distance", "peak wheel torque, impact direction"):
+    for name in ("detection time", "force direction", "escape distance", "peak wheel torque"):
         assert numbers[name].value is None
-    assert numbers["detections before contact"].value == 0.0
+    assert numbers["false detections"].value == 0.0
     assert numbers["peak contact force"].value == 0.0
 
 
 def test_unnoticed_hit_has_force_but_no_detection() -> None:
     numbers = {metric.name: metric for metric in collision(synthetic.traces(noticed=False), synthetic.PARAMETERS)}
     assert numbers["detection time"].value is None
-    assert numbers["peak wheel torque, impact direction"].value == pytest.approx(4.0)
+    assert numbers["peak wheel torque"].value == pytest.approx(4.0)
 
 
-def test_a_false_alarm_is_not_a_detection_of_the_hit() -> None:
+def test_a_false_alarm_before_contact_is_not_a_detection_of_the_hit() -> None:
     traces = synthetic.traces(noticed=False)
     traces["controller.detection.count"].values[20:] = 1
     early = Collision(traces, synthetic.PARAMETERS)
     assert early.false_detections().value == 1.0
     assert early.detected is None
+
+
+def test_a_false_alarm_long_after_contact_is_counted() -> None:
+    traces = synthetic.traces()
+    assert Collision(traces, synthetic.PARAMETERS).false_detections().value == 0.0
+    traces["controller.detection.count"].values[540:] = 2  # contact ended at 300 ms: still its echo
+    assert Collision(traces, synthetic.PARAMETERS).false_detections().value == 0.0
+    traces["controller.detection.count"].values[560:] = 3
+    assert Collision(traces, synthetic.PARAMETERS).false_detections().value == 1.0
+
+
+def test_escape_starts_anew_with_every_detection() -> None:
+    traces = synthetic.traces()
+    traces["controller.detection.count"].values[575:] = 2  # halfway between 150 and 1000 ms
+    escape = Collision(traces, synthetic.PARAMETERS).escape()
+    assert (escape.value, escape.truth) == pytest.approx((0.25, 0.24))
 
 
 def test_metrics_never_hold_nan() -> None:

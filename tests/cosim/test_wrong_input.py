@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
-import giveway
 import pytest
 from cosim_helpers import Cli, folder_content
 from giveway import native
+from giveway.cli import main as cli_main
 
 RUN = ("run", "motionless", "--out", "out/run")
 WRONG = {
@@ -79,17 +78,20 @@ def test_broken_robot_files_name_the_key(cli: Cli, tmp_path: Path) -> None:
     assert folder_content(tmp_path) == ["robot.toml"]
 
 
-def test_missing_native_parts_name_both_places(cli: Cli, tmp_path: Path) -> None:
-    # A copy of the package without its native folder, as a source tree has it.
-    package = Path(giveway.__file__).parent
-    shutil.copytree(package, tmp_path / "source" / "giveway", ignore=shutil.ignore_patterns("native", "__pycache__"))
-    environment = {"PYTHONPATH": str(tmp_path / "source"), native.ENVIRONMENT_VARIABLE: str(tmp_path)}
-    done = cli(*RUN, environment=environment)
-    assert done.returncode == 2
-    assert len(done.stderr.splitlines()) == 1
-    assert f"{native.ENVIRONMENT_VARIABLE}={tmp_path}" in done.stderr
-    assert str(tmp_path / "source" / "giveway" / "native") in done.stderr
-    assert not (tmp_path / "out").exists()
+def test_missing_native_parts_name_both_places(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(native, "__file__", str(tmp_path / "giveway" / "native.py"))
+    monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "elsewhere"))
+    monkeypatch.setattr("sys.argv", ["giveway", "run", "motionless", "--out", str(tmp_path / "out")])
+    with pytest.raises(SystemExit) as caught:
+        cli_main()
+    assert caught.value.code == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1
+    assert f"{native.ENVIRONMENT_VARIABLE}={tmp_path / 'elsewhere'}" in error
+    assert str(tmp_path / "giveway" / "native") in error
+    assert folder_content(tmp_path) == []
 
 
 def test_an_fmu_that_refuses_its_parameters_is_one_line(cli: Cli, tmp_path: Path) -> None:
