@@ -1,0 +1,73 @@
+"""The wheel, built from the tree, works in an empty environment outside the repository."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+NATIVE = {
+    *(f"giveway_{model}_fmi{version}.fmu" for model in ("controller", "testbed") for version in (2, 3)),
+    "controller.variables.toml",
+    "testbed.variables.toml",
+    "trikey.toml",
+}
+
+
+def run(*command: object, cwd: Path) -> str:
+    """Standard output; nothing of this process' Python or giveway settings reaches the command."""
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "GIVEWAY", "VIRTUAL_ENV"))}
+    result = subprocess.run(
+        list(map(str, command)), cwd=cwd, env=environment, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    return result.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Built in the build tree, so that nothing is compiled twice."""
+    folder = tmp_path_factory.mktemp("wheel")
+    run(
+        sys.executable, "-m", "pip", "wheel", "--quiet", "--no-build-isolation", "--no-deps",
+        "--config-settings", "build-dir=build", "--wheel-dir", folder, ROOT, cwd=ROOT,
+    )  # fmt: skip
+    (path,) = folder.glob("*.whl")
+    return path
+
+
+@pytest.fixture(scope="module")
+def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An empty virtual environment with the wheel and what it asks for, at the locked versions."""
+    folder = tmp_path_factory.mktemp("environment")
+    venv.create(folder, with_pip=True)
+    pins = re.findall(r"^[\w.-]+==[^\\\n]+", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
+    constraints = folder / "constraints.txt"
+    constraints.write_text("\n".join(pins))
+    run(folder / "bin" / "pip", "install", "--quiet", "--constraint", constraints, wheel, cwd=folder)
+    return folder
+
+
+def test_the_wheel_holds_the_native_parts_and_is_for_linux_and_any_python(wheel: Path) -> None:
+    assert re.fullmatch(r"giveway-\d+\.\d+\.\d+-py3-none-\w*linux\w*_x86_64\.whl", wheel.name)
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+    assert {Path(name).name for name in names if name.startswith("giveway/native/")} == NATIVE
+    assert not [name for name in names if "__pycache__" in name or name.startswith(("tests/", "cosim/", "build/"))]
+
+
+def test_it_runs_an_experiment_away_from_the_repository(environment: Path, tmp_path: Path) -> None:
+    origin = run(environment / "bin" / "python", "-c", "import giveway; print(giveway.__file__)", cwd=tmp_path)
+    assert Path(origin.strip()).is_relative_to(environment)
+    run(environment / "bin" / "giveway", "run", "motionless", "--bumper", "magnetic", "--out", "run", cwd=tmp_path)
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text())
+    assert manifest["schema_version"] == 1
+    assert (tmp_path / "run" / "traces.parquet").is_file()
