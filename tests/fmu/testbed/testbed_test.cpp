@@ -111,7 +111,7 @@ TEST(Testbed, RefusesWhatDoesNotFitTogether) {
     EXPECT_NE(refusal([](Variables& v) { v.drivetrain_gear_stiction = 1.0; }).find("drivetrain.gear_stiction = 1"), std::string::npos);
     EXPECT_NE(refusal([](Variables& v) { v.bumper_plate_mass = 9.0; }).find("bumper.plate_mass = 9"), std::string::npos);
     EXPECT_NE(refusal([](Variables& v) { std::swap(v.outline_x[1], v.outline_x[2]), std::swap(v.outline_y[1], v.outline_y[2]); }).find("outline."), std::string::npos);
-    EXPECT_NE(refusal([](Variables& v) { v.slider_target_x = 0.0; }).find("slider.run_up = 0.0382"), std::string::npos);
+    EXPECT_NE(refusal([](Variables& v) { v.slider_target_x = 0.0; }).find("slider.run_up = "), std::string::npos);
     EXPECT_NE(refusal([](Variables& v) {
                   // A pentagram: every corner turns left, yet it is not convex.
                   v.outline_count = 5;
