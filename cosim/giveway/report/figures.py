@@ -194,7 +194,10 @@ _FIGURES: tuple[tuple[str, str, Callable[[list[_Run]], Figure]], ...] = (
     ),
     (
         "Estimate against truth",
-        "Contact force and its impulse: estimated from wheel torques alone, and as the testbed knows them (grey).",
+        (
+            "Contact force and its impulse: estimated from wheel torques alone, and as the testbed knows them (grey). "
+            "After detection the robot accelerates, which an estimate with planned acceleration takes for force."
+        ),
         _estimates,
     ),
 )
