@@ -13,6 +13,7 @@ void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, 0U, config->escape_impulse_newton_s);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, 0U, config->speed_limit_mps);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, 0U, config->acceleration_limit_mps2);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, 0U, config->finish_speed_mps);
 }
 
 gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
@@ -88,6 +89,29 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
     return status;
 }
 
+/* Replaces the tail of the approach: constant speed, then half the acceleration limit, then there. */
+static void finish(const gw_admittance_t *admittance, gw_vector_t ahead_m, gw_admittance_output_t *next)
+{
+    const gw_real_t distance_m = gw_length(ahead_m);
+    const gw_real_t period_s = admittance->period_s;
+    const gw_real_t acceleration = admittance->config.acceleration_limit_mps2;
+    const gw_real_t speed_mps = gw_finish_speed(admittance->config.finish_speed_mps, acceleration, distance_m);
+    /* What the last tick can cover, coming to rest within the acceleration limit. */
+    const gw_real_t last_m = (GW_HALF * period_s) * gw_min(speed_mps, (GW_HALF * acceleration) * period_s);
+    if (distance_m <= last_m) {
+        next->velocity_mps.x = GW_ZERO;
+        next->velocity_mps.y = GW_ZERO;
+        next->displacement_m = ahead_m;
+    } else if (gw_length(next->velocity_mps) < speed_mps) {
+        next->velocity_mps.x = (ahead_m.x / distance_m) * speed_mps;
+        next->velocity_mps.y = (ahead_m.y / distance_m) * speed_mps;
+        next->displacement_m.x = (GW_HALF * period_s) * (admittance->velocity_mps.x + next->velocity_mps.x);
+        next->displacement_m.y = (GW_HALF * period_s) * (admittance->velocity_mps.y + next->velocity_mps.y);
+    } else {
+        /* still the exponential part */
+    }
+}
+
 /* The exact end of the tick without limits. */
 static gw_admittance_output_t unlimited(const gw_admittance_t *admittance, gw_vector_t force_n)
 {
@@ -100,6 +124,9 @@ static gw_admittance_output_t unlimited(const gw_admittance_t *admittance, gw_ve
         next.displacement_m.y = admittance->approach * ahead.y;
         next.velocity_mps.x = end_rate * ahead.x;
         next.velocity_mps.y = end_rate * ahead.y;
+        if (admittance->config.finish_speed_mps > GW_ZERO) {
+            finish(admittance, ahead, &next);
+        }
     } else {
         /* Final velocity F/B, and what is left to it. */
         const gw_vector_t final = {force_n.x / admittance->config.damping_newton_s_per_m,

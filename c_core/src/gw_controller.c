@@ -41,6 +41,7 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     config->estimator.encoder_counts = GW_TRIKEY_DRIVETRAIN_ENCODER_COUNTS;
     config->estimator.average_window = 20U;
     config->estimator.rest_speed_mps = (gw_real_t)0.002;
+    config->estimator.creep_speed_mps = (gw_real_t)0.03; /* rollers slide steadily above */
     config->estimator.rest_ticks = 300U;
     config->estimator.tare_ticks = 100U;
     config->estimator.retare_ticks = 100U;
@@ -57,6 +58,7 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     config->detector.force_threshold_n = (gw_real_t)10.0;
     config->detector.impulse_threshold_newton_s = GW_TRIKEY_DETECTOR_IMPULSE_THRESHOLD_NEWTON_S;
     config->detector.leak_rest_n = GW_TRIKEY_DETECTOR_LEAK_REST_N;
+    config->detector.leak_creep_n = (gw_real_t)42.0; /* two rollers' worth of B_r/r_r: stuck ones can hold it */
     config->detector.leak_motion_n = GW_TRIKEY_DETECTOR_LEAK_MOTION_N;
     config->detector.release_force_n = (gw_real_t)6.0; /* twice the error of the friction model */
     config->detector.blanking_ticks = 300U;            /* the reaction's own acceleration */
@@ -67,6 +69,7 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     config->admittance.escape_impulse_newton_s = GW_TRIKEY_ADMITTANCE_ESCAPE_IMPULSE_NEWTON_S;
     config->admittance.speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
     config->admittance.acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
+    config->admittance.finish_speed_mps = (gw_real_t)0.01;
 
     config->reference.follow_gain_per_s = GW_TWO;
     config->reference.speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
@@ -74,12 +77,13 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     config->reference.yaw_rate_limit_radps = (gw_real_t)1.5;
     config->reference.yaw_acceleration_limit_radps2 = (gw_real_t)6.0;
     config->reference.rejoin_speed_mps = (gw_real_t)0.1;
+    config->reference.finish_speed_mps = (gw_real_t)0.01;
 
     config->supervisor.settled_speed_mps = (gw_real_t)0.005;
     config->supervisor.settled_ticks = 500U;
     config->supervisor.after_settled = GW_AFTER_SETTLED_REJOIN;
-    config->supervisor.rejoin_distance_m = (gw_real_t)0.002;
-    config->supervisor.rejoin_angle_rad = (gw_real_t)0.005;
+    config->supervisor.rejoin_distance_m = (gw_real_t)0.0002;
+    config->supervisor.rejoin_angle_rad = (gw_real_t)0.0005;
 
     config->drives_enabled = true;
 }
@@ -251,16 +255,16 @@ static void detect(gw_controller_t *controller, tick_t *now)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     gw_detector_input_t detector_input;
-    if (now->estimate.mode_changed) {
+    if (now->estimate.zero_changed) {
         gw_detector_clear(&controller->detector);
     }
     detector_input.wrench = now->estimate.wrench;
     detector_input.window_mean = now->estimate.window_mean;
     detector_input.mean = now->estimate.mean;
     detector_input.mean_samples = now->estimate.mean_samples;
-    detector_input.rest = now->estimate.rest;
-    detector_input.enabled = (!now->estimate.blind) && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
-                                                        (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING));
+    detector_input.regime = now->estimate.regime;
+    detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
+                             (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING);
     detector_input.reaction_over = reference_speed(controller) < controller->config.supervisor.settled_speed_mps;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &now->detection);
@@ -281,7 +285,7 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
     const bool asked = requested && (!controller->tare_request_before);
     gw_status_t status = GW_STATUS_OK;
     controller->tare_request_before = requested;
-    *accepted = asked && now->estimate.rest && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
+    *accepted = asked && (now->estimate.regime == GW_REGIME_REST) && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
     if (asked && (!*accepted)) {
         status = GW_STATUS_TARE_REFUSED;
     }
@@ -328,9 +332,9 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
 {
     const gw_vector_t base = {now->estimate.mean.force_x_n, now->estimate.mean.force_y_n};
     const gw_real_t length = gw_length(base);
-    const gw_real_t left = length - gw_detector_leak(&controller->detector, now->estimate.rest);
+    const gw_real_t left = length - gw_detector_leak(&controller->detector, now->estimate.regime);
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
-    if ((left > GW_ZERO) && (!now->estimate.blind) && (controller->supervisor.mode == GW_MODE_REACTING)) {
+    if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
         felt.x = base.x * (left / length);
         felt.y = base.y * (left / length);
     }
@@ -420,8 +424,7 @@ static void nothing_known(tick_t *now)
          {(gw_real_t)0.0, (gw_real_t)0.0},
          {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
          {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         false,
-         true,
+         GW_REGIME_CREEPING,
          false},
         {false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U},
         false,
@@ -468,8 +471,7 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     }
     const gw_vector_t force = {now.estimate.mean.force_x_n, now.estimate.mean.force_y_n};
     const bool slow = reference_speed(controller) < controller->config.supervisor.settled_speed_mps;
-    events.quiet = slow && (!now.estimate.blind) &&
-                   (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.rest));
+    events.quiet = slow && (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
     events.on_path =
         now.plan_valid && slow &&
         (gw_reference_distance(&controller->reference, &input->plan) <

@@ -9,6 +9,7 @@ void gw_detector_config_check(const gw_detector_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_DETECTOR_FORCE_THRESHOLD, 0U, config->force_threshold_n);
     gw_config_check_real(error, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, 0U, config->impulse_threshold_newton_s);
     gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_REST, 0U, config->leak_rest_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_CREEP, 0U, config->leak_creep_n);
     gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_MOTION, 0U, config->leak_motion_n);
     gw_config_check_real(error, GW_FIELD_DETECTOR_RELEASE_FORCE, 0U, config->release_force_n);
     gw_config_check_count(error, GW_FIELD_DETECTOR_BLANKING_TICKS, 0U, config->blanking_ticks);
@@ -69,9 +70,17 @@ void gw_detector_reset(gw_detector_t *detector)
     detector->active = false;
 }
 
-gw_real_t gw_detector_leak(const gw_detector_t *detector, bool rest)
+gw_real_t gw_detector_leak(const gw_detector_t *detector, gw_regime_t regime)
 {
-    return rest ? detector->config.leak_rest_n : detector->config.leak_motion_n;
+    gw_real_t leak_n = detector->config.leak_creep_n;
+    if (regime == GW_REGIME_REST) {
+        leak_n = detector->config.leak_rest_n;
+    } else if (regime == GW_REGIME_MOTION) {
+        leak_n = detector->config.leak_motion_n;
+    } else {
+        /* creeping */
+    }
+    return leak_n;
 }
 
 static gw_real_t force_length(gw_wrench_t wrench)
@@ -94,7 +103,7 @@ static bool may_release(const gw_detector_t *detector, const gw_detector_input_t
 /* One step of the leaky vector integral; true if it trips. */
 static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
 {
-    const gw_real_t leak_n = gw_detector_leak(detector, input->rest);
+    const gw_real_t leak_n = gw_detector_leak(detector, input->regime);
     const gw_vector_t sum = {detector->impulse_x_newton_s + (input->wrench.force_x_n * detector->period_s),
                              detector->impulse_y_newton_s + (input->wrench.force_y_n * detector->period_s)};
     const gw_real_t moment = detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s);
@@ -125,7 +134,8 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
 
 gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
 {
-    static const gw_detector_output_t nothing = {false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
+    static const gw_detector_output_t nothing = {
+        false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
     gw_status_t status = GW_STATUS_OK;
     if (output == NULL) {
         status = GW_STATUS_NULL_POINTER;
@@ -151,10 +161,14 @@ gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t 
             } else if (detector->config.kind == GW_DETECTOR_IMPULSE) {
                 output->tripped = integrate(detector, input, output);
             } else {
+                gw_real_t threshold_n = detector->config.force_threshold_n;
+                if (input->regime == GW_REGIME_CREEPING) {
+                    threshold_n = gw_max(threshold_n, detector->config.leak_creep_n);
+                }
                 output->statistic = force_length(input->window_mean);
                 output->mean_wrench = input->mean;
                 output->samples = input->mean_samples;
-                output->tripped = (output->statistic > detector->config.force_threshold_n);
+                output->tripped = (output->statistic > threshold_n);
             }
             if (output->tripped) {
                 gw_detector_reset(detector);

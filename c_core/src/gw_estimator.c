@@ -17,6 +17,7 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, 0U, config->encoder_counts);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, 0U, config->average_window);
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_REST_SPEED, 0U, config->rest_speed_mps);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_CREEP_SPEED, 0U, config->creep_speed_mps);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_REST_TICKS, 0U, config->rest_ticks);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_TARE_TICKS, 0U, config->tare_ticks);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_RETARE_TICKS, 0U, config->retare_ticks);
@@ -136,15 +137,19 @@ static bool input_is_finite(const gw_estimator_input_t *input)
     return finite;
 }
 
-/* Rest or motion, and the tare after a stop. Returns true if the mode changed. */
-static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *input)
+/* The faster of the base and of the wheels' circle. */
+static gw_real_t planned_speed(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
 {
     const gw_vector_t velocity = {input->planned_twist.vx_mps, input->planned_twist.vy_mps};
-    const gw_real_t limit = estimator->config.rest_speed_mps;
     const gw_real_t rim = gw_abs(input->planned_twist.omega_radps) * estimator->kinematics.wheel_distance_m;
-    const bool slow = (gw_length(velocity) <= limit) && (rim <= limit);
+    return gw_max(gw_length(velocity), rim);
+}
+
+/* Rest or not, and the tare after a stop. Returns true if that changed. */
+static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *input, gw_real_t speed_mps)
+{
     const bool was_at_rest = estimator->rest;
-    if (!slow) {
+    if (speed_mps > estimator->config.rest_speed_mps) {
         estimator->slow_ticks = 0U;
         estimator->rest = false;
         gw_tare_start(&estimator->stop_tare);
@@ -203,9 +208,8 @@ static void nothing_known(gw_estimator_output_t *output)
     output->sigma.torque_nm = GW_ZERO;
     output->nominal_nm = no_torque;
     output->measured_twist = no_twist;
-    output->rest = false;
-    output->blind = true;
-    output->mode_changed = false;
+    output->regime = GW_REGIME_CREEPING;
+    output->zero_changed = false;
 }
 
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
@@ -227,13 +231,18 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
             rates.wheel[i] = estimator->rate[i].rate_radps;
             derivatives.wheel[i] = estimator->rate[i].derivative_radps2;
         }
-        output->mode_changed = judge_rest(estimator, input);
-        if (output->mode_changed) {
+        const gw_real_t speed_mps = planned_speed(estimator, input);
+        output->zero_changed = judge_rest(estimator, input, speed_mps);
+        if (output->zero_changed) {
             gw_moving_average_reset(&estimator->average);
         }
-        output->rest = estimator->rest;
-        output->blind = (!estimator->rest) && (estimator->slow_ticks > 0U) &&
-                        (estimator->slow_ticks < (2U * estimator->config.rest_ticks));
+        if (estimator->rest) {
+            output->regime = GW_REGIME_REST;
+        } else if (speed_mps <= estimator->config.creep_speed_mps) {
+            output->regime = GW_REGIME_CREEPING;
+        } else {
+            output->regime = GW_REGIME_MOTION;
+        }
         output->measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
         output->nominal_nm =
             nominal_with_zero(estimator, input, output->measured_twist,

@@ -427,3 +427,8 @@ gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
     }
     return result;
 }
+
+gw_real_t gw_finish_speed(gw_real_t speed, gw_real_t acceleration, gw_real_t distance)
+{
+    return gw_min(speed, gw_sqrt(acceleration * distance));
+}

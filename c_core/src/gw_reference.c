@@ -21,6 +21,7 @@ void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t pe
     gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_RATE_LIMIT, 0U, config->yaw_rate_limit_radps);
     gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, 0U, config->yaw_acceleration_limit_radps2);
     gw_config_check_real(error, GW_FIELD_REFERENCE_REJOIN_SPEED, 0U, config->rejoin_speed_mps);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_FINISH_SPEED, 0U, config->finish_speed_mps);
     if (error->field == GW_FIELD_NONE) {
         /* A correction of more than half the distance per tick would overshoot. */
         gw_config_check_relation(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, 0U, config->follow_gain_per_s, GW_ZERO,
@@ -157,6 +158,14 @@ static void add_displacement(gw_reference_t *reference)
     reference->theta_rad = gw_sum_add_angle(reference->theta_rad, reference->displacement.theta_rad);
 }
 
+/* Correction speed for a distance from the path; when rejoining not below the finish speed, and never past the path. */
+static gw_real_t correction_speed(const gw_reference_t *reference, gw_real_t distance, gw_real_t finish_speed,
+                                  gw_real_t acceleration)
+{
+    const gw_real_t finishing = gw_finish_speed(finish_speed, acceleration, distance);
+    return gw_min(gw_max(reference->config.follow_gain_per_s * distance, finishing), distance / reference->period_s);
+}
+
 void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool rejoining)
 {
     const gw_reference_config_t *const config = &reference->config;
@@ -170,9 +179,23 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
         gw_sum_subtract_from(plan->pose.y_m, reference->y_m) - (half_s * (reference->twist.vy_mps + planned.y))};
     const gw_real_t yaw_error = gw_wrap_angle(gw_sum_subtract_from(plan->pose.theta_rad, reference->theta_rad) -
                                               (half_s * (reference->twist.omega_radps + planned_omega)));
-    const gw_vector_t wanted = {planned.x + (config->follow_gain_per_s * error.x),
-                                planned.y + (config->follow_gain_per_s * error.y)};
-    const gw_real_t wanted_omega = planned_omega + (config->follow_gain_per_s * yaw_error);
+    gw_vector_t wanted = {planned.x + (config->follow_gain_per_s * error.x),
+                          planned.y + (config->follow_gain_per_s * error.y)};
+    gw_real_t wanted_omega = planned_omega + (config->follow_gain_per_s * yaw_error);
+    if (rejoining) {
+        const gw_real_t distance_m = gw_length(error);
+        const gw_real_t speed =
+            correction_speed(reference, distance_m, config->finish_speed_mps, config->acceleration_limit_mps2);
+        const gw_real_t finish_rate =
+            config->finish_speed_mps * (config->yaw_rate_limit_radps / config->speed_limit_mps);
+        const gw_real_t rate = correction_speed(reference, gw_abs(yaw_error), finish_rate,
+                                                config->yaw_acceleration_limit_radps2);
+        if (distance_m > GW_ZERO) {
+            wanted.x = error.x * (speed / distance_m);
+            wanted.y = error.y * (speed / distance_m);
+        }
+        wanted_omega = (yaw_error < GW_ZERO) ? -rate : rate;
+    }
     const gw_acceleration_t *const planned_acceleration = rejoining ? NULL : &plan->acceleration;
     move_planar(reference, gw_limit_length(wanted, speed_limit), planned_acceleration);
     move_yaw(reference, gw_clamp(wanted_omega, -config->yaw_rate_limit_radps, config->yaw_rate_limit_radps),

@@ -1,7 +1,8 @@
 /* The motion that gives way, (1)-(4), in the world frame.
  *
  * Frozen impulse: at a hit the robot aims at x_inf = x + (p/B) u and goes there as v = (B/M) (x_inf - x): without
- * limits exactly (2) with p as the impulse; with limits it still ends at exactly p/B.
+ * limits exactly (2) with p as the impulse; with limits it still ends at exactly p/B. The last part is made at the
+ * finish speed, because the exponential tail of (2) would keep the robot creeping for seconds.
  * Live force: (1), M v' + B v = F, with the force of each tick.
  * Both steps are exact for an input held over the tick; speed and acceleration vectors are limited in length.
  *
@@ -34,6 +35,8 @@ typedef struct {
     gw_real_t speed_limit_mps;
     /* Longest acceleration, m/s^2, [0.001, 1000]. */
     gw_real_t acceleration_limit_mps2;
+    /* Frozen impulse: slowest speed on the way to the goal, m/s, [0, 1]; 0: the endless tail of (2). */
+    gw_real_t finish_speed_mps;
 } gw_admittance_config_t;
 
 typedef struct {

@@ -32,8 +32,10 @@ typedef struct {
     gw_real_t force_threshold_n;
     /* Impulse: trips above this impulse J, N s, [0.001, 1000]. */
     gw_real_t impulse_threshold_newton_s;
-    /* Impulse: forgiven force F0 at rest and in motion, N, [0, 1000]. */
+    /* Impulse: forgiven force F0 at rest, creeping and in motion, N, [0, 1000]. While creeping the force average
+     * trips above leak_creep_n if that is more than its threshold. */
     gw_real_t leak_rest_n;
+    gw_real_t leak_creep_n;
     gw_real_t leak_motion_n;
     /* Averaged force below which a tripped detector may trip again, N, [0, 10000]. The force average takes
      * force_threshold_n if that is smaller. */
@@ -49,9 +51,9 @@ typedef struct {
     gw_wrench_t window_mean;
     gw_wrench_t mean;
     uint32_t mean_samples;
-    /* At rest: F0 is leak_rest_n. */
-    bool rest;
-    /* False: the wrench means nothing now (just after a stop). Nothing is integrated. */
+    /* Chooses F0. */
+    gw_regime_t regime;
+    /* False: nobody wants to know. Nothing is integrated. */
     bool enabled;
     /* True: the reaction is over, a push that is still there may trip again. */
     bool reaction_over;
@@ -89,8 +91,8 @@ bool gw_detector_invariant_holds(const gw_detector_t *detector);
 void gw_detector_clear(gw_detector_t *detector);
 /* Empties the integral and arms the detector. Pointer not NULL. */
 void gw_detector_reset(gw_detector_t *detector);
-/* F0 for the present mode, N. */
-gw_real_t gw_detector_leak(const gw_detector_t *detector, bool rest);
+/* F0, N. */
+gw_real_t gw_detector_leak(const gw_detector_t *detector, gw_regime_t regime);
 /* One tick. A wrench that is not gw_wrench_is_valid: GW_STATUS_INPUT_INVALID, no trip, state unchanged. */
 gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output);
 

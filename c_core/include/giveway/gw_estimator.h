@@ -2,8 +2,8 @@
  *
  * Rest: the planned speed was at most rest_speed for rest_ticks AND a quiet tare was taken in the end of that while.
  * Then T|0 is that tare (with measured sources: plus the model). Motion: T|0 is the model (38) plus the tare of the run.
- * Just after a stop neither is right, because stuck rollers hold wind-up: the estimator says that it is blind, for at
- * most 2 rest_ticks. Every change of mode empties the average.
+ * Creeping: slower than creep_speed, or just stopped. The model holds badly, because stuck rollers keep wind-up while
+ * tanh(0) = 0; the detector forgives more. To come to rest or to leave it empties the average.
  *
  * Life cycle: gw_estimator_init; gw_estimator_tare per tick until done (at once if tare_ticks is 0); then
  * gw_estimator_step per tick; gw_estimator_restart after a gap in the samples. All members are private.
@@ -45,6 +45,8 @@ typedef struct {
     uint32_t average_window;
     /* Planned speed (and speed of the wheels' circle) up to which the robot counts as standing, m/s, [0, 1]. */
     gw_real_t rest_speed_mps;
+    /* Planned speed up to which the robot creeps, unless it is at rest, m/s, [0, 1]. */
+    gw_real_t creep_speed_mps;
     /* Ticks of standing before the mode is rest, [1, 100000]. */
     uint32_t rest_ticks;
     /* Length of the tare of the run, ticks, [0, 100000]; 0: none, the sensors are taken to have no offset. */
@@ -88,9 +90,8 @@ typedef struct {
     gw_wrench_sigma_t sigma; /* of wrench; that of a mean of n is sqrt(n) smaller */
     gw_wheels_t nominal_nm;  /* T|0 */
     gw_twist_t measured_twist;
-    bool rest;
-    bool blind;        /* just after a stop: the wrench means nothing */
-    bool mode_changed; /* rest to motion or back in this tick */
+    gw_regime_t regime;
+    bool zero_changed; /* the robot came to rest or left it in this tick */
 } gw_estimator_output_t;
 
 void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error);
@@ -105,7 +106,7 @@ gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_
 /* Filters and average start afresh after a gap; zeros and mode stay. */
 void gw_estimator_restart(gw_estimator_t *estimator);
 /* One tick. Input that is not finite, or a wrench that is not gw_wrench_is_valid: GW_STATUS_INPUT_INVALID, wrench zero,
- * blind, filters and average start afresh. */
+ * filters and average start afresh. */
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                               gw_estimator_output_t *output);
 /* Angle of the motor side of a wheel from its count, rad, [-pi, pi). */

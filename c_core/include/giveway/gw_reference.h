@@ -28,6 +28,9 @@ typedef struct {
     gw_real_t yaw_acceleration_limit_radps2;
     /* Speed limit while the path is rejoined, m/s, [0.001, 10]. */
     gw_real_t rejoin_speed_mps;
+    /* Slowest speed on the way back to the path, m/s, [0, 1]; the yaw's is in proportion to its limit. 0: the path is
+     * approached ever more slowly. */
+    gw_real_t finish_speed_mps;
 } gw_reference_config_t;
 
 /* A planned state, world frame. */

@@ -65,6 +65,13 @@ typedef enum {
     GW_STATUS_INPUT_INVALID = 14      /* an argument is not finite; the output is zero and the state is unchanged */
 } gw_status_t;
 
+/* How well the torques without contact are known, which depends on the planned motion. */
+typedef enum {
+    GW_REGIME_REST = 0,     /* standing: they were measured in this stop */
+    GW_REGIME_CREEPING = 1, /* slow or just stopped: rollers may stick, their friction is anything up to B_r */
+    GW_REGIME_MOTION = 2    /* moving: the model gives them */
+} gw_regime_t;
+
 typedef struct {
     gw_real_t x;
     gw_real_t y;

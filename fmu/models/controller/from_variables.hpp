@@ -44,6 +44,7 @@ inline gw_controller_config_t configuration(const Variables &v) {
     c.estimator.encoder_counts = count(v.estimator_encoder_counts);
     c.estimator.average_window = count(v.estimator_average_window);
     c.estimator.rest_speed_mps = rounded(v.estimator_rest_speed);
+    c.estimator.creep_speed_mps = rounded(v.estimator_creep_speed);
     c.estimator.rest_ticks = count(v.estimator_rest_ticks);
     c.estimator.tare_ticks = count(v.estimator_tare_ticks);
     c.estimator.retare_ticks = count(v.estimator_retare_ticks);
@@ -59,6 +60,7 @@ inline gw_controller_config_t configuration(const Variables &v) {
     c.detector.force_threshold_n = rounded(v.detector_force_threshold);
     c.detector.impulse_threshold_newton_s = rounded(v.detector_impulse_threshold);
     c.detector.leak_rest_n = rounded(v.detector_leak_rest);
+    c.detector.leak_creep_n = rounded(v.detector_leak_creep);
     c.detector.leak_motion_n = rounded(v.detector_leak_motion);
     c.detector.release_force_n = rounded(v.detector_release_force);
     c.detector.blanking_ticks = count(v.detector_blanking_ticks);
@@ -69,6 +71,7 @@ inline gw_controller_config_t configuration(const Variables &v) {
     c.admittance.escape_impulse_newton_s = rounded(v.admittance_escape_impulse);
     c.admittance.speed_limit_mps = rounded(v.admittance_speed_limit);
     c.admittance.acceleration_limit_mps2 = rounded(v.admittance_acceleration_limit);
+    c.admittance.finish_speed_mps = rounded(v.admittance_finish_speed);
 
     c.reference.follow_gain_per_s = rounded(v.reference_follow_gain);
     c.reference.speed_limit_mps = rounded(v.reference_speed_limit);
@@ -76,6 +79,7 @@ inline gw_controller_config_t configuration(const Variables &v) {
     c.reference.yaw_rate_limit_radps = rounded(v.reference_yaw_rate_limit);
     c.reference.yaw_acceleration_limit_radps2 = rounded(v.reference_yaw_acceleration_limit);
     c.reference.rejoin_speed_mps = rounded(v.reference_rejoin_speed);
+    c.reference.finish_speed_mps = rounded(v.reference_finish_speed);
 
     c.supervisor.settled_speed_mps = rounded(v.supervisor_settled_speed);
     c.supervisor.settled_ticks = count(v.supervisor_settled_ticks);
