@@ -98,7 +98,7 @@ def demo(
     fmi: FmiOption = 3,
     seed: SeedOption = None,
 ) -> None:
-    """Run the paper's experiment 5.2 with all three bumpers; prints a table, writes report.html and summary.json."""
+    """Run the paper's experiment 5.2 with all three bumpers; table, report.html, overview.png, summary.json."""
     import giveway
     from giveway import experiments
     from giveway.files import check_output, replace_folder
@@ -113,16 +113,17 @@ def demo(
             results[bumper] = giveway.run(scenario, progress)
         if results[bumper].interrupted:
             raise KeyboardInterrupt
-    from giveway.report import write_report
+    from giveway.report import write_picture, write_report
 
     with replace_folder(out) as folder:
         for bumper, result in results.items():
             (folder / bumper).mkdir()
             result.write_into(folder / bumper)
         write_report(folder / "report.html", name, list(results.values()))
+        write_picture(folder / "overview.png", list(results.values()))
         write_summary(folder / "summary.json", results)
     _print_table(name, results)
-    typer.echo(f"Written: {out / 'report.html'} and {out / 'summary.json'}")
+    typer.echo(f"Written: {out / 'report.html'}, {out / 'overview.png'} and {out / 'summary.json'}")
 
 
 @app.command("list")

@@ -13,7 +13,7 @@ from giveway.files import write_text
 if TYPE_CHECKING:
     from giveway.result import Result
 
-__all__ = ["render", "write_report"]
+__all__ = ["render", "write_picture", "write_report"]
 
 BUMPER_LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic spring bumper"}
 
@@ -21,6 +21,13 @@ BUMPER_LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "ma
 def write_report(path: Path, experiment: str, results: Sequence[Result]) -> None:
     """Write the report of ``results`` (one per bumper) to ``path``, atomically."""
     write_text(path, render(experiment, results))
+
+
+def write_picture(path: Path, results: Sequence[Result]) -> None:
+    """Write a PNG that shows ``results`` (one per bumper) at a glance."""
+    from giveway.report.overview import write_overview
+
+    write_overview(path, {BUMPER_LABELS[result.manifest["scenario"]["bumper"]]: result for result in results})
 
 
 def render(experiment: str, results: Sequence[Result]) -> str:

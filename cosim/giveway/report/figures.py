@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,39 +12,18 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.metrics import WHEELS, Collision
+from giveway.metrics import WHEELS
+from giveway.report.runs import IMPACT_MS, Run
+from giveway.report.style import STYLE, TRUTH_COLOUR
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
     from giveway.result import Result
 
 __all__ = ["NamedFigure", "figures"]
 
-COLOURS = {"no bumper": "#c8500a", "spring bumper": "#0b64a8", "magnetic spring bumper": "#0a8a63"}
-TRUTH_COLOUR = "#8a8f98"
-IMPACT_MS = (-40.0, 350.0)
 WIDTH_IN = 9.6
-STYLE = {
-    "font.family": "sans-serif",
-    "font.size": 9.5,
-    "axes.grid": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#9aa0a8",
-    "axes.labelcolor": "#2b2f36",
-    "axes.titlesize": 10,
-    "axes.titlelocation": "left",
-    "grid.color": "#e4e7eb",
-    "grid.linewidth": 0.7,
-    "lines.linewidth": 1.5,
-    "legend.frameon": False,
-    "xtick.color": "#555b65",
-    "ytick.color": "#555b65",
-    "svg.fonttype": "none",  # text stays text: smaller, selectable, in the reader's font
-    "svg.hashsalt": "giveway",  # the same run gives the same bytes
-}
 
 
 @dataclass(frozen=True)
@@ -57,41 +35,9 @@ class NamedFigure:
     svg: str
 
 
-class _Run:
-    """One result, seen from its contact."""
-
-    def __init__(self, label: str, result: Result) -> None:
-        self.hit = Collision(result.traces, result.manifest["parameters"])
-        self.label = label
-        self.colour = COLOURS[label]
-        self.time_s = self.hit.time_s - (self.hit.contact_s or 0.0)
-        self.time_ms = 1e3 * self.time_s
-        self.impact = (self.time_ms >= IMPACT_MS[0]) & (self.time_ms <= IMPACT_MS[1])
-        self.detected_ms = None if self.hit.detected is None else float(self.time_ms[self.hit.detected])
-        nose = np.stack([self.hit["testbed.truth.nose_x"], self.hit["testbed.truth.nose_y"]], axis=1)
-        start = self.hit.until_detection().start
-        run_up = nose[min(start, len(nose) - 1)] - nose[0]
-        length = math.hypot(*run_up)
-        self.along = run_up / length if length > 0.0 else np.array([1.0, 0.0])
-        self._contact_row = min(start, len(nose) - 1)
-        self.nose = nose
-
-    def travel(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Travel of a point along the slider's run-up since contact, m."""
-        return np.asarray((xy - xy[self._contact_row]) @ self.along)
-
-    def position(self, source: str) -> NDArray[np.float64]:
-        """Travel of ``source`` (x and y traces) along the run-up since contact, m."""
-        return self.travel(np.stack([self.hit[f"{source}.x"], self.hit[f"{source}.y"]], axis=1))
-
-    def mark_detection(self, axes: Axes, scale: float = 1.0) -> None:
-        if self.detected_ms is not None:
-            axes.axvline(self.detected_ms * scale, color=self.colour, linestyle=(0, (4, 3)), linewidth=1.0)
-
-
 def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
     """All figures for ``results`` by label."""
-    runs = [_Run(label, result) for label, result in results.items()]
+    runs = [Run(label, result) for label, result in results.items()]
     drawn = []
     with context(STYLE):
         for number, (title, caption, draw) in enumerate(_FIGURES):
@@ -99,7 +45,7 @@ def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
     return drawn
 
 
-def _contact_force(runs: list[_Run]) -> Figure:
+def _contact_force(runs: list[Run]) -> Figure:
     figure = Figure(figsize=(WIDTH_IN, 3.3), layout="constrained")
     axes = figure.subplots()
     for run in runs:
@@ -112,7 +58,7 @@ def _contact_force(runs: list[_Run]) -> Figure:
     return figure
 
 
-def _wheel_torques(runs: list[_Run]) -> Figure:
+def _wheel_torques(runs: list[Run]) -> Figure:
     figure = Figure(figsize=(WIDTH_IN, 3.2), layout="constrained")
     panels = figure.subplots(1, WHEELS, sharey=True)
     for wheel, axes in enumerate(panels):
@@ -126,7 +72,7 @@ def _wheel_torques(runs: list[_Run]) -> Figure:
     return figure
 
 
-def _positions(runs: list[_Run]) -> Figure:
+def _positions(runs: list[Run]) -> Figure:
     figure = Figure(figsize=(WIDTH_IN, 5.4), layout="constrained")
     panels = figure.subplots(2, len(runs), sharey="row", squeeze=False)
     for column, run in enumerate(runs):
@@ -151,7 +97,7 @@ def _positions(runs: list[_Run]) -> Figure:
     return figure
 
 
-def _estimates(runs: list[_Run]) -> Figure:
+def _estimates(runs: list[Run]) -> Figure:
     figure = Figure(figsize=(WIDTH_IN, 5.0), layout="constrained")
     panels = figure.subplots(2, len(runs), sharex=True, sharey="row", squeeze=False)
     for column, run in enumerate(runs):
@@ -176,7 +122,7 @@ def _estimates(runs: list[_Run]) -> Figure:
     return figure
 
 
-_FIGURES: tuple[tuple[str, str, Callable[[list[_Run]], Figure]], ...] = (
+_FIGURES: tuple[tuple[str, str, Callable[[list[Run]], Figure]], ...] = (
     (
         "Contact force",
         "True force between cover and robot. Dashed: the moment the controller decides that this is a collision.",
