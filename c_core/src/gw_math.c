@@ -20,6 +20,7 @@
 #define SQRT_LIFT ((gw_real_t)4.149515568880993e180) /* 2^600 */
 #define SQRT_LIFT_ROOT ((gw_real_t)4.909093465297727e-91) /* 2^-300 */
 #define SQRT_NEWTON_STEPS 4U
+#define BELOW_TWO (GW_TWO - DBL_EPSILON)
 #define SPLITTER ((gw_real_t)134217729.0) /* 2^27 + 1 */
 #else
 #define EXP_TERMS 7U
@@ -39,6 +40,7 @@
 #define SQRT_LIFT ((gw_real_t)7.922816251426434e28)       /* 2^96 */
 #define SQRT_LIFT_ROOT ((gw_real_t)3.552713678800501e-15) /* 2^-48 */
 #define SQRT_NEWTON_STEPS 3U
+#define BELOW_TWO (GW_TWO - FLT_EPSILON)
 #define SPLITTER ((gw_real_t)4097.0) /* 2^12 + 1 */
 #endif
 
@@ -208,6 +210,8 @@ gw_real_t gw_sqrt(gw_real_t x)
         }
         /* The exact residual makes the last rounding the correct one. */
         root += GW_HALF * (exact_residual(reduced, root) / root);
+        /* It decides a tie wrongly just below 4, where the root is just below 2. */
+        root = gw_min(root, BELOW_TWO);
         result = root * scale;
     }
     return result;
