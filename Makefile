@@ -54,8 +54,8 @@ build/CMakeCache.txt: .venv/packages-installed
 
 # In place: the sources under cosim/ are the package, so that edits need no new install.
 .venv/package-installed: .venv/packages-installed pyproject.toml
-	$(BIN)/pip install --quiet --no-build-isolation --no-deps -C wheel.cmake=false -C editable.mode=inplace \
-	    --editable .
+	$(BIN)/pip install --quiet --no-build-isolation --no-deps --config-settings wheel.cmake=false \
+	    --config-settings editable.mode=inplace --editable .
 	@touch $@
 
 .venv/packages-installed: requirements.lock cmake/system_packages.sh

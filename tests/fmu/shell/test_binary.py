@@ -178,4 +178,5 @@ def test_references_are_append_only(model: str) -> None:
     gone = [row for row in golden if row not in now]
     assert not gone, "published references are append-only: these were changed or removed"
     missing = [row for row in now if row not in golden]
-    assert not missing, f"append these to {GOLDEN.name}/{model}.csv"
+    lines = "\n".join(",".join(map(str, row)) for row in missing)
+    assert not missing, f"new variables: add these lines to {GOLDEN.name}/{model}.csv\n{lines}"
