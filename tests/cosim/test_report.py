@@ -77,7 +77,7 @@ def test_demo_writes_what_it_prints(cli: Cli, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert not done.stderr
     out = tmp_path / "out" / "demo"
-    assert {"report.html", "summary.json", "none", "spring", "magnetic"} <= set(folder_content(out))
+    assert {"report.html", "overview.png", "summary.json", "none", "spring", "magnetic"} <= set(folder_content(out))
     document = json.loads((out / "summary.json").read_text())
     assert document["schema_version"] == 1
     results = {bumper: giveway.load(out / bumper) for bumper in ("none", "spring", "magnetic")}

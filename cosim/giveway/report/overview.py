@@ -15,6 +15,7 @@ from matplotlib.transforms import Affine2D
 
 from giveway.report.runs import IMPACT_MS, Run
 from giveway.report.style import STYLE, TRUTH_COLOUR
+from giveway.summary import table_rows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +41,9 @@ def write_overview(path: Path, results: Mapping[str, Result]) -> None:
         _top_view(figure.add_subplot(grid[:, 0]), runs[-1])
         _forces(figure.add_subplot(grid[0, 1]), runs)
         _escapes(figure.add_subplot(grid[1, 1]), runs)
-        figure.savefig(path, dpi=130, metadata={"Software": None})
+        # The picture carries its numbers, so that a stale copy can be told from a fresh one.
+        numbers = "\n".join(" | ".join(row) for row in table_rows(results))
+        figure.savefig(path, dpi=130, metadata={"Software": None, "Description": numbers})
 
 
 def _top_view(axes: Axes, run: Run) -> None:
