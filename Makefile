@@ -8,7 +8,6 @@ PYTHON ?= python3
 JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
-export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
 .PHONY: help demo test bench fmus build lint lock clean
 .DEFAULT_GOAL := help
