@@ -13,7 +13,7 @@ from pathlib import Path
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
-from fmu_driver import BINARY_FOLDERS, MODELS, ROOT, Fmu, fmu_path
+from fmu_driver import BINARY_FOLDERS, BUILD, MODELS, ROOT, Fmu, fmu_path
 
 EVERY_FMU = [(model, version) for model in (*MODELS, "lag") for version in (2, 3)]
 GOLDEN = Path(__file__).parent / "golden_references"
@@ -36,28 +36,44 @@ def test_both_versions_hold_the_same_binary(model: str, tmp_path: Path) -> None:
     assert binaries[0] == binaries[1]
 
 
-@pytest.mark.parametrize("model", [*MODELS, "lag"])
-def test_only_fmi_functions_are_exported(model: str, tmp_path: Path) -> None:
-    library = shared_library(model, 3, tmp_path)
-    listing = subprocess.run(
-        ["nm", "--dynamic", "--defined-only", "--format=posix", library], check=True, capture_output=True, text=True
-    )
-    exported = {line.split()[0] for line in listing.stdout.splitlines()}
-    wanted = set()
+def exported_symbols(library: Path) -> set[str]:
+    command = ["nm", "--dynamic", "--defined-only", "--format=posix", library]
+    listing = subprocess.run(command, check=True, capture_output=True, text=True)
+    return {line.split()[0] for line in listing.stdout.splitlines()}
+
+
+def needed_libraries(library: Path) -> set[str]:
+    listing = subprocess.run(["objdump", "--private-headers", library], check=True, capture_output=True, text=True)
+    return set(re.findall(r"NEEDED\s+(\S+)", listing.stdout))
+
+
+def fmi_functions() -> set[str]:
+    names = set()
     for header in ("fmi2Functions.h", "fmi3Functions.h"):
         text = (Path(fmpy.__file__).parent / "c-code" / header).read_text()
-        wanted |= set(re.findall(r"FMI[23]_Export\s+fmi[23]\w+TYPE\s+(fmi[23]\w+);", text))
-    assert len(wanted) > 100  # all functions of both versions were found in the headers
-    assert exported == wanted
+        names |= set(re.findall(r"FMI[23]_Export\s+fmi[23]\w+TYPE\s+(fmi[23]\w+);", text))
+    return names
+
+
+@pytest.mark.parametrize("model", [*MODELS, "lag"])
+def test_all_fmi_functions_are_exported_and_nothing_else(model: str, tmp_path: Path) -> None:
+    wanted = fmi_functions()
+    assert len(wanted) > 100  # the headers were read
+    assert exported_symbols(shared_library(model, 3, tmp_path)) == wanted
 
 
 @pytest.mark.parametrize("model", [*MODELS, "lag"])
 def test_only_the_c_library_is_needed(model: str, tmp_path: Path) -> None:
-    library = shared_library(model, 3, tmp_path)
-    listing = subprocess.run(["objdump", "--private-headers", library], check=True, capture_output=True, text=True)
-    needed = set(re.findall(r"NEEDED\s+(\S+)", listing.stdout))
+    needed = needed_libraries(shared_library(model, 3, tmp_path))
     assert "libc.so.6" in needed
     assert needed <= C_LIBRARY
+
+
+def test_an_ordinary_library_would_be_noticed() -> None:
+    """The planted fault for the two checks above: a library linked without the FMUs' options."""
+    library = BUILD / "tests" / "libgiveway_plant_probe.so"
+    assert exported_symbols(library) - fmi_functions()
+    assert needed_libraries(library) - C_LIBRARY
 
 
 @pytest.mark.parametrize(("model", "version"), EVERY_FMU)
@@ -130,8 +146,8 @@ def run(model: str, version: int, folder: Path) -> list[dict[str, float]]:
     for k in range(200):
         for kind, pairs in excitation(fmu, k).items():
             if pairs:
-                references, values = zip(*pairs, strict=True)
-                assert fmu.set_references(kind, references, values) == 0, fmu.last_message
+                numbers, values = zip(*pairs, strict=True)
+                assert fmu.set_references(kind, numbers, values) == 0, fmu.last_message
         assert fmu.step(k * 0.001, 0.001) == 0, fmu.last_message
         if k % 10 == 9:
             trace.append(fmu.snapshot())
@@ -166,17 +182,38 @@ def test_outputs_at_the_start_follow_parameters_alone(model: str, tmp_path: Path
     assert starts[2] == starts[0]
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_references_are_append_only(model: str) -> None:
-    """An importer's project stores references: those that were ever published keep their name and type."""
+Row = tuple[int, str, str]  # reference, name, type
+
+
+def reference_faults(golden: list[Row], now: list[Row]) -> tuple[list[Row], list[Row]]:
+    """Published rows that are gone, and rows that are not published yet."""
+    return [row for row in golden if row not in now], [row for row in now if row not in golden]
+
+
+def references(model: str) -> tuple[list[Row], list[Row]]:
+    """The published rows and those of the FMU."""
     with (GOLDEN / f"{model}.csv").open(newline="") as file:
         golden = [(int(row["reference"]), row["name"], row["type"]) for row in csv.DictReader(file)]
-    assert golden, "the list is empty"
     types = {"Float64": "real", "Int32": "integer", "Boolean": "boolean"}
     description = fmpy.read_model_description(str(fmu_path(model, 3)))
     now = sorted((v.valueReference, v.name, types[v.type]) for v in description.modelVariables if v.name != "time")
-    gone = [row for row in golden if row not in now]
+    return golden, now
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_references_are_append_only(model: str) -> None:
+    """An importer's project stores references: those that were ever published keep their name and type."""
+    golden, now = references(model)
+    assert golden
+    gone, missing = reference_faults(golden, now)
     assert not gone, "published references are append-only: these were changed or removed"
-    missing = [row for row in now if row not in golden]
     lines = "\n".join(",".join(map(str, row)) for row in missing)
     assert not missing, f"new variables: add these lines to {GOLDEN.name}/{model}.csv\n{lines}"
+
+
+def test_a_changed_reference_would_be_noticed() -> None:
+    golden, now = references("testbed")
+    reference, name, kind = golden[3]
+    for changed in ((reference, name + "_new", kind), (99999, name, kind), (reference, name, "integer")):
+        assert reference_faults(golden, [*now[:3], changed, *now[4:]]) == ([golden[3]], [changed])
+    assert reference_faults(golden, now[:-1])[0] == [golden[-1]]
