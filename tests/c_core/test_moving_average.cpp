@@ -1,1 +1,69 @@
+#include <deque>
+#include <memory>
+#include <vector>
+
 #include "support.hpp"
+
+namespace {
+
+class MovingAverage : public testing::TestWithParam<unsigned> {};
+
+TEST_P(MovingAverage, IsEigensMeanOverAMillionSamples) {
+    const unsigned window = GetParam();
+    auto average = std::make_unique<gw_moving_average_t>();
+    ASSERT_EQ(gw_moving_average_init(average.get(), window), GW_STATUS_OK);
+    Random random(41 + window);
+    Eigen::MatrixXd history = Eigen::MatrixXd::Zero(3, window);
+    constexpr int samples = 1'000'000;
+    for (int i = 0; i < samples; ++i) {
+        // Bursts of large values in between, whose rounding must not stay.
+        const double size = (i / 1000) % 50 == 7 ? 1e6 : 10.0;
+        const Eigen::Vector3d sample = random_vector(random, size);
+        history.col(i % static_cast<int>(window)) = sample;
+        ASSERT_EQ(gw_moving_average_add(average.get(), wrench(sample)), GW_STATUS_OK);
+        const bool looked_at = i < 3000 || i % 997 == 0 || i > samples - 3000;
+        // One window after a burst its rounding is gone; before, it is proportional to the burst.
+        if (looked_at) {
+            const auto held = std::min<int>(i + 1, static_cast<int>(window));
+            const Eigen::Vector3d truth = history.rowwise().sum() / held;
+            const bool burst_is_near = ((i / 1000) % 50) >= 7 && ((i / 1000) % 50) <= 9 + static_cast<int>(window) / 500;
+            // Rounding errors of `window` additions, as a random walk with a margin of ten.
+            const double allowed = 10.0 * epsilon * std::sqrt(window) * (burst_is_near ? 1e6 : 10.0);
+            EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), truth, allowed) << i;
+            EXPECT_VECTOR_NEAR(vector(gw_moving_average_window_mean(average.get())),
+                               Eigen::Vector3d(truth * held / window), allowed);
+        }
+        if (i % 100'000 == 0) {
+            ASSERT_TRUE(gw_moving_average_invariant_holds(average.get()));
+        }
+    }
+    EXPECT_EQ(gw_moving_average_count(average.get()), window);
+}
+
+INSTANTIATE_TEST_SUITE_P(Windows, MovingAverage, testing::Values(1U, 2U, 3U, 20U, 1000U, 1023U, 1024U));
+
+TEST(MovingAverage, ResetAndRefusals) {
+    auto average = std::make_unique<gw_moving_average_t>();
+    EXPECT_EQ(gw_moving_average_init(nullptr, 5), GW_STATUS_NULL_POINTER);
+    EXPECT_EQ(gw_moving_average_init(average.get(), 0), GW_STATUS_CONFIG_INVALID);
+    EXPECT_EQ(gw_moving_average_init(average.get(), 1025), GW_STATUS_CONFIG_INVALID);
+    EXPECT_TRUE(gw_moving_average_invariant_holds(average.get())); // usable even then, with window 1
+    ASSERT_EQ(gw_moving_average_init(average.get(), 4), GW_STATUS_OK);
+    EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), Eigen::Vector3d(0, 0, 0), 0.0);
+    for (int i = 0; i < 7; ++i) {
+        ASSERT_EQ(gw_moving_average_add(average.get(), wrench({1e6, 1e6, 1e6})), GW_STATUS_OK);
+    }
+    for (const Real bad : {not_a_number, infinite, real(2e9)}) {
+        EXPECT_EQ(gw_moving_average_add(average.get(), {real(0), bad, real(0)}), GW_STATUS_INPUT_INVALID);
+    }
+    EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), Eigen::Vector3d(1e6, 1e6, 1e6), 0.0);
+    gw_moving_average_reset(average.get());
+    EXPECT_EQ(gw_moving_average_count(average.get()), 0U);
+    ASSERT_EQ(gw_moving_average_add(average.get(), wrench({2, 4, 6})), GW_STATUS_OK);
+    EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), Eigen::Vector3d(2, 4, 6), 0.0);
+    EXPECT_VECTOR_NEAR(vector(gw_moving_average_window_mean(average.get())), Eigen::Vector3d(0.5, 1, 1.5), 0.0);
+    EXPECT_EQ(gw_moving_average_add(nullptr, wrench({2, 4, 6})), GW_STATUS_NULL_POINTER);
+    EXPECT_FALSE(gw_moving_average_invariant_holds(nullptr));
+}
+
+} // namespace
