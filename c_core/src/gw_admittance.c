@@ -89,54 +89,88 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
     return status;
 }
 
-/* Replaces the tail of the approach: constant speed, then half the acceleration limit, then there. */
-static void finish(const gw_admittance_t *admittance, gw_vector_t ahead_m, gw_admittance_output_t *next)
-{
-    const gw_real_t distance_m = gw_length(ahead_m);
-    const gw_real_t period_s = admittance->period_s;
-    const gw_real_t acceleration = admittance->config.acceleration_limit_mps2;
-    const gw_real_t speed_mps = gw_finish_speed(admittance->config.finish_speed_mps, acceleration, distance_m);
-    /* What the last tick can cover, coming to rest within the acceleration limit. */
-    const gw_real_t last_m = (GW_HALF * period_s) * gw_min(speed_mps, (GW_HALF * acceleration) * period_s);
-    if (distance_m <= last_m) {
-        next->velocity_mps.x = GW_ZERO;
-        next->velocity_mps.y = GW_ZERO;
-        next->displacement_m = ahead_m;
-    } else if (gw_length(next->velocity_mps) < speed_mps) {
-        next->velocity_mps.x = (ahead_m.x / distance_m) * speed_mps;
-        next->velocity_mps.y = (ahead_m.y / distance_m) * speed_mps;
-        next->displacement_m.x = (GW_HALF * period_s) * (admittance->velocity_mps.x + next->velocity_mps.x);
-        next->displacement_m.y = (GW_HALF * period_s) * (admittance->velocity_mps.y + next->velocity_mps.y);
-    } else {
-        /* still the exponential part */
-    }
-}
-
-/* The exact end of the tick without limits. */
-static gw_admittance_output_t unlimited(const gw_admittance_t *admittance, gw_vector_t force_n)
+/* Moves on from the present velocity towards a wanted one, as far as the acceleration allows. */
+static gw_admittance_output_t approach_velocity(const gw_admittance_t *admittance, gw_vector_t wanted_mps)
 {
     gw_admittance_output_t next;
-    if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
-        const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
-                                   gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
+    const gw_vector_t before = admittance->velocity_mps;
+    const gw_vector_t change = {wanted_mps.x - before.x, wanted_mps.y - before.y};
+    const gw_vector_t allowed =
+        gw_limit_length(change, admittance->config.acceleration_limit_mps2 * admittance->period_s);
+    const gw_real_t half_s = GW_HALF * admittance->period_s;
+    next.velocity_mps.x = before.x + allowed.x;
+    next.velocity_mps.y = before.y + allowed.y;
+    next.displacement_m.x = half_s * (before.x + next.velocity_mps.x);
+    next.displacement_m.y = half_s * (before.y + next.velocity_mps.y);
+    return next;
+}
+
+/* Is the velocity within the limits, coming from the present one? */
+static bool within_limits(const gw_admittance_t *admittance, gw_vector_t velocity_mps)
+{
+    const gw_vector_t before = admittance->velocity_mps;
+    const gw_vector_t change = {velocity_mps.x - before.x, velocity_mps.y - before.y};
+    return (gw_length(velocity_mps) <= admittance->config.speed_limit_mps) &&
+           (gw_length(change) <= (admittance->config.acceleration_limit_mps2 * admittance->period_s));
+}
+
+/* One tick of (2), or as near to it as limits and finish speed allow. */
+static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
+{
+    gw_admittance_output_t next;
+    const gw_admittance_config_t *const config = &admittance->config;
+    const gw_real_t period_s = admittance->period_s;
+    const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
+                               gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
+    const gw_real_t distance_m = gw_length(ahead);
+    if (distance_m > GW_ZERO) {
+        const gw_vector_t unit = {ahead.x / distance_m, ahead.y / distance_m};
         const gw_real_t end_rate = admittance->rate_per_s * admittance->decay;
-        next.displacement_m.x = admittance->approach * ahead.x;
-        next.displacement_m.y = admittance->approach * ahead.y;
-        next.velocity_mps.x = end_rate * ahead.x;
-        next.velocity_mps.y = end_rate * ahead.y;
-        if (admittance->config.finish_speed_mps > GW_ZERO) {
-            finish(admittance, ahead, &next);
+        const gw_vector_t end_mps = {end_rate * ahead.x, end_rate * ahead.y};
+        const gw_vector_t exact_m = {admittance->approach * ahead.x, admittance->approach * ahead.y};
+        const gw_vector_t mean_mps = {exact_m.x / period_s, exact_m.y / period_s};
+        const gw_real_t mean = gw_length(mean_mps);
+        const gw_real_t along_mps = (admittance->velocity_mps.x * unit.x) + (admittance->velocity_mps.y * unit.y);
+        /* Half of the acceleration is kept for what braking has to catch up with. */
+        const gw_real_t brake_mps = gw_braking_speed(GW_HALF * config->acceleration_limit_mps2, period_s,
+                                                     distance_m - ((GW_HALF * period_s) * along_mps));
+        const gw_real_t wanted =
+            gw_min(gw_min(gw_max(mean, config->finish_speed_mps), brake_mps), config->speed_limit_mps);
+        const gw_vector_t wanted_mps = {wanted * unit.x, wanted * unit.y};
+        const gw_vector_t still = {GW_ZERO, GW_ZERO};
+        if ((mean >= config->finish_speed_mps) && (mean <= brake_mps) && within_limits(admittance, mean_mps) &&
+            within_limits(admittance, end_mps)) {
+            next.velocity_mps = end_mps;
+            next.displacement_m = exact_m;
+        } else if ((brake_mps <= GW_ZERO) && within_limits(admittance, still)) {
+            next.velocity_mps = still;
+            next.displacement_m = ahead;
+        } else {
+            next = approach_velocity(admittance, wanted_mps);
         }
     } else {
-        /* Final velocity F/B, and what is left to it. */
-        const gw_vector_t final = {force_n.x / admittance->config.damping_newton_s_per_m,
-                                   force_n.y / admittance->config.damping_newton_s_per_m};
-        const gw_vector_t excess = {admittance->velocity_mps.x - final.x, admittance->velocity_mps.y - final.y};
+        const gw_vector_t still = {GW_ZERO, GW_ZERO};
+        next = approach_velocity(admittance, still);
+    }
+    return next;
+}
+
+/* One tick of (1) with the force held, or as near to it as the limits allow. */
+static gw_admittance_output_t step_live(const gw_admittance_t *admittance, gw_vector_t force_n)
+{
+    gw_admittance_output_t next;
+    const gw_real_t damping = admittance->config.damping_newton_s_per_m;
+    /* Final velocity F/B, and what is left to it. */
+    const gw_vector_t final = {force_n.x / damping, force_n.y / damping};
+    const gw_vector_t excess = {admittance->velocity_mps.x - final.x, admittance->velocity_mps.y - final.y};
+    const gw_vector_t end_mps = {final.x + (admittance->decay * excess.x), final.y + (admittance->decay * excess.y)};
+    if (within_limits(admittance, end_mps)) {
         const gw_real_t span_s = admittance->approach / admittance->rate_per_s;
+        next.velocity_mps = end_mps;
         next.displacement_m.x = (final.x * admittance->period_s) + (excess.x * span_s);
         next.displacement_m.y = (final.y * admittance->period_s) + (excess.y * span_s);
-        next.velocity_mps.x = final.x + (admittance->decay * excess.x);
-        next.velocity_mps.y = final.y + (admittance->decay * excess.y);
+    } else {
+        next = approach_velocity(admittance, gw_limit_length(end_mps, admittance->config.speed_limit_mps));
     }
     return next;
 }
@@ -157,25 +191,14 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
                      gw_in_range(force_n.y, -GW_WRENCH_MAX, GW_WRENCH_MAX))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
-            const gw_vector_t before = admittance->velocity_mps;
-            const gw_real_t most_change = admittance->config.acceleration_limit_mps2 * admittance->period_s;
-            gw_admittance_output_t next = unlimited(admittance, force_n);
-            const gw_vector_t slowed = gw_limit_length(next.velocity_mps, admittance->config.speed_limit_mps);
-            const gw_vector_t change = {slowed.x - before.x, slowed.y - before.y};
-            if ((gw_length(next.velocity_mps) > admittance->config.speed_limit_mps) ||
-                (gw_length(change) > most_change)) {
-                const gw_vector_t allowed = gw_limit_length(change, most_change);
-                next.velocity_mps.x = before.x + allowed.x;
-                next.velocity_mps.y = before.y + allowed.y;
-                next.displacement_m.x = (GW_HALF * admittance->period_s) * (before.x + next.velocity_mps.x);
-                next.displacement_m.y = (GW_HALF * admittance->period_s) * (before.y + next.velocity_mps.y);
-            }
             if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
-                admittance->moved_x_m = gw_sum_add(admittance->moved_x_m, next.displacement_m.x);
-                admittance->moved_y_m = gw_sum_add(admittance->moved_y_m, next.displacement_m.y);
+                *output = step_frozen(admittance);
+                admittance->moved_x_m = gw_sum_add(admittance->moved_x_m, output->displacement_m.x);
+                admittance->moved_y_m = gw_sum_add(admittance->moved_y_m, output->displacement_m.y);
+            } else {
+                *output = step_live(admittance, force_n);
             }
-            admittance->velocity_mps = next.velocity_mps;
-            *output = next;
+            admittance->velocity_mps = output->velocity_mps;
         }
     }
     return status;

@@ -332,7 +332,13 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
 {
     const gw_vector_t base = {now->estimate.mean.force_x_n, now->estimate.mean.force_y_n};
     const gw_real_t length = gw_length(base);
-    const gw_real_t left = length - gw_detector_leak(&controller->detector, now->estimate.regime);
+    /* The push that started the reaction is real: it must be able to bring the robot out of creeping. */
+    const bool just_hit =
+        controller->detector.active &&
+        (controller->detector.ticks_since_trip < controller->config.detector.blanking_ticks);
+    const gw_regime_t regime =
+        (just_hit && (now->estimate.regime == GW_REGIME_CREEPING)) ? GW_REGIME_MOTION : now->estimate.regime;
+    const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
         felt.x = base.x * (left / length);

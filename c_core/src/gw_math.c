@@ -432,7 +432,13 @@ gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
     return result;
 }
 
-gw_real_t gw_finish_speed(gw_real_t speed, gw_real_t acceleration, gw_real_t distance)
+gw_real_t gw_braking_speed(gw_real_t deceleration, gw_real_t period, gw_real_t distance)
 {
-    return gw_min(speed, gw_sqrt(acceleration * distance));
+    gw_real_t speed = GW_ZERO;
+    if (distance > GW_ZERO) {
+        /* v^2 = 2 a (distance - T v/2) */
+        const gw_real_t half_step = (GW_HALF * deceleration) * period;
+        speed = gw_sqrt((half_step * half_step) + ((GW_TWO * deceleration) * distance)) - half_step;
+    }
+    return speed;
 }

@@ -6,6 +6,9 @@
 #define SPEED_MAX ((gw_real_t)100.0)
 #define YAW_RATE_MAX ((gw_real_t)1000.0)
 #define ACCELERATION_MAX ((gw_real_t)1.0e4)
+/* Correction speeds, m/s and rad/s, up to which the reference counts as being on the plan. */
+#define CORRECTION_FREE ((gw_real_t)0.001)
+#define YAW_CORRECTION_FREE ((gw_real_t)0.005)
 
 static bool within(gw_real_t value, gw_real_t limit)
 {
@@ -158,12 +161,12 @@ static void add_displacement(gw_reference_t *reference)
     reference->theta_rad = gw_sum_add_angle(reference->theta_rad, reference->displacement.theta_rad);
 }
 
-/* Correction speed for a distance from the path; when rejoining not below the finish speed, and never past the path. */
-static gw_real_t correction_speed(const gw_reference_t *reference, gw_real_t distance, gw_real_t finish_speed,
-                                  gw_real_t acceleration)
+/* Speed towards the path when rejoining: not below the finish speed, but such that half the acceleration stops there. */
+static gw_real_t rejoining_speed(const gw_reference_t *reference, gw_real_t distance, gw_real_t finish_speed,
+                                 gw_real_t acceleration)
 {
-    const gw_real_t finishing = gw_finish_speed(finish_speed, acceleration, distance);
-    return gw_min(gw_max(reference->config.follow_gain_per_s * distance, finishing), distance / reference->period_s);
+    return gw_min(gw_max(reference->config.follow_gain_per_s * distance, finish_speed),
+                  gw_braking_speed(GW_HALF * acceleration, reference->period_s, distance));
 }
 
 void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool rejoining)
@@ -185,10 +188,10 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
     if (rejoining) {
         const gw_real_t distance_m = gw_length(error);
         const gw_real_t speed =
-            correction_speed(reference, distance_m, config->finish_speed_mps, config->acceleration_limit_mps2);
+            rejoining_speed(reference, distance_m, config->finish_speed_mps, config->acceleration_limit_mps2);
         const gw_real_t finish_rate =
             config->finish_speed_mps * (config->yaw_rate_limit_radps / config->speed_limit_mps);
-        const gw_real_t rate = correction_speed(reference, gw_abs(yaw_error), finish_rate,
+        const gw_real_t rate = rejoining_speed(reference, gw_abs(yaw_error), finish_rate,
                                                 config->yaw_acceleration_limit_radps2);
         if (distance_m > GW_ZERO) {
             wanted.x = error.x * (speed / distance_m);
@@ -196,10 +199,12 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
         }
         wanted_omega = (yaw_error < GW_ZERO) ? -rate : rate;
     }
-    const gw_acceleration_t *const planned_acceleration = rejoining ? NULL : &plan->acceleration;
-    move_planar(reference, gw_limit_length(wanted, speed_limit), planned_acceleration);
+    /* A correction that matters is not part of the planned acceleration. */
+    const bool on_plan = (!rejoining) && ((config->follow_gain_per_s * gw_length(error)) <= CORRECTION_FREE);
+    const bool on_yaw = (!rejoining) && ((config->follow_gain_per_s * gw_abs(yaw_error)) <= YAW_CORRECTION_FREE);
+    move_planar(reference, gw_limit_length(wanted, speed_limit), on_plan ? &plan->acceleration : NULL);
     move_yaw(reference, gw_clamp(wanted_omega, -config->yaw_rate_limit_radps, config->yaw_rate_limit_radps),
-             planned_acceleration);
+             on_yaw ? &plan->acceleration : NULL);
     add_displacement(reference);
 }
 

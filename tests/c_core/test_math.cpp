@@ -193,8 +193,26 @@ TEST(Math, Vectors) {
         ASSERT_NEAR(std::hypot(limited.x, limited.y), std::min<double>(limit, std::hypot(v.x, v.y)), 10.0 * tolerance);
         ASSERT_NEAR(limited.x * v.y, limited.y * v.x, 100.0 * tolerance);
     }
-    EXPECT_EQ(gw_finish_speed(real(0.01), real(2), real(0)), real(0));
-    EXPECT_EQ(gw_finish_speed(real(0.01), real(2), real(1)), real(0.01));
+}
+
+TEST(Math, BrakingSpeedStopsAtTheGoal) {
+    EXPECT_EQ(gw_braking_speed(real(2), real(0.001), real(0)), real(0));
+    EXPECT_EQ(gw_braking_speed(real(2), real(0.001), real(-1)), real(0));
+    for (const double start : {1.0, 0.1, 1e-3}) {
+        double left = start;
+        double speed = 0.0;
+        for (int i = 0; i < 5000; ++i) {
+            const double next = std::min(static_cast<double>(gw_braking_speed(real(2), real(0.001),
+                                                                               real(left - 0.5e-3 * speed))),
+                                         speed + 2e-3);
+            ASSERT_GE(next, speed - 2e-3 * (1.0 + 1e-3) - 4.0 * epsilon) << i;
+            left -= 0.5e-3 * (speed + next);
+            speed = next;
+            // The last tick is whole although the stop may need a part of it: at most a T^2/8 too far.
+            ASSERT_GE(left, -2.0 * 1e-6 / 8.0 - 10.0 * epsilon * start) << i;
+        }
+        EXPECT_NEAR(left, 0.0, 1e-6);
+    }
 }
 
 } // namespace

@@ -56,9 +56,9 @@ gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vector);
 gw_real_t gw_length(gw_vector_t vector);
 /* The vector, shortened to the limit if it is longer; limit >= 0. */
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit);
-/* Speed at which to finish a way whose last part is the given distance: speed, or what lets half the acceleration stop
- * in that distance, if that is less. All >= 0. It replaces the endless tail of an exponential approach. */
-gw_real_t gw_finish_speed(gw_real_t speed, gw_real_t acceleration, gw_real_t distance);
+/* Highest speed at the end of a tick from which the deceleration still stops at the goal, for motion by trapezoids.
+ * distance: what would be left if the tick ended at speed zero; 0 if that is negative or the goal cannot be met. */
+gw_real_t gw_braking_speed(gw_real_t deceleration, gw_real_t period, gw_real_t distance);
 
 #ifdef __cplusplus
 }
