@@ -394,7 +394,8 @@ int32_t gw_count_difference(int32_t later, int32_t earlier)
     if (difference <= 0x7FFFFFFFU) {
         result = (int32_t)difference;
     } else {
-        result = -(int32_t)(0xFFFFFFFFU - difference) - 1;
+        const uint32_t below = 0xFFFFFFFFU - difference;
+        result = -1 - (int32_t)below;
     }
     return result;
 }
