@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from giveway.report.overview import numbers
 from giveway.result import Result
 from giveway.summary import table_rows
 from PIL import Image
@@ -31,8 +32,7 @@ def test_readme_shows_the_computed_table(full_runs: dict[str, Result]) -> None:
 def test_the_picture_is_of_these_runs(full_runs: dict[str, Result]) -> None:
     """docs/overview.png is out/demo/overview.png of `make demo`; it carries its numbers."""
     with Image.open(README.parent / "docs" / "overview.png") as picture:
-        numbers = picture.info["Description"]
-    assert numbers == "\n".join(" | ".join(row) for row in table_rows(full_runs))
+        assert picture.info["Description"] == numbers(full_runs)
 
 
 def test_readme_links_lead_somewhere() -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from giveway.result import Result
 
-__all__ = ["write_overview"]
+__all__ = ["numbers", "write_overview"]
 
 INK = "#2b2f36"
 ESCAPED_S = 2.0  # the last of the three poses, after contact
@@ -42,8 +42,13 @@ def write_overview(path: Path, results: Mapping[str, Result]) -> None:
         _forces(figure.add_subplot(grid[0, 1]), runs)
         _escapes(figure.add_subplot(grid[1, 1]), runs)
         # The picture carries its numbers, so that a stale copy can be told from a fresh one.
-        numbers = "\n".join(" | ".join(row) for row in table_rows(results))
-        figure.savefig(path, dpi=130, metadata={"Software": None, "Description": numbers})
+        figure.savefig(path, dpi=130, metadata={"Software": None, "Description": numbers(results)})
+
+
+def numbers(results: Mapping[str, Result]) -> str:
+    """The table as text, less what is rounding noise."""
+    noise = {metric.name for metric in next(iter(results.values())).metrics if metric.decimals is None}
+    return "\n".join(" | ".join(row) for row in table_rows(results) if row[0] not in noise)
 
 
 def _top_view(axes: Axes, run: Run) -> None:
