@@ -1,0 +1,171 @@
+// Many instances of one FMU in one process: they do not influence each other, in threads neither, and leave no memory behind.
+//
+// Built once per FMU with the address sanitiser's allocator, whose leak check at exit fails the test if a single block is left
+// (Leaks.AreSeen plants one to see that it would).
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmi2Functions.h>
+#include <fmi3Functions.h>
+#include <gtest/gtest.h>
+#include <sanitizer/lsan_interface.h>
+
+#include "model.hpp"
+
+namespace {
+
+using giveway::Causality;
+using giveway::ModelInfo;
+using giveway::VariableInfo;
+using giveway::VariableType;
+
+std::string last_message;
+
+void log3(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String text) { last_message = text; }
+void log2(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String text, ...) { last_message = text; }
+
+fmi3Instance instantiate3() {
+    return fmi3InstantiateCoSimulation("test", giveway::model_info().token, nullptr, fmi3False, fmi3False, fmi3False, fmi3False, nullptr, 0, nullptr, log3,
+                                       nullptr);
+}
+
+std::vector<fmi3ValueReference> references(Causality causality, VariableType type) {
+    const ModelInfo& info = giveway::model_info();
+    std::vector<fmi3ValueReference> found;
+    for (std::size_t i = 0; i < info.variable_count; ++i) {
+        const VariableInfo& variable = info.variables[i];
+        if (variable.causality == causality && variable.type == type) {
+            found.push_back(variable.reference);
+        }
+    }
+    return found;
+}
+
+fmi3ValueReference reference_of(const char* name) {
+    const ModelInfo& info = giveway::model_info();
+    for (std::size_t i = 0; i < info.variable_count; ++i) {
+        if (std::strcmp(info.variables[i].name, name) == 0) {
+            return info.variables[i].reference;
+        }
+    }
+    ADD_FAILURE() << "no variable " << name;
+    return 0;
+}
+
+// A parameter that changes what comes out, and two values of it.
+#ifdef GIVEWAY_TESTBED
+constexpr const char* parameter = "base.mass";
+constexpr double values[2] = {30.0, 50.0};
+#else
+constexpr const char* parameter = "admittance.escape_impulse";
+constexpr double values[2] = {0.5, 1.0};
+#endif
+
+// All real outputs after each of `steps` steps. The controller is fed a push that it detects.
+std::vector<double> run(double value, int steps) {
+    fmi3Instance fmu = instantiate3();
+    EXPECT_NE(fmu, nullptr) << last_message;
+    const fmi3ValueReference changed = reference_of(parameter);
+    EXPECT_EQ(fmi3SetFloat64(fmu, &changed, 1, &value, 1), fmi3OK);
+    EXPECT_EQ(fmi3EnterInitializationMode(fmu, fmi3False, 0.0, 0.0, fmi3False, 0.0), fmi3OK);
+    EXPECT_EQ(fmi3ExitInitializationMode(fmu), fmi3OK);
+    const auto outputs = references(Causality::output, VariableType::real);
+    std::vector<double> trace;
+    std::vector<double> row(outputs.size());
+    for (int k = 0; k < steps; ++k) {
+#ifndef GIVEWAY_TESTBED
+        const fmi3ValueReference torques[2] = {reference_of("sensor.torque[1]"), reference_of("sensor.torque[2]")};
+        const double push[2] = {k < 150 ? 0.0 : 2.0, k < 150 ? 0.0 : -2.0};
+        const fmi3ValueReference counter = reference_of("sensor.counter");
+        const fmi3ValueReference present = reference_of("sensor.present");
+        const fmi3Int32 count = k;
+        const fmi3Boolean arrived = fmi3True;
+        EXPECT_EQ(fmi3SetFloat64(fmu, torques, 2, push, 2), fmi3OK);
+        EXPECT_EQ(fmi3SetInt32(fmu, &counter, 1, &count, 1), fmi3OK);
+        EXPECT_EQ(fmi3SetBoolean(fmu, &present, 1, &arrived, 1), fmi3OK);
+#endif
+        fmi3Boolean ignored = fmi3False;
+        fmi3Float64 reached = 0.0;
+        EXPECT_EQ(fmi3DoStep(fmu, k * 1e-3, 1e-3, fmi3True, &ignored, &ignored, &ignored, &reached), fmi3OK);
+        EXPECT_EQ(fmi3GetFloat64(fmu, outputs.data(), outputs.size(), row.data(), row.size()), fmi3OK);
+        trace.insert(trace.end(), row.begin(), row.end());
+    }
+    fmi3FreeInstance(fmu);
+    return trace;
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+} // namespace
+
+TEST(Instances, DoNotInfluenceEachOtherInThreads) {
+    constexpr int steps = 400;
+    const std::vector<double> alone[2] = {run(values[0], steps), run(values[1], steps)};
+    ASSERT_FALSE(same_bits(alone[0], alone[1])) << "the parameter must matter, or this test could not fail";
+    for (int repeat = 0; repeat < 5; ++repeat) {
+        std::vector<double> together[4];
+        std::vector<std::thread> threads;
+        for (int i = 0; i < 4; ++i) {
+            threads.emplace_back([&together, i] { together[i] = run(values[i % 2], steps); });
+        }
+        for (auto& thread : threads) {
+            thread.join();
+        }
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_TRUE(same_bits(together[i], alone[i % 2])) << "thread " << i;
+        }
+    }
+}
+
+// Ten thousand lives: with and without initialisation, steps, reset and terminate; FMI 3 and FMI 2.
+TEST(Instances, LeaveNoMemoryBehind) {
+    fmi2CallbackFunctions callbacks{};
+    callbacks.logger = log2;
+    callbacks.allocateMemory = std::calloc;
+    callbacks.freeMemory = std::free;
+    for (int life = 0; life < 5000; ++life) {
+        fmi3Instance fmu = instantiate3();
+        ASSERT_NE(fmu, nullptr);
+        if (life % 2 == 0) {
+            ASSERT_EQ(fmi3EnterInitializationMode(fmu, fmi3False, 0.0, 0.0, fmi3False, 0.0), fmi3OK);
+            ASSERT_EQ(fmi3ExitInitializationMode(fmu), fmi3OK);
+            fmi3Boolean ignored = fmi3False;
+            fmi3Float64 reached = 0.0;
+            ASSERT_EQ(fmi3DoStep(fmu, 0.0, 1e-3, fmi3True, &ignored, &ignored, &ignored, &reached), fmi3OK);
+            if (life % 4 == 0) {
+                ASSERT_EQ(fmi3Reset(fmu), fmi3OK);
+            } else {
+                ASSERT_EQ(fmi3Terminate(fmu), fmi3OK);
+            }
+        }
+        fmi3FreeInstance(fmu);
+
+        fmi2Component component = fmi2Instantiate("test", fmi2CoSimulation, giveway::model_info().token, "", &callbacks, fmi2False, fmi2False);
+        ASSERT_NE(component, nullptr) << last_message;
+        if (life % 2 == 1) {
+            ASSERT_EQ(fmi2SetupExperiment(component, fmi2False, 0.0, 0.0, fmi2False, 0.0), fmi2OK);
+            ASSERT_EQ(fmi2EnterInitializationMode(component), fmi2OK);
+            ASSERT_EQ(fmi2ExitInitializationMode(component), fmi2OK);
+            ASSERT_EQ(fmi2DoStep(component, 0.0, 1e-3, fmi2True), fmi2OK);
+        }
+        fmi2FreeInstance(component);
+    }
+    EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
+}
+
+TEST(Leaks, AreSeen) {
+    fmi3Instance forgotten = instantiate3();
+    ASSERT_NE(forgotten, nullptr);
+    // Out of the checker's sight: only the complement is kept.
+    volatile std::uintptr_t hidden = ~reinterpret_cast<std::uintptr_t>(forgotten);
+    forgotten = nullptr;
+    std::thread([] { std::vector<double>(1000, 1.0); }).join(); // overwrites what registers and stack may still hold
+    const int leaks = __lsan_do_recoverable_leak_check();
+    fmi3FreeInstance(reinterpret_cast<fmi3Instance>(~hidden));
+    EXPECT_NE(leaks, 0);
+}
