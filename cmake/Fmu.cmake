@@ -1,7 +1,7 @@
 # giveway_add_fmu(NAME controller SOURCES ... [LIBRARIES ...] [TABLE file] [ROBOT file] [OUTPUT dir]
 #                 [LICENCES NAME=FILE ...])
 #
-# Builds the model as static library giveway_<name>_model (for tests), giveway_<name>.so, one binary for
+# Builds the model as static library giveway_<name>_model (for the batch library and tests), giveway_<name>.so, one binary for
 # FMI 2.0 and 3.0, and packs giveway_<name>_fmi2.fmu and giveway_<name>_fmi3.fmu. Defaults: TABLE variables.toml beside the caller's CMakeLists.txt, ROBOT
 # robots/trikey.toml, OUTPUT ${CMAKE_BINARY_DIR}/fmus. Target fmu_<name>; target fmus builds those
 # with the default OUTPUT.
@@ -23,7 +23,7 @@ function(giveway_add_fmu)
   set(_generated "${CMAKE_CURRENT_BINARY_DIR}/generated_${ARG_NAME}")
   set(_generated_files
       "${_generated}/${ARG_NAME}_variables.hpp" "${_generated}/${ARG_NAME}_variables.cpp"
-      "${_generated}/fmi2/modelDescription.xml" "${_generated}/fmi3/modelDescription.xml"
+      "${_generated}/${ARG_NAME}_fmu.cpp" "${_generated}/fmi2/modelDescription.xml" "${_generated}/fmi3/modelDescription.xml"
       "${_generated}/documentation/index.html")
   add_custom_command(
     OUTPUT ${_generated_files}
@@ -34,8 +34,12 @@ function(giveway_add_fmu)
     VERBATIM)
 
   set(_module giveway_${ARG_NAME})
-  add_library(${_module}_model STATIC ${ARG_SOURCES} "${_generated}/${ARG_NAME}_variables.cpp"
-                                      "${_generated}/${ARG_NAME}_variables.hpp")
+  # The entry (..._fmu.cpp) says which model is that of the binary. A linker takes it out of the archive only for a
+  # shell or a test that asks for it, so a library of several models has none.
+  add_library(
+    ${_module}_model STATIC
+    ${ARG_SOURCES} "${_generated}/${ARG_NAME}_variables.cpp" "${_generated}/${ARG_NAME}_variables.hpp"
+    "${_generated}/${ARG_NAME}_fmu.cpp")
   giveway_compile_options(${_module}_model)
   target_include_directories(${_module}_model PUBLIC "${_generated}" "${PROJECT_SOURCE_DIR}/fmu/models"
                                                      "${CMAKE_CURRENT_SOURCE_DIR}")

@@ -2,7 +2,7 @@
 //
 // The shell knows FMI and this header, nothing else; a model knows this header and nothing of FMI.
 // A new FMU is a model (NAME.cpp) and a variable table (variables.toml beside it); the generated code
-// supplies the Variables struct, its start values and model_info().
+// supplies the Variables struct, its start values and the table of its variables.
 #pragma once
 
 #include <cstddef>
@@ -59,10 +59,11 @@ public:
     virtual void reset() = 0;
 };
 
-// Defined once per FMU binary, by generated code.
+// Every model has both in its own namespace (NAME_variables.hpp), so that several fit into one library.
+// These are of the one model of an FMU binary; generated code defines them there and nowhere else.
 const ModelInfo &model_info();
 
-// Defined in NAME.cpp; nullptr when out of memory.
+// nullptr when out of memory.
 Model *create_model();
 
 } // namespace giveway

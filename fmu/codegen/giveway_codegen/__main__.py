@@ -19,6 +19,7 @@ def _write_sources(arguments: argparse.Namespace) -> None:
     contents = {
         f"{table.name}_variables.hpp": cpp.header(table),
         f"{table.name}_variables.cpp": cpp.source(table),
+        f"{table.name}_fmu.cpp": cpp.fmu_entry(table),
         "fmi2/modelDescription.xml": fmi.fmi2_model_description(table, arguments.version),
         "fmi3/modelDescription.xml": fmi.fmi3_model_description(table, arguments.version),
         "documentation/index.html": documentation.page(table, arguments.version),

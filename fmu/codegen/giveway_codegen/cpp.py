@@ -1,10 +1,10 @@
-"""C++: the Variables struct, its start values and the table that the shell looks variables up in."""
+"""C++: the Variables struct, its start values, the table that variables are looked up in, and an FMU's entry."""
 
 from __future__ import annotations
 
 from .table import Group, Table, Value
 
-__all__ = ["header", "source"]
+__all__ = ["fmu_entry", "header", "source"]
 
 _CPP_TYPES = {"real": "double", "integer": "std::int32_t", "boolean": "bool"}
 
@@ -22,6 +22,11 @@ def header(table: Table) -> str:
 
 #include <cstdint>
 
+namespace giveway {{
+class Model;
+struct ModelInfo;
+}} // namespace giveway
+
 namespace giveway::{table.name} {{
 
 // Plain data: a copy is a checkpoint. Inputs and parameters are written by the importer.
@@ -31,6 +36,11 @@ struct Variables {{
 
 // Everything zero, then the start values of the inputs and parameters.
 void set_start_values(Variables &variables);
+
+const ModelInfo &model_info();
+
+// Defined by the model itself; nullptr when out of memory.
+Model *create_model();
 
 }} // namespace giveway::{table.name}
 """
@@ -91,12 +101,29 @@ constexpr ModelInfo info = {{"{table.name}", "{table.token}", variable_infos, {l
 
 }} // namespace
 
-const ModelInfo &model_info() {{ return info; }}
+const ModelInfo &{table.name}::model_info() {{ return info; }}
 
 void {table.name}::set_start_values(Variables &variables) {{
     variables = Variables{{}};
 {start_lines}
 }}
+
+}} // namespace giveway
+"""
+
+
+def fmu_entry(table: Table) -> str:
+    return f"""// Generated from the variable table of {table.name}; do not edit.
+// The one model that the shell of this FMU binary calls.
+#include "{table.name}_variables.hpp"
+
+#include "model.hpp"
+
+namespace giveway {{
+
+const ModelInfo &model_info() {{ return {table.name}::model_info(); }}
+
+Model *create_model() {{ return {table.name}::create_model(); }}
 
 }} // namespace giveway
 """

@@ -95,4 +95,4 @@ private:
 
 } // namespace giveway::controller
 
-giveway::Model *giveway::create_model() { return new (std::nothrow) controller::Controller; }
+giveway::Model *giveway::controller::create_model() { return new (std::nothrow) Controller; }

@@ -203,4 +203,4 @@ private:
 
 } // namespace giveway::testbed
 
-giveway::Model* giveway::create_model() { return new (std::nothrow) testbed::Testbed; }
+giveway::Model* giveway::testbed::create_model() { return new (std::nothrow) Testbed; }

@@ -50,6 +50,6 @@ private:
 
 } // namespace
 
-Model *create_model() { return new (std::nothrow) Lag; }
+Model *lag::create_model() { return new (std::nothrow) Lag; }
 
 } // namespace giveway
