@@ -1,0 +1,254 @@
+// The C interface: tables, one run, and many runs on threads.
+#include <pthread.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <new>
+
+#include "giveway_batch.h"
+#include "models.hpp"
+#include "run.hpp"
+
+using giveway::ModelInfo;
+using giveway::VariableInfo;
+namespace batch = giveway::batch;
+
+namespace {
+
+constexpr gwb_metric_info_t metric_infos[] = {
+    {"contact speed", "m/s", 0},
+    {"false detections", "1", 1},
+    {"detection time", "ms", 0},
+    {"force direction", "deg", 1},
+    {"direction error", "deg", 1},
+    {"contact point x", "mm", 1},
+    {"contact point y", "mm", 1},
+    {"location error", "mm", 1},
+    {"force at detection", "N", 1},
+    {"impulse at detection", "N.s", 1},
+    {"peak contact force", "N", 0},
+    {"bumper travel", "mm", 0},
+    {"peak wheel torque", "N.m", 0},
+    {"peak torque, any sign", "N.m", 0},
+    {"escape distance", "m", 1},
+    {"energy residual", "1", 1},
+    {"contact time", "s", 0},
+    {"detections", "1", 0},
+    {"contact impulse", "N.s", 0},
+    {"contact at end", "1", 0},
+    {"latched at end", "1", 0},
+    {"rope taut at end", "1", 0},
+    {"events", "1", 0},
+};
+static_assert(std::size(metric_infos) == GWB_METRIC_COUNT);
+
+int describe(std::uint32_t model, const VariableInfo* found, gwb_variable_t* variable) {
+    if (found == nullptr || variable == nullptr) {
+        return 0;
+    }
+    *variable = {model,          found->reference, static_cast<std::uint32_t>(found->type),
+                 static_cast<std::uint32_t>(found->causality), found->minimum, found->maximum, found->name};
+    return 1;
+}
+
+// Always 0.
+int refuse(char* message, const char* format, unsigned long value) {
+    if (message != nullptr) {
+        std::snprintf(message, GWB_MESSAGE_SIZE, format, value);
+    }
+    return 0;
+}
+
+} // namespace
+
+// Workers take the next run until none is left; each writes only its own runs' results, so the order in which they
+// come to it does not matter.
+struct gwb_batch {
+    const gwb_spec_t* specs = nullptr;
+    std::size_t count = 0;
+    gwb_result_t* results = nullptr;
+    std::uint64_t steps = 0; // of all runs
+    batch::Monitor monitor;
+    std::atomic<std::size_t> next{0};
+    std::atomic<std::uint64_t> runs_done{0};
+    std::unique_ptr<pthread_t[]> threads;
+    std::uint32_t thread_count = 0;
+    pthread_mutex_t mutex;
+    pthread_cond_t finished;
+    std::uint32_t working = 0; // threads at work, guarded by mutex
+
+    gwb_batch() {
+        // Waiting by the monotonic clock: setting the time of day must not stretch it.
+        pthread_condattr_t attributes;
+        pthread_condattr_init(&attributes);
+        pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+        pthread_mutex_init(&mutex, nullptr);
+        pthread_cond_init(&finished, &attributes);
+        pthread_condattr_destroy(&attributes);
+    }
+
+    void work() {
+        for (;;) {
+            const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
+            if (i >= count) {
+                break;
+            }
+            if (monitor.cancelled.load(std::memory_order_relaxed)) {
+                batch::never_started(results[i]);
+                monitor.steps_done.fetch_add(specs[i].step_count, std::memory_order_relaxed);
+            } else {
+                batch::run(specs[i], monitor, results[i]);
+            }
+            runs_done.fetch_add(1, std::memory_order_release);
+        }
+        pthread_mutex_lock(&mutex);
+        if (--working == 0) {
+            pthread_cond_broadcast(&finished);
+        }
+        pthread_mutex_unlock(&mutex);
+    }
+
+    static void* thread(void* self) {
+        static_cast<gwb_batch*>(self)->work();
+        return nullptr;
+    }
+
+    // Fewer threads than wanted are enough; false if there is none.
+    bool start(std::uint32_t wanted) {
+        pthread_mutex_lock(&mutex);
+        while (thread_count < wanted && pthread_create(&threads[thread_count], nullptr, thread, this) == 0) {
+            ++thread_count;
+        }
+        working = thread_count;
+        pthread_mutex_unlock(&mutex);
+        return thread_count > 0 || wanted == 0;
+    }
+
+    void wait_until(const timespec& deadline) {
+        pthread_mutex_lock(&mutex);
+        while (working > 0 && pthread_cond_timedwait(&finished, &mutex, &deadline) == 0) {
+        }
+        pthread_mutex_unlock(&mutex);
+    }
+
+    ~gwb_batch() {
+        for (std::uint32_t i = 0; i < thread_count; ++i) {
+            pthread_join(threads[i], nullptr);
+        }
+        pthread_cond_destroy(&finished);
+        pthread_mutex_destroy(&mutex);
+    }
+};
+
+extern "C" {
+
+const char* gwb_version(void) { return GWB_VERSION; }
+
+const char* gwb_token(uint32_t model) { return model < GWB_MODEL_COUNT ? batch::info_of(model).token : nullptr; }
+
+size_t gwb_variable_count(uint32_t model) {
+    return model < GWB_MODEL_COUNT ? batch::info_of(model).variable_count : 0;
+}
+
+int gwb_variable_at(uint32_t model, size_t index, gwb_variable_t* variable) {
+    const bool exists = index < gwb_variable_count(model);
+    return describe(model, exists ? &batch::info_of(model).variables[index] : nullptr, variable);
+}
+
+int gwb_find_variable(uint32_t model, const char* name, gwb_variable_t* variable) {
+    const bool possible = model < GWB_MODEL_COUNT && name != nullptr;
+    return describe(model, possible ? batch::find(batch::info_of(model), name) : nullptr, variable);
+}
+
+uint32_t gwb_metric_count(void) { return GWB_METRIC_COUNT; }
+
+int gwb_metric_info(uint32_t metric, gwb_metric_info_t* info) {
+    if (metric >= GWB_METRIC_COUNT || info == nullptr) {
+        return 0;
+    }
+    *info = metric_infos[metric];
+    return 1;
+}
+
+uint32_t gwb_run(const gwb_spec_t* spec, gwb_result_t* result) {
+    if (spec == nullptr || result == nullptr) {
+        return GWB_WRONG_SPEC;
+    }
+    batch::Monitor alone;
+    batch::run(*spec, alone, *result);
+    return result->status;
+}
+
+int gwb_start(const gwb_spec_t* specs, size_t count, uint32_t threads, gwb_result_t* results, gwb_batch_t** started,
+              char* message) {
+    if (message != nullptr) {
+        message[0] = '\0';
+    }
+    if (started == nullptr) {
+        return refuse(message, "batch is a null pointer (for %lu runs)", count);
+    }
+    *started = nullptr;
+    if ((specs == nullptr || results == nullptr) && count > 0) {
+        return refuse(message, "specs or results is a null pointer, but count is %lu", count);
+    }
+    if (threads < 1 || threads > GWB_THREADS_MAX) {
+        return refuse(message, "threads = %lu is not allowed: [1, 1024]", threads);
+    }
+    static_assert(GWB_THREADS_MAX == 1024);
+    std::unique_ptr<gwb_batch> made(new (std::nothrow) gwb_batch);
+    const auto wanted = static_cast<std::uint32_t>(std::min<std::size_t>(threads, count));
+    if (made != nullptr) {
+        made->threads.reset(new (std::nothrow) pthread_t[wanted]);
+    }
+    if (made == nullptr || made->threads == nullptr) {
+        return refuse(message, "no memory for a batch of %lu runs", count);
+    }
+    made->specs = specs;
+    made->count = count;
+    made->results = results;
+    for (std::size_t i = 0; i < count; ++i) {
+        made->steps += specs[i].step_count;
+    }
+    if (!made->start(wanted)) {
+        return refuse(message, "none of %lu threads could be started", wanted);
+    }
+    *started = made.release();
+    return 1;
+}
+
+int gwb_wait(gwb_batch_t* running, double timeout_s, gwb_progress_t* progress) {
+    if (running == nullptr) {
+        return 1;
+    }
+    constexpr double day_s = 86400.0; // keeps the sum in range; whoever wants more asks again
+    const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, day_s) : 0.0;
+    timespec deadline{};
+    clock_gettime(CLOCK_MONOTONIC, &deadline);
+    const double nanoseconds = static_cast<double>(deadline.tv_nsec) + 1e9 * (wait_s - std::floor(wait_s));
+    const bool carry = nanoseconds >= 1e9;
+    deadline.tv_sec += static_cast<std::time_t>(std::floor(wait_s)) + (carry ? 1 : 0);
+    deadline.tv_nsec = static_cast<long>(carry ? nanoseconds - 1e9 : nanoseconds);
+    running->wait_until(deadline);
+    const std::uint64_t done = running->runs_done.load(std::memory_order_acquire);
+    if (progress != nullptr) {
+        *progress = {done, running->count, running->monitor.steps_done.load(std::memory_order_relaxed),
+                     running->steps};
+    }
+    return done == running->count ? 1 : 0;
+}
+
+void gwb_cancel(gwb_batch_t* running) {
+    if (running != nullptr) {
+        running->monitor.cancelled.store(true, std::memory_order_relaxed);
+    }
+}
+
+void gwb_finish(gwb_batch_t* running) {
+    gwb_cancel(running);
+    delete running;
+}
+
+} // extern "C"

@@ -1,0 +1,40 @@
+// What a collision is judged by, computed from samples of a run. The definitions are those of
+// cosim/giveway/metrics.py; a test holds both equal.
+#pragma once
+
+#include <cstddef>
+
+namespace giveway::batch {
+
+// What the metrics need of one row of the traces; names as in the variable tables, SI units.
+struct Sample {
+    double time_s;
+    // testbed.truth
+    double x, y, theta, vx, vy;
+    double wheel_torque[3];
+    double contact_force, contact_force_x, contact_force_y;
+    double contact_base_x, contact_base_y;
+    double contact_impulse_x, contact_impulse_y;
+    double first_contact_time;
+    double nose_x, nose_y;
+    double bumper_compression;
+    double energy_stored, energy_work_in, energy_dissipated, energy_residual;
+    // controller
+    double estimate_force, estimate_force_x, estimate_force_y;
+    double detection_direction, detection_point_x, detection_point_y;
+    double reference_x, reference_y;
+    int detection_count;
+    int events;
+    bool contact, latched, rope_taut;
+};
+
+struct MetricParameters {
+    double wheel_radius_m, wheel_distance_m;
+    double estimate_window_s; // over which the estimate is averaged
+};
+
+// Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least two samples.
+void evaluate(const Sample* samples, std::size_t count, const MetricParameters& parameters, double* value,
+              double* truth);
+
+} // namespace giveway::batch
