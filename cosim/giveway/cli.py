@@ -154,7 +154,8 @@ def bench(
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,
 ) -> None:
-    """Measure the wall time of one co-simulated second over FMPy: both FMUs, 1 ms exchange, all traces recorded."""
+    """Measure speed: a co-simulated second over FMPy and its parts; runs per second over FMPy and in the library."""
+    from giveway import bench_batch
     from giveway.bench import measure
     from giveway.checks import whole
 
@@ -162,6 +163,9 @@ def bench(
     rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
     _print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
+    rates = [(row.name, f"{row.best:.1f}", f"{row.median:.1f}") for row in bench_batch.measure(repeats)]
+    title = f"Collisions of {bench_batch.SIMULATED_S:g} s with metrics, best and median of {repeats}"
+    _print_columns(title, ("way", "best (runs/s)", "median (runs/s)"), rates)
 
 
 def _scenario(

@@ -18,16 +18,17 @@ from __future__ import annotations
 import ctypes
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from giveway import native
 from giveway.errors import GivewayError
-from giveway.fmu import FmuFile, Instance, open_fmu
+from giveway.fmu import Instance, open_fmu
 from giveway.plan import PLAN_INPUTS, PUSH_INPUTS
 from giveway.variables import Value, Variable, VariableTable, table
 
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
     from giveway.scenario import Scenario
 
-__all__ = ["Progress", "Record", "simulate"]
+__all__ = ["Binary", "Progress", "Record", "plan_table", "push_table", "simulate"]
 
 _log = logging.getLogger(__name__)
 
@@ -65,6 +66,17 @@ COMMANDS = {
 }
 
 
+class Binary(Protocol):
+    """The file that a model's code came from; `FmuFile` is one."""
+
+    @property
+    def path(self) -> Path: ...
+    @property
+    def token(self) -> str: ...
+    @property
+    def sha256(self) -> str: ...
+
+
 @dataclass
 class Record:
     """What one run produced, before it is labelled.
@@ -73,19 +85,21 @@ class Record:
         time_s: shape (n,).
         traces: per full name ("testbed.truth.x"), shape (n,).
         parameters: per model, the parameters that were set.
-        files: per model, the FMU.
+        files: per model, the FMU or the library.
         interrupted: stopped by the user before the end time.
         wall_s: wall time of the stepping loop in s.
         step_wall_s: wall time inside the FMUs' doStep per model in s; empty unless profiled.
+        fmi_version: of the FMUs; None if there were none.
     """
 
     time_s: NDArray[np.float64]
     traces: dict[str, NDArray[Any]]
     parameters: dict[str, dict[str, Value]]
-    files: dict[str, FmuFile]
+    files: Mapping[str, Binary]
     interrupted: bool
     wall_s: float
     step_wall_s: dict[str, float] = field(default_factory=dict)
+    fmi_version: int | None = None
 
 
 class _Traces:
@@ -162,7 +176,7 @@ def simulate(scenario: Scenario, progress: Progress | None = None, *, profile: b
         for model, instance in instances.items():
             instance.initialise(parameters[model], tables[model])
         record = _loop(scenario, instances, tables, progress, profile)
-    record.parameters, record.files = parameters, files
+    record.parameters, record.files, record.fmi_version = parameters, files, scenario.fmi_version
     return record
 
 
@@ -244,8 +258,7 @@ def _plan_port(
     scenario: Scenario, controller: Instance, variables: VariableTable
 ) -> tuple[NDArray[np.float64], Callable[[int], int]]:
     """The plan as a table over path time, and the port that sets one row of it."""
-    ticks = int(np.ceil(scenario.duration_s / PATH_TICK_S)) + 1
-    plan = _table_of("plan", scenario.plan, _times(ticks, PATH_TICK_S), len(PLAN_INPUTS))
+    plan = plan_table(scenario)
     return plan, controller.setter("real", [variables[name].reference for name in PLAN_INPUTS])
 
 
@@ -253,15 +266,28 @@ def _push_port(
     scenario: Scenario, testbed: Instance, variables: VariableTable
 ) -> tuple[Callable[[int], int], int, int]:
     """Port, address and row size of the external push; a port that does nothing if there is none."""
-    if scenario.push is None:
+    push = push_table(scenario)
+    if push is None:
         return (lambda _address: 0), 0, 0
-    push = _table_of("push", scenario.push, _times(scenario.steps + 1, scenario.step_s), len(PUSH_INPUTS))
     port = testbed.setter("real", [variables[name].reference for name in PUSH_INPUTS])
 
     def set_push(address: int, _alive: NDArray[np.float64] = push) -> int:
         return port(address)
 
     return set_push, push.ctypes.data, push.strides[0]
+
+
+def plan_table(scenario: Scenario) -> NDArray[np.float64]:
+    """The plan over path time, one row per path tick of 1 ms, shape (n, 9)."""
+    ticks = int(np.ceil(scenario.duration_s / PATH_TICK_S)) + 1
+    return _table_of("plan", scenario.plan, _times(ticks, PATH_TICK_S), len(PLAN_INPUTS))
+
+
+def push_table(scenario: Scenario) -> NDArray[np.float64] | None:
+    """The external push over time, one row per communication point, shape (n, 4); None if there is none."""
+    if scenario.push is None:
+        return None
+    return _table_of("push", scenario.push, _times(scenario.steps + 1, scenario.step_s), len(PUSH_INPUTS))
 
 
 def _table_of(

@@ -1,4 +1,4 @@
-"""Where the native parts are: FMUs, variable tables and the robot file.
+"""Where the native parts are: FMUs, the batch library, variable tables and the robot file.
 
 They lie flat in one folder: ``giveway/native`` of the installed package, else the folder that the environment
 variable ``GIVEWAY_NATIVE_DIR`` names.
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from giveway.errors import NativeMissingError
 
-__all__ = ["MODELS", "file", "fmu", "robot", "variables"]
+__all__ = ["MODELS", "batch_library", "file", "fmu", "robot", "variables"]
 
 ENVIRONMENT_VARIABLE = "GIVEWAY_NATIVE_DIR"
 MODELS = ("controller", "testbed")
@@ -33,6 +33,11 @@ def file(name: str) -> Path:
 def fmu(model: str, fmi_version: int) -> Path:
     """Path of the FMU of ``model`` ("controller" or "testbed") for FMI 2 or 3."""
     return file(f"giveway_{model}_fmi{fmi_version}.fmu")
+
+
+def batch_library() -> Path:
+    """Path of libgiveway_batch."""
+    return file("giveway_batch.so")
 
 
 def variables(model: str) -> Path:

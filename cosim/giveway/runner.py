@@ -20,7 +20,7 @@ from giveway.variables import Value, table
 if TYPE_CHECKING:
     from giveway.scenario import Scenario
 
-__all__ = ["run"]
+__all__ = ["judge", "run"]
 
 _LIBRARIES = ("fmpy", "numpy", "xarray", "pyarrow")
 EXCHANGE_ORDER = "sequential: sensors, controller, plant"
@@ -28,7 +28,11 @@ EXCHANGE_ORDER = "sequential: sensors, controller, plant"
 
 def run(scenario: Scenario, progress: Progress | None = None) -> Result:
     """Co-simulate ``scenario``; see `giveway.run`."""
-    record = simulate(scenario, progress)
+    return judge(scenario, simulate(scenario, progress))
+
+
+def judge(scenario: Scenario, record: Record) -> Result:
+    """``record`` labelled, with its metrics and where it came from."""
     traces = _label(record)
     manifest = _manifest(scenario, record)
     return Result(traces, metrics.collision(traces, manifest["parameters"]), manifest)
@@ -63,7 +67,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "bumper": scenario.bumper,
             "duration_s": scenario.duration_s,
             "step_s": scenario.step_s,
-            "fmi_version": scenario.fmi_version,
+            "fmi_version": record.fmi_version,
             "plan": _describe(scenario.plan),
             "push": None if scenario.push is None else _describe(scenario.push),
         },

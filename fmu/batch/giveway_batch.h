@@ -100,7 +100,7 @@ typedef struct gwb_setting {
     double value;
 } gwb_setting_t;
 
-/* Any variable, recorded once per step and once at the end: `values` has room for step_count + 1 values of the
+/* An input or output, recorded once per step and once at the end: `values` has room for step_count + 1 values of the
  * variable's type, which are double (real), int32_t (integer) or uint8_t (boolean). Row k holds the testbed's outputs
  * at t_k, what the controller made of them, and the inputs of both for the step that begins at t_k
  * (in the last row, the testbed's inputs are those of the row before). */

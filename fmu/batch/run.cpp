@@ -214,8 +214,14 @@ private:
     bool check_columns() {
         for (std::uint32_t i = 0; i < spec_.column_count; ++i) {
             const gwb_column_t& column = spec_.columns[i];
-            if (lookup("columns", i, column.model, column.reference) == nullptr) {
+            const VariableInfo* variable = lookup("columns", i, column.model, column.reference);
+            if (variable == nullptr) {
                 return false;
+            }
+            if (variable->causality != Causality::input && variable->causality != Causality::output) {
+                result_.model = column.model;
+                return end(GWB_WRONG_SPEC, "columns[%u]: %s.%s is neither an input nor an output",
+                           static_cast<unsigned>(i), info_of(column.model).name, variable->name);
             }
             if (column.values == nullptr) {
                 return end(GWB_WRONG_SPEC, "columns[%u].values is a null pointer", static_cast<unsigned>(i));

@@ -17,6 +17,9 @@ ROOT = Path(__file__).parents[2]
 NATIVE = {
     *(f"giveway_{model}_fmi{version}.fmu" for model in ("controller", "testbed") for version in (2, 3)),
     "controller.variables.toml",
+    "giveway_batch.h",
+    "giveway_batch.so",
+    "giveway_batch.sundials.txt",
     "testbed.variables.toml",
     "trikey.toml",
 }
