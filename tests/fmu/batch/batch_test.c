@@ -1,0 +1,367 @@
+/* The library from C: what the header promises, above all what it says about wrong input. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "giveway_batch.h"
+
+static int failures = 0;
+
+#define CHECK(condition)                                                                                               \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            (void)printf("%s:%d: %s\n", __FILE__, __LINE__, #condition);                                               \
+            ++failures;                                                                                                \
+        }                                                                                                              \
+    } while (0)
+
+#define STEPS 300
+
+static gwb_spec_t rest_spec(void) {
+    const gwb_spec_t spec = {.step_s = 0.001, .step_count = STEPS};
+    return spec;
+}
+
+static gwb_variable_t variable(uint32_t model, const char *name) {
+    gwb_variable_t found = {.model = GWB_NONE};
+    CHECK(gwb_find_variable(model, name, &found) == 1);
+    return found;
+}
+
+static int says(const gwb_result_t *result, const char *text) {
+    const int found = strstr(result->message, text) != NULL;
+    if (!found) {
+        (void)printf("\"%s\" is not in \"%s\"\n", text, result->message);
+    }
+    return found;
+}
+
+/* The run is refused before it starts, with this text. */
+static int refused(const gwb_spec_t *spec, const char *text) {
+    gwb_result_t result;
+    CHECK(gwb_run(spec, &result) == GWB_WRONG_SPEC);
+    CHECK(result.status == GWB_WRONG_SPEC);
+    CHECK(result.rows == 0);
+    CHECK(isnan(result.metric[GWB_PEAK_FORCE]));
+    return says(&result, text);
+}
+
+static void test_tables(void) {
+    CHECK(strlen(gwb_version()) > 0);
+    CHECK(strlen(gwb_token(GWB_CONTROLLER)) > 0);
+    CHECK(strcmp(gwb_token(GWB_CONTROLLER), gwb_token(GWB_TESTBED)) != 0);
+    CHECK(gwb_token(GWB_MODEL_COUNT) == NULL);
+    CHECK(gwb_variable_count(GWB_MODEL_COUNT) == 0);
+    for (uint32_t model = 0; model < GWB_MODEL_COUNT; ++model) {
+        const size_t count = gwb_variable_count(model);
+        CHECK(count > 50);
+        uint32_t last = 0;
+        for (size_t i = 0; i < count; ++i) {
+            gwb_variable_t by_index;
+            gwb_variable_t by_name;
+            CHECK(gwb_variable_at(model, i, &by_index) == 1);
+            CHECK(gwb_find_variable(model, by_index.name, &by_name) == 1);
+            CHECK(by_name.reference == by_index.reference && by_index.reference > last);
+            CHECK(by_index.minimum <= by_index.maximum);
+            last = by_index.reference;
+        }
+        gwb_variable_t untouched = {.reference = 7};
+        CHECK(gwb_variable_at(model, count, &untouched) == 0);
+        CHECK(gwb_find_variable(model, "no.such", &untouched) == 0);
+        CHECK(gwb_find_variable(model, NULL, &untouched) == 0);
+        CHECK(gwb_find_variable(GWB_MODEL_COUNT, "tick", &untouched) == 0);
+        CHECK(untouched.reference == 7);
+        CHECK(gwb_variable_at(model, 0, NULL) == 0);
+    }
+    const gwb_variable_t mass = variable(GWB_TESTBED, "slider.mass");
+    CHECK(mass.type == GWB_REAL && mass.causality == GWB_PARAMETER);
+    CHECK(variable(GWB_TESTBED, "bumper.kind").type == GWB_INTEGER);
+    CHECK(variable(GWB_TESTBED, "truth.contact").type == GWB_BOOLEAN);
+    CHECK(variable(GWB_TESTBED, "truth.contact").causality == GWB_OUTPUT);
+    CHECK(variable(GWB_CONTROLLER, "plan.x").causality == GWB_INPUT);
+}
+
+static void test_metric_infos(void) {
+    gwb_metric_info_t info = {.name = "untouched"};
+    CHECK(gwb_metric_count() == GWB_METRIC_COUNT);
+    CHECK(gwb_metric_info(GWB_METRIC_COUNT, &info) == 0);
+    CHECK(strcmp(info.name, "untouched") == 0);
+    CHECK(gwb_metric_info(0, NULL) == 0);
+    for (uint32_t metric = 0; metric < GWB_METRIC_COUNT; ++metric) {
+        CHECK(gwb_metric_info(metric, &info) == 1);
+        CHECK(strlen(info.name) > 0 && strlen(info.unit) > 0);
+    }
+    CHECK(gwb_metric_info(GWB_PEAK_FORCE, &info) == 1 && strcmp(info.name, "peak contact force") == 0);
+}
+
+static void test_a_run(void) {
+    const gwb_variable_t kind = variable(GWB_TESTBED, "bumper.kind");
+    const gwb_variable_t force = variable(GWB_TESTBED, "truth.contact_force");
+    const gwb_variable_t tick = variable(GWB_CONTROLLER, "tick");
+    const gwb_variable_t contact = variable(GWB_TESTBED, "truth.contact");
+    static double forces[STEPS + 2];
+    static int32_t ticks[STEPS + 2];
+    static uint8_t contacts[STEPS + 2];
+    forces[STEPS + 1] = -7.0;
+    ticks[STEPS + 1] = -7;
+    contacts[STEPS + 1] = 77;
+    /* Later settings win. */
+    const gwb_setting_t settings[] = {{GWB_TESTBED, kind.reference, 1.0}, {GWB_TESTBED, kind.reference, 0.0}};
+    const gwb_column_t columns[] = {{GWB_TESTBED, force.reference, forces},
+                                    {GWB_CONTROLLER, tick.reference, ticks},
+                                    {GWB_TESTBED, contact.reference, contacts}};
+    gwb_spec_t spec = rest_spec();
+    spec.settings = settings;
+    spec.setting_count = 2;
+    spec.columns = columns;
+    spec.column_count = 3;
+    gwb_result_t result;
+    CHECK(gwb_run(&spec, &result) == GWB_OK);
+    CHECK(result.rows == STEPS + 1);
+    CHECK(result.time_s == STEPS * 0.001);
+    CHECK(result.message[0] == '\0');
+    CHECK(result.model == GWB_NONE && result.reference == GWB_NONE && isnan(result.value));
+    double peak = 0.0;
+    int touched = 0;
+    for (int k = 0; k <= STEPS; ++k) {
+        peak = forces[k] > peak ? forces[k] : peak;
+        touched += contacts[k];
+        CHECK(k == 0 || ticks[k] == ticks[k - 1] + 1);
+    }
+    CHECK(peak > 100.0 && result.metric[GWB_PEAK_FORCE] == peak);
+    CHECK(touched > 10 && touched < STEPS);
+    CHECK(isnan(result.truth[GWB_PEAK_FORCE]));
+    /* Nothing behind the last row was written. */
+    CHECK(forces[STEPS + 1] == -7.0 && ticks[STEPS + 1] == -7 && contacts[STEPS + 1] == 77);
+
+    gwb_result_t softer;
+    spec.setting_count = 1;
+    spec.column_count = 0;
+    CHECK(gwb_run(&spec, &softer) == GWB_OK);
+    CHECK(softer.metric[GWB_PEAK_FORCE] < 0.5 * peak);
+}
+
+static void test_wrong_specs(void) {
+    gwb_result_t result;
+    gwb_spec_t spec = rest_spec();
+    CHECK(gwb_run(NULL, &result) == GWB_WRONG_SPEC);
+    CHECK(gwb_run(&spec, NULL) == GWB_WRONG_SPEC);
+
+    const double steps_s[] = {0.0, -0.001, nextafter(GWB_STEP_MIN_S, 0.0), nextafter(GWB_STEP_MAX_S, 1.0), NAN, INFINITY};
+    for (size_t i = 0; i < sizeof steps_s / sizeof steps_s[0]; ++i) {
+        spec.step_s = steps_s[i];
+        CHECK(refused(&spec, "step_s = "));
+    }
+    spec.step_count = 1;
+    spec.step_s = GWB_STEP_MIN_S;
+    CHECK(gwb_run(&spec, &result) == GWB_OK);
+    spec.step_s = GWB_STEP_MAX_S;
+    CHECK(gwb_run(&spec, &result) == GWB_OK);
+
+    spec = rest_spec();
+    spec.step_count = 0;
+    CHECK(refused(&spec, "step_count = 0 is not allowed: [1, 4000000]"));
+    spec.step_count = GWB_STEP_COUNT_MAX + 1;
+    CHECK(refused(&spec, "step_count = 4000001"));
+
+    spec = rest_spec();
+    spec.setting_count = 1;
+    CHECK(refused(&spec, "settings is a null pointer"));
+    spec = rest_spec();
+    spec.column_count = 1;
+    CHECK(refused(&spec, "columns is a null pointer"));
+    spec = rest_spec();
+    spec.plan_rows = 1;
+    CHECK(refused(&spec, "plan is a null pointer"));
+    spec = rest_spec();
+    spec.push_rows = STEPS + 1;
+    CHECK(refused(&spec, "push is a null pointer"));
+    static double push[STEPS + 1][GWB_PUSH_COLUMNS];
+    spec.push = push[0];
+    spec.push_rows = STEPS;
+    CHECK(refused(&spec, "push_rows = 300 is not allowed: 0, or at least step_count + 1 = 301"));
+    spec.push_rows = STEPS + 1;
+    CHECK(gwb_run(&spec, &result) == GWB_OK);
+    push[STEPS][1] = NAN;
+    CHECK(refused(&spec, "push, row 300: testbed.push.force_y = nan is not allowed"));
+
+    double value = 0.0;
+    gwb_column_t column = {GWB_TESTBED, variable(GWB_TESTBED, "slider.mass").reference, &value};
+    spec = rest_spec();
+    spec.columns = &column;
+    spec.column_count = 1;
+    CHECK(refused(&spec, "columns[0]: testbed.slider.mass is neither an input nor an output"));
+    column.reference = variable(GWB_TESTBED, "truth.x").reference;
+    column.values = NULL;
+    CHECK(refused(&spec, "columns[0].values is a null pointer"));
+}
+
+static void set_and_expect(const gwb_setting_t *setting, uint32_t status) {
+    gwb_spec_t spec = rest_spec();
+    spec.step_count = 1;
+    spec.settings = setting;
+    spec.setting_count = 1;
+    gwb_result_t result;
+    if (gwb_run(&spec, &result) != status) {
+        (void)printf("%u.%u = %.17g: status %u, not %u: %s\n", (unsigned)setting->model, (unsigned)setting->reference,
+                     setting->value, (unsigned)result.status, (unsigned)status, result.message);
+        ++failures;
+    }
+}
+
+static void test_wrong_settings(void) {
+    const gwb_variable_t mass = variable(GWB_TESTBED, "slider.mass");
+    gwb_setting_t setting = {GWB_TESTBED, mass.reference, -1.0};
+    gwb_spec_t spec = rest_spec();
+    spec.settings = &setting;
+    spec.setting_count = 1;
+    CHECK(refused(&spec, "testbed.slider.mass = -1 is not allowed: finite and in ["));
+    gwb_result_t result;
+    CHECK(gwb_run(&spec, &result) == GWB_WRONG_SPEC);
+    CHECK(result.model == GWB_TESTBED && result.reference == mass.reference);
+    CHECK(result.value == -1.0 && result.minimum == mass.minimum && result.maximum == mass.maximum);
+
+    setting.reference = 99999;
+    CHECK(refused(&spec, "settings[0].reference = 99999 is not allowed: the testbed has no such variable"));
+    setting.model = GWB_MODEL_COUNT;
+    CHECK(refused(&spec, "settings[0].model = 2 is not allowed"));
+    setting = (gwb_setting_t){GWB_CONTROLLER, variable(GWB_CONTROLLER, "plan.x").reference, 0.0};
+    CHECK(refused(&spec, "settings[0]: controller.plan.x is an input, not a parameter"));
+    setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "truth.x").reference, 0.0};
+    CHECK(refused(&spec, "settings[0]: testbed.truth.x is an output, not a parameter"));
+    setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "bumper.kind").reference, 0.5};
+    CHECK(refused(&spec, "testbed.bumper.kind = 0.5 is not allowed: a whole number and in [0, 2]"));
+    setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "slider.present").reference, 2.0};
+    CHECK(refused(&spec, "testbed.slider.present = 2 is not allowed: a whole number and in [0, 1]"));
+
+    /* The neighbours of every parameter's bounds: outside is refused. */
+    for (uint32_t model = 0; model < GWB_MODEL_COUNT; ++model) {
+        for (size_t i = 0; i < gwb_variable_count(model); ++i) {
+            gwb_variable_t v;
+            CHECK(gwb_variable_at(model, i, &v) == 1);
+            if (v.causality != GWB_PARAMETER) {
+                continue;
+            }
+            const double outside[] = {nextafter(v.minimum, -INFINITY), nextafter(v.maximum, INFINITY), NAN, INFINITY,
+                                      -INFINITY};
+            for (size_t k = 0; k < sizeof outside / sizeof outside[0]; ++k) {
+                const gwb_setting_t one = {model, v.reference, outside[k]};
+                if (v.type != GWB_BOOLEAN || k >= 2) {
+                    set_and_expect(&one, GWB_WRONG_SPEC);
+                }
+            }
+        }
+    }
+    /* A bound itself is in. */
+    const gwb_setting_t heaviest = {GWB_TESTBED, mass.reference, mass.maximum};
+    set_and_expect(&heaviest, GWB_OK);
+    const gwb_variable_t tolerance = variable(GWB_TESTBED, "solver.relative_tolerance");
+    const gwb_setting_t finest = {GWB_TESTBED, tolerance.reference, tolerance.minimum};
+    set_and_expect(&finest, GWB_OK);
+}
+
+static void test_a_refusal_of_the_models(void) {
+    const gwb_setting_t setting = {GWB_TESTBED, variable(GWB_TESTBED, "outline.count").reference, 4.0};
+    gwb_spec_t spec = rest_spec();
+    spec.settings = &setting;
+    spec.setting_count = 1;
+    gwb_result_t result;
+    CHECK(gwb_run(&spec, &result) == GWB_REFUSED);
+    CHECK(result.model == GWB_TESTBED && result.rows == 0);
+    CHECK(says(&result, "testbed: outline"));
+}
+
+#define RUNS 6
+
+static void test_batches(void) {
+    static gwb_spec_t specs[RUNS];
+    static gwb_result_t results[RUNS];
+    static gwb_result_t again[RUNS];
+    static gwb_setting_t masses[RUNS];
+    const gwb_variable_t mass = variable(GWB_TESTBED, "slider.mass");
+    for (int i = 0; i < RUNS; ++i) {
+        masses[i] = (gwb_setting_t){GWB_TESTBED, mass.reference, 5.0 + i};
+        specs[i] = rest_spec();
+        specs[i].settings = &masses[i];
+        specs[i].setting_count = 1;
+    }
+    masses[2].value = NAN; /* one that cannot run */
+    char message[GWB_MESSAGE_SIZE] = "";
+    gwb_batch_t *batch = NULL;
+    gwb_progress_t progress = {0, 0, 0, 0};
+    CHECK(gwb_start(specs, RUNS, 2, results, &batch, message) == 1);
+    while (!gwb_wait(batch, 10.0, &progress)) {
+    }
+    CHECK(progress.runs_done == RUNS && progress.runs == RUNS);
+    CHECK(progress.steps == (uint64_t)RUNS * STEPS && progress.steps_done == progress.steps);
+    gwb_finish(batch);
+    CHECK(gwb_start(specs, RUNS, 1, again, &batch, NULL) == 1);
+    CHECK(gwb_wait(batch, 600.0, NULL) == 1);
+    gwb_finish(batch);
+    for (int i = 0; i < RUNS; ++i) {
+        CHECK(results[i].status == (i == 2 ? GWB_WRONG_SPEC : GWB_OK));
+        CHECK(memcmp(&results[i], &again[i], sizeof results[i]) == 0);
+        gwb_result_t alone;
+        CHECK(gwb_run(&specs[i], &alone) == results[i].status);
+        CHECK(memcmp(&results[i], &alone, sizeof alone) == 0);
+    }
+    CHECK(results[0].metric[GWB_PEAK_FORCE] != results[1].metric[GWB_PEAK_FORCE]);
+
+    for (int i = 0; i < RUNS; ++i) {
+        masses[i].value = 5.0;
+        specs[i].step_count = 400000; /* seconds of computing */
+    }
+    CHECK(gwb_start(specs, RUNS, 2, results, &batch, message) == 1);
+    do {
+        CHECK(gwb_wait(batch, 0.01, &progress) == 0);
+    } while (progress.steps_done == 0);
+    CHECK(progress.steps_done < progress.steps && progress.runs_done == 0);
+    gwb_cancel(batch);
+    CHECK(gwb_wait(batch, 60.0, &progress) == 1);
+    CHECK(progress.steps_done == progress.steps);
+    gwb_finish(batch);
+    for (int i = 0; i < RUNS; ++i) {
+        CHECK(results[i].status == GWB_CANCELLED);
+        CHECK(says(&results[i], "cancelled"));
+    }
+    CHECK(results[0].rows + results[1].rows > 0 && results[RUNS - 1].rows == 0);
+    /* Finishing alone cancels, too. */
+    CHECK(gwb_start(specs, RUNS, 2, results, &batch, message) == 1);
+    gwb_finish(batch);
+    CHECK(results[RUNS - 1].status == GWB_CANCELLED);
+}
+
+static void test_wrong_batches(void) {
+    const gwb_spec_t spec = rest_spec();
+    gwb_result_t result;
+    char message[GWB_MESSAGE_SIZE] = "";
+    gwb_batch_t *batch = (gwb_batch_t *)&result;
+    CHECK(gwb_start(&spec, 1, 0, &result, &batch, message) == 0);
+    CHECK(batch == NULL);
+    CHECK(strcmp(message, "threads = 0 is not allowed: [1, 1024]") == 0);
+    CHECK(gwb_start(&spec, 1, GWB_THREADS_MAX + 1, &result, &batch, message) == 0);
+    CHECK(gwb_start(NULL, 1, 1, &result, &batch, message) == 0);
+    CHECK(strstr(message, "null pointer") != NULL);
+    CHECK(gwb_start(&spec, 1, 1, NULL, &batch, NULL) == 0);
+    CHECK(gwb_start(&spec, 1, 1, &result, NULL, message) == 0);
+    CHECK(gwb_wait(NULL, 0.0, NULL) == 1);
+    gwb_cancel(NULL);
+    gwb_finish(NULL);
+    CHECK(gwb_start(NULL, 0, 1, NULL, &batch, message) == 1);
+    CHECK(gwb_wait(batch, 1.0, NULL) == 1);
+    gwb_finish(batch);
+}
+
+int main(void) {
+    test_tables();
+    test_metric_infos();
+    test_a_run();
+    test_wrong_specs();
+    test_wrong_settings();
+    test_a_refusal_of_the_models();
+    test_batches();
+    test_wrong_batches();
+    (void)printf("%d failures\n", failures);
+    return failures == 0 ? 0 : 1;
+}
