@@ -26,6 +26,9 @@ template <class T> T expm1_reduced(T r) {
     return r + r * r * p;
 }
 
+// Beyond these exp would overflow or lose bits to denormal numbers.
+inline constexpr double exp_minimum = -708.0;
+inline constexpr double exp_maximum = 709.0;
 inline constexpr double log2_e = 1.4426950408889634;
 // ln 2 in two parts; the first has 21 trailing zero bits, so k * ln2_high is exact for |k| <= 1100.
 inline constexpr double ln2_high = 0x1.62e42fee00000p-1;
@@ -35,7 +38,7 @@ inline constexpr double ln2_low = 0x1.a39ef35793c76p-33;
 
 // e^a; a is clamped to [-708, 709], where the result is a normal finite number.
 template <class T> T exp(T a) {
-    const T x = clamp(a, T(-708.0), T(709.0));
+    const T x = clamp(a, T(detail::exp_minimum), T(detail::exp_maximum));
     const T k = round(x * T(detail::log2_e));
     const T r = (x - k * T(detail::ln2_high)) - k * T(detail::ln2_low);
     return (detail::expm1_reduced(r) + T(1.0)) * exp2_integer(k);
@@ -43,7 +46,7 @@ template <class T> T exp(T a) {
 
 // e^a - 1 without cancellation near 0; the same range as exp.
 template <class T> T expm1(T a) {
-    const T x = clamp(a, T(-708.0), T(709.0));
+    const T x = clamp(a, T(detail::exp_minimum), T(detail::exp_maximum));
     const T k = round(x * T(detail::log2_e));
     const T r = (x - k * T(detail::ln2_high)) - k * T(detail::ln2_low);
     const T scale = exp2_integer(k);

@@ -4,7 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "../math/elementary.hpp"
+// Before any equation: `math::` names are looked up where a template is written, so every scalar type has to be known here.
+#include "../math/dual.hpp"
 
 namespace giveway::plant {
 

@@ -1,0 +1,141 @@
+// Dual numbers through the plant: the values are double's, and the derivatives are those that finite differences find.
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "jacobian.hpp"
+#include "random_cases.hpp"
+
+namespace {
+
+using namespace giveway::plant;
+using giveway::plant::random_cases::Case;
+using giveway::plant::random_cases::random_case;
+
+// The shared cases, moved to where the plant's parts are at work: bristles around their sliding limit, motions slow enough
+// for friction that is smooth over millimetres per second, and every structural choice.
+Case<double> working_case(unsigned seed) {
+    auto c = random_case<double>(seed);
+    if (seed % 4U != 0U) {
+        for (int i = 0; i < wheel_count; ++i) {
+            c.x[bristle + i] *= 0.01;
+        }
+    }
+    if (seed % 3U == 0U) {
+        for (const int speed : {base_vx, base_vy, base_omega, slider_speed, compression_rate}) {
+            c.x[speed] *= 0.02;
+        }
+        c.x[compression] *= 0.01;
+    }
+    c.p.roller_model = seed % 5U == 0U ? RollerModel::tanh : RollerModel::bristle;
+    c.p.slider_present = seed % 17U == 0U ? 0 : 1;
+    c.p.rope_attached = seed % 7U == 0U ? 0 : 1;
+    c.d = derive(c.p);
+    return c;
+}
+
+StateVector<double> rate(const Case<double>& c, const StateVector<double>& x) { return rhs(x, c.u, c.m, c.p, c.d); }
+
+struct Differences {
+    StateVector<double> above, below;
+    double distance;
+    [[nodiscard]] double slope(int row) const { return (above[row] - below[row]) / distance; }
+    [[nodiscard]] double second(int row, const StateVector<double>& centre) const { return (above[row] - centre[row]) - (centre[row] - below[row]); }
+};
+
+} // namespace
+
+TEST(PlantInDuals, HasTheBitsOfDouble) {
+    using Scalar = Jacobian::Scalar;
+    for (unsigned seed = 0; seed < 2000U; ++seed) {
+        const auto c = working_case(seed);
+        StateVector<Scalar> x;
+        for (int i = 0; i < state_count; ++i) {
+            x[i] = Scalar::variable(c.x[i], i % jacobian_chunk);
+        }
+        // Through convert(): a parameter that got lost there would show.
+        const auto p = convert<Scalar>(c.p);
+        const auto d = convert<Scalar>(c.d);
+        const auto u = convert<Scalar>(c.u);
+        const auto m = convert<Scalar>(c.m);
+        const auto rate_of_double = rate(c, c.x);
+        const auto rate_of_dual = rhs(x, u, m, p, d);
+        for (int i = 0; i < state_count; ++i) {
+            EXPECT_EQ(std::memcmp(&rate_of_double[i], &rate_of_dual[i].value, sizeof(double)), 0) << "case " << seed << ", rate " << i;
+        }
+        const auto indicators_of_double = event_indicators(c.x, c.u, c.m, c.p, c.d);
+        const auto indicators_of_dual = event_indicators(x, u, m, p, d);
+        for (int i = 0; i < event_count; ++i) {
+            EXPECT_EQ(std::memcmp(&indicators_of_double[i], &indicators_of_dual[i].value, sizeof(double)), 0) << "case " << seed << ", indicator " << i;
+        }
+    }
+}
+
+TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
+    constexpr unsigned cases = 3000;
+    constexpr double step = 1e-6; // of m, rad, m/s, rad/s: far below the 0.5 mm and 1 mm/s over which the sharpest functions bend
+    long compared = 0;
+    long sharp = 0;
+    for (unsigned seed = 0; seed < cases; ++seed) {
+        const auto c = working_case(seed);
+        Jacobian jacobian;
+        jacobian.set_parameters(c.p, c.d);
+        std::array<double, state_count * state_count> matrix{};
+        jacobian.evaluate(c.x, c.u, c.m, matrix.data());
+        // Rounding of a rate: of the terms that it is the sum of, which may cancel. The largest, a stop that presses, is of this size.
+        std::array<double, state_count> magnitude{};
+        const auto centre = rate(c, c.x);
+        for (int row = 0; row < state_count; ++row) {
+            magnitude[row] = std::fabs(centre[row]);
+            for (int column = 0; column < state_count; ++column) {
+                magnitude[row] += std::fabs(matrix[column * state_count + row] * c.x[column]);
+            }
+        }
+        for (int column = 0; column < state_count; ++column) {
+            const auto differences = [&](double h) {
+                auto above = c.x;
+                auto below = c.x;
+                above[column] += h;
+                below[column] -= h;
+                return Differences{rate(c, above), rate(c, below), above[column] - below[column]};
+            };
+            const auto coarse = differences(step);
+            const auto fine = differences(0.5 * step);
+            for (int row = 0; row < state_count; ++row) {
+                const double exact = matrix[column * state_count + row];
+                const double extrapolated = (4.0 * fine.slope(row) - coarse.slope(row)) / 3.0;
+                // What the differences know of their own error. Curvature and a kink between the points show in the disagreement of the two
+                // steps; a kink right at the centre shows in the second differences, which are 4 to 1 of a smooth function, 2 to 1 there.
+                const double kink = std::fabs(coarse.second(row, centre) - 4.0 * fine.second(row, centre)) / step;
+                const double rounding = 40.0 * std::numeric_limits<double>::epsilon() * magnitude[row] / step;
+                const double tolerance = std::fabs(fine.slope(row) - coarse.slope(row)) + kink + rounding;
+                EXPECT_NEAR(exact, extrapolated, tolerance) << "case " << seed << ": d rate[" << row << "]/d x[" << column << "]";
+                if (exact != 0.0 || extrapolated != 0.0) {
+                    ++compared;
+                    sharp += tolerance < 1e-4 * std::fabs(exact) ? 1 : 0;
+                }
+            }
+        }
+    }
+    EXPECT_GT(compared, 100L * cases);
+    // The comparison would be worth little if its tolerances were wide: entries that are small beside their rate's rounding are the rest.
+    EXPECT_GT(static_cast<double>(sharp), 0.9 * static_cast<double>(compared)) << sharp << " of " << compared;
+}
+
+TEST(PlantJacobian, IsFiniteOnKinks) {
+    // At rest, touching, with every mode on: where differences have no limit, the derivative of one side.
+    for (unsigned seed = 0; seed < 12U; ++seed) {
+        auto c = random_case<double>(seed);
+        c.x = {};
+        c.m = {{0.0, 1.0, -1.0}, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0};
+        Jacobian jacobian;
+        jacobian.set_parameters(c.p, c.d);
+        std::array<double, state_count * state_count> matrix{};
+        jacobian.evaluate(c.x, c.u, c.m, matrix.data());
+        for (const double entry : matrix) {
+            EXPECT_TRUE(std::isfinite(entry)) << "case " << seed;
+        }
+    }
+}

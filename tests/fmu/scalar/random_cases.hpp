@@ -1,0 +1,121 @@
+// Random parameters, states, inputs and modes of the plant, the same numbers for every scalar type T.
+// Include it after T's functions are declared: the plant looks them up where its templates are written.
+#pragma once
+
+#include <random>
+
+#include "initial_state.hpp"
+#include "outputs.hpp"
+
+namespace giveway::plant::random_cases {
+
+template <class T> Parameters<T> random_parameters(unsigned seed) {
+    std::mt19937 generator(seed);
+    const auto draw = [&](double low, double high) { return T(std::uniform_real_distribution<double>(low, high)(generator)); };
+    Parameters<T> p{};
+    p.mass = draw(10.0, 60.0);
+    p.yaw_inertia = draw(0.5, 3.0);
+    p.wheel_radius = draw(0.05, 0.15);
+    p.wheel_distance = draw(0.2, 0.3);
+    p.wheel_inertia = draw(0.001, 0.01);
+    p.roller_radius = draw(0.005, 0.02);
+    p.roller_inertia = draw(1e-7, 1e-5);
+    for (int i = 0; i < wheel_count; ++i) {
+        p.wheel_load[i] = draw(0.5, 1.5);
+        p.wheel_traction[i] = T(1.0);
+        p.roller_presliding_stiffness[i] = draw(1e4, 5e4);
+    }
+    p.roller_model = RollerModel::bristle;
+    p.roller_torque = draw(0.1, 0.4);
+    p.roller_slope = draw(0.2, 0.8);
+    p.roller_presliding_damping = draw(1.0, 50.0);
+    p.roller_stribeck_speed = draw(0.001, 0.01);
+    p.roller_elastic_fraction = draw(0.3, 0.9);
+    p.motor_inertia = draw(0.01, 0.1);
+    p.drivetrain_stiffness = draw(300.0, 2000.0);
+    p.drivetrain_damping = draw(0.1, 2.0);
+    p.gear_coulomb = draw(1.0, 2.0);
+    p.gear_stiction = draw(2.0, 4.0);
+    p.gear_viscous = draw(0.0, 0.1);
+    p.torque_limit = draw(10.0, 30.0);
+    p.slider_present = 1;
+    p.slider_mass = draw(5.0, 15.0);
+    p.slider_friction = draw(0.0, 2.0);
+    p.slider_friction_speed = draw(0.002, 0.01);
+    p.slider_damping = draw(0.0, 1.0);
+    p.rail_direction = draw(-3.0, 3.0);
+    p.target_x = draw(-0.2, 0.2);
+    p.target_y = draw(-0.2, 0.2);
+    p.run_up = draw(0.0, 0.1);
+    p.rope_attached = 1;
+    p.hanging_mass = draw(1.0, 6.0);
+    p.rope_stiffness = draw(5e3, 2e4);
+    p.rope_damping = draw(50.0, 200.0);
+    p.drop_height = draw(0.1, 0.5);
+    p.floor_stiffness = draw(1e4, 3e4);
+    p.floor_damping = draw(1.0, 3.0);
+    p.bumper_kind = static_cast<BumperKind>(seed % 3U);
+    p.bumper_mount = static_cast<BumperMount>((seed / 3U) % 2U);
+    p.latch_model = static_cast<LatchModel>((seed / 6U) % 2U);
+    p.plate_mass = draw(0.2, 1.0);
+    p.spring_rate = draw(300.0, 2000.0);
+    p.preload = draw(0.0, 5.0);
+    p.bumper_damping = draw(0.0, 10.0);
+    p.guide_friction = draw(0.0, 2.0);
+    p.guide_friction_speed = draw(0.002, 0.01);
+    p.travel = draw(0.05, 0.15);
+    p.stop_stiffness = draw(1e5, 3e5);
+    p.stop_damping = draw(0.1, 2.0);
+    p.latch_force = draw(10.0, 60.0);
+    p.latch_gap = draw(0.0005, 0.002);
+    p.mount_x = draw(0.1, 0.2);
+    p.mount_y = draw(0.1, 0.3);
+    p.mount_azimuth = draw(0.0, 2.0);
+    p.nose_radius = draw(0.0, 0.03);
+    p.contact_stiffness = draw(5e3, 5e4);
+    p.contact_damping = draw(0.0, 1.0);
+    p.contact_friction = draw(0.0, 0.5);
+    p.contact_friction_speed = draw(0.002, 0.01);
+    p.outline_count = 3;
+    p.outline_x = {T(0.352184), T(-0.176092), T(-0.176092)};
+    p.outline_y = {T(0.0), T(0.305), T(-0.305)};
+    return p;
+}
+
+template <class T> struct Case {
+    Parameters<T> p;
+    Derived<T> d;
+    StateVector<T> x;
+    Inputs<T> u;
+    Modes<T> m;
+    EventVector<T> fired;
+};
+
+template <class T> Case<T> random_case(unsigned seed) {
+    Case<T> c{};
+    c.p = random_parameters<T>(seed);
+    c.d = derive(c.p);
+    std::mt19937 generator(seed + 1'000'000U);
+    const auto draw = [&](double low, double high) { return T(std::uniform_real_distribution<double>(low, high)(generator)); };
+    const auto flag = [&] { return T(std::uniform_int_distribution<int>(0, 1)(generator)); };
+    const auto three_way = [&] { return T(std::uniform_int_distribution<int>(-1, 1)(generator)); };
+    for (auto& value : c.x) {
+        value = draw(-0.2, 0.2);
+    }
+    c.u = {{draw(-9.0, 9.0), draw(-9.0, 9.0), draw(-9.0, 9.0)}, draw(-50.0, 50.0), draw(-50.0, 50.0), draw(-0.3, 0.3), draw(-0.3, 0.3)};
+    for (auto& direction : c.m.gear_direction) {
+        direction = three_way();
+    }
+    c.m.contact = flag();
+    c.m.rope_taut = flag();
+    c.m.end_stop = flag();
+    c.m.bottom_stop = flag();
+    c.m.latched = flag();
+    c.m.landed = flag();
+    for (auto& f : c.fired) {
+        f = three_way();
+    }
+    return c;
+}
+
+} // namespace giveway::plant::random_cases
