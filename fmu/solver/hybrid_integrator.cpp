@@ -1,13 +1,13 @@
+// The event loop: from stop to stop, through transitions, whatever the method.
 #include "hybrid_integrator.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <new>
 
-#include <arkode/arkode_erkstep.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
+#include "stepper.hpp"
 
 namespace giveway::solver {
 
@@ -20,140 +20,84 @@ constexpr int max_event_count = 32;
 } // namespace
 
 struct HybridIntegrator::Memory {
-    HybridSystem* system = nullptr;
-    SUNContext context = nullptr;
-    N_Vector state = nullptr;
-    N_Vector tolerance = nullptr;
-    void* arkode = nullptr;
-    std::int64_t rhs_calls = 0;
-
-    ~Memory() {
-        if (arkode != nullptr) {
-            ARKodeFree(&arkode);
-        }
-        if (tolerance != nullptr) {
-            N_VDestroy(tolerance);
-        }
-        if (state != nullptr) {
-            N_VDestroy(state);
-        }
-        if (context != nullptr) {
-            SUNContext_Free(&context);
-        }
-    }
-
-    static int rhs(sunrealtype time, N_Vector y, N_Vector rate, void* user) {
-        auto* self = static_cast<Memory*>(user);
-        ++self->rhs_calls;
-        self->system->rhs(time, NV_DATA_S(y), NV_DATA_S(rate));
-        return 0;
-    }
-    static int roots(sunrealtype time, N_Vector y, sunrealtype* value, void* user) {
-        auto* self = static_cast<Memory*>(user);
-        self->system->indicators(time, NV_DATA_S(y), value);
-        return 0;
-    }
-    // SUNDIALS prints to stderr unless told otherwise; failures are reported through error() instead.
-    static void silent(int, const char*, const char*, const char*, SUNErrCode, void*, SUNContext) {}
+    Problem problem;
+    std::unique_ptr<Stepper> stepper; // freed before the problem whose vectors it uses
 };
 
 HybridIntegrator::~HybridIntegrator() { delete memory_; }
 
+// `code` 0: `what` is the reason.
 bool HybridIntegrator::fail(const char* what, int code) {
-    char* name = ARKodeGetReturnFlagName(code);
-    std::snprintf(error_, sizeof error_, "%s at t = %.9g s (%s)", what, time_s_, name != nullptr ? name : "no code");
-    std::free(name); // allocated by SUNDIALS
+    char why[200] = "";
+    if (code != 0) {
+        const Stepper& stepper = *memory_->stepper;
+        const int bad = memory_->problem.bad_rate();
+        char bad_rate[64] = "";
+        std::snprintf(bad_rate, sizeof bad_rate, "the rate of state %d is not a finite number", bad);
+        char* code_name = stepper.code_name(code);
+        // A last step of no length means that the state came up against a singularity.
+        std::snprintf(why, sizeof why, ": %s (%s, last step %.3g s)", bad >= 0 ? bad_rate : reason(code), code_name != nullptr ? code_name : "no code",
+                      stepper.last_step());
+        std::free(code_name); // allocated by SUNDIALS
+    }
+    std::snprintf(error_, sizeof error_, "%s %s at t = %.9g s%s", name(options_.method), what, options_.clock_start_s + time_s_, why);
     return false;
 }
 
 bool HybridIntegrator::create(HybridSystem& system, double time_s, const double* state, const IntegratorOptions& options) {
     delete memory_;
+    options_ = options;
     time_s_ = time_s;
     step_hint_s_ = 0.0;
     last_event_time_s_ = -1.0;
     fresh_ = true;
-    statistics_ = {};
-    const int count = system.state_count();
+    events_ = 0;
     memory_ = new (std::nothrow) Memory;
-    if (memory_ == nullptr || SUNContext_Create(SUN_COMM_NULL, &memory_->context) != 0) {
-        return fail("no memory for the integrator", ARK_MEM_FAIL);
+    if (memory_ == nullptr || !memory_->problem.create(system, state, options)) {
+        return fail("has no memory", 0);
     }
-    Memory& memory = *memory_;
-    memory.system = &system;
-    SUNContext_ClearErrHandlers(memory.context);
-    SUNContext_PushErrHandler(memory.context, Memory::silent, nullptr);
-    memory.state = N_VNew_Serial(count, memory.context);
-    memory.tolerance = N_VNew_Serial(count, memory.context);
-    if (memory.state == nullptr || memory.tolerance == nullptr) {
-        return fail("no memory for the integrator", ARK_MEM_FAIL);
+    memory_->stepper.reset(options.method == Method::erk ? new_erk_stepper() : new_cvode_stepper(options.method));
+    if (memory_->stepper == nullptr) {
+        return fail("has no memory", 0);
     }
-    for (int i = 0; i < count; ++i) {
-        NV_Ith_S(memory.state, i) = state[i];
-        NV_Ith_S(memory.tolerance, i) = system.absolute_tolerance(i) * options.absolute_tolerance_scale;
-    }
-    memory.arkode = ERKStepCreate(Memory::rhs, time_s, memory.state, memory.context);
-    if (memory.arkode == nullptr) {
-        return fail("no memory for the integrator", ARK_MEM_FAIL);
-    }
-    int code = ARKodeSetUserData(memory.arkode, memory_);
-    code = code != 0 ? code : ERKStepSetTableNum(memory.arkode, ARKODE_DORMAND_PRINCE_7_4_5);
-    code = code != 0 ? code : ARKodeSVtolerances(memory.arkode, options.relative_tolerance, memory.tolerance);
-    code = code != 0 ? code : ARKodeSetMaxNumSteps(memory.arkode, 100000);
-    if (options.maximum_step_s > 0.0) {
-        code = code != 0 ? code : ARKodeSetMaxStep(memory.arkode, options.maximum_step_s);
-    }
-    if (system.event_count() > 0) {
-        code = code != 0 ? code : ARKodeRootInit(memory.arkode, system.event_count(), Memory::roots);
-        // An indicator that starts at zero (a mode just entered) is watched from its first move on.
-        code = code != 0 ? code : ARKodeSetNoInactiveRootWarn(memory.arkode);
-    }
-    return code == 0 || fail("the integrator refuses its options", code);
+    const int code = memory_->stepper->create(memory_->problem, time_s, options);
+    return code == 0 || fail("refuses its options", code);
 }
 
-double* HybridIntegrator::state() { return NV_DATA_S(memory_->state); }
+double* HybridIntegrator::state() { return NV_DATA_S(memory_->problem.state()); }
+
+IntegratorStatistics HybridIntegrator::statistics() const {
+    return {memory_->stepper->steps(), memory_->problem.rhs_calls(), memory_->problem.jacobian_calls(), events_};
+}
 
 bool HybridIntegrator::advance(double end_s) {
-    Memory& memory = *memory_;
+    Stepper& stepper = *memory_->stepper;
     for (int event = 0; event <= max_events_per_advance; ++event) {
         if (time_s_ >= end_s) {
             return true;
         }
         if (!fresh_) {
             // A fresh start: the history before an event or an input change is another function's.
-            int code = ARKodeReset(memory.arkode, time_s_, memory.state);
-            code = code != 0 ? code : ARKodeSetInitStep(memory.arkode, std::min(step_hint_s_, end_s - time_s_));
+            const int code = stepper.restart(time_s_, std::min(step_hint_s_, end_s - time_s_));
             if (code != 0) {
-                return fail("the integrator cannot restart", code);
+                return fail("cannot restart", code);
             }
         }
-        long before = 0;
-        long after = 0;
-        (void)ARKodeGetNumSteps(memory.arkode, &before);
-        (void)ARKodeSetStopTime(memory.arkode, end_s);
-        const int code = ARKodeEvolve(memory.arkode, end_s, memory.state, &time_s_, ARK_NORMAL);
-        (void)ARKodeGetNumSteps(memory.arkode, &after);
-        statistics_.steps += after - before;
-        statistics_.rhs_calls = memory.rhs_calls;
-        if (code < 0) {
-            return fail("the integrator cannot go on", code);
+        const Outcome outcome = stepper.evolve(end_s, time_s_);
+        if (outcome == Outcome::failed) {
+            return fail("cannot go on", stepper.code());
         }
-        // A stop time cuts the last step short and hides ARKODE's own proposal: try twice as much; its error test corrects that.
-        double last_step_s = 0.0;
-        (void)ARKodeGetLastStep(memory.arkode, &last_step_s);
-        step_hint_s_ = 2.0 * last_step_s;
-        fresh_ = true;
-        if (code == ARK_ROOT_RETURN) {
+        step_hint_s_ = stepper.first_step();
+        fresh_ = outcome == Outcome::reached;
+        if (outcome == Outcome::event) {
             int fired[max_event_count] = {};
-            (void)ARKodeGetRootInfo(memory.arkode, fired);
-            memory.system->transition(time_s_, NV_DATA_S(memory.state), fired);
-            statistics_.events += 1;
+            stepper.fired(fired);
+            memory_->problem.system().transition(time_s_, state(), fired);
+            events_ += 1;
             last_event_time_s_ = time_s_;
-            fresh_ = false;
-        } else {
-            time_s_ = end_s;
         }
     }
-    return fail("events follow each other without end", 0);
+    return fail("stops: events follow each other without end", 0);
 }
 
 } // namespace giveway::solver

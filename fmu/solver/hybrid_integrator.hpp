@@ -1,21 +1,10 @@
-// Adaptive explicit Runge-Kutta (ARKODE, Dormand-Prince 5(4)) with located events. The only room that knows SUNDIALS.
+// Adaptive integration with located events, by one of three methods of SUNDIALS. The only room that knows it.
 #pragma once
 
-#include <cstdint>
-
 #include "hybrid_system.hpp"
+#include "integrator_options.hpp"
 
 namespace giveway::solver {
-
-struct IntegratorOptions {
-    double relative_tolerance = 1e-6;
-    double absolute_tolerance_scale = 1.0; // multiplies the system's absolute tolerances
-    double maximum_step_s = 0.0;           // 0: no limit
-};
-
-struct IntegratorStatistics {
-    std::int64_t steps, rhs_calls, events;
-};
 
 class HybridIntegrator {
 public:
@@ -30,10 +19,11 @@ public:
     [[nodiscard]] double* state();
     [[nodiscard]] double time() const { return time_s_; }
     void restart() { fresh_ = false; }
-    // Integrates to exactly end_s, through any number of events. False on failure; error() names time and reason.
+    // Integrates to exactly end_s, through any number of events. False on failure: error() names time, method and reason, and
+    // time() and state() are those of the last good step.
     [[nodiscard]] bool advance(double end_s);
     [[nodiscard]] const char* error() const { return error_; }
-    [[nodiscard]] IntegratorStatistics statistics() const { return statistics_; }
+    [[nodiscard]] IntegratorStatistics statistics() const;
     [[nodiscard]] double last_event_time() const { return last_event_time_s_; }
 
 private:
@@ -41,11 +31,12 @@ private:
     [[nodiscard]] bool fail(const char* what, int code);
 
     Memory* memory_ = nullptr;
+    IntegratorOptions options_ = {};
     double time_s_ = 0.0;
     double step_hint_s_ = 0.0;
     double last_event_time_s_ = -1.0;
     bool fresh_ = true; // the integrator's history belongs to the current inputs and modes
-    IntegratorStatistics statistics_ = {};
+    std::int64_t events_ = 0;
     char error_[256] = "";
 };
 

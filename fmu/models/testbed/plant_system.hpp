@@ -5,6 +5,7 @@
 
 #include "hybrid_system.hpp"
 #include "initial_state.hpp"
+#include "jacobian.hpp"
 #include "outputs.hpp"
 
 namespace giveway::testbed {
@@ -15,6 +16,7 @@ public:
                plant::StateVector<double>& state) {
         parameters_ = parameters;
         derived_ = plant::derive(parameters_);
+        jacobian_.set_parameters(parameters_, derived_);
         inputs_ = inputs;
         plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
         first_contact_time_s_ = modes_.contact > 0.5 ? 0.0 : -1.0;
@@ -39,6 +41,11 @@ public:
     void rhs(double, const double* state, double* rate) override {
         const auto value = plant::rhs(as_state(state), inputs_, modes_, parameters_, derived_);
         std::copy(value.begin(), value.end(), rate);
+    }
+
+    bool jacobian(double, const double* state, double* matrix) override {
+        jacobian_.evaluate(as_state(state), inputs_, modes_, matrix);
+        return true;
     }
 
     void indicators(double, const double* state, double* value) override {
@@ -89,6 +96,7 @@ private:
 
     plant::Parameters<double> parameters_{};
     plant::Derived<double> derived_{};
+    plant::Jacobian jacobian_;
     plant::Inputs<double> inputs_{};
     plant::Modes<double> modes_{};
     double first_contact_time_s_ = -1.0;

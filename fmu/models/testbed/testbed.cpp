@@ -52,7 +52,13 @@ public:
                           static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
             return Status::error;
         }
-        const solver::IntegratorOptions options{v_.solver_relative_tolerance, v_.solver_absolute_scale, v_.solver_maximum_step};
+        const solver::IntegratorOptions options{
+            .relative_tolerance = v_.solver_relative_tolerance,
+            .absolute_tolerance_scale = v_.solver_absolute_scale,
+            .maximum_step_s = v_.solver_maximum_step,
+            .method = static_cast<solver::Method>(v_.solver_method),
+            .clock_start_s = start_time_s,
+        };
         if (!integrator_.create(system_, 0.0, state.data(), options)) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
@@ -76,6 +82,7 @@ public:
             const bool reaches = static_cast<double>(next) <= end_ticks + rounding_ticks;
             const double until_s = reaches ? static_cast<double>(next) / static_cast<double>(servo_rate_hz) : end_s;
             if (!integrator_.advance(until_s)) {
+                write_outputs(); // the last good state
                 std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
                 return Status::error;
             }
@@ -187,6 +194,7 @@ private:
         v_.events = static_cast<std::int32_t>(statistics.events);
         v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
         v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
+        v_.solver_jacobian_calls = static_cast<std::int32_t>(statistics.jacobian_calls);
     }
 
     Variables v_{};

@@ -1,6 +1,7 @@
 // The testbed as a model: step sizes, energy, refusals. The plant's equations have their own reference in ../plant.
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -121,4 +122,52 @@ TEST(Testbed, RefusesWhatDoesNotFitTogether) {
                   }
               }).find("convex"),
               std::string::npos);
+}
+
+TEST(Testbed, MethodsAgreeWithTheServosAtWork) {
+    Variables erk{};
+    for (const int method : {0, 1, 2}) {
+        Bench run;
+        run.v().solver_method = method;
+        run.v().solver_relative_tolerance = 1e-8;
+        run.v().solver_absolute_scale = 0.01;
+        run.v().electronics_encoder_counts = 1'000'000; // a count that flips a rounding earlier moves the motor by its step: make that small
+        run.initialise();
+        run.step_to(0.5, 1e-3);
+        const Variables& v = run.v();
+        erk = method == 0 ? v : erk;
+        EXPECT_EQ(v.solver_jacobian_calls > 0, method == 2);
+        EXPECT_GT(v.solver_steps, 0);
+        // 4 J are turned over with a local error of 1e-8 of it: a tenth of that a step is left, as signs differ.
+        EXPECT_LT(std::fabs(v.energy_residual), 0.1 * 4e-8 * v.solver_steps) << "method " << method;
+        EXPECT_NEAR(v.truth_first_contact_time, erk.truth_first_contact_time, 1e-6);
+        EXPECT_EQ(v.truth_latched, erk.truth_latched);
+        // A count of the encoder is 6 urad, 0.6 um at the wheel's rim.
+        EXPECT_NEAR(v.truth_x, erk.truth_x, 1e-6);
+        EXPECT_NEAR(v.truth_slider_position, erk.truth_slider_position, 1e-6);
+        EXPECT_NEAR(v.truth_contact_impulse_x, erk.truth_contact_impulse_x, 1e-3);
+        EXPECT_NEAR(v.energy_dissipated, erk.energy_dissipated, 1e-4);
+    }
+}
+
+TEST(Testbed, FailureEndsWithTimeMethodReasonAndTheLastGoodState) {
+    constexpr const char* names[] = {"ERK", "Adams", "BDF"};
+    for (const int method : {0, 1, 2}) {
+        Bench run;
+        run.v().solver_method = method;
+        ASSERT_EQ(run.model->initialise(5.0, run.message), Status::ok) << run.message.text;
+        for (int k = 0; k < 180; ++k) {
+            ASSERT_EQ(run.model->step(5.0 + k * 1e-3, 1e-3, run.message), Status::ok) << run.message.text;
+        }
+        const Variables good = run.v();
+        run.v().push_force_x = std::numeric_limits<double>::infinity();
+        ASSERT_EQ(run.model->step(5.18, 1e-3, run.message), Status::error);
+        const std::string message = run.message.text;
+        EXPECT_EQ(message.find(names[method]), 0U) << message;
+        EXPECT_NE(message.find("at t = 5.18 s: the rate of state "), std::string::npos) << message;
+        EXPECT_NE(message.find("is not a finite number"), std::string::npos) << message;
+        EXPECT_EQ(run.v().truth_x, good.truth_x);
+        EXPECT_EQ(run.v().truth_slider_speed, good.truth_slider_speed);
+        EXPECT_EQ(run.v().energy_residual, good.energy_residual);
+    }
 }
