@@ -154,9 +154,10 @@ def bench(
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,
 ) -> None:
-    """Measure speed: a co-simulated second over FMPy and its parts; runs per second over FMPy and in the library."""
+    """Measure speed: a co-simulated second over FMPy, runs per second, and cost and error of the integration methods."""
     from giveway import bench_batch
     from giveway.bench import measure
+    from giveway.bench_solvers import HEADER, measure_solvers
     from giveway.checks import whole
 
     whole("--repeats", repeats, 1, 100)
@@ -166,6 +167,8 @@ def bench(
     rates = [(row.name, f"{row.best:.1f}", f"{row.median:.1f}") for row in bench_batch.measure(repeats)]
     title = f"Collisions of {bench_batch.SIMULATED_S:g} s with metrics, best and median of {repeats}"
     _print_columns(title, ("way", "best (runs/s)", "median (runs/s)"), rates)
+    title = "Integration methods on stiffer designs: 1 s of the testbed FMU alone at relative tolerance 1e-6"
+    _print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
 
 
 def _scenario(

@@ -135,5 +135,5 @@ def test_lists_and_version(cli: Cli) -> None:
 def test_bench_prints_all_parts(cli: Cli) -> None:
     done = cli("bench", "--repeats", "1")
     assert done.returncode == 0, done.stderr
-    for part in ("run", "stepping", "testbed FMU", "controller FMU"):
+    for part in ("run", "stepping", "testbed FMU", "controller FMU", "ERK", "Adams", "BDF"):
         assert part in done.stdout

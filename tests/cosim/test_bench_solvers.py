@@ -1,0 +1,50 @@
+"""Cost and error of the integration methods: what the bench measures is sound, and the README shows it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from giveway.bench_solvers import HEADER, METHODS, SWEEPS, Measurement, measure_solvers
+
+README = Path(__file__).parents[2] / "fmu" / "README.md"
+BEGIN, END = "<!-- table: giveway bench -->\n", "<!-- end of table -->"
+
+
+@pytest.fixture(scope="module")
+def measured() -> dict[tuple[str, float, str], Measurement]:
+    return {(m.sweep, m.scale, m.method): m for m in measure_solvers(1, 3)}
+
+
+def test_every_method_on_every_design(measured: dict[tuple[str, float, str], Measurement]) -> None:
+    designs = [(sweep, scale) for sweep, (_, scales) in SWEEPS.items() for scale in scales]
+    assert set(measured) == {(*design, method) for design in designs for method in METHODS}
+    for m in measured.values():
+        assert m.wall_ms > 0
+        assert (m.jacobian_calls > 0) == (m.method == "BDF")
+    # On the design as it is, all of them come near the reference: 1e-6 of each step's own error, thousands of steps.
+    for method in METHODS:
+        assert 0 < measured["springs", 1.0, method].error < 2e-3
+
+
+def test_bdf_bears_stiffness_and_the_others_do_not(measured: dict[tuple[str, float, str], Measurement]) -> None:
+    mild, stiff = SWEEPS["damper"][1][0], SWEEPS["damper"][1][-1]
+    growth = {name: measured["damper", stiff, name].steps / measured["damper", mild, name].steps for name in METHODS}
+    assert growth["BDF"] < 2
+    assert growth["ERK"] > 10
+    assert growth["Adams"] > 10
+
+
+def test_readme_shows_the_measured_table(measured: dict[tuple[str, float, str], Measurement]) -> None:
+    text = README.read_text(encoding="utf-8")
+    lines = text[text.index(BEGIN) + len(BEGIN) : text.index(END)].splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    assert tuple(rows[0]) == HEADER
+    assert [(sweep, float(times), method) for sweep, times, method, *_ in rows[2:]] == list(measured)
+    for sweep, times, method, wall_ms, steps, rhs_calls, jacobian_calls, error in rows[2:]:
+        m = measured[sweep, float(times), method]
+        assert float(wall_ms) > 0  # the machine's own affair
+        # The C library's pow() sets the steps' lengths, and its last bit depends on the processor: hence not exact.
+        shown = [int(steps), int(rhs_calls), int(jacobian_calls)]
+        assert shown == pytest.approx([m.steps, m.rhs_calls, m.jacobian_calls], rel=0.05), (sweep, times, method)
+        assert m.error / 3 < float(error) < 3 * m.error, (sweep, times, method)
