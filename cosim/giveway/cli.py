@@ -154,7 +154,7 @@ def bench(
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,
 ) -> None:
-    """Measure speed: a co-simulated second over FMPy, runs per second, and cost and error of the integration methods."""
+    """Measure speed: a co-simulated second over FMPy, runs per second, cost and error of the integration methods."""
     from giveway import bench_batch
     from giveway.bench import measure
     from giveway.bench_solvers import HEADER, measure_solvers
