@@ -251,7 +251,7 @@ def test_a_failed_run_says_when_and_why_and_stops_nobody() -> None:
     refused = short(testbed={"outline.count": 4})
     table = batch.run_many([short(), failing, refused, short()], threads=2, traces=["testbed.truth.vx"])
     assert table["status"].values.tolist() == ["ok", "failed", "refused", "ok"]
-    assert table["message"].values[1].startswith("testbed: the integrator cannot go on at t = 0.1")
+    assert table["message"].values[1].startswith("testbed: ERK cannot go on at t = 0.1")
     assert "outline" in table["message"].values[2]
     ends = table["simulated"].values
     assert ends[[0, 3]].tolist() == [0.5, 0.5]
