@@ -36,7 +36,10 @@ public:
         const ModelInfo& receiver = info_of(to);
         for (std::size_t i = 0; i < receiver.variable_count; ++i) {
             const VariableInfo& input = receiver.variables[i];
-            const VariableInfo* output = input.causality == Causality::input ? find(info_of(from), input.name) : nullptr;
+            if (input.causality != Causality::input) {
+                continue;
+            }
+            const VariableInfo* output = find(info_of(from), input.name);
             if (output != nullptr && output->causality == Causality::output && count_ < links_.size()) {
                 links_[count_++] = {output, &input};
             }

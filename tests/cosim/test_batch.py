@@ -48,6 +48,7 @@ def drive_left(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
 
 # Thrown across the floor on bristles a thousand times as stiff as real ones: an explicit integrator must give up.
 UNSOLVABLE = {
+    "solver.method": 0,
     "slider.present": False,
     "roller.coulomb_torque": 0.001,
     **{f"roller.presliding_stiffness[{wheel}]": 1e7 for wheel in range(3)},
@@ -63,6 +64,8 @@ CASES: dict[str, giveway.Scenario] = {
     "push": short(push=push, testbed={"slider.present": False}),
     "plan": short(plan=drive_left),
     "rest elsewhere": short(plan=giveway.plan.Rest(0.3, -0.2, 0.4)),
+    "Adams": short(testbed={"solver.method": 1}),
+    "BDF": short(testbed={"solver.method": 2}),
     "half a millisecond": short(step_s=0.0005),
     "odd step": short(step_s=0.0007, duration_s=0.35),
 }
