@@ -11,10 +11,11 @@ from pathlib import Path
 
 from giveway.errors import NativeMissingError
 
-__all__ = ["MODELS", "batch_library", "file", "fmu", "robot", "variables"]
+__all__ = ["COMPONENTS", "MODELS", "batch_library", "file", "fmu", "robot", "variables"]
 
 ENVIRONMENT_VARIABLE = "GIVEWAY_NATIVE_DIR"
-MODELS = ("controller", "testbed")
+MODELS = ("controller", "testbed")  # what an experiment runs
+COMPONENTS = ("drivetrain",)  # pieces of it, for a user's own robot
 DEFAULT_ROBOT = "trikey.toml"
 
 
@@ -31,7 +32,7 @@ def file(name: str) -> Path:
 
 
 def fmu(model: str, fmi_version: int) -> Path:
-    """Path of the FMU of ``model`` ("controller" or "testbed") for FMI 2 or 3."""
+    """Path of the FMU of ``model``, one of MODELS or COMPONENTS, for FMI 2 or 3."""
     return file(f"giveway_{model}_fmi{fmi_version}.fmu")
 
 

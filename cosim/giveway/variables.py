@@ -148,8 +148,9 @@ def parse_assignments(assignments: list[str]) -> dict[str, dict[str, Value]]:
 
 def table(model: str) -> VariableTable:
     """The variable table of ``model``, with the start values of the default robot."""
-    if model not in native.MODELS:
-        raise UnknownNameError("model", model, native.MODELS)
+    known = (*native.MODELS, *native.COMPONENTS)
+    if model not in known:
+        raise UnknownNameError("model", model, known)
     return _read_table(native.variables(model), native.robot())
 
 

@@ -15,8 +15,9 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 NATIVE = {
-    *(f"giveway_{model}_fmi{version}.fmu" for model in ("controller", "testbed") for version in (2, 3)),
+    *(f"giveway_{model}_fmi{version}.fmu" for model in ("controller", "testbed", "drivetrain") for version in (2, 3)),
     "controller.variables.toml",
+    "drivetrain.variables.toml",
     "giveway_batch.h",
     "giveway_batch.so",
     "giveway_batch.sundials.txt",

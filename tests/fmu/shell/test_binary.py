@@ -13,7 +13,7 @@ from pathlib import Path
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
-from fmu_driver import BINARY_FOLDERS, BUILD, MODELS, ROOT, Fmu, fmu_path
+from fmu_driver import BINARY_FOLDERS, BUILD, INTEGRATED, MODELS, ROOT, Fmu, fmu_path
 
 EVERY_FMU = [(model, version) for model in (*MODELS, "lag") for version in (2, 3)]
 GOLDEN = Path(__file__).parent / "golden_references"
@@ -85,7 +85,7 @@ def test_the_file_holds_what_it_should_in_order(model: str, version: int) -> Non
     assert {entry.compress_type for entry in entries} == {zipfile.ZIP_DEFLATED}
     assert {entry.date_time for entry in entries} == {(1980, 1, 1, 0, 0, 0)}
     licences = ["documentation/licenses/license.txt"]
-    if model == "testbed":
+    if model in INTEGRATED:
         licences.append("documentation/licenses/sundials.txt")
     wanted = [f"binaries/{BINARY_FOLDERS[version]}/giveway_{model}.so", "documentation/index.html", *licences]
     assert names == [*wanted, "modelDescription.xml"]
