@@ -137,7 +137,7 @@ def list_experiments() -> None:
 
 @app.command()
 def variables(
-    model: Annotated[str, typer.Argument(help="controller, testbed or drivetrain.")],
+    model: Annotated[str, typer.Argument(help="controller, testbed, drivetrain or bumper.")],
     grep: Annotated[str, typer.Option("--grep", metavar="TEXT", help="Only names or descriptions with TEXT.")] = "",
 ) -> None:
     """List the variables of an FMU: what can be set, its range and unit, and what comes out."""

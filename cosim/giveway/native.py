@@ -15,7 +15,7 @@ __all__ = ["COMPONENTS", "MODELS", "batch_library", "file", "fmu", "robot", "var
 
 ENVIRONMENT_VARIABLE = "GIVEWAY_NATIVE_DIR"
 MODELS = ("controller", "testbed")  # what an experiment runs
-COMPONENTS = ("drivetrain",)  # pieces of it, for a user's own robot
+COMPONENTS = ("drivetrain", "bumper")  # pieces of it, for a user's own robot
 DEFAULT_ROBOT = "trikey.toml"
 
 

@@ -15,7 +15,12 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 NATIVE = {
-    *(f"giveway_{model}_fmi{version}.fmu" for model in ("controller", "testbed", "drivetrain") for version in (2, 3)),
+    *(
+        f"giveway_{model}_fmi{version}.fmu"
+        for model in ("controller", "testbed", "drivetrain", "bumper")
+        for version in (2, 3)
+    ),
+    "bumper.variables.toml",
     "controller.variables.toml",
     "drivetrain.variables.toml",
     "giveway_batch.h",

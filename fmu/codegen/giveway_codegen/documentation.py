@@ -30,6 +30,14 @@ def _row(group: Group, variable: Variable) -> str:
     return f"<tr>{''.join(cells)}</tr>"
 
 
+def _feedthrough(table: Table) -> str:
+    direct = [group.name for group in table.groups if group.dependencies]
+    if not direct:
+        return "No output follows an input within the same instant."
+    names = ", ".join(f"<code>{escape(name)}</code>" for name in direct)
+    return f"Within the same instant, outputs that follow inputs are {names}."
+
+
 def page(table: Table, version: str) -> str:
     titles = ("Name", "Type", "Unit", "Start", "Minimum", "Maximum", "Meaning", "Reference")
     sections = []
@@ -46,7 +54,7 @@ def page(table: Table, version: str) -> str:
 <h1>giveway {table.name} {escape(version)}</h1>
 <p>{escape(table.description)}.</p>
 <p>Co-Simulation; any communication step size, made for {table.step_size} s. Inputs are held constant over a step and
-outputs are valid at its end; no output follows an input within the same instant. Ranges are inclusive; a value outside
+outputs are valid at its end. {_feedthrough(table)} Ranges are inclusive; a value outside
 its range, or not finite, is refused with a message. Parameters can be set until initialisation ends.</p>
 {chr(10).join(sections)}
 </body>

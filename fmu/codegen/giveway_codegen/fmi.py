@@ -69,6 +69,10 @@ def _value_attributes(group: Group, variable: Variable) -> dict[str, str | None]
     return pairs
 
 
+def _references(variables: list[Variable]) -> str:
+    return " ".join(str(variable.reference) for variable in variables)
+
+
 def fmi3_model_description(table: Table, version: str) -> str:
     """FMI 3.0; the independent variable has reference 0."""
     types = {"real": "Float64", "integer": "Int32", "boolean": "Boolean"}
@@ -102,13 +106,15 @@ def fmi3_model_description(table: Table, version: str) -> str:
         }
         lines.append(f"    <{types[group.type]}{_attributes(pairs)}/>")
     lines += ["  </ModelVariables>", "  <ModelStructure>"]
-    outputs = [v.reference for group, v in table.scalars if group.causality == "output"]
-    # No output follows an input within the same instant: inputs act over the next step.
-    lines += [f'    <Output valueReference="{reference}" dependencies=""/>' for reference in outputs]
-    parameters = " ".join(str(v.reference) for group, v in table.scalars if group.causality == "parameter")
-    lines += [
-        f'    <InitialUnknown valueReference="{reference}" dependencies="{parameters}"/>' for reference in outputs
-    ]
+    parameters = [v for group, v in table.scalars if group.causality == "parameter"]
+    initial = []
+    for group, variable in table.scalars:
+        if group.causality == "output":
+            inputs = table.members(group.dependencies)
+            unknown = f'valueReference="{variable.reference}" dependencies'
+            lines.append(f'    <Output {unknown}="{_references(inputs)}"/>')
+            initial.append(f'    <InitialUnknown {unknown}="{_references([*inputs, *parameters])}"/>')
+    lines += initial
     lines += ["  </ModelStructure>", "</fmiModelDescription>"]
     return "\n".join(lines) + "\n"
 
@@ -134,9 +140,12 @@ def fmi2_model_description(table: Table, version: str) -> str:
     lines.append(f"  <CoSimulation{_attributes(dict(interface))}/>")
     lines += [*_unit_definitions(table), *_log_categories(), _default_experiment(table)]
     lines.append("  <ModelVariables>")
-    indices: dict[str, list[int]] = {"parameter": [], "input": [], "output": []}
-    for index, (group, variable) in enumerate(table.scalars, start=1):
-        indices[group.causality].append(index)
+    indices = {variable.name: index for index, (_, variable) in enumerate(table.scalars, start=1)}
+
+    def listed(variables: list[Variable]) -> str:
+        return " ".join(str(indices[variable.name]) for variable in variables)
+
+    for group, variable in table.scalars:
         pairs = {
             "name": variable.name,
             "valueReference": str(variable.reference),
@@ -147,13 +156,17 @@ def fmi2_model_description(table: Table, version: str) -> str:
         value = _attributes(_value_attributes(group, variable))
         lines.append(f"    <ScalarVariable{_attributes(dict(pairs))}><{types[group.type]}{value}/></ScalarVariable>")
     lines += ["  </ModelVariables>", "  <ModelStructure>"]
-    if indices["output"]:
-        # dependencies="" says that there are none; leaving it out would mean: all inputs.
-        lines.append("    <Outputs>")
-        lines += [f'      <Unknown index="{index}" dependencies=""/>' for index in indices["output"]]
-        lines += ["    </Outputs>", "    <InitialUnknowns>"]
-        parameters = " ".join(map(str, indices["parameter"]))
-        lines += [f'      <Unknown index="{index}" dependencies="{parameters}"/>' for index in indices["output"]]
-        lines.append("    </InitialUnknowns>")
+    parameters = [v for group, v in table.scalars if group.causality == "parameter"]
+    outputs, initial = [], []
+    for group, variable in table.scalars:
+        if group.causality == "output":
+            inputs = table.members(group.dependencies)
+            unknown = f'<Unknown index="{indices[variable.name]}" dependencies'
+            # dependencies="" says that there are none; leaving it out would mean: all inputs.
+            outputs.append(f'      {unknown}="{listed(inputs)}"/>')
+            initial.append(f'      {unknown}="{listed([*inputs, *parameters])}"/>')
+    if outputs:
+        lines += ["    <Outputs>", *outputs, "    </Outputs>"]
+        lines += ["    <InitialUnknowns>", *initial, "    </InitialUnknowns>"]
     lines += ["  </ModelStructure>", "</fmiModelDescription>"]
     return "\n".join(lines) + "\n"

@@ -25,7 +25,7 @@ Value = float | int | bool
 _MODEL_KEYS = {"name", "description", "step_size_s"}
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
-    "allow_nonfinite", "description",
+    "allow_nonfinite", "dependencies", "description",
 }  # fmt: skip
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
 
@@ -54,6 +54,7 @@ class Group:
     maximum: Value | None
     nominal: float | None
     allow_nonfinite: bool
+    dependencies: tuple[str, ...]  # of an output: the groups of inputs that it follows within the same instant
     description: str
     variables: tuple[Variable, ...]
 
@@ -70,6 +71,10 @@ class Table:
     @property
     def scalars(self) -> list[tuple[Group, Variable]]:
         return [(group, variable) for group in self.groups for variable in group.variables]
+
+    def members(self, names: tuple[str, ...]) -> list[Variable]:
+        """The scalars of the groups called ``names``, in the order of the table."""
+        return [variable for group, variable in self.scalars if group.name in names]
 
     @property
     def units(self) -> dict[str, dict[str, int]]:
@@ -188,6 +193,10 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     if not isinstance(allow_nonfinite, bool) or (allow_nonfinite and causality != "input"):
         raise entry.fail("allow_nonfinite", f"{allow_nonfinite!r}, but must be true or false, and true only for inputs")
 
+    dependencies = raw.get("dependencies", [])
+    if not isinstance(dependencies, list) or (dependencies and causality != "output"):
+        raise entry.fail("dependencies", f"{dependencies!r}, but must be a list of inputs, and only for outputs")
+
     starts = _starts(entry, kind, unit, causality, count, robot, robot_file)
     for start, _ in starts:
         if start is None or kind == "boolean":
@@ -200,7 +209,7 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     )
     return Group(
         name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
-        " ".join(description.split()), variables,
+        tuple(dependencies), " ".join(description.split()), variables,
     )  # fmt: skip
 
 
@@ -290,5 +299,11 @@ def read_table(table_file: Path, robot_file: Path) -> Table:
         groups.append(group)
     if not groups:
         raise TableError(f"{table_file}: no [[variable]]")
+    inputs = {group.name for group in groups if group.causality == "input"}
+    for group in groups:
+        for dependency in group.dependencies:
+            if dependency not in inputs:
+                label = f"{table_file}: variable {group.name}"
+                raise TableError(f"{label}: dependencies: there is no input {dependency!r}")
     groups.sort(key=lambda group: group.variables[0].reference)
     return Table(name, " ".join(description.split()), step_size, tuple(groups))

@@ -15,8 +15,8 @@ import fmpy
 
 ROOT = Path(__file__).parents[3]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))
-MODELS = ("controller", "testbed", "drivetrain")
-INTEGRATED = ("testbed", "drivetrain")  # with SUNDIALS inside
+MODELS = ("controller", "testbed", "drivetrain", "bumper")
+INTEGRATED = ("testbed", "drivetrain", "bumper")  # with SUNDIALS inside
 
 OK, ERROR = 0, 3
 BINARY_FOLDERS = {2: "linux64", 3: "x86_64-linux"}

@@ -164,10 +164,11 @@ def test_both_versions_give_the_same_bits(model: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("model", [*MODELS, "lag"])
-def test_outputs_at_the_start_follow_parameters_alone(model: str, tmp_path: Path) -> None:
-    """The model descriptions say so (initial unknowns), so importers see no algebraic loop."""
+def test_outputs_at_the_start_follow_what_is_declared(model: str, tmp_path: Path) -> None:
+    """No input, where the model descriptions name none, so importers see no algebraic loop."""
     fmu = Fmu(fmu_path(model, 3), 3, tmp_path)
-    outputs = [name for name, variable in fmu.variables.items() if variable.causality == "output"]
+    direct = {u.variable.name for u in fmu.description.outputs if u.dependencies}
+    outputs = [name for name, v in fmu.variables.items() if v.causality == "output" and name not in direct]
     starts = []
     for step in (None, 3, 40):
         assert fmu.instantiate()

@@ -110,6 +110,15 @@ WRONG = {
     "unknown type": (variable(type='"string"'), "type: 'string', but must be one of"),
     "no description": (variable(description=None), "description: missing"),
     "non-finite parameter": (variable(allow_nonfinite="true"), "allow_nonfinite: True, but"),
+    "dependencies of an input": (variable(dependencies='["first"]'), "dependencies: ['first'], but must be a list"),
+    "dependencies as text": (
+        variable(causality='"output"', start=None, dependencies='"first"'),
+        "dependencies: 'first', but must be a list of inputs",
+    ),
+    "unknown dependency": (
+        variable(causality='"output"', start=None, dependencies='["third"]'),
+        "dependencies: there is no input 'third'",
+    ),
     "nominal": (variable(nominal="0.0"), "nominal: 0.0 is not positive"),
 }
 

@@ -1,0 +1,108 @@
+// The bumper behind the model interface: motion of its two faces in, forces on them out.
+//
+// Co-Simulation moves the faces on with their velocities over a step, so that stops and latch are met inside a step and the force at its end is
+// that of the predicted position.
+#include <cmath>
+#include <cstdio>
+#include <new>
+
+#include "bumper_system.hpp"
+#include "bumper_variables.hpp"
+#include "hybrid_integrator.hpp"
+#include "model.hpp"
+
+namespace giveway::bumper {
+
+namespace {
+
+class Bumper final : public Model {
+public:
+    Bumper() { set_start_values(v_); }
+
+    void* variables() override { return &v_; }
+
+    void reset() override {
+        v_ = {};
+        set_start_values(v_);
+    }
+
+    Status initialise(double start_time_s, Message& message) override {
+        start_time_s_ = start_time_s;
+        system_.start(parameters());
+        system_.set_faces(faces(), 0.0);
+        stored_at_start_j_ = system_.force(0.0).stored;
+        const double state[state_count] = {};
+        const solver::IntegratorOptions options{v_.solver_relative_tolerance, v_.solver_absolute_scale, v_.solver_maximum_step};
+        if (!integrator_.create(system_, 0.0, state, options)) {
+            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+            return Status::error;
+        }
+        write_outputs();
+        return Status::ok;
+    }
+
+    Status step(double time_s, double step_size_s, Message& message) override {
+        system_.set_faces(faces(), integrator_.time());
+        integrator_.restart();
+        if (!integrator_.advance(time_s + step_size_s - start_time_s_)) {
+            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+            return Status::error;
+        }
+        write_outputs();
+        return Status::ok;
+    }
+
+private:
+    [[nodiscard]] Faces faces() const { return {v_.carrier_position, v_.carrier_velocity, v_.plate_position, v_.plate_velocity}; }
+
+    [[nodiscard]] plant::Parameters<double> parameters() const {
+        plant::Parameters<double> p{};
+        p.bumper_kind = static_cast<plant::BumperKind>(v_.bumper_kind);
+        p.latch_model = static_cast<plant::LatchModel>(v_.bumper_latch_model);
+        p.spring_rate = v_.bumper_spring_rate;
+        p.preload = v_.bumper_preload;
+        p.bumper_damping = v_.bumper_damping;
+        p.guide_friction = v_.bumper_guide_friction;
+        p.guide_friction_speed = v_.bumper_guide_friction_speed;
+        p.travel = v_.bumper_travel;
+        p.stop_stiffness = v_.bumper_stop_stiffness;
+        p.stop_damping = v_.bumper_stop_damping;
+        p.latch_force = v_.bumper_latch_force;
+        p.latch_gap = v_.bumper_latch_gap;
+        return p;
+    }
+
+    void write_outputs() {
+        const double now_s = integrator_.time();
+        const double* x = integrator_.state();
+        const auto bumper = system_.force(now_s);
+        v_.carrier_force = -bumper.force;
+        v_.plate_force = bumper.force;
+        v_.compression = system_.compression(now_s);
+        v_.compression_rate = system_.compression_rate();
+        v_.latched = system_.latched(now_s);
+        v_.end_stop = system_.end_stop();
+        v_.bottom_stop = system_.bottom_stop();
+        v_.energy_stored = bumper.stored - stored_at_start_j_;
+        v_.energy_work_in = x[work_in];
+        v_.energy_dissipated = x[dissipated];
+        v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
+        const auto statistics = integrator_.statistics();
+        v_.events = static_cast<std::int32_t>(statistics.events);
+        v_.last_event_time = statistics.events == 0 ? -1.0 : start_time_s_ + integrator_.last_event_time();
+        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
+        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
+    }
+
+    Variables v_{};
+    BumperSystem system_;
+    solver::HybridIntegrator integrator_;
+    double start_time_s_ = 0.0;
+    double stored_at_start_j_ = 0.0;
+};
+
+} // namespace
+
+} // namespace giveway::bumper
+
+giveway::Model* giveway::bumper::create_model() { return new (std::nothrow) Bumper; }

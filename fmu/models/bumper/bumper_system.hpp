@@ -1,0 +1,88 @@
+// The bumper between two faces that others move, as the solver sees it: its force is algebraic, its states are the accounts of energy.
+#pragma once
+
+#include "bumper.hpp"
+#include "hybrid_system.hpp"
+
+namespace giveway::bumper {
+
+enum StateIndex : int { work_in, dissipated, state_count };
+enum EventIndex : int { event_end_stop, event_bottom_stop, event_count };
+
+// Both positions along one axis from the carrier to the plate, equal at full extension.
+struct Faces {
+    double carrier_m, carrier_mps, plate_m, plate_mps;
+};
+
+class BumperSystem final : public solver::HybridSystem {
+public:
+    void start(const plant::Parameters<double>& parameters) {
+        parameters_ = parameters;
+        modes_ = {};
+    }
+
+    // From `time_s` on the faces move on with these velocities. Where they are decides which stops they touch.
+    void set_faces(const Faces& faces, double time_s) {
+        faces_ = faces;
+        faces_time_s_ = time_s;
+        const double c = compression(time_s);
+        const double beyond = c - parameters_.travel;
+        modes_.end_stop = c < 0.0 || (c <= 0.0 && compression_rate() <= 0.0) ? 1.0 : 0.0;
+        modes_.bottom_stop = beyond > 0.0 || (beyond >= 0.0 && compression_rate() > 0.0) ? 1.0 : 0.0;
+    }
+
+    [[nodiscard]] double compression(double time_s) const {
+        return faces_.carrier_m - faces_.plate_m + compression_rate() * (time_s - faces_time_s_);
+    }
+    [[nodiscard]] double compression_rate() const { return faces_.carrier_mps - faces_.plate_mps; }
+    [[nodiscard]] bool end_stop() const { return modes_.end_stop > 0.5; }
+    [[nodiscard]] bool bottom_stop() const { return modes_.bottom_stop > 0.5; }
+    [[nodiscard]] bool latched(double time_s) const {
+        return parameters_.has_ideal_latch() ? end_stop() : parameters_.has_continuous_latch() && compression(time_s) < parameters_.latch_gap;
+    }
+
+    // The ideal latch is the continuous one with no reach: all of its force while the plate is at its end stop, none beyond. It lets go where
+    // the faces pull at it with its force and the preload, and takes hold again at full extension.
+    [[nodiscard]] plant::BumperForce<double> force(double time_s) const {
+        const double c = compression(time_s);
+        auto bumper = plant::bumper_force(parameters_, modes_, c, compression_rate());
+        if (parameters_.has_ideal_latch()) {
+            bumper.force += modes_.end_stop * parameters_.latch_force;
+            bumper.stored += modes_.end_stop * parameters_.latch_force * c;
+        }
+        return bumper;
+    }
+
+    [[nodiscard]] int state_count() const override { return bumper::state_count; }
+    [[nodiscard]] int event_count() const override { return bumper::event_count; }
+
+    void rhs(double time_s, const double*, double* rate) override {
+        const auto bumper = force(time_s);
+        rate[work_in] = bumper.force * compression_rate();
+        rate[dissipated] = bumper.dissipation;
+    }
+
+    void indicators(double time_s, const double*, double* value) override {
+        value[event_end_stop] = compression(time_s);
+        value[event_bottom_stop] = compression(time_s) - parameters_.travel;
+    }
+
+    void transition(double, double*, const int* fired) override {
+        if (fired[event_end_stop] != 0) {
+            modes_.end_stop = fired[event_end_stop] < 0 ? 1.0 : 0.0;
+        }
+        if (fired[event_bottom_stop] != 0) {
+            modes_.bottom_stop = fired[event_bottom_stop] > 0 ? 1.0 : 0.0;
+        }
+    }
+
+    [[nodiscard]] double absolute_tolerance(int) const override { return 1e-7; } // J
+
+private:
+    plant::Parameters<double> parameters_{};
+    plant::Modes<double> modes_{};
+    Faces faces_{};
+    double faces_time_s_ = 0.0;
+};
+
+} // namespace giveway::bumper
