@@ -11,7 +11,7 @@
 namespace giveway {
 
 enum class VariableType : std::uint8_t { real, integer, boolean };
-enum class Causality : std::uint8_t { parameter, input, output };
+enum class Causality : std::uint8_t { parameter, input, output, local };
 
 // One row of the variable table.
 struct VariableInfo {
@@ -30,6 +30,14 @@ struct ModelInfo {
     const char *token;             // instantiation token: hash of the variable table
     const VariableInfo *variables; // sorted by reference
     std::size_t variable_count;
+    // For models with equations to integrate; 0 and null otherwise.
+    const double *state_nominals;
+    std::size_t state_count;
+    std::size_t indicator_count;
+    // Byte offsets of the arrays in the Variables struct that the shell fills for reading.
+    std::size_t states_offset;
+    std::size_t derivatives_offset;
+    std::size_t indicators_offset;
 };
 
 enum class Status { ok, error };
@@ -37,6 +45,34 @@ enum class Status { ok, error };
 // Filled by the model when it returns Status::error: what was wrong, with names, values and units.
 struct Message {
     char text[512];
+};
+
+// What an event update leaves to be known.
+struct EventUpdate {
+    bool again;          // another update is needed, after outputs have been passed on
+    bool states_changed; // the states jumped
+    bool has_next_time;  // the next event that is known in advance
+    double next_time_s;
+};
+
+// A model's equations, for an importer that integrates (Model Exchange). Valid from initialise() on.
+// In continuous time modes stay as they are; they change in update_events() alone, and discrete inputs
+// are read there alone (FMPy, unlike the standard, sets them between events too).
+class Equations {
+public:
+    virtual ~Equations() = default;
+
+    // The first call after initialise() says that the importer integrates and inputs act at once.
+    virtual void set_time(double time_s) = 0;
+    // state_count numbers, the importer's to write in continuous time.
+    virtual double *states() = 0;
+    // At the time, states and inputs of now.
+    virtual void derivatives(double *values) = 0;
+    // Positive; an event where one falls to zero or below. After an event every one is positive again,
+    // by a hysteresis.
+    virtual void indicators(double *values) = 0;
+    virtual void write_outputs() = 0;
+    virtual Status update_events(EventUpdate &update, Message &message) = 0;
 };
 
 // One instance of one FMU. Inputs and parameters are in range (and finite unless the table allows
@@ -57,6 +93,9 @@ public:
 
     // Back to the start values, as if newly created.
     virtual void reset() = 0;
+
+    // nullptr: the model steps by itself and offers nothing else.
+    virtual Equations *equations() { return nullptr; }
 };
 
 // Every model has both in its own namespace (NAME_variables.hpp), so that several fit into one library.

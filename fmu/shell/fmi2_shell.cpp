@@ -1,4 +1,4 @@
-// FMI 2.0 entry points, Co-Simulation.
+// FMI 2.0 entry points: Co-Simulation and, for models with equations, Model Exchange.
 #include "instance.hpp"
 
 #include <fmi2Functions.h>
@@ -42,9 +42,10 @@ struct Fmi2Instance {
         self->logger(self->environment, self->name, fmi2Error, "logStatusError", format);
     }
 
-    Fmi2Instance(const fmi2CallbackFunctions &functions, char *name_, giveway::Model *model)
+    Fmi2Instance(const fmi2CallbackFunctions &functions, char *name_, giveway::Model *model,
+                 giveway::Interface interface)
         : logger(functions.logger), environment(functions.componentEnvironment), name(name_),
-          instance(model, false, log, this) {}
+          instance(model, interface, false, log, this) {}
     ~Fmi2Instance() { delete[] name; }
 };
 
@@ -113,7 +114,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (name == nullptr || name[0] == '\0') {
         return refuse_instance(functions, name, "fmi2Instantiate: the instance name is missing");
     }
-    if (type != fmi2CoSimulation) {
+    if (type == fmi2ModelExchange && giveway::model_info().state_count == 0) {
         return refuse_instance(functions, name,
                                "fmi2Instantiate: this FMU does not support Model Exchange");
     }
@@ -127,7 +128,10 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     giveway::Model *model = giveway::create_model();
     if (name_copy != nullptr && model != nullptr) {
         std::memcpy(name_copy, name, size);
-        Fmi2Instance *self = new (std::nothrow) Fmi2Instance(*functions, name_copy, model);
+        Fmi2Instance *self = new (std::nothrow)
+            Fmi2Instance(*functions, name_copy, model,
+                         type == fmi2ModelExchange ? giveway::Interface::model_exchange
+                                                   : giveway::Interface::co_simulation);
         if (self != nullptr) {
             return self;
         }
@@ -364,45 +368,88 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component component, const fmi2Value
     return unsupported(component, "fmi2GetRealOutputDerivatives", "output derivatives");
 }
 
+// Model Exchange.
+
 fmi2Status fmi2EnterEventMode(fmi2Component component) {
-    return unsupported(component, "fmi2EnterEventMode", "Model Exchange");
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.enter_event_mode("fmi2EnterEventMode"));
 }
 
-fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *) {
-    return unsupported(component, "fmi2NewDiscreteStates", "Model Exchange");
+fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
+    Fmi2Instance *self = unwrap(component);
+    giveway::EventUpdate update{};
+    if (self == nullptr || !self->instance.update_events("fmi2NewDiscreteStates", update)) {
+        return fmi2Error;
+    }
+    if (info != nullptr) {
+        info->newDiscreteStatesNeeded = update.again;
+        info->terminateSimulation = fmi2False;
+        info->nominalsOfContinuousStatesChanged = fmi2False;
+        info->valuesOfContinuousStatesChanged = update.states_changed;
+        info->nextEventTimeDefined = update.has_next_time;
+        info->nextEventTime = update.next_time_s;
+    }
+    return fmi2OK;
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component component) {
-    return unsupported(component, "fmi2EnterContinuousTimeMode", "Model Exchange");
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.enter_continuous_time_mode("fmi2EnterContinuousTimeMode"));
 }
 
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean, fmi2Boolean *,
-                                       fmi2Boolean *) {
-    return unsupported(component, "fmi2CompletedIntegratorStep", "Model Exchange");
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean,
+                                       fmi2Boolean *enter_event_mode,
+                                       fmi2Boolean *terminate_simulation) {
+    Fmi2Instance *self = unwrap(component);
+    bool needed = false;
+    if (self == nullptr ||
+        !self->instance.completed_step("fmi2CompletedIntegratorStep", needed)) {
+        return fmi2Error;
+    }
+    if (enter_event_mode != nullptr) {
+        *enter_event_mode = needed ? fmi2True : fmi2False;
+    }
+    if (terminate_simulation != nullptr) {
+        *terminate_simulation = fmi2False;
+    }
+    return fmi2OK;
 }
 
-fmi2Status fmi2SetTime(fmi2Component component, fmi2Real) {
-    return unsupported(component, "fmi2SetTime", "Model Exchange");
+fmi2Status fmi2SetTime(fmi2Component component, fmi2Real time) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.set_time("fmi2SetTime", time));
 }
 
-fmi2Status fmi2SetContinuousStates(fmi2Component component, const fmi2Real[], size_t) {
-    return unsupported(component, "fmi2SetContinuousStates", "Model Exchange");
+fmi2Status fmi2SetContinuousStates(fmi2Component component, const fmi2Real states[], size_t count) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.set_states("fmi2SetContinuousStates", states, count));
 }
 
-fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real[], size_t) {
-    return unsupported(component, "fmi2GetDerivatives", "Model Exchange");
+fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real derivatives[], size_t count) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.get_derivatives("fmi2GetDerivatives", derivatives, count));
 }
 
-fmi2Status fmi2GetEventIndicators(fmi2Component component, fmi2Real[], size_t) {
-    return unsupported(component, "fmi2GetEventIndicators", "Model Exchange");
+fmi2Status fmi2GetEventIndicators(fmi2Component component, fmi2Real indicators[], size_t count) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.get_indicators("fmi2GetEventIndicators", indicators, count));
 }
 
-fmi2Status fmi2GetContinuousStates(fmi2Component component, fmi2Real[], size_t) {
-    return unsupported(component, "fmi2GetContinuousStates", "Model Exchange");
+fmi2Status fmi2GetContinuousStates(fmi2Component component, fmi2Real states[], size_t count) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.get_states("fmi2GetContinuousStates", states, count));
 }
 
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real[], size_t) {
-    return unsupported(component, "fmi2GetNominalsOfContinuousStates", "Model Exchange");
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real nominals[],
+                                             size_t count) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.get_nominals("fmi2GetNominalsOfContinuousStates", nominals, count));
 }
 
 } // extern "C"

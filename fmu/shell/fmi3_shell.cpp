@@ -1,9 +1,10 @@
-// FMI 3.0 entry points, Co-Simulation.
+// FMI 3.0 entry points: Co-Simulation and, for models with equations, Model Exchange.
 #include "instance.hpp"
 
 #include <fmi3Functions.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -26,8 +27,9 @@ struct Fmi3Instance {
     }
 
     Fmi3Instance(fmi3InstanceEnvironment environment_, fmi3LogMessageCallback log_message_,
-                 giveway::Model *model)
-        : environment(environment_), log_message(log_message_), instance(model, true, log, this) {}
+                 giveway::Model *model, giveway::Interface interface)
+        : environment(environment_), log_message(log_message_),
+          instance(model, interface, true, log, this) {}
 };
 
 Instance *unwrap(fmi3Instance instance) {
@@ -49,6 +51,36 @@ fmi3Instance refuse_instance(fmi3InstanceEnvironment environment, fmi3LogMessage
     return nullptr;
 }
 
+fmi3Instance refuse_instance(fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message,
+                             const char *function, const char *what) {
+    char text[256];
+    std::snprintf(text, sizeof text, "%s: %s", function, what);
+    return refuse_instance(environment, log_message, text);
+}
+
+fmi3Instance make_instance(const char *function, fmi3String name, fmi3String token,
+                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message,
+                           giveway::Interface interface) {
+    if (name == nullptr || name[0] == '\0') {
+        return refuse_instance(environment, log_message, function, "the instance name is missing");
+    }
+    if (token == nullptr || std::strcmp(token, giveway::model_info().token) != 0) {
+        return refuse_instance(environment, log_message, function,
+                               "the instantiation token does not match; model description and binary "
+                               "are of different builds");
+    }
+    giveway::Model *model = giveway::create_model();
+    if (model != nullptr) {
+        Fmi3Instance *self =
+            new (std::nothrow) Fmi3Instance(environment, log_message, model, interface);
+        if (self != nullptr) {
+            return self;
+        }
+        delete model;
+    }
+    return refuse_instance(environment, log_message, function, "out of memory");
+}
+
 // Scalars only: every value reference stands for one value.
 bool check_count(Instance &self, const char *function, size_t references, size_t values) {
     return references == values ||
@@ -61,6 +93,18 @@ fmi3Status no_such_type(fmi3Instance instance, const char *function, size_t coun
         return fmi3Error;
     }
     return status(count == 0 || self->refuse(function, "no variable is of type %s", type));
+}
+
+fmi3Status get_count(fmi3Instance instance, const char *function, size_t value, size_t *count) {
+    Instance *self = unwrap(instance);
+    if (self == nullptr || !self->allow_exchange(function, giveway::any_state)) {
+        return fmi3Error;
+    }
+    if (count == nullptr) {
+        return status(self->refuse(function, "the result is a null pointer"));
+    }
+    *count = value;
+    return fmi3OK;
 }
 
 } // namespace
@@ -87,11 +131,15 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean, size_t count,
     return fmi3OK; // errors, the only category, are always logged
 }
 
-fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
-                                          fmi3InstanceEnvironment environment,
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String, fmi3Boolean,
+                                          fmi3Boolean, fmi3InstanceEnvironment environment,
                                           fmi3LogMessageCallback log_message) {
-    return refuse_instance(environment, log_message,
-                           "fmi3InstantiateModelExchange: this FMU does not support Model Exchange");
+    if (giveway::model_info().state_count == 0) {
+        return refuse_instance(environment, log_message,
+                               "fmi3InstantiateModelExchange: this FMU does not support Model Exchange");
+    }
+    return make_instance("fmi3InstantiateModelExchange", name, token, environment, log_message,
+                         giveway::Interface::model_exchange);
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean,
@@ -110,15 +158,6 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          fmi3InstanceEnvironment environment,
                                          fmi3LogMessageCallback log_message,
                                          fmi3IntermediateUpdateCallback) {
-    if (name == nullptr || name[0] == '\0') {
-        return refuse_instance(environment, log_message,
-                               "fmi3InstantiateCoSimulation: the instance name is missing");
-    }
-    if (token == nullptr || std::strcmp(token, giveway::model_info().token) != 0) {
-        return refuse_instance(environment, log_message,
-                               "fmi3InstantiateCoSimulation: the instantiation token does not match; "
-                               "model description and binary are of different builds");
-    }
     if (event_mode_used) {
         return refuse_instance(environment, log_message,
                                "fmi3InstantiateCoSimulation: this FMU has no event mode");
@@ -127,15 +166,8 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
         return refuse_instance(environment, log_message,
                                "fmi3InstantiateCoSimulation: this FMU has no intermediate update");
     }
-    giveway::Model *model = giveway::create_model();
-    if (model != nullptr) {
-        Fmi3Instance *self = new (std::nothrow) Fmi3Instance(environment, log_message, model);
-        if (self != nullptr) {
-            return self;
-        }
-        delete model;
-    }
-    return refuse_instance(environment, log_message, "fmi3InstantiateCoSimulation: out of memory");
+    return make_instance("fmi3InstantiateCoSimulation", name, token, environment, log_message,
+                         giveway::Interface::co_simulation);
 }
 
 void fmi3FreeInstance(fmi3Instance instance) { delete static_cast<Fmi3Instance *>(instance); }
@@ -286,21 +318,12 @@ fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
     return unsupported(instance, "fmi3ExitConfigurationMode", "a configuration mode");
 }
 
-fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
-    return unsupported(instance, "fmi3EnterEventMode", "an event mode");
-}
-
 fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
     return unsupported(instance, "fmi3EnterStepMode", "an event mode to leave");
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
     return unsupported(instance, "fmi3EvaluateDiscreteStates", "an event mode");
-}
-
-fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *, fmi3Boolean *, fmi3Boolean *,
-                                    fmi3Boolean *, fmi3Boolean *, fmi3Float64 *) {
-    return unsupported(instance, "fmi3UpdateDiscreteStates", "an event mode");
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *) {
@@ -397,45 +420,99 @@ fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference,
     return unsupported(instance, "fmi3ActivateModelPartition", "Scheduled Execution");
 }
 
+// Model Exchange.
+
+fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->enter_event_mode("fmi3EnterEventMode"));
+}
+
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *update_needed,
+                                    fmi3Boolean *terminate_simulation, fmi3Boolean *nominals_changed,
+                                    fmi3Boolean *states_changed, fmi3Boolean *next_time_defined,
+                                    fmi3Float64 *next_time) {
+    Instance *self = unwrap(instance);
+    giveway::EventUpdate update{};
+    if (self == nullptr || !self->update_events("fmi3UpdateDiscreteStates", update)) {
+        return fmi3Error;
+    }
+    const auto hand_over = [](fmi3Boolean *target, bool value) {
+        if (target != nullptr) {
+            *target = value;
+        }
+    };
+    hand_over(update_needed, update.again);
+    hand_over(terminate_simulation, false);
+    hand_over(nominals_changed, false);
+    hand_over(states_changed, update.states_changed);
+    hand_over(next_time_defined, update.has_next_time);
+    if (next_time != nullptr) {
+        *next_time = update.next_time_s;
+    }
+    return fmi3OK;
+}
+
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
-    return unsupported(instance, "fmi3EnterContinuousTimeMode", "Model Exchange");
+    Instance *self = unwrap(instance);
+    return status(self != nullptr &&
+                  self->enter_continuous_time_mode("fmi3EnterContinuousTimeMode"));
 }
 
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean, fmi3Boolean *,
-                                       fmi3Boolean *) {
-    return unsupported(instance, "fmi3CompletedIntegratorStep", "Model Exchange");
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean,
+                                       fmi3Boolean *enter_event_mode,
+                                       fmi3Boolean *terminate_simulation) {
+    Instance *self = unwrap(instance);
+    bool needed = false;
+    if (self == nullptr || !self->completed_step("fmi3CompletedIntegratorStep", needed)) {
+        return fmi3Error;
+    }
+    if (enter_event_mode != nullptr) {
+        *enter_event_mode = needed;
+    }
+    if (terminate_simulation != nullptr) {
+        *terminate_simulation = fmi3False;
+    }
+    return fmi3OK;
 }
 
-fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64) {
-    return unsupported(instance, "fmi3SetTime", "Model Exchange");
+fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->set_time("fmi3SetTime", time));
 }
 
-fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64[], size_t) {
-    return unsupported(instance, "fmi3SetContinuousStates", "Model Exchange");
+fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 values[], size_t count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->set_states("fmi3SetContinuousStates", values, count));
 }
 
-fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64[], size_t) {
-    return unsupported(instance, "fmi3GetContinuousStateDerivatives", "Model Exchange");
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 values[], size_t count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->get_derivatives("fmi3GetContinuousStateDerivatives", values, count));
 }
 
-fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64[], size_t) {
-    return unsupported(instance, "fmi3GetEventIndicators", "Model Exchange");
+fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 values[], size_t count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->get_indicators("fmi3GetEventIndicators", values, count));
 }
 
-fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64[], size_t) {
-    return unsupported(instance, "fmi3GetContinuousStates", "Model Exchange");
+fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 values[], size_t count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->get_states("fmi3GetContinuousStates", values, count));
 }
 
-fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64[], size_t) {
-    return unsupported(instance, "fmi3GetNominalsOfContinuousStates", "Model Exchange");
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 values[], size_t count) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->get_nominals("fmi3GetNominalsOfContinuousStates", values, count));
 }
 
-fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *) {
-    return unsupported(instance, "fmi3GetNumberOfEventIndicators", "Model Exchange");
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *count) {
+    return get_count(instance, "fmi3GetNumberOfEventIndicators", giveway::model_info().indicator_count,
+                     count);
 }
 
-fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *) {
-    return unsupported(instance, "fmi3GetNumberOfContinuousStates", "Model Exchange");
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *count) {
+    return get_count(instance, "fmi3GetNumberOfContinuousStates", giveway::model_info().state_count,
+                     count);
 }
 
 } // extern "C"

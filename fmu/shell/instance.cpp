@@ -8,9 +8,14 @@
 namespace giveway {
 namespace {
 
-constexpr States readable =
-    State::initialisation_mode | State::step_mode | State::terminated | State::failed;
-constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode;
+constexpr States exchange_modes = State::event_mode | State::continuous_time_mode;
+constexpr States readable = State::initialisation_mode | State::step_mode | State::terminated |
+                            State::failed | State::event_mode | State::continuous_time_mode;
+// Where equations can be evaluated: a model that failed may not have come that far.
+constexpr States evaluable =
+    State::initialisation_mode | State::terminated | State::event_mode | State::continuous_time_mode;
+constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode |
+                            State::event_mode | State::continuous_time_mode;
 
 // Communication points are sums of step sizes; how far they may be off what we expect, as a share of
 // the step (an importer's sum over a million steps is off by less than 1e-9 of a step).
@@ -28,6 +33,10 @@ const char *state_name(State state) {
         return "terminated";
     case State::failed:
         return "failed";
+    case State::event_mode:
+        return "event mode";
+    case State::continuous_time_mode:
+        return "continuous-time mode";
     }
     return "";
 }
@@ -48,8 +57,10 @@ bool in(State state, States states) { return (static_cast<States>(state) & state
 
 } // namespace
 
-Instance::Instance(Model *model, bool has_time_variable, LogFunction log, void *log_context)
-    : model_(model), has_time_variable_(has_time_variable), log_(log), log_context_(log_context) {}
+Instance::Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log,
+                   void *log_context)
+    : model_(model), equations_(interface == Interface::model_exchange ? model->equations() : nullptr),
+      has_time_variable_(has_time_variable), log_(log), log_context_(log_context) {}
 
 Instance::~Instance() { delete model_; }
 
@@ -90,7 +101,11 @@ bool Instance::ensure_initialised(const char *function) {
     if (model_->initialise(time_, message) != Status::ok) {
         return fail(function, message);
     }
+    if (equations_ != nullptr) {
+        equations_->set_time(time_);
+    }
     initialised_ = true;
+    outputs_fresh_ = true;
     return true;
 }
 
@@ -116,7 +131,8 @@ bool Instance::exit_initialisation(const char *function) {
     if (!allow(function, only(State::initialisation_mode)) || !ensure_initialised(function)) {
         return false;
     }
-    state_ = State::step_mode;
+    update_pending_ = false;
+    state_ = equations_ != nullptr ? State::event_mode : State::step_mode;
     return true;
 }
 
@@ -145,11 +161,175 @@ bool Instance::step(const char *function, double time, double step_size) {
 }
 
 bool Instance::terminate(const char *function) {
-    if (!allow(function, only(State::step_mode))) {
+    if (!allow(function, only(State::step_mode) | exchange_modes)) {
         return false;
     }
+    refresh(Causality::output);
     state_ = State::terminated;
     return true;
+}
+
+bool Instance::allow_exchange(const char *function, States states) {
+    if (model_->equations() == nullptr) {
+        return unsupported(function, "Model Exchange");
+    }
+    if (equations_ == nullptr) {
+        return refuse(function, "this instance was made for Co-Simulation, not for Model Exchange");
+    }
+    return allow(function, states);
+}
+
+bool Instance::enter_event_mode(const char *function) {
+    if (!allow_exchange(function, exchange_modes)) {
+        return false;
+    }
+    state_ = State::event_mode;
+    return true;
+}
+
+bool Instance::update_events(const char *function, EventUpdate &update) {
+    if (!allow_exchange(function, only(State::event_mode))) {
+        return false;
+    }
+    Message message{};
+    update = EventUpdate{};
+    if (equations_->update_events(update, message) != Status::ok) {
+        return fail(function, message);
+    }
+    update_pending_ = update.again;
+    outputs_fresh_ = false;
+    return true;
+}
+
+bool Instance::enter_continuous_time_mode(const char *function) {
+    if (!allow_exchange(function, only(State::event_mode))) {
+        return false;
+    }
+    if (update_pending_) {
+        return refuse(function, "the last update of discrete states asked for another one");
+    }
+    state_ = State::continuous_time_mode;
+    return true;
+}
+
+bool Instance::completed_step(const char *function, bool &event_needed) {
+    event_needed = false;
+    if (!allow_exchange(function, only(State::continuous_time_mode))) {
+        return false;
+    }
+    unsigned char *data = static_cast<unsigned char *>(model_->variables());
+    const ModelInfo &info = model_info();
+    double *indicators = reinterpret_cast<double *>(data + info.indicators_offset);
+    equations_->indicators(indicators);
+    for (std::size_t i = 0; i < info.indicator_count; ++i) {
+        event_needed = event_needed || indicators[i] <= 0.0;
+    }
+    return true;
+}
+
+bool Instance::set_time(const char *function, double time) {
+    if (!allow_exchange(function, exchange_modes)) {
+        return false;
+    }
+    if (!std::isfinite(time)) {
+        return refuse(function, "time is %g, but must be finite", time);
+    }
+    time_ = time;
+    equations_->set_time(time);
+    outputs_fresh_ = false;
+    return true;
+}
+
+bool Instance::check_array(const char *function, const void *values, std::size_t count,
+                           std::size_t expected, const char *what) {
+    if (count != expected) {
+        return refuse(function, "%zu values, but this FMU has %zu %s", count, expected, what);
+    }
+    return count == 0 || values != nullptr || refuse(function, "values are a null pointer");
+}
+
+const char *Instance::state_variable_name(std::size_t index) const {
+    const ModelInfo &info = model_info();
+    for (std::size_t i = 0; i < info.variable_count; ++i) {
+        if (info.variables[i].causality == Causality::local &&
+            info.variables[i].offset == info.states_offset + index * sizeof(double)) {
+            return info.variables[i].name;
+        }
+    }
+    return "";
+}
+
+bool Instance::set_states(const char *function, const double *values, std::size_t count) {
+    if (!allow_exchange(function, only(State::continuous_time_mode)) ||
+        !check_array(function, values, count, model_info().state_count, "continuous states")) {
+        return false;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!std::isfinite(values[i])) {
+            return refuse(function, "state %s is %g, but must be finite", state_variable_name(i),
+                          values[i]);
+        }
+    }
+    std::memcpy(equations_->states(), values, count * sizeof(double));
+    outputs_fresh_ = false;
+    return true;
+}
+
+bool Instance::readable_exchange(const char *function) {
+    return allow_exchange(function, evaluable) &&
+           (state_ != State::initialisation_mode || ensure_initialised(function));
+}
+
+bool Instance::get_states(const char *function, double *values, std::size_t count) {
+    if (!readable_exchange(function) ||
+        !check_array(function, values, count, model_info().state_count, "continuous states")) {
+        return false;
+    }
+    std::memcpy(values, equations_->states(), count * sizeof(double));
+    return true;
+}
+
+bool Instance::get_derivatives(const char *function, double *values, std::size_t count) {
+    if (!readable_exchange(function) ||
+        !check_array(function, values, count, model_info().state_count, "continuous states")) {
+        return false;
+    }
+    equations_->derivatives(values);
+    return true;
+}
+
+bool Instance::get_indicators(const char *function, double *values, std::size_t count) {
+    if (!readable_exchange(function) ||
+        !check_array(function, values, count, model_info().indicator_count, "event indicators")) {
+        return false;
+    }
+    equations_->indicators(values);
+    return true;
+}
+
+bool Instance::get_nominals(const char *function, double *values, std::size_t count) {
+    if (!allow_exchange(function, evaluable) ||
+        !check_array(function, values, count, model_info().state_count, "continuous states")) {
+        return false;
+    }
+    std::memcpy(values, model_info().state_nominals, count * sizeof(double));
+    return true;
+}
+
+void Instance::refresh(Causality causality) {
+    Equations *equations = model_->equations();
+    if (equations_ != nullptr && causality == Causality::output && !outputs_fresh_) {
+        equations_->write_outputs();
+        outputs_fresh_ = true;
+    }
+    if (equations != nullptr && causality == Causality::local) {
+        unsigned char *data = static_cast<unsigned char *>(model_->variables());
+        const ModelInfo &info = model_info();
+        std::memcpy(data + info.states_offset, equations->states(),
+                    info.state_count * sizeof(double));
+        equations->derivatives(reinterpret_cast<double *>(data + info.derivatives_offset));
+        equations->indicators(reinterpret_cast<double *>(data + info.indicators_offset));
+    }
 }
 
 bool Instance::reset(const char *function) {
@@ -190,10 +370,12 @@ const VariableInfo *Instance::find(const char *function, std::uint32_t reference
 }
 
 bool Instance::check_settable(const char *function, const VariableInfo &variable) {
-    if (variable.causality == Causality::output) {
-        return refuse(function, "variable %s is an output and cannot be set", variable.name);
+    if (variable.causality == Causality::output || variable.causality == Causality::local) {
+        return refuse(function, "variable %s is %s and cannot be set", variable.name,
+                      variable.causality == Causality::output ? "an output" : "local");
     }
-    if (variable.causality == Causality::parameter && state_ == State::step_mode) {
+    if (variable.causality == Causality::parameter &&
+        !in(state_, State::instantiated | State::initialisation_mode)) {
         return refuse(function, "variable %s is a fixed parameter and cannot be set in state '%s'",
                       variable.name, state_name(state_));
     }
@@ -222,6 +404,8 @@ bool Instance::get(const char *function, VariableType type, const std::uint32_t 
         return refuse(function, "value references or values are a null pointer");
     }
     const unsigned char *data = static_cast<const unsigned char *>(model_->variables());
+    bool locals_fresh = false;
+    bool outputs_fresh = false;
     for (std::size_t i = 0; i < count; ++i) {
         if constexpr (sizeof(T) == sizeof(double)) {
             if (has_time_variable_ && references[i] == 0) {
@@ -233,9 +417,16 @@ bool Instance::get(const char *function, VariableType type, const std::uint32_t 
         if (variable == nullptr) {
             return false;
         }
-        if (variable->causality == Causality::output && state_ == State::initialisation_mode &&
-            !ensure_initialised(function)) {
-            return false;
+        if (variable->causality == Causality::output || variable->causality == Causality::local) {
+            if (state_ == State::initialisation_mode && !ensure_initialised(function)) {
+                return false;
+            }
+            // Once a call: locals are evaluated all together.
+            bool &fresh = variable->causality == Causality::local ? locals_fresh : outputs_fresh;
+            if (!fresh && state_ != State::failed) {
+                refresh(variable->causality);
+            }
+            fresh = true;
         }
         std::memcpy(&values[i], data + variable->offset, sizeof(T));
     }
@@ -264,6 +455,7 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
         std::memcpy(data + variable->offset, &values[i], sizeof(T));
     }
     initialised_ = false;
+    outputs_fresh_ = false;
     return true;
 }
 

@@ -18,6 +18,8 @@ enum class State : unsigned {
     step_mode = 1u << 2,
     terminated = 1u << 3,
     failed = 1u << 4, // the model reported an error: only reading, reset and freeing are left
+    event_mode = 1u << 5,           // Model Exchange
+    continuous_time_mode = 1u << 6, // Model Exchange
 };
 
 // A set of states in which a call is legal.
@@ -26,15 +28,19 @@ constexpr States operator|(State a, State b) {
     return static_cast<States>(a) | static_cast<States>(b);
 }
 constexpr States operator|(States a, State b) { return a | static_cast<States>(b); }
+constexpr States any_state = ~0u;
 constexpr States only(State state) { return static_cast<States>(state); }
 
 // Where messages go; `context` is the entry points' own object.
 using LogFunction = void (*)(void *context, const char *text);
 
+enum class Interface : std::uint8_t { co_simulation, model_exchange };
+
 class Instance {
 public:
     // `has_time_variable`: reference 0 can be read as the current time (FMI 3).
-    Instance(Model *model, bool has_time_variable, LogFunction log, void *log_context);
+    Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log,
+             void *log_context);
     ~Instance();
     Instance(const Instance &) = delete;
     Instance &operator=(const Instance &) = delete;
@@ -54,6 +60,20 @@ public:
     bool step(const char *function, double time, double step_size);
     bool terminate(const char *function);
     bool reset(const char *function);
+
+    // Model Exchange. Counts are those of the arrays that the importer hands over.
+    bool allow_exchange(const char *function, States states);
+    bool enter_event_mode(const char *function);
+    bool update_events(const char *function, EventUpdate &update);
+    bool enter_continuous_time_mode(const char *function);
+    // `event_needed`: the step went past an event that no root finder stopped at.
+    bool completed_step(const char *function, bool &event_needed);
+    bool set_time(const char *function, double time);
+    bool set_states(const char *function, const double *values, std::size_t count);
+    bool get_states(const char *function, double *values, std::size_t count);
+    bool get_derivatives(const char *function, double *values, std::size_t count);
+    bool get_indicators(const char *function, double *values, std::size_t count);
+    bool get_nominals(const char *function, double *values, std::size_t count);
 
     bool get_real(const char *function, const std::uint32_t *references, std::size_t count,
                   double *values);
@@ -82,10 +102,17 @@ private:
     const VariableInfo *find(const char *function, std::uint32_t reference, VariableType type);
     bool check_settable(const char *function, const VariableInfo &variable);
     bool check_value(const char *function, const VariableInfo &variable, double value);
+    bool check_array(const char *function, const void *values, std::size_t count,
+                     std::size_t expected, const char *what);
+    bool readable_exchange(const char *function);
     bool ensure_initialised(const char *function);
+    // Outputs, states, derivatives and indicators in the Variables struct belong to what was set.
+    void refresh(Causality causality);
+    const char *state_variable_name(std::size_t index) const;
     bool fail(const char *function, Message &message);
 
     Model *model_;
+    Equations *equations_; // of a Model Exchange instance, else nullptr
     bool has_time_variable_;
     LogFunction log_;
     void *log_context_;
@@ -93,6 +120,8 @@ private:
     double time_ = 0.0;
     double stop_time_ = 0.0;
     bool initialised_ = false; // the outputs in the initialisation mode belong to the values set
+    bool outputs_fresh_ = true; // Model Exchange: the outputs belong to time, states and inputs
+    bool update_pending_ = false; // the last event update asked for another
 };
 
 } // namespace giveway

@@ -15,8 +15,21 @@ def _declaration(group: Group) -> str:
     return f"    {_CPP_TYPES[group.type]} {group.identifier}{size}; // {group.description}{unit}"
 
 
+# What an importer that integrates reads, filled by the shell when it is asked for.
+_LOCAL_MEMBERS = {"state": "states", "derivative": "derivatives", "indicator": "indicators"}
+
+
+def _members(table: Table) -> list[str]:
+    lines = [_declaration(group) for group in table.groups if group.role is None]
+    for role, member in _LOCAL_MEMBERS.items():
+        count = len(table.with_role(role))
+        if count:
+            lines.append(f"    double {member}[{count}];")
+    return lines
+
+
 def header(table: Table) -> str:
-    members = "\n".join(_declaration(group) for group in table.groups)
+    members = "\n".join(_members(table))
     return f"""// Generated from the variable table of {table.name}; do not edit.
 #pragma once
 
@@ -61,9 +74,11 @@ def _bound(value: Value | None, infinity: str) -> str:
 
 def source(table: Table) -> str:
     starts: list[str] = []
-    rows: list[str] = []
+    rows: dict[int, str] = {}  # by reference
     for group in table.groups:
         for index, variable in enumerate(group.variables):
+            if group.role is not None:
+                continue
             member = group.identifier if group.count is None else f"{group.identifier}[{index}]"
             # -0.0 == 0 but is not what Variables{} holds
             if variable.start is not None and (variable.start != 0 or str(variable.start).startswith("-")):
@@ -71,13 +86,28 @@ def source(table: Table) -> str:
             offset = f"offsetof(Variables, {group.identifier})"
             if index:
                 offset += f" + {index} * sizeof({_CPP_TYPES[group.type]})"
-            rows.append(
+            rows[variable.reference] = (
                 f'    {{{variable.reference}u, "{variable.name}", VariableType::{group.type}, '
                 f"Causality::{group.causality}, {_bound(group.minimum, '-infinity')}, "
                 f"{_bound(group.maximum, 'infinity')}, {offset}, {str(group.allow_nonfinite).lower()}}},"
             )
+    for role, member in _LOCAL_MEMBERS.items():
+        for index, (_, variable) in enumerate(table.with_role(role)):
+            offset = f"offsetof(Variables, {member}) + {index} * sizeof(double)"
+            rows[variable.reference] = (
+                f'    {{{variable.reference}u, "{variable.name}", VariableType::real, Causality::local, '
+                f"-infinity, infinity, {offset}, false}},"
+            )
     start_lines = "\n".join(starts)
-    row_lines = "\n".join(rows)
+    row_lines = "\n".join(row for _, row in sorted(rows.items()))
+    states = table.with_role("state")
+    nominals = ", ".join(repr(group.nominal) for group, _ in states)
+    nominal_table = f"constexpr double state_nominals[] = {{{nominals}}};\n\n" if states else ""
+    layout = ", ".join(
+        f"offsetof(Variables, {member})" if table.with_role(role) else "0" for role, member in _LOCAL_MEMBERS.items()
+    )
+    nominal_member = "state_nominals" if states else "nullptr"
+    equations = f"{nominal_member}, {len(states)}, {len(table.with_role('indicator'))}, {layout}"
     return f"""// Generated from the variable table of {table.name}; do not edit.
 #include "{table.name}_variables.hpp"
 
@@ -97,7 +127,7 @@ constexpr VariableInfo variable_infos[] = {{
 {row_lines}
 }};
 
-constexpr ModelInfo info = {{"{table.name}", "{table.token}", variable_infos, {len(rows)}}};
+{nominal_table}constexpr ModelInfo info = {{"{table.name}", "{table.token}", variable_infos, {len(rows)}, {equations}}};
 
 }} // namespace
 

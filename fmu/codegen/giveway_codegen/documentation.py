@@ -31,7 +31,8 @@ def _row(group: Group, variable: Variable) -> str:
 
 
 def _feedthrough(table: Table) -> str:
-    direct = [group.name for group in table.groups if group.dependencies]
+    inputs = {group.name for group in table.groups if group.causality == "input"}
+    direct = [g.name for g in table.groups if g.causality == "output" and inputs & set(g.dependencies or ())]
     if not direct:
         return "No output follows an input within the same instant."
     names = ", ".join(f"<code>{escape(name)}</code>" for name in direct)
@@ -41,21 +42,23 @@ def _feedthrough(table: Table) -> str:
 def page(table: Table, version: str) -> str:
     titles = ("Name", "Type", "Unit", "Start", "Minimum", "Maximum", "Meaning", "Reference")
     sections = []
-    for causality in ("input", "output", "parameter"):
+    for causality in ("input", "output", "parameter", "local"):
         rows = [_row(group, variable) for group, variable in table.scalars if group.causality == causality]
         if rows:
             head = "".join(f"<th>{title}</th>" for title in titles)
             body = "\n".join(rows)
-            sections.append(f"<h2>{causality.capitalize()}s</h2>\n<table>\n<tr>{head}</tr>\n{body}\n</table>")
+            title = "States, derivatives, event indicators" if causality == "local" else f"{causality.capitalize()}s"
+            sections.append(f"<h2>{title}</h2>\n<table>\n<tr>{head}</tr>\n{body}\n</table>")
+    exchange = " and Model Exchange" if table.has_equations else ""
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head><meta charset="utf-8"><title>giveway {table.name}</title><style>{_STYLE}</style></head>
 <body>
 <h1>giveway {table.name} {escape(version)}</h1>
 <p>{escape(table.description)}.</p>
-<p>Co-Simulation; any communication step size, made for {table.step_size} s. Inputs are held constant over a step and
-outputs are valid at its end. {_feedthrough(table)} Ranges are inclusive; a value outside
-its range, or not finite, is refused with a message. Parameters can be set until initialisation ends.</p>
+<p>Co-Simulation{exchange}; any communication step size, made for {table.step_size} s. Inputs are held constant over a
+step and outputs are valid at its end. {_feedthrough(table)} Ranges are inclusive; a value outside its range, or not
+finite, is refused with a message. Parameters can be set until initialisation ends.</p>
 {chr(10).join(sections)}
 </body>
 </html>

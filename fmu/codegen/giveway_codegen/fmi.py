@@ -1,4 +1,4 @@
-"""modelDescription.xml for FMI 2.0 and 3.0, Co-Simulation."""
+"""modelDescription.xml for FMI 2.0 and 3.0: Co-Simulation and, for models with states, Model Exchange."""
 
 from __future__ import annotations
 
@@ -55,6 +55,27 @@ def _default_experiment(table: Table) -> str:
     return f"  <DefaultExperiment{_attributes(dict(pairs))}/>"
 
 
+def _description(table: Table, group: Group, variable: Variable) -> dict[str, str | None]:
+    """Attributes of a variable that are the same in both versions."""
+    return {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "causality": group.causality,
+        "variability": _variability(group),
+        "initial": "calculated" if group.role in ("state", "derivative") else None,
+        "description": group.description,
+    }
+
+
+def _initial(table: Table, group: Group) -> list[Variable] | None:
+    """What ``group`` depends on at the start: inputs that act at once and parameters. None: it is no unknown."""
+    if group.causality != "output" and group.role not in ("state", "derivative"):
+        return None
+    at_once = group.dependencies or ()
+    inputs = [v for other, v in table.scalars if other.causality == "input" and other.name in at_once]
+    return [*inputs, *(v for other, v in table.scalars if other.causality == "parameter")]
+
+
 def _variability(group: Group) -> str:
     if group.causality == "parameter":
         return "fixed"
@@ -79,42 +100,51 @@ def fmi3_model_description(table: Table, version: str) -> str:
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     head = {"fmiVersion": "3.0", **_header(table, version), "instantiationToken": table.token}
     lines.append(f"<fmiModelDescription{_attributes(head)}>")
-    interface = {
+    common = {
         "modelIdentifier": f"giveway_{table.name}",
         "needsExecutionTool": "false",
         "canBeInstantiatedOnlyOncePerProcess": "false",
         "canGetAndSetFMUState": "false",
+    }
+    if table.has_equations:
+        exchange = {**common, "needsCompletedIntegratorStep": "true", "providesEvaluateDiscreteStates": "false"}
+        lines.append(f"  <ModelExchange{_attributes(dict(exchange))}/>")
+    simulation = {
+        **common,
         "canHandleVariableCommunicationStepSize": "true",
         "providesIntermediateUpdate": "false",
         "hasEventMode": "false",
     }
-    lines.append(f"  <CoSimulation{_attributes(dict(interface))}/>")
+    lines.append(f"  <CoSimulation{_attributes(dict(simulation))}/>")
     lines += [*_unit_definitions(table), *_log_categories(), _default_experiment(table)]
     lines.append("  <ModelVariables>")
     lines.append(
         f'    <Float64 name="time" valueReference="{TIME_REFERENCE}" causality="independent" '
         'variability="continuous" unit="s" description="Simulated time"/>'
     )
+    states = [variable for _, variable in table.with_role("state")]
+    derivatives = table.with_role("derivative")
+    of = dict(zip((v.reference for _, v in derivatives), (v.reference for v in states), strict=True))
     for group, variable in table.scalars:
+        derivative = of.get(variable.reference)
         pairs = {
-            "name": variable.name,
-            "valueReference": str(variable.reference),
-            "causality": group.causality,
-            "variability": _variability(group),
-            "description": group.description,
+            **_description(table, group, variable),
             **_value_attributes(group, variable),
+            "derivative": None if derivative is None else str(derivative),
         }
         lines.append(f"    <{types[group.type]}{_attributes(pairs)}/>")
     lines += ["  </ModelVariables>", "  <ModelStructure>"]
-    parameters = [v for group, v in table.scalars if group.causality == "parameter"]
-    initial = []
+    outputs = [(group, v) for group, v in table.scalars if group.causality == "output"]
+    for tag, unknowns in (("Output", outputs), ("ContinuousStateDerivative", derivatives)):
+        for group, variable in unknowns:
+            known = _references(table.followed(group))
+            lines.append(f'    <{tag} valueReference="{variable.reference}" dependencies="{known}"/>')
     for group, variable in table.scalars:
-        if group.causality == "output":
-            inputs = table.members(group.dependencies)
-            unknown = f'valueReference="{variable.reference}" dependencies'
-            lines.append(f'    <Output {unknown}="{_references(inputs)}"/>')
-            initial.append(f'    <InitialUnknown {unknown}="{_references([*inputs, *parameters])}"/>')
-    lines += initial
+        start = _initial(table, group)
+        if start is not None:
+            known = _references(start)
+            lines.append(f'    <InitialUnknown valueReference="{variable.reference}" dependencies="{known}"/>')
+    lines += [f'    <EventIndicator valueReference="{v.reference}"/>' for _, v in table.with_role("indicator")]
     lines += ["  </ModelStructure>", "</fmiModelDescription>"]
     return "\n".join(lines) + "\n"
 
@@ -124,20 +154,28 @@ def fmi2_model_description(table: Table, version: str) -> str:
     types = {"real": "Real", "integer": "Integer", "boolean": "Boolean"}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     head = {"fmiVersion": "2.0", **_header(table, version), "guid": table.token}
+    if table.has_equations:
+        head["numberOfEventIndicators"] = str(len(table.with_role("indicator")))
     lines.append(f"<fmiModelDescription{_attributes(head)}>")
-    interface = {
-        "modelIdentifier": f"giveway_{table.name}",
-        "needsExecutionTool": "false",
-        "canHandleVariableCommunicationStepSize": "true",
-        "canInterpolateInputs": "false",
-        "maxOutputDerivativeOrder": "0",
-        "canRunAsynchronuously": "false",  # the standard's spelling
+    identifier = {"modelIdentifier": f"giveway_{table.name}", "needsExecutionTool": "false"}
+    common = {
         "canBeInstantiatedOnlyOncePerProcess": "false",
         "canNotUseMemoryManagementFunctions": "true",
         "canGetAndSetFMUstate": "false",
         "canSerializeFMUstate": "false",
     }
-    lines.append(f"  <CoSimulation{_attributes(dict(interface))}/>")
+    if table.has_equations:
+        exchange = {**identifier, "completedIntegratorStepNotNeeded": "false", **common}
+        lines.append(f"  <ModelExchange{_attributes(dict(exchange))}/>")
+    simulation = {
+        **identifier,
+        "canHandleVariableCommunicationStepSize": "true",
+        "canInterpolateInputs": "false",
+        "maxOutputDerivativeOrder": "0",
+        "canRunAsynchronuously": "false",  # the standard's spelling
+        **common,
+    }
+    lines.append(f"  <CoSimulation{_attributes(dict(simulation))}/>")
     lines += [*_unit_definitions(table), *_log_categories(), _default_experiment(table)]
     lines.append("  <ModelVariables>")
     indices = {variable.name: index for index, (_, variable) in enumerate(table.scalars, start=1)}
@@ -145,28 +183,29 @@ def fmi2_model_description(table: Table, version: str) -> str:
     def listed(variables: list[Variable]) -> str:
         return " ".join(str(indices[variable.name]) for variable in variables)
 
+    states = [variable for _, variable in table.with_role("state")]
+    derivatives = table.with_role("derivative")
+    of = dict(zip((v.name for _, v in derivatives), (indices[v.name] for v in states), strict=True))
     for group, variable in table.scalars:
-        pairs = {
-            "name": variable.name,
-            "valueReference": str(variable.reference),
-            "causality": group.causality,
-            "variability": _variability(group),
-            "description": group.description,
-        }
-        value = _attributes(_value_attributes(group, variable))
-        lines.append(f"    <ScalarVariable{_attributes(dict(pairs))}><{types[group.type]}{value}/></ScalarVariable>")
+        derivative = of.get(variable.name)
+        pairs = {**_value_attributes(group, variable), "derivative": None if derivative is None else str(derivative)}
+        value = f"<{types[group.type]}{_attributes(pairs)}/>"
+        attributes = _attributes(_description(table, group, variable))
+        lines.append(f"    <ScalarVariable{attributes}>{value}</ScalarVariable>")
     lines += ["  </ModelVariables>", "  <ModelStructure>"]
-    parameters = [v for group, v in table.scalars if group.causality == "parameter"]
-    outputs, initial = [], []
-    for group, variable in table.scalars:
-        if group.causality == "output":
-            inputs = table.members(group.dependencies)
-            unknown = f'<Unknown index="{indices[variable.name]}" dependencies'
-            # dependencies="" says that there are none; leaving it out would mean: all inputs.
-            outputs.append(f'      {unknown}="{listed(inputs)}"/>')
-            initial.append(f'      {unknown}="{listed([*inputs, *parameters])}"/>')
-    if outputs:
-        lines += ["    <Outputs>", *outputs, "    </Outputs>"]
-        lines += ["    <InitialUnknowns>", *initial, "    </InitialUnknowns>"]
+    outputs = [(group, v) for group, v in table.scalars if group.causality == "output"]
+    initial = [(group, v) for group, v in table.scalars if _initial(table, group) is not None]
+    sections = {
+        # dependencies="" says that there are none; leaving it out would mean: all.
+        "Outputs": [(v, table.followed(group)) for group, v in outputs],
+        "Derivatives": [(v, table.followed(group)) for group, v in derivatives],
+        "InitialUnknowns": [(v, _initial(table, group) or []) for group, v in initial],
+    }
+    for section, unknowns in sections.items():
+        if unknowns:
+            lines.append(f"    <{section}>")
+            for variable, known in unknowns:
+                lines.append(f'      <Unknown index="{indices[variable.name]}" dependencies="{listed(known)}"/>')
+            lines.append(f"    </{section}>")
     lines += ["  </ModelStructure>", "</fmiModelDescription>"]
     return "\n".join(lines) + "\n"

@@ -7,7 +7,7 @@ import math
 import re
 import tomllib
 import uuid
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,10 @@ INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
 Value = float | int | bool
 
 _MODEL_KEYS = {"name", "description", "step_size_s"}
+_STATE_KEYS = {"reference", "name", "count", "unit", "nominal", "dependencies", "description"}
+_INDICATOR_KEYS = {"reference", "name", "count", "description"}
+# A state and its derivative: der(x) has the reference of x plus this.
+DERIVATIVE_OFFSET = 1000
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
     "allow_nonfinite", "dependencies", "description",
@@ -54,9 +58,11 @@ class Group:
     maximum: Value | None
     nominal: float | None
     allow_nonfinite: bool
-    dependencies: tuple[str, ...]  # of an output: the groups of inputs that it follows within the same instant
+    # What an output follows within the same instant, by group: inputs and, in Model Exchange, states. None: all states.
+    dependencies: tuple[str, ...] | None
     description: str
     variables: tuple[Variable, ...]
+    role: str | None = None  # of a local variable: "state", "derivative" or "indicator"
 
 
 @dataclass(frozen=True)
@@ -75,6 +81,21 @@ class Table:
     def members(self, names: tuple[str, ...]) -> list[Variable]:
         """The scalars of the groups called ``names``, in the order of the table."""
         return [variable for group, variable in self.scalars if group.name in names]
+
+    def with_role(self, role: str) -> list[tuple[Group, Variable]]:
+        """States, their derivatives, or event indicators, in the order in which an importer gets them."""
+        return [(group, variable) for group, variable in self.scalars if group.role == role]
+
+    @property
+    def has_equations(self) -> bool:
+        """States, so Model Exchange beside Co-Simulation."""
+        return any(group.role == "state" for group in self.groups)
+
+    def followed(self, group: Group) -> list[Variable]:
+        """What ``group``, an output or a derivative, depends on within the same instant: inputs and states."""
+        if group.dependencies is None:
+            return [variable for _, variable in self.with_role("state")]
+        return self.members(group.dependencies)
 
     @property
     def units(self) -> dict[str, dict[str, int]]:
@@ -193,9 +214,9 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     if not isinstance(allow_nonfinite, bool) or (allow_nonfinite and causality != "input"):
         raise entry.fail("allow_nonfinite", f"{allow_nonfinite!r}, but must be true or false, and true only for inputs")
 
-    dependencies = raw.get("dependencies", [])
-    if not isinstance(dependencies, list) or (dependencies and causality != "output"):
-        raise entry.fail("dependencies", f"{dependencies!r}, but must be a list of inputs, and only for outputs")
+    if "dependencies" in raw and causality != "output":
+        raise entry.fail("dependencies", "only an output has them")
+    dependencies = _dependencies(entry) if "dependencies" in raw else None
 
     starts = _starts(entry, kind, unit, causality, count, robot, robot_file)
     for start, _ in starts:
@@ -209,8 +230,62 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     )
     return Group(
         name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
-        tuple(dependencies), " ".join(description.split()), variables,
+        dependencies, " ".join(description.split()), variables,
     )  # fmt: skip
+
+
+def _dependencies(entry: _Entry) -> tuple[str, ...]:
+    names = entry.raw.get("dependencies")
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise entry.fail("dependencies", f"{names!r}, but must be a list of inputs and states")
+    return tuple(names)
+
+
+def _local(entry: _Entry, role: str, keys: set[str], offset: int, form: str, unit: str) -> Group:
+    """A group of states, derivatives or indicators: reals that the importer reads."""
+    raw = entry.raw
+    name = raw.get("name")
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise entry.fail("name", f"{name!r}, but must be words of a-z, 0-9 and _ joined by dots")
+    for key in raw:
+        if key not in keys:
+            raise entry.fail(key, f"unknown key; known are {', '.join(sorted(keys))}")
+    count = entry.whole("count", 1, 1024) if "count" in raw else None
+    reference = entry.whole("reference", TIME_REFERENCE + 1, 2**31 - 1 - (count or 1) - offset) + offset
+    description = raw.get("description")
+    if not isinstance(description, str) or not description.strip():
+        raise entry.fail("description", "missing")
+    variables = tuple(
+        Variable(reference + i, form.format(name if count is None else f"{name}[{i}]"), None, None)
+        for i in range(count or 1)
+    )
+    return Group(
+        form.format(name), "", count, "local", "real", unit, None, None, None, False, None,
+        " ".join(description.split()), variables, role,
+    )  # fmt: skip
+
+
+def _parse_state(entry: _Entry) -> list[Group]:
+    """A state and its derivative."""
+    unit = entry.raw.get("unit")
+    if not isinstance(unit, str):
+        raise entry.fail("unit", 'missing; dimensionless variables have unit = "1"')
+    for name in (unit, f"{unit}/s"):
+        try:
+            base_units(name)
+        except ValueError as error:
+            raise entry.fail("unit", f"{unit!r}: {error}") from error
+    nominal = float(entry.value("nominal", "real", entry.raw.get("nominal")))
+    if nominal <= 0:
+        raise entry.fail("nominal", f"{nominal} is not positive")
+    state = _local(entry, "state", _STATE_KEYS, 0, "{}", unit)
+    rate = _local(entry, "derivative", _STATE_KEYS, DERIVATIVE_OFFSET, "der({})", "1/s" if unit == "1" else f"{unit}/s")
+    rate = replace(rate, dependencies=_dependencies(entry), description=f"Derivative: {state.description}")
+    return [replace(state, nominal=nominal), rate]
+
+
+def _parse_indicator(entry: _Entry) -> Group:
+    return _local(entry, "indicator", _INDICATOR_KEYS, 0, "{}", "1")
 
 
 def _starts(
@@ -285,25 +360,34 @@ def read_table(table_file: Path, robot_file: Path) -> Table:
     groups: list[Group] = []
     references: dict[int, str] = {}
     identifiers: dict[str, str] = {}
+    parsed: list[tuple[_Entry, Group]] = []
     for position, raw in enumerate(document.get("variable", []), start=1):
         entry = _Entry(table_file, position, raw)
-        group = _parse_entry(entry, robot, robot_file)
+        parsed.append((entry, _parse_entry(entry, robot, robot_file)))
+    for position, raw in enumerate(document.get("state", []), start=1):
+        entry = _Entry(table_file, position, raw)
+        parsed += [(entry, group) for group in _parse_state(entry)]
+    for position, raw in enumerate(document.get("indicator", []), start=1):
+        entry = _Entry(table_file, position, raw)
+        parsed.append((entry, _parse_indicator(entry)))
+    for entry, group in parsed:
         for variable in group.variables:
             if variable.reference in references:
                 taken = references[variable.reference]
                 raise entry.fail("reference", f"{variable.reference} is taken by {taken}")
             references[variable.reference] = variable.name
-        if group.identifier in identifiers:
-            raise entry.fail("name", f"taken or too like {identifiers[group.identifier]}")
-        identifiers[group.identifier] = group.name
+        identifier = group.identifier or group.name  # locals have no member of their own
+        if identifier in identifiers:
+            raise entry.fail("name", f"taken or too like {identifiers[identifier]}")
+        identifiers[identifier] = group.name
         groups.append(group)
     if not groups:
         raise TableError(f"{table_file}: no [[variable]]")
-    inputs = {group.name for group in groups if group.causality == "input"}
+    known = {group.name for group in groups if group.causality == "input" or group.role == "state"}
     for group in groups:
-        for dependency in group.dependencies:
-            if dependency not in inputs:
+        for dependency in group.dependencies or ():
+            if dependency not in known:
                 label = f"{table_file}: variable {group.name}"
-                raise TableError(f"{label}: dependencies: there is no input {dependency!r}")
+                raise TableError(f"{label}: dependencies: there is no input or state {dependency!r}")
     groups.sort(key=lambda group: group.variables[0].reference)
     return Table(name, " ".join(description.split()), step_size, tuple(groups))

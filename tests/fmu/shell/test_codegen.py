@@ -110,14 +110,14 @@ WRONG = {
     "unknown type": (variable(type='"string"'), "type: 'string', but must be one of"),
     "no description": (variable(description=None), "description: missing"),
     "non-finite parameter": (variable(allow_nonfinite="true"), "allow_nonfinite: True, but"),
-    "dependencies of an input": (variable(dependencies='["first"]'), "dependencies: ['first'], but must be a list"),
+    "dependencies of an input": (variable(dependencies='["first"]'), "dependencies: only an output has them"),
     "dependencies as text": (
         variable(causality='"output"', start=None, dependencies='"first"'),
-        "dependencies: 'first', but must be a list of inputs",
+        "dependencies: 'first', but must be a list of inputs and states",
     ),
     "unknown dependency": (
         variable(causality='"output"', start=None, dependencies='["third"]'),
-        "dependencies: there is no input 'third'",
+        "dependencies: there is no input or state 'third'",
     ),
     "nominal": (variable(nominal="0.0"), "nominal: 0.0 is not positive"),
 }
@@ -164,6 +164,79 @@ def test_the_token_follows_every_value(tmp_path: Path) -> None:
         description = (tmp_path / "out" / "fmi3" / "modelDescription.xml").read_text()
         tokens.add(description.split('instantiationToken="')[1].split('"')[0])
     assert len(tokens) == 4
+
+
+STATE = """
+[[state]]
+reference = 20
+name = "state.angle"
+unit = "rad"
+nominal = 0.5
+dependencies = ["first"]
+description = "An angle"
+[[indicator]]
+reference = 4000
+name = "indicator.stop"
+count = 2
+description = "Way to the stops"
+"""
+
+
+def test_states_make_a_table_one_for_model_exchange(tmp_path: Path) -> None:
+    result = generate(tmp_path, table(variable(causality='"output"', start=None)) + STATE)
+    assert (result.returncode, result.stderr) == (0, "")
+    for version in (2, 3):
+        description = fmpy.read_model_description(str(_as_folder(tmp_path, version)))
+        assert description.modelExchange is not None
+        assert description.coSimulation is not None
+        assert (description.numberOfContinuousStates, description.numberOfEventIndicators) == (1, 2)
+        (derivative,) = description.derivatives
+        assert derivative.variable.name == "der(state.angle)"
+        assert derivative.variable.valueReference == 1020
+        assert derivative.variable.unit == "rad/s"
+        assert derivative.variable.derivative.name == "state.angle"
+        assert [d.name for d in derivative.dependencies] == ["first"]
+        # An output that declares nothing follows the states.
+        assert [[d.name for d in unknown.dependencies] for unknown in description.outputs] == [["state.angle"]]
+        initial = {u.variable.name: [d.name for d in u.dependencies] for u in description.initialUnknowns}
+        assert initial == {"group.second": [], "state.angle": [], "der(state.angle)": ["first"]}
+    header = (tmp_path / "out" / "lag_variables.hpp").read_text()
+    assert "double states[1];" in header
+    assert "double indicators[2];" in header
+
+
+def _as_folder(tmp_path: Path, version: int) -> Path:
+    folder = tmp_path / f"fmi{version}"
+    folder.mkdir()
+    text = (tmp_path / "out" / f"fmi{version}" / "modelDescription.xml").read_text()
+    (folder / "modelDescription.xml").write_text(text)
+    return folder
+
+
+WRONG_LOCALS = {
+    "state without dependencies": (
+        STATE.replace('dependencies = ["first"]', ""),
+        "dependencies: None, but must be a list",
+    ),
+    "state without unit": (STATE.replace('unit = "rad"', ""), "unit: missing"),
+    "state without nominal": (STATE.replace("nominal = 0.5", ""), "nominal: None, but must be a finite number"),
+    "nominal zero": (STATE.replace("nominal = 0.5", "nominal = 0"), "nominal: 0.0 is not positive"),
+    "unknown dependency": (STATE.replace('["first"]', '["last"]'), "dependencies: there is no input or state 'last'"),
+    "reference of an indicator taken": (
+        STATE.replace("= 4000", "= 1019"),
+        "reference: 1020 is taken by der(state.angle)",
+    ),
+    "start of a state": (STATE.replace("nominal", "start = 1.0\nnominal"), "start: unknown key"),
+    "unit of an indicator": (STATE + 'unit = "m"', "unit: unknown key"),
+    "indicator without description": (STATE.replace('"Way to the stops"', '""'), "description: missing"),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), WRONG_LOCALS.values(), ids=WRONG_LOCALS.keys())
+def test_wrong_states_and_indicators_are_refused(text: str, message: str, tmp_path: Path) -> None:
+    result = generate(tmp_path, table(variable()) + text)
+    assert result.returncode == 1
+    assert message in result.stderr
 
 
 @pytest.mark.parametrize("version", [2, 3])
