@@ -5,6 +5,7 @@
 
 #include "drivetrain_system.hpp"
 #include "drivetrain_variables.hpp"
+#include "exchange.hpp"
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
 #include "servo_axis.hpp"
@@ -13,11 +14,15 @@ namespace giveway::drivetrain {
 
 namespace {
 
-class Drivetrain final : public Model {
+// Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
+constexpr double rounding_ticks = 1e-6;
+
+class Drivetrain final : public Model, public Equations {
 public:
     Drivetrain() { set_start_values(v_); }
 
     void* variables() override { return &v_; }
+    Equations* equations() override { return this; }
 
     void reset() override {
         v_ = {};
@@ -35,6 +40,9 @@ public:
         tick_ = 0;
         due_ = true;
         servo_torque_nm_ = 0.0;
+        now_s_ = 0.0;
+        events_ = 0;
+        exchanging_ = false;
         const auto refused = servo_.start({v_.servo_kp, v_.servo_kd, v_.drivetrain_torque_limit, v_.servo_derivative_cutoff,
                                            v_.servo_encoder_counts, v_.servo_delay});
         if (refused.field != GW_FIELD_NONE) {
@@ -69,7 +77,102 @@ public:
         return Status::ok;
     }
 
+    void set_time(double time_s) override {
+        now_s_ = time_s - start_time_s_;
+        exchanging_ = true;
+    }
+    double* states() override { return integrator_.state(); }
+
+    void derivatives(double* values) override {
+        follow_torques();
+        system_.rhs(now_s_, states(), values);
+    }
+
+    void indicators(double* values) override {
+        follow_torques();
+        margins(system_, now_s_, states(), values);
+    }
+
+    Status update_events(EventUpdate& update, Message& message) override {
+        // What the torques of before this instant have led to, then the new ones.
+        if (!settle_now(update, message)) {
+            return Status::error;
+        }
+        if (v_.servo_enabled && !reach_tick(message)) {
+            return Status::error;
+        }
+        change_torques();
+        if (!settle_now(update, message)) {
+            return Status::error;
+        }
+        update.has_next_time = v_.servo_enabled;
+        update.next_time_s = start_time_s_ + static_cast<double>(tick_ + 1) / static_cast<double>(servo_rate_hz);
+        return Status::ok;
+    }
+
+    void write_outputs() override {
+        const double* x = integrator_.state();
+        const Evaluation e = system_.evaluate(x);
+        v_.sensor_torque = e.sensed;
+        v_.motor_angle = x[motor_angle];
+        v_.motor_speed = x[motor_speed];
+        v_.load_angle = x[load_angle];
+        v_.load_speed = x[load_speed];
+        v_.load_friction = e.friction;
+        v_.gear_stuck = system_.stuck();
+        v_.servo_torque = servo_torque_nm_;
+        v_.energy_stored = e.stored - stored_at_start_j_;
+        v_.energy_work_in = x[work_in];
+        v_.energy_dissipated = x[dissipated];
+        v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
+        const auto statistics = integrator_.statistics(); // nothing in Model Exchange
+        const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
+        v_.events = static_cast<std::int32_t>(statistics.events) + events_;
+        v_.last_event_time = v_.events == 0 ? -1.0 : start_time_s_ + last_event_s;
+        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
+        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
+    }
+
 private:
+    // Co-Simulation takes its torques in at the start of a step.
+    void follow_torques() {
+        if (exchanging_) {
+            system_.follow_torques(wanted_torques());
+        }
+    }
+
+    bool settle_now(EventUpdate& update, Message& message) {
+        const int count = settle(system_, now_s_, states());
+        if (count == too_many_events) {
+            std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
+            return false;
+        }
+        if (count > 0) {
+            events_ += count;
+            last_event_s_ = now_s_;
+            update.states_changed = true;
+        }
+        return true;
+    }
+
+    // Acts on the tick of now, if it is one. The importer has to stop at each.
+    bool reach_tick(Message& message) {
+        const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
+        if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
+            ++tick_;
+            due_ = true;
+        }
+        if (now_ticks > static_cast<double>(tick_) + 1.0 - rounding_ticks) {
+            std::snprintf(message.text, sizeof message.text, "the event at t = %.9g s was passed over; it is now t = %.9g s",
+                          start_time_s_ + static_cast<double>(tick_) / static_cast<double>(servo_rate_hz), start_time_s_ + now_s_);
+            return false;
+        }
+        if (due_) {
+            leave_tick();
+        }
+        return true;
+    }
+
     [[nodiscard]] plant::Parameters<double> parameters() const {
         plant::Parameters<double> p{};
         p.motor_inertia = v_.drivetrain_motor_inertia;
@@ -102,10 +205,8 @@ private:
         change_torques();
     }
 
-    // Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
     bool step_with_servo(double end_s) {
         const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
-        constexpr double rounding_ticks = 1e-6;
         while (static_cast<double>(tick_) < end_ticks - rounding_ticks) {
             if (due_) {
                 leave_tick();
@@ -124,28 +225,6 @@ private:
         return true;
     }
 
-    void write_outputs() {
-        const double* x = integrator_.state();
-        const Evaluation e = system_.evaluate(x);
-        v_.sensor_torque = e.sensed;
-        v_.motor_angle = x[motor_angle];
-        v_.motor_speed = x[motor_speed];
-        v_.load_angle = x[load_angle];
-        v_.load_speed = x[load_speed];
-        v_.load_friction = e.friction;
-        v_.gear_stuck = system_.stuck();
-        v_.servo_torque = servo_torque_nm_;
-        v_.energy_stored = e.stored - stored_at_start_j_;
-        v_.energy_work_in = x[work_in];
-        v_.energy_dissipated = x[dissipated];
-        v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
-        const auto statistics = integrator_.statistics();
-        v_.events = static_cast<std::int32_t>(statistics.events);
-        v_.last_event_time = statistics.events == 0 ? -1.0 : start_time_s_ + integrator_.last_event_time();
-        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
-        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
-    }
-
     Variables v_{};
     DrivetrainSystem system_;
     solver::HybridIntegrator integrator_;
@@ -155,6 +234,11 @@ private:
     double stored_at_start_j_ = 0.0;
     std::int64_t tick_ = 0; // servo ticks since the start
     bool due_ = true;       // the servo has yet to act at this tick
+    // Model Exchange.
+    double now_s_ = 0.0; // since the start
+    double last_event_s_ = 0.0;
+    std::int32_t events_ = 0;
+    bool exchanging_ = false;
 };
 
 } // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "drivetrain.hpp"
-#include "hybrid_system.hpp"
+#include "exchange.hpp"
 #include "roller.hpp"
 
 namespace giveway::drivetrain {
@@ -24,7 +24,7 @@ struct Evaluation {
     double rate[state_count];
 };
 
-class DrivetrainSystem final : public solver::HybridSystem {
+class DrivetrainSystem final : public ExchangeableSystem {
 public:
     // `parameters`: the fields of drivetrain and roller friction. A roller of radius 1 m that turns the friction force of (28) into B2.
     void start(const plant::Parameters<double>& parameters, const Load& load, const double* state) {
@@ -42,6 +42,9 @@ public:
         torques_ = torques;
         release(state);
     }
+
+    // In continuous time: a gear that breaks away is left to the event that follows.
+    void follow_torques(const Torques& torques) { torques_ = torques; }
 
     [[nodiscard]] const Torques& torques() const { return torques_; }
     [[nodiscard]] bool stuck() const { return std::fabs(direction_) < 0.5; }
@@ -88,6 +91,12 @@ public:
         // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the torque.
         direction_ = stuck() ? math::sign(net) : plant::gear_direction_from_rest(parameters_, net);
         state[motor_speed] = 0.0;
+    }
+
+    [[nodiscard]] int side(int) const override { return 1; }
+    [[nodiscard]] double hysteresis(int) const override {
+        return stuck() ? 1e-8   // N m
+                       : 1e-7;  // rad/s
     }
 
     [[nodiscard]] double absolute_tolerance(int state) const override {
