@@ -8,6 +8,7 @@
 
 #include "bumper_system.hpp"
 #include "bumper_variables.hpp"
+#include "exchange.hpp"
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
 
@@ -15,11 +16,12 @@ namespace giveway::bumper {
 
 namespace {
 
-class Bumper final : public Model {
+class Bumper final : public Model, public Equations {
 public:
     Bumper() { set_start_values(v_); }
 
     void* variables() override { return &v_; }
+    Equations* equations() override { return this; }
 
     void reset() override {
         v_ = {};
@@ -28,6 +30,9 @@ public:
 
     Status initialise(double start_time_s, Message& message) override {
         start_time_s_ = start_time_s;
+        now_s_ = 0.0;
+        events_ = 0;
+        exchanging_ = false;
         system_.start(parameters());
         system_.set_faces(faces(), 0.0);
         stored_at_start_j_ = system_.force(0.0).stored;
@@ -37,7 +42,7 @@ public:
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
-        write_outputs();
+        write_outputs_now();
         return Status::ok;
     }
 
@@ -48,11 +53,56 @@ public:
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
-        write_outputs();
+        now_s_ = integrator_.time();
+        write_outputs_now();
+        return Status::ok;
+    }
+
+    void set_time(double time_s) override {
+        now_s_ = time_s - start_time_s_;
+        exchanging_ = true;
+    }
+    double* states() override { return integrator_.state(); }
+
+    void derivatives(double* values) override {
+        follow_faces();
+        system_.rhs(now_s_, states(), values);
+    }
+
+    void indicators(double* values) override {
+        follow_faces();
+        margins(system_, now_s_, states(), values);
+    }
+
+    void write_outputs() override {
+        follow_faces();
+        write_outputs_now();
+    }
+
+    Status update_events(EventUpdate& update, Message& message) override {
+        // What the motion of before this instant has led to, then the new one.
+        const int count = settle(system_, now_s_, states());
+        if (count == too_many_events) {
+            std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
+            return Status::error;
+        }
+        if (count > 0) {
+            events_ += count;
+            last_event_s_ = now_s_;
+        }
+        system_.set_faces(faces(), now_s_);
+        update = {};
         return Status::ok;
     }
 
 private:
+    // Co-Simulation moves the faces itself.
+    void follow_faces() {
+        if (exchanging_) {
+            system_.follow_faces(faces(), now_s_);
+        }
+    }
+
     [[nodiscard]] Faces faces() const { return {v_.carrier_position, v_.carrier_velocity, v_.plate_position, v_.plate_velocity}; }
 
     [[nodiscard]] plant::Parameters<double> parameters() const {
@@ -72,24 +122,24 @@ private:
         return p;
     }
 
-    void write_outputs() {
-        const double now_s = integrator_.time();
+    void write_outputs_now() {
         const double* x = integrator_.state();
-        const auto bumper = system_.force(now_s);
+        const auto bumper = system_.force(now_s_);
         v_.carrier_force = -bumper.force;
         v_.plate_force = bumper.force;
-        v_.compression = system_.compression(now_s);
+        v_.compression = system_.compression(now_s_);
         v_.compression_rate = system_.compression_rate();
-        v_.latched = system_.latched(now_s);
+        v_.latched = system_.latched(now_s_);
         v_.end_stop = system_.end_stop();
         v_.bottom_stop = system_.bottom_stop();
         v_.energy_stored = bumper.stored - stored_at_start_j_;
         v_.energy_work_in = x[work_in];
         v_.energy_dissipated = x[dissipated];
         v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
-        const auto statistics = integrator_.statistics();
-        v_.events = static_cast<std::int32_t>(statistics.events);
-        v_.last_event_time = statistics.events == 0 ? -1.0 : start_time_s_ + integrator_.last_event_time();
+        const auto statistics = integrator_.statistics(); // nothing in Model Exchange
+        const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
+        v_.events = static_cast<std::int32_t>(statistics.events) + events_;
+        v_.last_event_time = v_.events == 0 ? -1.0 : start_time_s_ + last_event_s;
         v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
         v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
     }
@@ -99,6 +149,11 @@ private:
     solver::HybridIntegrator integrator_;
     double start_time_s_ = 0.0;
     double stored_at_start_j_ = 0.0;
+    double now_s_ = 0.0; // since the start
+    // Model Exchange.
+    double last_event_s_ = 0.0;
+    std::int32_t events_ = 0;
+    bool exchanging_ = false;
 };
 
 } // namespace

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bumper.hpp"
-#include "hybrid_system.hpp"
+#include "exchange.hpp"
 
 namespace giveway::bumper {
 
@@ -14,7 +14,7 @@ struct Faces {
     double carrier_m, carrier_mps, plate_m, plate_mps;
 };
 
-class BumperSystem final : public solver::HybridSystem {
+class BumperSystem final : public ExchangeableSystem {
 public:
     void start(const plant::Parameters<double>& parameters) {
         parameters_ = parameters;
@@ -23,12 +23,17 @@ public:
 
     // From `time_s` on the faces move on with these velocities. Where they are decides which stops they touch.
     void set_faces(const Faces& faces, double time_s) {
-        faces_ = faces;
-        faces_time_s_ = time_s;
+        follow_faces(faces, time_s);
         const double c = compression(time_s);
         const double beyond = c - parameters_.travel;
         modes_.end_stop = c < 0.0 || (c <= 0.0 && compression_rate() <= 0.0) ? 1.0 : 0.0;
         modes_.bottom_stop = beyond > 0.0 || (beyond >= 0.0 && compression_rate() > 0.0) ? 1.0 : 0.0;
+    }
+
+    // In continuous time: stops that are met are left to the event that follows.
+    void follow_faces(const Faces& faces, double time_s) {
+        faces_ = faces;
+        faces_time_s_ = time_s;
     }
 
     [[nodiscard]] double compression(double time_s) const {
@@ -75,6 +80,9 @@ public:
             modes_.bottom_stop = fired[event_bottom_stop] > 0 ? 1.0 : 0.0;
         }
     }
+
+    [[nodiscard]] int side(int event) const override { return event == event_end_stop ? (end_stop() ? -1 : 1) : (bottom_stop() ? 1 : -1); }
+    [[nodiscard]] double hysteresis(int) const override { return 1e-9; } // m
 
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-7; } // J
 
