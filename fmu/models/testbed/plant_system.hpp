@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "hybrid_system.hpp"
+#include "exchange.hpp"
 #include "initial_state.hpp"
 #include "jacobian.hpp"
 #include "outputs.hpp"
 
 namespace giveway::testbed {
 
-class PlantSystem final : public solver::HybridSystem {
+class PlantSystem final : public ExchangeableSystem {
 public:
     void start(const plant::Parameters<double>& parameters, const plant::InitialMotion<double>& motion, const plant::Inputs<double>& inputs,
                plant::StateVector<double>& state) {
@@ -26,6 +26,9 @@ public:
         inputs_ = inputs;
         plant::accept_inputs(as_state(state), inputs_, modes_, parameters_, derived_);
     }
+
+    // In continuous time: a gear that breaks away is left to the event that follows.
+    void follow_inputs(const plant::Inputs<double>& inputs) { inputs_ = inputs; }
 
     [[nodiscard]] const plant::Modes<double>& modes() const { return modes_; }
     [[nodiscard]] const plant::Parameters<double>& parameters() const { return parameters_; }
@@ -66,6 +69,33 @@ public:
         }
     }
 
+    [[nodiscard]] int side(int event) const override {
+        switch (event) {
+        case plant::event_contact:
+            return above(modes_.contact);
+        case plant::event_rope:
+            return above(modes_.rope_taut);
+        case plant::event_end_stop:
+            return parameters_.has_ideal_latch() ? 1 : -above(modes_.end_stop);
+        case plant::event_bottom_stop:
+            return above(modes_.bottom_stop);
+        case plant::event_landing:
+            return above(modes_.landed);
+        default:
+            return 1;
+        }
+    }
+
+    [[nodiscard]] double hysteresis(int event) const override {
+        if (event < plant::event_gear + plant::wheel_count) {
+            const bool stuck = math::abs(modes_.gear_direction[static_cast<std::size_t>(event)]) < 0.5;
+            return stuck ? 1e-8   // N m
+                         : 1e-7;  // rad/s
+        }
+        return event == plant::event_end_stop && modes_.latched > 0.5 ? 1e-6  // N
+                                                                      : 1e-9; // m
+    }
+
     [[nodiscard]] double absolute_tolerance(int state) const override {
         switch (state) {
         case plant::base_vx:
@@ -89,6 +119,8 @@ public:
     }
 
 private:
+    static int above(double mode) { return mode > 0.5 ? 1 : -1; }
+
     static const plant::StateVector<double>& as_state(const double* state) {
         // The solver's array has exactly state_count doubles.
         return *reinterpret_cast<const plant::StateVector<double>*>(state);

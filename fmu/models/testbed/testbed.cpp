@@ -5,6 +5,7 @@
 #include <cmath>
 #include <new>
 
+#include "exchange.hpp"
 #include "from_variables.hpp"
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
@@ -15,11 +16,15 @@ namespace giveway::testbed {
 
 namespace {
 
-class Testbed final : public Model {
+// Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
+constexpr double rounding_ticks = 1e-6;
+
+class Testbed final : public Model, public Equations {
 public:
     Testbed() { set_start_values(v_); }
 
     void* variables() override { return &v_; }
+    Equations* equations() override { return this; }
 
     void reset() override {
         v_ = {};
@@ -33,6 +38,9 @@ public:
         start_time_s_ = start_time_s;
         tick_ = 0;
         due_ = true;
+        now_s_ = 0.0;
+        events_ = 0;
+        exchanging_ = false;
         const plant::InitialMotion<double> motion{v_.start_x, v_.start_y, v_.start_theta, v_.start_vx, v_.start_vy, v_.start_omega, v_.slider_speed};
         plant::StateVector<double> state{};
         system_.start(plant_parameters(v_), motion, push_inputs({}), state);
@@ -70,9 +78,7 @@ public:
 
     Status step(double time_s, double step_size_s, Message& message) override {
         const double end_s = time_s + step_size_s - start_time_s_;
-        // Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
         const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
-        constexpr double rounding_ticks = 1e-6;
         change_push();
         while (static_cast<double>(tick_) < end_ticks - rounding_ticks) {
             if (due_) {
@@ -103,49 +109,38 @@ public:
         return Status::ok;
     }
 
-private:
-    [[nodiscard]] plant::Inputs<double> push_inputs(const std::array<double, 3>& motor_torque_nm) const {
-        return {motor_torque_nm, v_.push_force_x, v_.push_force_y, v_.push_point_x, v_.push_point_y};
+    void set_time(double time_s) override {
+        now_s_ = time_s - start_time_s_;
+        exchanging_ = true;
+    }
+    double* states() override { return integrator_.state(); }
+
+    void derivatives(double* values) override {
+        follow_push();
+        system_.rhs(now_s_, states(), values);
     }
 
-    static std::array<double, 3> motor_angles(const double* state) {
-        return {state[plant::motor_angle], state[plant::motor_angle + 1], state[plant::motor_angle + 2]};
+    void indicators(double* values) override {
+        follow_push();
+        margins(system_, now_s_, states(), values);
     }
 
-    // A step that does not start on a tick still has to see a new push from its start.
-    void change_push() {
-        const auto& now = system_.inputs();
-        if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y || v_.push_point_x != now.push_point_x ||
-            v_.push_point_y != now.push_point_y) {
-            system_.set_inputs(push_inputs(now.motor_torque), integrator_.state());
-            integrator_.restart();
+    Status update_events(EventUpdate& update, Message& message) override {
+        // What the inputs of before this instant have led to, then the tick and the new ones.
+        if (!settle_now(update, message) || !pass_tick(update, message)) {
+            return Status::error;
         }
-    }
-
-    void leave_tick() {
-        due_ = false;
-        if (tick_ % servo_ticks_per_cycle == 0) {
-            Command command{};
-            std::copy_n(v_.command_wheel_angle, 3, command.wheel_angle_rad.begin());
-            std::copy_n(v_.command_wheel_speed, 3, command.wheel_speed_radps.begin());
-            command.enable = v_.command_enable;
-            drives_.receive(command);
+        system_.set_inputs(push_inputs(system_.inputs().motor_torque), states());
+        if (!settle_now(update, message)) {
+            return Status::error;
         }
-        const double* state = integrator_.state();
-        system_.set_inputs(push_inputs(drives_.regulate(motor_angles(state))), state);
-        integrator_.restart();
+        update.has_next_time = true;
+        update.next_time_s = start_time_s_ + static_cast<double>(due_ ? tick_ : tick_ + 1) / static_cast<double>(servo_rate_hz);
+        return Status::ok;
     }
 
-    void sample_sensors() {
-        const double* state = integrator_.state();
-        const SensorSample sample = drives_.sample(motor_angles(state), system_.outputs(state).wheel_torque);
-        std::copy_n(sample.torque_nm.begin(), 3, v_.sensor_torque);
-        std::copy_n(sample.encoder_counts.begin(), 3, v_.sensor_encoder);
-        v_.sensor_counter = sample.counter;
-        v_.sensor_present = true;
-    }
-
-    void write_outputs() {
+    void write_outputs() override {
+        follow_push();
         const double* x = integrator_.state();
         const auto truth = system_.outputs(x);
         const auto& modes = system_.modes();
@@ -190,11 +185,98 @@ private:
         v_.energy_work_in = x[plant::work_in];
         v_.energy_dissipated = x[plant::dissipated];
         v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
-        const auto statistics = integrator_.statistics();
-        v_.events = static_cast<std::int32_t>(statistics.events);
+        const auto statistics = integrator_.statistics(); // nothing in Model Exchange
+        const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
+        v_.events = static_cast<std::int32_t>(statistics.events) + events_;
+        v_.last_event_time = v_.events == 0 ? -1.0 : start_time_s_ + last_event_s;
         v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
         v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
         v_.solver_jacobian_calls = static_cast<std::int32_t>(statistics.jacobian_calls);
+    }
+
+private:
+    [[nodiscard]] plant::Inputs<double> push_inputs(const std::array<double, 3>& motor_torque_nm) const {
+        return {motor_torque_nm, v_.push_force_x, v_.push_force_y, v_.push_point_x, v_.push_point_y};
+    }
+
+    static std::array<double, 3> motor_angles(const double* state) {
+        return {state[plant::motor_angle], state[plant::motor_angle + 1], state[plant::motor_angle + 2]};
+    }
+
+    // Co-Simulation takes a push in at the start of a step.
+    void follow_push() {
+        if (exchanging_) {
+            system_.follow_inputs(push_inputs(system_.inputs().motor_torque));
+        }
+    }
+
+    bool settle_now(EventUpdate& update, Message& message) {
+        const int count = settle(system_, now_s_, states());
+        if (count == too_many_events) {
+            std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
+            return false;
+        }
+        if (count > 0) {
+            events_ += count;
+            last_event_s_ = now_s_;
+            update.states_changed = true;
+        }
+        return true;
+    }
+
+    // The importer has to stop at each tick. At one of the bus first the sensors; in another update, when they have been passed on, the command.
+    bool pass_tick(EventUpdate& update, Message& message) {
+        const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
+        if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
+            ++tick_;
+            due_ = true;
+            if (tick_ % servo_ticks_per_cycle == 0) {
+                sample_sensors();
+                update.again = true;
+            }
+        }
+        if (due_ && !update.again) {
+            leave_tick();
+        }
+        if (now_ticks > static_cast<double>(tick_) + 1.0 - rounding_ticks) {
+            std::snprintf(message.text, sizeof message.text, "the event at t = %.9g s was passed over; it is now t = %.9g s",
+                          start_time_s_ + static_cast<double>(tick_) / static_cast<double>(servo_rate_hz), start_time_s_ + now_s_);
+            return false;
+        }
+        return true;
+    }
+
+    // A step that does not start on a tick still has to see a new push from its start.
+    void change_push() {
+        const auto& now = system_.inputs();
+        if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y || v_.push_point_x != now.push_point_x ||
+            v_.push_point_y != now.push_point_y) {
+            system_.set_inputs(push_inputs(now.motor_torque), integrator_.state());
+            integrator_.restart();
+        }
+    }
+
+    void leave_tick() {
+        due_ = false;
+        if (tick_ % servo_ticks_per_cycle == 0) {
+            Command command{};
+            std::copy_n(v_.command_wheel_angle, 3, command.wheel_angle_rad.begin());
+            std::copy_n(v_.command_wheel_speed, 3, command.wheel_speed_radps.begin());
+            command.enable = v_.command_enable;
+            drives_.receive(command);
+        }
+        const double* state = integrator_.state();
+        system_.set_inputs(push_inputs(drives_.regulate(motor_angles(state))), state);
+        integrator_.restart();
+    }
+
+    void sample_sensors() {
+        const double* state = integrator_.state();
+        const SensorSample sample = drives_.sample(motor_angles(state), system_.outputs(state).wheel_torque);
+        std::copy_n(sample.torque_nm.begin(), 3, v_.sensor_torque);
+        std::copy_n(sample.encoder_counts.begin(), 3, v_.sensor_encoder);
+        v_.sensor_counter = sample.counter;
+        v_.sensor_present = true;
     }
 
     Variables v_{};
@@ -205,6 +287,11 @@ private:
     double stored_at_start_j_ = 0.0;
     std::int64_t tick_ = 0; // servo ticks since the start
     bool due_ = true;       // the servo has yet to act at this tick
+    // Model Exchange.
+    double now_s_ = 0.0; // since the start
+    double last_event_s_ = 0.0;
+    std::int32_t events_ = 0;
+    bool exchanging_ = false;
 };
 
 } // namespace

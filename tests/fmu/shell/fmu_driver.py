@@ -16,7 +16,7 @@ import fmpy
 ROOT = Path(__file__).parents[3]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))
 MODELS = ("controller", "testbed", "drivetrain", "bumper")
-INTEGRATED = ("testbed", "drivetrain", "bumper")  # with SUNDIALS inside
+INTEGRATED = ("testbed", "drivetrain", "bumper")  # with SUNDIALS inside, and Model Exchange
 
 OK, ERROR = 0, 3
 BINARY_FOLDERS = {2: "linux64", 3: "x86_64-linux"}
@@ -51,6 +51,17 @@ class _Fmi2Callbacks(ctypes.Structure):
         ("free", ctypes.c_void_p),
         ("step_finished", ctypes.c_void_p),
         ("environment", ctypes.c_void_p),
+    ]
+
+
+class _Fmi2EventInfo(ctypes.Structure):
+    _fields_ = [
+        ("again", ctypes.c_int),
+        ("terminate", ctypes.c_int),
+        ("nominals_changed", ctypes.c_int),
+        ("states_changed", ctypes.c_int),
+        ("has_next_time", ctypes.c_int),
+        ("next_time", ctypes.c_double),
     ]
 
 
@@ -100,6 +111,16 @@ class Fmu:
             )  # fmt: skip
         return self.instance is not None
 
+    def instantiate_exchange(self) -> bool:
+        """For Model Exchange instead."""
+        if self.version == 2:
+            return self.instantiate(type=0)
+        self._logger = _LOGGERS[3](self._log)
+        function = self.library.fmi3InstantiateModelExchange
+        function.restype = ctypes.c_void_p
+        self.instance = function(b"test", self.token.encode(), b"/", False, False, None, self._logger)
+        return self.instance is not None
+
     def call(self, name: str, *arguments: object) -> int:
         """Status of ``fmi<version><name>(instance, ...)``."""
         function = getattr(self.library, f"fmi{self.version}{name}")
@@ -133,6 +154,48 @@ class Fmu:
         flags = [ctypes.c_bool() for _ in range(3)]
         self.last_time = ctypes.c_double()
         return self.call("DoStep", *times, *(ctypes.byref(flag) for flag in flags), ctypes.byref(self.last_time))
+
+    def update(self) -> tuple[int, dict[str, float]]:
+        """One update of discrete states: status and what it says."""
+        if self.version == 2:
+            info = _Fmi2EventInfo()
+            status = self.call("NewDiscreteStates", ctypes.byref(info))
+            return status, {name: getattr(info, name) for name, _ in _Fmi2EventInfo._fields_}
+        flags = [ctypes.c_bool() for _ in range(5)]
+        next_time = ctypes.c_double()
+        status = self.call("UpdateDiscreteStates", *(ctypes.byref(flag) for flag in flags), ctypes.byref(next_time))
+        values = [float(flag.value) for flag in flags] + [next_time.value]
+        return status, dict(zip((name for name, _ in _Fmi2EventInfo._fields_), values, strict=True))
+
+    def settle(self) -> dict[str, float]:
+        """Updates until none is asked for; what the last one said."""
+        for _ in range(100):
+            status, said = self.update()
+            assert status == OK, self.last_message
+            if not said["again"]:
+                return said
+        raise AssertionError("updates without end")
+
+    def array(self, name: str, size: int) -> list[float]:
+        """What a function gives that fills an array: ``array("GetContinuousStates", 6)``."""
+        values = (ctypes.c_double * size)()
+        assert self.call(name, values, ctypes.c_size_t(size)) == OK, self.last_message
+        return list(values)
+
+    def set_states(self, values: Sequence[float]) -> int:
+        return self.call("SetContinuousStates", (ctypes.c_double * len(values))(*values), ctypes.c_size_t(len(values)))
+
+    @property
+    def derivatives_function(self) -> str:
+        return "GetDerivatives" if self.version == 2 else "GetContinuousStateDerivatives"
+
+    def completed_step(self) -> tuple[int, bool]:
+        """Status, and whether an event is needed."""
+        kind = ctypes.c_int if self.version == 2 else ctypes.c_bool
+        event, terminate = kind(), kind()
+        status = self.call("CompletedIntegratorStep", True, ctypes.byref(event), ctypes.byref(terminate))
+        assert not terminate.value
+        return status, bool(event.value)
 
     def _access(self, verb: str, kind: str, references: Sequence[int], values: ctypes.Array) -> int:
         numbers = (ctypes.c_uint32 * len(references))(*references)

@@ -1,0 +1,178 @@
+"""Model Exchange in FMPy's CVODE against our own Co-Simulation: signals to 1e-4 of their peaks, events to 10 us."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import fmpy
+import numpy as np
+import pytest
+from component_run import co_simulate
+from drivetrain_reference import Parameters
+from fmpy.sundials import CVodeSolver
+from fmu_driver import fmu_path
+from test_bumper import KINDS, moved, triangle
+from test_bumper import parameters as bumper_parameters
+from test_drivetrain import shove
+
+SIGNALS = 1e-4  # of the peak
+INSTANTS = 10e-6  # s
+IMPORTER_TOLERANCE = 1e-8
+# Ours is held tighter than what it is compared to, so that what is seen is the importer's error.
+CO_SIMULATION = {"solver.relative_tolerance": 1e-8, "solver.absolute_scale": 1e-2}
+# Set at a tick: an importer that integrates sees it there, a co-simulation at the end of the step that it acts in.
+ACTS_FROM_THE_TICK = ("servo.torque", "truth.motor_torque", "gear.stuck", "truth.gear_stuck")
+
+
+@dataclass
+class Case:
+    model: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    inputs: Callable[[float], Mapping[str, float]] = lambda t: {}
+    stop: float = 0.4
+    step: float = 5e-4
+    least_events: int = 4
+    moving_inputs: bool = False  # that change between their jumps
+
+
+def shoved(t: float) -> dict[str, float]:
+    motor, environment = shove(t)
+    return {
+        "motor.torque": motor, "environment.torque": environment,
+        "servo.reference_angle": 0.0, "servo.reference_speed": 0.0,
+    }  # fmt: skip
+
+
+def servoed(t: float) -> dict[str, float]:
+    return {
+        "motor.torque": 0.0, "environment.torque": -4.0 if t > 0.2 else 0.0,
+        "servo.reference_angle": 0.04 if t < 0.15 else -0.03 if t < 0.3 else 0.02, "servo.reference_speed": 0.0,
+    }  # fmt: skip
+
+
+def pushed(t: float) -> dict[str, float]:
+    """The slider hits, then somebody pushes at a corner; the drives are told to turn a little."""
+    speeds = {f"command.wheel_speed[{i}]": 0.0 for i in range(3)}
+    angles = {f"command.wheel_angle[{i}]": (0.02 if t > 0.25 else 0.0) * (i - 1) for i in range(3)}
+    push = {"push.force_x": 30.0 if t > 0.2 else 0.0, "push.force_y": -50.0 if t > 0.21 else 0.0}
+    return {**speeds, **angles, **push, "command.enable": True, "push.point_x": 0.2, "push.point_y": 0.1}
+
+
+ON_THE_ROBOT = {"bumper.mount": 1, "slider.target_x": 0.153046, "slider.target_y": 0.265083}
+SMOOTH = {"electronics.torque_resolution": 0.0}  # a quantum more or less says nothing
+CASES = {
+    "drivetrain": Case("drivetrain", Parameters().as_variables(), shoved, stop=0.5),
+    "drivetrain with servo": Case(
+        "drivetrain",
+        {**Parameters(load_inertia=0.1, delay=1).as_variables(), "servo.enabled": True},
+        servoed,
+        least_events=1,
+    ),
+    **{
+        f"bumper, {kind}": Case(
+            "bumper", bumper_parameters(kind), moved(triangle(0.25, 0.05435, -0.00065)), 0.44, 1e-3, moving_inputs=True
+        )
+        for kind in KINDS
+    },
+    "testbed": Case("testbed", SMOOTH),
+    "testbed, pushed": Case("testbed", SMOOTH, pushed, stop=0.3),
+    "testbed, spring": Case("testbed", {**SMOOTH, "bumper.kind": 1}),
+    "testbed, ideal latch": Case("testbed", {**SMOOTH, "bumper.latch_model": 1}),
+    "testbed, bumper on the robot": Case("testbed", {**SMOOTH, **ON_THE_ROBOT}),
+    "testbed, ideal latch on the robot": Case("testbed", {**SMOOTH, **ON_THE_ROBOT, "bumper.latch_model": 1}),
+    "testbed, no power": Case(
+        "testbed", {**SMOOTH, "command.enable": False, "start.vx": 0.15, "start.omega": 0.2, "slider.present": False}
+    ),
+    "testbed, landing": Case(
+        "testbed", {**SMOOTH, "rope.drop_height": 0.06, "roller.model": 1, "drivetrain.gear_stiction": 3.2}
+    ),
+}
+
+
+def signals(case: Case) -> np.ndarray:
+    """The inputs for FMPy: a second row wherever one of them jumps."""
+    grid = np.round(np.arange(round(case.stop / case.step) + 1) * case.step, 9)
+    names = list(case.inputs(0.0))
+    rows: list[tuple[float, ...]] = []
+    for time in grid:
+        now = tuple(case.inputs(time).values())
+        if rows:
+            # Positions get here by their speeds; everything else stays as it was.
+            before = dict(zip(names, rows[-1][1:], strict=True))
+            arrived = {n: v + before.get(n.replace("position", "velocity"), 0.0) * (time - rows[-1][0])
+                       if n.endswith("position") else v for n, v in before.items()}  # fmt: skip
+            if case.moving_inputs or tuple(arrived.values()) != now:
+                rows.append((time, *arrived.values()))
+        if not rows or not np.allclose(rows[-1][1:], now, rtol=0, atol=1e-12) or time == grid[-1]:
+            rows.append((time, *now))
+    kinds = [(name, np.bool_ if name == "command.enable" else np.double) for name in names]
+    return np.array(rows, dtype=[("time", np.double), *kinds])
+
+
+def exchange(case: Case, version: int, outputs: list[str]) -> np.ndarray:
+    start = {name: value for name, value in case.parameters.items() if not name.startswith("solver.")}
+    return fmpy.simulate_fmu(
+        str(fmu_path(case.model, version)), fmi_type="ModelExchange", solver="CVode", start_values=start,
+        relative_tolerance=IMPORTER_TOLERANCE, input=signals(case) if case.inputs(0.0) else None, output=outputs,
+        stop_time=case.stop, output_interval=case.step, record_events=False,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def inputs_at_every_evaluation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """FMPy's CVODE sets the inputs after a step only; what moves between must be set for each evaluation."""
+    evaluate = CVodeSolver.f
+
+    def with_inputs(self: CVodeSolver, t: float, y: object, ydot: object, user_data: object) -> int:
+        self.input.apply(t, discrete=False)
+        return evaluate(self, t, y, ydot, user_data)
+
+    monkeypatch.setattr(CVodeSolver, "f", with_inputs)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("name", CASES)
+def test_an_importer_that_integrates_finds_the_same(name: str, version: int, request: pytest.FixtureRequest) -> None:
+    case = CASES[name]
+    if case.moving_inputs:
+        request.getfixturevalue("inputs_at_every_evaluation")
+    description = fmpy.read_model_description(str(fmu_path(case.model, version)))
+    outputs = [v for v in description.modelVariables if v.causality == "output" and not v.name.startswith("solver.")]
+    names = [v.name for v in outputs]
+    ours = co_simulate(
+        case.model, {**case.parameters, **CO_SIMULATION}, case.inputs, case.stop, case.step, names, version
+    )
+    theirs = exchange(case, version, names)
+    assert np.allclose(theirs["time"], ours["time"], rtol=0, atol=1e-9)
+
+    assert ours["events"][-1] >= case.least_events
+    instants = np.unique(ours["last_event_time"])
+    near_event = np.min(np.abs(ours["time"][:, None] - instants), axis=1) < INSTANTS
+    # Where inputs jump, one shows what follows them and the other what they ended.
+    times = signals(case)["time"] if case.inputs(0.0) else np.array([])
+    jumps = times[1:][np.diff(times) == 0]
+    clear = ~near_event & ~np.isclose(ours["time"][:, None], jumps, rtol=0, atol=1e-9).any(axis=1)
+    assert np.count_nonzero(clear) > 0.9 * len(clear)
+    assert not np.any((theirs["events"] != ours["events"]) & clear)
+    same = theirs["events"] == ours["events"]
+    assert np.max(np.abs(theirs["last_event_time"] - ours["last_event_time"])[same]) < INSTANTS
+
+    turned_over = max(np.max(np.abs(ours[f"energy.{kind}"])) for kind in ("stored", "work_in", "dissipated"))
+    off: dict[str, float] = {}
+    for variable in outputs:
+        wanted, found = ours[variable.name], theirs[variable.name].astype(float)
+        if variable.name in ("last_event_time", "events"):
+            continue
+        if variable.name.split("[")[0] in ACTS_FROM_THE_TICK:
+            found, before, wanted = found[:-1], wanted[:-1], wanted[1:]
+            wanted = np.where(np.abs(found - before) < np.abs(found - wanted), before, wanted)
+        if variable.type in ("Boolean", "Integer", "Int32"):
+            off[variable.name] = float(np.any((found != wanted) & clear[: len(found)]))
+            continue
+        # Both residuals are errors already: measured by the energy that is turned over.
+        peak = turned_over if variable.name == "energy.residual" else np.max(np.abs(wanted))
+        deviation = np.abs(found - wanted) * clear[: len(found)]
+        off[variable.name] = float(np.max(deviation) / peak) if peak > 0 else float(np.max(deviation))
+    worst = dict(sorted(off.items(), key=lambda item: -item[1])[:3])
+    assert max(off.values()) < SIGNALS, worst
