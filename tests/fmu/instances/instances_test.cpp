@@ -55,14 +55,8 @@ fmi3ValueReference reference_of(const char* name) {
     return 0;
 }
 
-// A parameter that changes what comes out, and two values of it.
-#ifdef GIVEWAY_TESTBED
-constexpr const char* parameter = "base.mass";
-constexpr double values[2] = {30.0, 50.0};
-#else
-constexpr const char* parameter = "admittance.escape_impulse";
-constexpr double values[2] = {0.5, 1.0};
-#endif
+constexpr const char* parameter = GIVEWAY_PARAMETER;
+constexpr double values[2] = {GIVEWAY_VALUES};
 
 // All real outputs after each of `steps` steps. The controller is fed a push that it detects.
 std::vector<double> run(double value, int steps) {
@@ -76,7 +70,7 @@ std::vector<double> run(double value, int steps) {
     std::vector<double> trace;
     std::vector<double> row(outputs.size());
     for (int k = 0; k < steps; ++k) {
-#ifndef GIVEWAY_TESTBED
+#ifdef GIVEWAY_CONTROLLER
         const fmi3ValueReference torques[2] = {reference_of("sensor.torque[1]"), reference_of("sensor.torque[2]")};
         const double push[2] = {k < 150 ? 0.0 : 2.0, k < 150 ? 0.0 : -2.0};
         const fmi3ValueReference counter = reference_of("sensor.counter");
@@ -122,7 +116,31 @@ TEST(Instances, DoNotInfluenceEachOtherInThreads) {
     }
 }
 
-// Ten thousand lives: with and without initialisation, steps, reset and terminate; FMI 3 and FMI 2.
+// For Model Exchange: into continuous time, one evaluation, and sometimes back to the start.
+static void live_through_exchange(const fmi2CallbackFunctions& callbacks, bool reset) {
+    const std::size_t count = giveway::model_info().state_count;
+    std::vector<double> rates(count);
+    fmi3Instance fmu = fmi3InstantiateModelExchange("test", giveway::model_info().token, nullptr, fmi3False, fmi3False, nullptr, log3);
+    ASSERT_NE(fmu, nullptr) << last_message;
+    ASSERT_EQ(fmi3EnterInitializationMode(fmu, fmi3False, 0.0, 0.0, fmi3False, 0.0), fmi3OK);
+    ASSERT_EQ(fmi3ExitInitializationMode(fmu), fmi3OK);
+    ASSERT_EQ(fmi3UpdateDiscreteStates(fmu, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr), fmi3OK);
+    ASSERT_EQ(fmi3EnterContinuousTimeMode(fmu), fmi3OK);
+    ASSERT_EQ(fmi3GetContinuousStateDerivatives(fmu, rates.data(), count), fmi3OK);
+    ASSERT_EQ(reset ? fmi3Reset(fmu) : fmi3Terminate(fmu), fmi3OK);
+    fmi3FreeInstance(fmu);
+
+    fmi2Component component = fmi2Instantiate("test", fmi2ModelExchange, giveway::model_info().token, "", &callbacks, fmi2False, fmi2False);
+    ASSERT_NE(component, nullptr) << last_message;
+    if (reset) {
+        ASSERT_EQ(fmi2SetupExperiment(component, fmi2False, 0.0, 0.0, fmi2False, 0.0), fmi2OK);
+        ASSERT_EQ(fmi2EnterInitializationMode(component), fmi2OK);
+        ASSERT_EQ(fmi2GetDerivatives(component, rates.data(), count), fmi2OK);
+    }
+    fmi2FreeInstance(component);
+}
+
+// Ten thousand lives: with and without initialisation, steps, reset and terminate; FMI 3 and FMI 2; both interfaces.
 TEST(Instances, LeaveNoMemoryBehind) {
     fmi2CallbackFunctions callbacks{};
     callbacks.logger = log2;
@@ -154,6 +172,10 @@ TEST(Instances, LeaveNoMemoryBehind) {
             ASSERT_EQ(fmi2DoStep(component, 0.0, 1e-3, fmi2True), fmi2OK);
         }
         fmi2FreeInstance(component);
+
+        if (giveway::model_info().state_count > 0 && life % 5 == 0) {
+            live_through_exchange(callbacks, life % 2 == 0);
+        }
     }
     EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
 }
