@@ -37,7 +37,12 @@ public:
         system_.set_faces(faces(), 0.0);
         stored_at_start_j_ = system_.force(0.0).stored;
         const double state[state_count] = {};
-        const solver::IntegratorOptions options{v_.solver_relative_tolerance, v_.solver_absolute_scale, v_.solver_maximum_step};
+        const solver::IntegratorOptions options{
+            .relative_tolerance = v_.solver_relative_tolerance,
+            .absolute_tolerance_scale = v_.solver_absolute_scale,
+            .maximum_step_s = v_.solver_maximum_step,
+            .clock_start_s = start_time_s,
+        };
         if (!integrator_.create(system_, 0.0, state, options)) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
@@ -49,12 +54,13 @@ public:
     Status step(double time_s, double step_size_s, Message& message) override {
         system_.set_faces(faces(), integrator_.time());
         integrator_.restart();
-        if (!integrator_.advance(time_s + step_size_s - start_time_s_)) {
+        const bool advanced = integrator_.advance(time_s + step_size_s - start_time_s_);
+        now_s_ = integrator_.time(); // of the last good state, if it failed
+        write_outputs_now();
+        if (!advanced) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
-        now_s_ = integrator_.time();
-        write_outputs_now();
         return Status::ok;
     }
 

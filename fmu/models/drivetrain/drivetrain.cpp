@@ -53,7 +53,12 @@ public:
         const double state[state_count] = {v_.start_motor_angle, v_.start_motor_speed, v_.start_load_angle, v_.start_load_speed, 0.0, 0.0};
         system_.start(parameters(), {v_.load_inertia, v_.load_viscous}, state);
         stored_at_start_j_ = system_.evaluate(state).stored;
-        const solver::IntegratorOptions options{v_.solver_relative_tolerance, v_.solver_absolute_scale, v_.solver_maximum_step};
+        const solver::IntegratorOptions options{
+            .relative_tolerance = v_.solver_relative_tolerance,
+            .absolute_tolerance_scale = v_.solver_absolute_scale,
+            .maximum_step_s = v_.solver_maximum_step,
+            .clock_start_s = start_time_s,
+        };
         if (!integrator_.create(system_, 0.0, state, options)) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
@@ -66,6 +71,7 @@ public:
         const double end_s = time_s + step_size_s - start_time_s_;
         change_torques();
         if (!(v_.servo_enabled ? step_with_servo(end_s) : integrator_.advance(end_s))) {
+            write_outputs(); // the last good state
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
