@@ -94,6 +94,11 @@ public:
     // Back to the start values, as if newly created.
     virtual void reset() = 0;
 
+    // The whole state between two calls, as bytes without pointers (state_archive.hpp): a model that loads them goes on bit for bit as
+    // the one that saved them, in another process too. save_state(nullptr) only counts.
+    virtual std::size_t save_state(void *bytes) = 0;
+    virtual Status load_state(const void *bytes, std::size_t size, Message &message) = 0;
+
     // nullptr: the model steps by itself and offers nothing else.
     virtual Equations *equations() { return nullptr; }
 };

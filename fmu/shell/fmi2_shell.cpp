@@ -328,28 +328,38 @@ fmi2Status fmi2CancelStep(fmi2Component component) {
     return unsupported(component, "fmi2CancelStep", "asynchronous steps");
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component component, fmi2FMUstate *) {
-    return unsupported(component, "fmi2GetFMUstate", "getting its state");
+fmi2Status fmi2GetFMUstate(fmi2Component component, fmi2FMUstate *state) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.get_state("fmi2GetFMUstate", state));
 }
 
-fmi2Status fmi2SetFMUstate(fmi2Component component, fmi2FMUstate) {
-    return unsupported(component, "fmi2SetFMUstate", "setting its state");
+fmi2Status fmi2SetFMUstate(fmi2Component component, fmi2FMUstate state) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.set_state("fmi2SetFMUstate", state));
 }
 
-fmi2Status fmi2FreeFMUstate(fmi2Component component, fmi2FMUstate *) {
-    return unsupported(component, "fmi2FreeFMUstate", "getting its state");
+fmi2Status fmi2FreeFMUstate(fmi2Component component, fmi2FMUstate *state) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.free_state("fmi2FreeFMUstate", state));
 }
 
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate, size_t *) {
-    return unsupported(component, "fmi2SerializedFMUstateSize", "serialising its state");
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate state, size_t *size) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr && self->instance.serialised_size("fmi2SerializedFMUstateSize", state, size));
 }
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate, fmi2Byte[], size_t) {
-    return unsupported(component, "fmi2SerializeFMUstate", "serialising its state");
+fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate state, fmi2Byte bytes[],
+                                 size_t size) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.serialise("fmi2SerializeFMUstate", state, reinterpret_cast<unsigned char *>(bytes), size));
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte[], size_t, fmi2FMUstate *) {
-    return unsupported(component, "fmi2DeSerializeFMUstate", "serialising its state");
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte bytes[], size_t size,
+                                   fmi2FMUstate *state) {
+    Fmi2Instance *self = unwrap(component);
+    return status(self != nullptr &&
+                  self->instance.deserialise("fmi2DeSerializeFMUstate", reinterpret_cast<const unsigned char *>(bytes), size, state));
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2ValueReference[], size_t,

@@ -326,28 +326,38 @@ fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
     return unsupported(instance, "fmi3EvaluateDiscreteStates", "an event mode");
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *) {
-    return unsupported(instance, "fmi3GetFMUState", "getting its state");
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->get_state("fmi3GetFMUState", state));
 }
 
-fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState) {
-    return unsupported(instance, "fmi3SetFMUState", "setting its state");
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->set_state("fmi3SetFMUState", state));
 }
 
-fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *) {
-    return unsupported(instance, "fmi3FreeFMUState", "getting its state");
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->free_state("fmi3FreeFMUState", state));
 }
 
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState, size_t *) {
-    return unsupported(instance, "fmi3SerializedFMUStateSize", "serialising its state");
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr && self->serialised_size("fmi3SerializedFMUStateSize", state, size));
 }
 
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState, fmi3Byte[], size_t) {
-    return unsupported(instance, "fmi3SerializeFMUState", "serialising its state");
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[],
+                                 size_t size) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr &&
+                  self->serialise("fmi3SerializeFMUState", state, reinterpret_cast<unsigned char *>(bytes), size));
 }
 
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte[], size_t, fmi3FMUState *) {
-    return unsupported(instance, "fmi3DeserializeFMUState", "serialising its state");
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
+                                   fmi3FMUState *state) {
+    Instance *self = unwrap(instance);
+    return status(self != nullptr &&
+                  self->deserialise("fmi3DeserializeFMUState", reinterpret_cast<const unsigned char *>(bytes), size, state));
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference, size_t *) {

@@ -1,9 +1,14 @@
 #include "instance.hpp"
 
+#include "saved_state.hpp"
+#include "state_archive.hpp"
+
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <new>
+#include <utility>
 
 namespace giveway {
 namespace {
@@ -60,7 +65,7 @@ bool in(State state, States states) { return (static_cast<States>(state) & state
 Instance::Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log,
                    void *log_context)
     : model_(model), equations_(interface == Interface::model_exchange ? model->equations() : nullptr),
-      has_time_variable_(has_time_variable), log_(log), log_context_(log_context) {}
+      interface_(interface), has_time_variable_(has_time_variable), log_(log), log_context_(log_context) {}
 
 Instance::~Instance() { delete model_; }
 
@@ -339,6 +344,115 @@ bool Instance::reset(const char *function) {
     model_->reset();
     time_ = 0.0;
     state_ = State::instantiated;
+    return true;
+}
+
+bool Instance::get_state(const char *function, void **saved) {
+    if (saved == nullptr) {
+        return refuse(function, "the state's address is a null pointer");
+    }
+    StateWriter counter(nullptr);
+    archive(counter);
+    const std::size_t own = counter.size();
+    const std::size_t size = own + model_->save_state(nullptr);
+    auto *state = static_cast<SavedState *>(*saved);
+    const bool is_new = state == nullptr;
+    if (is_new) {
+        state = new (std::nothrow) SavedState;
+    }
+    std::unique_ptr<unsigned char[]> bytes(new (std::nothrow)
+                                               unsigned char[sizeof(StateHeader) + size]);
+    if (state == nullptr || bytes == nullptr) {
+        if (is_new) {
+            delete state;
+        }
+        return refuse(function, "out of memory");
+    }
+    StateWriter writer(bytes.get() + sizeof(StateHeader));
+    archive(writer);
+    (void)model_->save_state(bytes.get() + sizeof(StateHeader) + own);
+    seal(bytes.get(), size);
+    state->bytes = std::move(bytes);
+    state->size = sizeof(StateHeader) + size;
+    *saved = state;
+    return true;
+}
+
+bool Instance::set_state(const char *function, const void *saved) {
+    if (saved == nullptr) {
+        return refuse(function, "the state is a null pointer");
+    }
+    const auto &state = *static_cast<const SavedState *>(saved);
+    StateWriter counter(nullptr);
+    archive(counter);
+    const std::size_t own = counter.size();
+    const Interface interface = interface_;
+    StateReader reader(state.bytes.get() + sizeof(StateHeader), own);
+    archive(reader);
+    if (interface_ != interface) {
+        interface_ = interface;
+        state_ = State::failed;
+        return refuse(function, "the state was saved by an instance of the other interface "
+                                "(Co-Simulation, Model Exchange)");
+    }
+    Message message{};
+    const std::size_t before = sizeof(StateHeader) + own;
+    if (model_->load_state(state.bytes.get() + before, state.size - before, message) !=
+        Status::ok) {
+        return fail(function, message);
+    }
+    return true;
+}
+
+bool Instance::free_state(const char *, void **saved) {
+    if (saved != nullptr) {
+        delete static_cast<SavedState *>(*saved);
+        *saved = nullptr;
+    }
+    return true;
+}
+
+bool Instance::serialised_size(const char *function, const void *saved, std::size_t *size) {
+    if (saved == nullptr || size == nullptr) {
+        return refuse(function, "the state or the size is a null pointer");
+    }
+    *size = static_cast<const SavedState *>(saved)->size;
+    return true;
+}
+
+bool Instance::serialise(const char *function, const void *saved, unsigned char *bytes,
+                         std::size_t size) {
+    if (saved == nullptr || bytes == nullptr) {
+        return refuse(function, "the state or the bytes are a null pointer");
+    }
+    const auto &state = *static_cast<const SavedState *>(saved);
+    if (size < state.size) {
+        return refuse(function, "room for %zu bytes, but the state has %zu", size, state.size);
+    }
+    std::memcpy(bytes, state.bytes.get(), state.size);
+    return true;
+}
+
+bool Instance::deserialise(const char *function, const unsigned char *bytes, std::size_t size,
+                           void **saved) {
+    if (saved == nullptr) {
+        return refuse(function, "the state's address is a null pointer");
+    }
+    const char *fault = state_fault(bytes, size);
+    if (fault != nullptr) {
+        return refuse(function, "the state cannot be used: %s", fault);
+    }
+    auto *state = new (std::nothrow) SavedState;
+    if (state != nullptr) {
+        state->bytes.reset(new (std::nothrow) unsigned char[size]);
+    }
+    if (state == nullptr || state->bytes == nullptr) {
+        delete state;
+        return refuse(function, "out of memory");
+    }
+    std::memcpy(state->bytes.get(), bytes, size);
+    state->size = size;
+    *saved = state;
     return true;
 }
 

@@ -61,6 +61,15 @@ public:
     bool terminate(const char *function);
     bool reset(const char *function);
 
+    // The whole state. What *saved holds before is replaced; FMI's handle of a state is a SavedState.
+    bool get_state(const char *function, void **saved);
+    bool set_state(const char *function, const void *saved);
+    bool free_state(const char *function, void **saved);
+    bool serialised_size(const char *function, const void *saved, std::size_t *size);
+    bool serialise(const char *function, const void *saved, unsigned char *bytes, std::size_t size);
+    bool deserialise(const char *function, const unsigned char *bytes, std::size_t size,
+                     void **saved);
+
     // Model Exchange. Counts are those of the arrays that the importer hands over.
     bool allow_exchange(const char *function, States states);
     bool enter_event_mode(const char *function);
@@ -93,6 +102,15 @@ public:
     State state() const { return state_; }
 
 private:
+    template <class Archive> void archive(Archive &a) {
+        a(interface_);
+        a(state_);
+        a(time_);
+        a(stop_time_);
+        a(initialised_);
+        a(outputs_fresh_);
+        a(update_pending_);
+    }
     template <typename T>
     bool get(const char *function, VariableType type, const std::uint32_t *references,
              std::size_t count, T *values);
@@ -113,6 +131,7 @@ private:
 
     Model *model_;
     Equations *equations_; // of a Model Exchange instance, else nullptr
+    Interface interface_;
     bool has_time_variable_;
     LogFunction log_;
     void *log_context_;

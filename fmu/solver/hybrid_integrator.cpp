@@ -52,6 +52,7 @@ bool HybridIntegrator::create(HybridSystem& system, double time_s, const double*
     last_event_time_s_ = -1.0;
     fresh_ = true;
     events_ = 0;
+    before_ = {};
     memory_ = new (std::nothrow) Memory;
     if (memory_ == nullptr || !memory_->problem.create(system, state, options)) {
         return fail("has no memory", 0);
@@ -66,8 +67,22 @@ bool HybridIntegrator::create(HybridSystem& system, double time_s, const double*
 
 double* HybridIntegrator::state() { return NV_DATA_S(memory_->problem.state()); }
 
+bool HybridIntegrator::resume(HybridSystem& system, const Checkpoint& checkpoint, const double* state, const IntegratorOptions& options) {
+    if (!create(system, checkpoint.time_s, state, options)) {
+        return false;
+    }
+    step_hint_s_ = checkpoint.step_hint_s;
+    last_event_time_s_ = checkpoint.last_event_time_s;
+    before_ = checkpoint.statistics;
+    fresh_ = false;
+    return true;
+}
+
 IntegratorStatistics HybridIntegrator::statistics() const {
-    return {memory_->stepper->steps(), memory_->problem.rhs_calls(), memory_->problem.jacobian_calls(), events_};
+    const Stepper& stepper = *memory_->stepper;
+    const Problem& problem = memory_->problem;
+    return {before_.steps + stepper.steps(), before_.rhs_calls + problem.rhs_calls(), before_.jacobian_calls + problem.jacobian_calls(),
+            before_.events + events_};
 }
 
 bool HybridIntegrator::advance(double end_s) {

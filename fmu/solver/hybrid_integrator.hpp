@@ -6,6 +6,12 @@
 
 namespace giveway::solver {
 
+// Plain data.
+struct Checkpoint {
+    double time_s, step_hint_s, last_event_time_s;
+    IntegratorStatistics statistics;
+};
+
 class HybridIntegrator {
 public:
     HybridIntegrator() = default;
@@ -15,6 +21,10 @@ public:
 
     // False when SUNDIALS refuses or memory is short; error() says why. `system` must outlive the integrator.
     [[nodiscard]] bool create(HybridSystem& system, double time_s, const double* state, const IntegratorOptions& options);
+    // Goes on where another integrator of the same system and options stood when its checkpoint was taken.
+    [[nodiscard]] bool resume(HybridSystem& system, const Checkpoint& checkpoint, const double* state, const IntegratorOptions& options);
+    // Complete, together with the state, if restart() is called before the next advance(): a fresh start needs no history.
+    [[nodiscard]] Checkpoint checkpoint() const { return {time_s_, step_hint_s_, last_event_time_s_, statistics()}; }
     // The state, writable between advances; call restart() after writing or after an input changed.
     [[nodiscard]] double* state();
     [[nodiscard]] double time() const { return time_s_; }
@@ -37,6 +47,7 @@ private:
     double last_event_time_s_ = -1.0;
     bool fresh_ = true; // the integrator's history belongs to the current inputs and modes
     std::int64_t events_ = 0;
+    IntegratorStatistics before_ = {}; // of the run that was resumed
     char error_[256] = "";
 };
 

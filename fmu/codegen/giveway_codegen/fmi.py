@@ -104,7 +104,8 @@ def fmi3_model_description(table: Table, version: str) -> str:
         "modelIdentifier": f"giveway_{table.name}",
         "needsExecutionTool": "false",
         "canBeInstantiatedOnlyOncePerProcess": "false",
-        "canGetAndSetFMUState": "false",
+        "canGetAndSetFMUState": "true",
+        "canSerializeFMUState": "true",
     }
     if table.has_equations:
         exchange = {**common, "needsCompletedIntegratorStep": "true", "providesEvaluateDiscreteStates": "false"}
@@ -161,8 +162,8 @@ def fmi2_model_description(table: Table, version: str) -> str:
     common = {
         "canBeInstantiatedOnlyOncePerProcess": "false",
         "canNotUseMemoryManagementFunctions": "true",
-        "canGetAndSetFMUstate": "false",
-        "canSerializeFMUstate": "false",
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
     }
     if table.has_equations:
         exchange = {**identifier, "completedIntegratorStepNotNeeded": "false", **common}

@@ -2,6 +2,8 @@
 //
 // Co-Simulation moves the faces on with their velocities over a step, so that stops and latch are met inside a step and the force at its end is
 // that of the predicted position.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -11,6 +13,7 @@
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
+#include "state_archive.hpp"
 
 namespace giveway::bumper {
 
@@ -26,6 +29,23 @@ public:
     void reset() override {
         v_ = {};
         set_start_values(v_);
+        running_ = false;
+    }
+
+    std::size_t save_state(void* bytes) override {
+        StateWriter writer(bytes);
+        archive(writer);
+        return writer.size();
+    }
+
+    Status load_state(const void* bytes, std::size_t size, Message& message) override {
+        StateReader reader(bytes, size);
+        archive(reader);
+        if (!reader.exact()) {
+            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
+            return Status::error;
+        }
+        return resume(message);
     }
 
     Status initialise(double start_time_s, Message& message) override {
@@ -37,16 +57,11 @@ public:
         system_.set_faces(faces(), 0.0);
         stored_at_start_j_ = system_.force(0.0).stored;
         const double state[state_count] = {};
-        const solver::IntegratorOptions options{
-            .relative_tolerance = v_.solver_relative_tolerance,
-            .absolute_tolerance_scale = v_.solver_absolute_scale,
-            .maximum_step_s = v_.solver_maximum_step,
-            .clock_start_s = start_time_s,
-        };
-        if (!integrator_.create(system_, 0.0, state, options)) {
+        if (!integrator_.create(system_, 0.0, state, solver_options())) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
+        running_ = true;
         write_outputs_now();
         return Status::ok;
     }
@@ -102,6 +117,45 @@ public:
     }
 
 private:
+    // Everything but what resume() makes of it.
+    template <class Archive> void archive(Archive& a) {
+        a(v_);
+        a(running_);
+        if (!running_) {
+            return;
+        }
+        if constexpr (std::is_same_v<Archive, StateWriter>) {
+            checkpoint_ = integrator_.checkpoint();
+            std::copy_n(integrator_.state(), checkpoint_state_.size(), checkpoint_state_.begin());
+        }
+        a(checkpoint_);
+        a(checkpoint_state_);
+        system_.archive(a);
+        a(start_time_s_);
+        a(stored_at_start_j_);
+        a(now_s_);
+        a(last_event_s_);
+        a(events_);
+        a(exchanging_);
+    }
+
+    Status resume(Message& message) {
+        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
+            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+            return Status::error;
+        }
+        return Status::ok;
+    }
+
+    [[nodiscard]] solver::IntegratorOptions solver_options() const {
+        return {
+            .relative_tolerance = v_.solver_relative_tolerance,
+            .absolute_tolerance_scale = v_.solver_absolute_scale,
+            .maximum_step_s = v_.solver_maximum_step,
+            .clock_start_s = start_time_s_,
+        };
+    }
+
     // Co-Simulation moves the faces itself.
     void follow_faces() {
         if (exchanging_) {
@@ -160,6 +214,10 @@ private:
     double last_event_s_ = 0.0;
     std::int32_t events_ = 0;
     bool exchanging_ = false;
+    // State.
+    bool running_ = false; // initialised
+    solver::Checkpoint checkpoint_{};
+    std::array<double, state_count> checkpoint_state_{};
 };
 
 } // namespace

@@ -21,6 +21,13 @@ public:
         modes_ = {};
     }
 
+    template <class Archive> void archive(Archive& a) {
+        a(parameters_);
+        a(modes_);
+        a(faces_);
+        a(faces_time_s_);
+    }
+
     // From `time_s` on the faces move on with these velocities. Where they are decides which stops they touch.
     void set_faces(const Faces& faces, double time_s) {
         follow_faces(faces, time_s);

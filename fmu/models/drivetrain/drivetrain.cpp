@@ -1,4 +1,6 @@
 // The drivetrain of Fig. 6 behind the model interface; by choice with the servo of the drives beside it.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -9,6 +11,7 @@
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
 #include "servo_axis.hpp"
+#include "state_archive.hpp"
 
 namespace giveway::drivetrain {
 
@@ -27,6 +30,23 @@ public:
     void reset() override {
         v_ = {};
         set_start_values(v_);
+        running_ = false;
+    }
+
+    std::size_t save_state(void* bytes) override {
+        StateWriter writer(bytes);
+        archive(writer);
+        return writer.size();
+    }
+
+    Status load_state(const void* bytes, std::size_t size, Message& message) override {
+        StateReader reader(bytes, size);
+        archive(reader);
+        if (!reader.exact()) {
+            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
+            return Status::error;
+        }
+        return resume(message);
     }
 
     Status initialise(double start_time_s, Message& message) override {
@@ -53,16 +73,11 @@ public:
         const double state[state_count] = {v_.start_motor_angle, v_.start_motor_speed, v_.start_load_angle, v_.start_load_speed, 0.0, 0.0};
         system_.start(parameters(), {v_.load_inertia, v_.load_viscous}, state);
         stored_at_start_j_ = system_.evaluate(state).stored;
-        const solver::IntegratorOptions options{
-            .relative_tolerance = v_.solver_relative_tolerance,
-            .absolute_tolerance_scale = v_.solver_absolute_scale,
-            .maximum_step_s = v_.solver_maximum_step,
-            .clock_start_s = start_time_s,
-        };
-        if (!integrator_.create(system_, 0.0, state, options)) {
+        if (!integrator_.create(system_, 0.0, state, solver_options())) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
+        running_ = true;
         write_outputs();
         return Status::ok;
     }
@@ -70,6 +85,7 @@ public:
     Status step(double time_s, double step_size_s, Message& message) override {
         const double end_s = time_s + step_size_s - start_time_s_;
         change_torques();
+        integrator_.restart(); // so that the state of a step needs no history of the integration
         if (!(v_.servo_enabled ? step_with_servo(end_s) : integrator_.advance(end_s))) {
             write_outputs(); // the last good state
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
@@ -140,6 +156,49 @@ public:
     }
 
 private:
+    // Everything but what resume() makes of it.
+    template <class Archive> void archive(Archive& a) {
+        a(v_);
+        a(running_);
+        if (!running_) {
+            return;
+        }
+        if constexpr (std::is_same_v<Archive, StateWriter>) {
+            checkpoint_ = integrator_.checkpoint();
+            std::copy_n(integrator_.state(), checkpoint_state_.size(), checkpoint_state_.begin());
+        }
+        a(checkpoint_);
+        a(checkpoint_state_);
+        system_.archive(a);
+        a(servo_);
+        a(servo_torque_nm_);
+        a(start_time_s_);
+        a(stored_at_start_j_);
+        a(tick_);
+        a(due_);
+        a(now_s_);
+        a(last_event_s_);
+        a(events_);
+        a(exchanging_);
+    }
+
+    Status resume(Message& message) {
+        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
+            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+            return Status::error;
+        }
+        return Status::ok;
+    }
+
+    [[nodiscard]] solver::IntegratorOptions solver_options() const {
+        return {
+            .relative_tolerance = v_.solver_relative_tolerance,
+            .absolute_tolerance_scale = v_.solver_absolute_scale,
+            .maximum_step_s = v_.solver_maximum_step,
+            .clock_start_s = start_time_s_,
+        };
+    }
+
     // Co-Simulation takes its torques in at the start of a step.
     void follow_torques() {
         if (exchanging_) {
@@ -245,6 +304,10 @@ private:
     double last_event_s_ = 0.0;
     std::int32_t events_ = 0;
     bool exchanging_ = false;
+    // State.
+    bool running_ = false; // initialised
+    solver::Checkpoint checkpoint_{};
+    std::array<double, state_count> checkpoint_state_{};
 };
 
 } // namespace

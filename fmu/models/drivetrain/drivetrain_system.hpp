@@ -38,6 +38,13 @@ public:
         release(state);
     }
 
+    template <class Archive> void archive(Archive& a) {
+        a(parameters_);
+        a(load_);
+        a(torques_);
+        a(direction_);
+    }
+
     void set_torques(const Torques& torques, const double* state) {
         torques_ = torques;
         release(state);

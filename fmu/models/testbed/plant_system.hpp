@@ -15,11 +15,22 @@ public:
     void start(const plant::Parameters<double>& parameters, const plant::InitialMotion<double>& motion, const plant::Inputs<double>& inputs,
                plant::StateVector<double>& state) {
         parameters_ = parameters;
-        derived_ = plant::derive(parameters_);
-        jacobian_.set_parameters(parameters_, derived_);
+        derive();
         inputs_ = inputs;
         plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
         first_contact_time_s_ = modes_.contact > 0.5 ? 0.0 : -1.0;
+    }
+
+    template <class Archive> void archive(Archive& a) {
+        a(parameters_);
+        a(inputs_);
+        a(modes_);
+        a(first_contact_time_s_);
+    }
+    // What follows from the parameters, after they were loaded.
+    void derive() {
+        derived_ = plant::derive(parameters_);
+        jacobian_.set_parameters(parameters_, derived_);
     }
 
     void set_inputs(const plant::Inputs<double>& inputs, const double* state) {

@@ -10,6 +10,7 @@
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
 #include "plant_system.hpp"
+#include "state_archive.hpp"
 #include "testbed_variables.hpp"
 
 namespace giveway::testbed {
@@ -29,6 +30,23 @@ public:
     void reset() override {
         v_ = {};
         set_start_values(v_);
+        running_ = false;
+    }
+
+    std::size_t save_state(void* bytes) override {
+        StateWriter writer(bytes);
+        archive(writer);
+        return writer.size();
+    }
+
+    Status load_state(const void* bytes, std::size_t size, Message& message) override {
+        StateReader reader(bytes, size);
+        archive(reader);
+        if (!reader.exact()) {
+            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
+            return Status::error;
+        }
+        return resume(message);
     }
 
     Status initialise(double start_time_s, Message& message) override {
@@ -60,17 +78,11 @@ public:
                           static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
             return Status::error;
         }
-        const solver::IntegratorOptions options{
-            .relative_tolerance = v_.solver_relative_tolerance,
-            .absolute_tolerance_scale = v_.solver_absolute_scale,
-            .maximum_step_s = v_.solver_maximum_step,
-            .method = static_cast<solver::Method>(v_.solver_method),
-            .clock_start_s = start_time_s,
-        };
-        if (!integrator_.create(system_, 0.0, state.data(), options)) {
+        if (!integrator_.create(system_, 0.0, state.data(), solver_options())) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
         }
+        running_ = true;
         sample_sensors();
         write_outputs();
         return Status::ok;
@@ -80,6 +92,7 @@ public:
         const double end_s = time_s + step_size_s - start_time_s_;
         const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
         change_push();
+        integrator_.restart(); // so that the state of a step needs no history of the integration
         while (static_cast<double>(tick_) < end_ticks - rounding_ticks) {
             if (due_) {
                 leave_tick();
@@ -195,6 +208,52 @@ public:
     }
 
 private:
+    // Everything but what resume() makes of it.
+    template <class Archive> void archive(Archive& a) {
+        a(v_);
+        a(running_);
+        if (!running_) {
+            return;
+        }
+        if constexpr (std::is_same_v<Archive, StateWriter>) {
+            checkpoint_ = integrator_.checkpoint();
+            std::copy_n(integrator_.state(), checkpoint_state_.size(), checkpoint_state_.begin());
+        }
+        a(checkpoint_);
+        a(checkpoint_state_);
+        system_.archive(a);
+        a(drives_);
+        a(start_time_s_);
+        a(stored_at_start_j_);
+        a(tick_);
+        a(due_);
+        a(now_s_);
+        a(last_event_s_);
+        a(events_);
+        a(exchanging_);
+    }
+
+    Status resume(Message& message) {
+        if (running_) {
+            system_.derive();
+            if (!integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
+                std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
+                return Status::error;
+            }
+        }
+        return Status::ok;
+    }
+
+    [[nodiscard]] solver::IntegratorOptions solver_options() const {
+        return {
+            .relative_tolerance = v_.solver_relative_tolerance,
+            .absolute_tolerance_scale = v_.solver_absolute_scale,
+            .maximum_step_s = v_.solver_maximum_step,
+            .method = static_cast<solver::Method>(v_.solver_method),
+            .clock_start_s = start_time_s_,
+        };
+    }
+
     [[nodiscard]] plant::Inputs<double> push_inputs(const std::array<double, 3>& motor_torque_nm) const {
         return {motor_torque_nm, v_.push_force_x, v_.push_force_y, v_.push_point_x, v_.push_point_y};
     }
@@ -292,6 +351,10 @@ private:
     double last_event_s_ = 0.0;
     std::int32_t events_ = 0;
     bool exchanging_ = false;
+    // State.
+    bool running_ = false; // initialised
+    solver::Checkpoint checkpoint_{};
+    plant::StateVector<double> checkpoint_state_{};
 };
 
 } // namespace

@@ -140,6 +140,25 @@ static void live_through_exchange(const fmi2CallbackFunctions& callbacks, bool r
     fmi2FreeInstance(component);
 }
 
+// Takes, carries, puts back and frees states; one is filled twice.
+static void live_with_states(fmi3Instance fmu) {
+    fmi3FMUState state = nullptr;
+    ASSERT_EQ(fmi3GetFMUState(fmu, &state), fmi3OK);
+    ASSERT_EQ(fmi3GetFMUState(fmu, &state), fmi3OK);
+    size_t size = 0;
+    ASSERT_EQ(fmi3SerializedFMUStateSize(fmu, state, &size), fmi3OK);
+    std::vector<fmi3Byte> bytes(size);
+    ASSERT_EQ(fmi3SerializeFMUState(fmu, state, bytes.data(), size), fmi3OK);
+    fmi3FMUState carried = nullptr;
+    ASSERT_EQ(fmi3DeserializeFMUState(fmu, bytes.data(), size, &carried), fmi3OK);
+    ASSERT_EQ(fmi3SetFMUState(fmu, carried), fmi3OK);
+    bytes.back() ^= 1;
+    fmi3FMUState refused = nullptr;
+    ASSERT_EQ(fmi3DeserializeFMUState(fmu, bytes.data(), size, &refused), fmi3Error);
+    ASSERT_EQ(fmi3FreeFMUState(fmu, &state), fmi3OK);
+    ASSERT_EQ(fmi3FreeFMUState(fmu, &carried), fmi3OK);
+}
+
 // Ten thousand lives: with and without initialisation, steps, reset and terminate; FMI 3 and FMI 2; both interfaces.
 TEST(Instances, LeaveNoMemoryBehind) {
     fmi2CallbackFunctions callbacks{};
@@ -155,6 +174,9 @@ TEST(Instances, LeaveNoMemoryBehind) {
             fmi3Boolean ignored = fmi3False;
             fmi3Float64 reached = 0.0;
             ASSERT_EQ(fmi3DoStep(fmu, 0.0, 1e-3, fmi3True, &ignored, &ignored, &ignored, &reached), fmi3OK);
+            if (life % 10 == 0) {
+                live_with_states(fmu);
+            }
             if (life % 4 == 0) {
                 ASSERT_EQ(fmi3Reset(fmu), fmi3OK);
             } else {

@@ -184,14 +184,13 @@ def test_instances_that_cannot_be(lag: Fmu) -> None:
 
 # Called with nothing but zeros: what an FMU does not offer, it refuses before it looks at its arguments.
 UNSUPPORTED = {
-    2: """GetStatus GetIntegerStatus GetStringStatus CancelStep GetFMUstate SetFMUstate FreeFMUstate
-        SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate GetDirectionalDerivative SetRealInputDerivatives
+    2: """GetStatus GetIntegerStatus GetStringStatus CancelStep
+        GetDirectionalDerivative SetRealInputDerivatives
         GetRealOutputDerivatives EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep
         SetTime SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates
         GetNominalsOfContinuousStates""",
     3: """EnterConfigurationMode ExitConfigurationMode EnterEventMode EnterStepMode EvaluateDiscreteStates
-        UpdateDiscreteStates GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState
-        DeserializeFMUState GetNumberOfVariableDependencies GetVariableDependencies GetDirectionalDerivative
+        UpdateDiscreteStates GetNumberOfVariableDependencies GetVariableDependencies GetDirectionalDerivative
         GetAdjointDerivative GetOutputDerivatives GetIntervalDecimal GetIntervalFraction GetShiftDecimal
         GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
         ActivateModelPartition EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates

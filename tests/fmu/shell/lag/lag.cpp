@@ -1,5 +1,6 @@
 #include "lag_variables.hpp"
 #include "model.hpp"
+#include "state_archive.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -39,6 +40,22 @@ public:
         }
         variables_.output_number = in.input_number;
         variables_.output_held = in.input_hold;
+        return Status::ok;
+    }
+
+    std::size_t save_state(void *bytes) override {
+        StateWriter writer(bytes);
+        writer(variables_);
+        return writer.size();
+    }
+
+    Status load_state(const void *bytes, std::size_t size, Message &message) override {
+        StateReader reader(bytes, size);
+        reader(variables_);
+        if (!reader.exact()) {
+            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
+            return Status::error;
+        }
         return Status::ok;
     }
 

@@ -1,0 +1,60 @@
+// A model's state as bytes without pointers. A class lists its members once, in `template <class Archive> void archive(Archive&)`;
+// the same list counts, writes and reads.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+namespace giveway {
+
+// Counts, and writes unless `bytes` is null.
+class StateWriter {
+public:
+    explicit StateWriter(void* bytes) : bytes_(static_cast<unsigned char*>(bytes)) {}
+
+    template <class T> void operator()(T& value) {
+        static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+        array(&value, 1);
+    }
+    template <class T> void array(T* values, std::size_t count) {
+        if (bytes_ != nullptr) {
+            std::memcpy(bytes_ + size_, values, count * sizeof(T));
+        }
+        size_ += count * sizeof(T);
+    }
+    [[nodiscard]] std::size_t size() const { return size_; }
+
+private:
+    unsigned char* bytes_;
+    std::size_t size_ = 0;
+};
+
+// Reads; once the bytes do not suffice it leaves everything alone.
+class StateReader {
+public:
+    StateReader(const void* bytes, std::size_t size) : bytes_(static_cast<const unsigned char*>(bytes)), left_(size) {}
+
+    template <class T> void operator()(T& value) {
+        static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+        array(&value, 1);
+    }
+    template <class T> void array(T* values, std::size_t count) {
+        const std::size_t size = count * sizeof(T);
+        sufficed_ = sufficed_ && size <= left_;
+        if (sufficed_) {
+            std::memcpy(values, bytes_, size);
+            bytes_ += size;
+            left_ -= size;
+        }
+    }
+    // Every byte was used, and there were enough.
+    [[nodiscard]] bool exact() const { return sufficed_ && left_ == 0; }
+
+private:
+    const unsigned char* bytes_;
+    std::size_t left_;
+    bool sufficed_ = true;
+};
+
+} // namespace giveway
