@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from giveway.master import Progress
     from giveway.result import Result
     from giveway.scenario import Scenario
+    from giveway.sweep import Sweep
 
 __all__ = ["app", "main"]
 
@@ -147,6 +148,45 @@ def variables(
     chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
     rows = [(v.name, v.causality, "" if v.start is None else f"{v.start}", v.allowed, v.description) for v in chosen]
     _print_columns(f"{len(chosen)} variables of {model}", ("name", "kind", "start", "allowed", "meaning"), rows)
+
+
+@app.command()
+def drivetrain(
+    plot: Annotated[bool, typer.Option("--plot", help="Draw Bode diagrams, margins, steps and poles.")] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="PATH", help="Folder, or FILE.png, .svg or .json. With --plot: out/drivetrain."),
+    ] = None,
+    robot: RobotOption = None,
+    load: Annotated[str, typer.Option("--load", help="base, wheel, locked, or an inertia in kg m2.")] = "base",
+    delay: Annotated[int, typer.Option("--servo-delay", metavar="TICKS", help="Servo ticks of 0.5 ms, 0 to 64.")] = 0,
+    sweep: Annotated[bool, typer.Option("--sweep", help="Measure the FMU's response with sines, too.")] = False,
+) -> None:
+    """Linearise the drivetrain: poles, bandwidth of the sensed torque, margins of the 2 kHz servo."""
+    from giveway import drivetrain as model
+    from giveway.drivetrain_analysis import analyse, table_rows
+
+    if out is None and plot:
+        out = Path("out/drivetrain")
+    found = model.read(robot, load, delay)
+    if out is not None:
+        from giveway.report.drivetrain import check_results, write_results
+
+        check_results(out)
+    analysis = analyse(*found)
+    sweeps: list[Sweep] = []
+    if sweep:
+        from giveway.sweep import deviations, measure_all
+
+        sweeps = measure_all(analysis, model.gear_friction(robot))
+    title = model.describe(robot, load, *found)
+    _print_columns(title, ("", *analysis.cases), table_rows(analysis))
+    if sweep:
+        header = ("", "points", "largest in gain", "in phase")
+        _print_columns("Deviation of the FMU from the linear model", header, deviations(analysis, sweeps))
+    if out is not None:
+        written = write_results(out, title, analysis, sweeps)
+        typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
 @app.command()

@@ -11,9 +11,9 @@ from pathlib import Path
 
 from giveway.errors import FileError
 
-__all__ = ["check_output", "replace_folder", "write_text"]
+__all__ = ["check_file", "check_output", "replace_file", "replace_folder", "write_text"]
 
-MARKERS = ("manifest.json", "summary.json")
+MARKERS = ("manifest.json", "summary.json", "drivetrain.json")
 
 
 def check_output(folder: Path) -> None:
@@ -23,11 +23,40 @@ def check_output(folder: Path) -> None:
             raise FileError(folder, "is a file", "give a folder to write to")
         if any(folder.iterdir()) and not any((folder / marker).is_file() for marker in MARKERS):
             raise FileError(folder, "is not empty and holds no giveway result", "give a new or an empty folder")
-    parent = folder.absolute().parent
+    _check_parent(folder)
+
+
+def check_file(path: Path) -> None:
+    """Refuse, before any work is done, a file that `replace_file` could not write."""
+    if path.exists() and not path.is_file():
+        raise FileError(path, "is not a file", "give a file to write to")
+    _check_parent(path)
+
+
+def _existing_parent(path: Path) -> Path:
+    """The nearest folder above ``path`` that is there."""
+    parent = path.absolute().parent
     while not parent.exists():
         parent = parent.parent
+    return parent
+
+
+def _check_parent(path: Path) -> None:
+    parent = _existing_parent(path)
     if not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise FileError(folder, f"cannot be written: {parent} is not a writable folder")
+        raise FileError(path, f"cannot be written: {parent} is not a writable folder")
+
+
+@contextmanager
+def replace_file(path: Path) -> Iterator[Path]:
+    """A file of the same ending that takes the place of ``path`` when the block ends without an exception."""
+    check_file(path)
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}-", dir=_existing_parent(path)) as folder:
+        temporary = Path(folder) / path.name
+        yield temporary
+        _sync(temporary)
+        path.absolute().parent.mkdir(parents=True, exist_ok=True)
+        temporary.replace(path)
 
 
 @contextmanager

@@ -37,6 +37,13 @@ WRONG = {
     "unknown command": (("frob",), ("frob",)),
     "unknown model of variables": (("variables", "testbd"), ("testbd", "did you mean testbed?")),
     "no repeats": (("bench", "--repeats", "0"), ("--repeats", "1 to 100")),
+    "unknown load": (("drivetrain", "--load", "weel"), ("load", "weel", "base, wheel, locked", "kg.m2")),
+    "infinite load": (("drivetrain", "--load", "inf"), ("load", "inf", "locked")),
+    "servo delay too long": (("drivetrain", "--servo-delay", "65"), ("servo.delay", "65", "0 to 64")),
+    "drivetrain of no robot": (("drivetrain", "--plot", "--robot", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    "drivetrain output is a device": (("drivetrain", "--out", "/dev/null"), ("/dev/null", "folder")),
+    "picture in a file": (("drivetrain", "--out", "/dev/null/a.png"), ("/dev/null/a.png", "not a writable folder")),
+    "sweep of a locked wheel": (("drivetrain", "--load", "locked", "--sweep"), ("load", "locked", "100 kg m2")),
     "demo output is a file": (("demo", "--out", "/dev/null"), ("/dev/null", "folder")),
 }
 

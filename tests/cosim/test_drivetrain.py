@@ -1,0 +1,259 @@
+"""The linear drivetrain against closed forms and against a sampled simulation that does not use python-control."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cosim_helpers import Cli, folder_content
+from giveway import native
+from giveway.drivetrain import (
+    ANGLE,
+    ENVIRONMENT,
+    MOTOR,
+    SENSED,
+    Drivetrain,
+    Servo,
+    closed_loop,
+    loop_gain,
+    plant,
+    read,
+    response,
+)
+from giveway.drivetrain_analysis import analyse
+from giveway.errors import FileError, GivewayError
+from PIL import Image
+from sampled_drivetrain import TICK_S, largest_multiplier, simulate
+
+FREQUENCY_HZ = np.geomspace(0.01, 900.0, 60)
+
+
+def impedances(p: Drivetrain) -> tuple[np.ndarray, ...]:
+    s = 2j * math.pi * FREQUENCY_HZ
+    motor = p.motor_inertia * s**2 + p.gear_viscous * s
+    load = p.load_inertia * s**2 + p.load_viscous * s
+    return motor, load, p.damping * s + p.stiffness
+
+
+@pytest.mark.parametrize("load", ["base", "wheel", 3.0])
+def test_response_is_the_closed_form(load: str | float) -> None:
+    """tau_s = c (Zl tau_m - Zm tau_e)/(Zm Zl + c (Zm + Zl)), from the three equations by hand."""
+    p = dataclasses.replace(read(load=load)[0], load_viscous=0.3)
+    motor, torsion_load, c = impedances(p)
+    bottom = motor * torsion_load + c * (motor + torsion_load)
+    for source, top in ((MOTOR, torsion_load), (ENVIRONMENT, -motor)):
+        wanted = c * top / bottom
+        # Rounding: the rigid rotation makes numerator and denominator small together at low frequency.
+        assert np.max(np.abs(response(p, None, source, FREQUENCY_HZ) / wanted - 1.0)) < 1e-9
+    # A stuck gear is a motor that does not move.
+    wanted = -c / (torsion_load + c)
+    stuck = response(p, None, ENVIRONMENT, FREQUENCY_HZ, stuck=True)
+    assert np.max(np.abs(stuck / wanted - 1.0)) < 1e-12
+
+
+def test_locked_wheel_is_one_oscillator() -> None:
+    p, servo = read(load="locked")
+    (pole,) = analyse(p, servo).cases["unpowered"].poles
+    omega = math.sqrt(p.stiffness / p.motor_inertia)
+    assert 2.0 * math.pi * pole.frequency_hz == pytest.approx(omega, rel=1e-12)
+    assert pole.damping == pytest.approx((p.damping + p.gear_viscous) / (2.0 * p.motor_inertia * omega), rel=1e-12)
+
+
+def test_locked_wheel_is_the_limit_of_a_heavy_one() -> None:
+    locked, servo = read(load="locked")
+    heavy = dataclasses.replace(locked, load_inertia=100.0)
+    fast = FREQUENCY_HZ[FREQUENCY_HZ > 10.0]
+    for used in (None, servo):
+        ratio = response(heavy, used, MOTOR, fast) / response(locked, used, MOTOR, fast)
+        # k/(J w^2) = 668/(100 (2 pi 10)^2) = 0.0017, times the gain of the resonance.
+        assert np.max(np.abs(ratio - 1.0)) < 0.01
+
+
+def test_base_inertia_holds_the_energy_of_straight_motion() -> None:
+    """Against the Jacobians of (9) to (14), in any direction."""
+    mass, radius, roller_radius, wheel_inertia, roller_inertia = 34.7, 0.1016, 0.009525, 0.002798, 1.23e-6
+    inertia = read()[0].load_inertia
+    azimuth = np.radians([0.0, 120.0, 240.0])
+    for direction in (0.0, 0.4, 2.1):
+        velocity = np.array([math.cos(direction), math.sin(direction)])
+        wheels = np.column_stack((-np.sin(azimuth), np.cos(azimuth))) @ velocity / radius
+        rollers = np.column_stack((np.cos(azimuth), np.sin(azimuth))) @ velocity / roller_radius
+        energy = mass + wheel_inertia * wheels @ wheels + roller_inertia * rollers @ rollers
+        assert inertia * wheels @ wheels == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("load", ["base", "wheel"])
+@pytest.mark.parametrize("delay", [0, 1, 5])
+def test_closed_loop_steps_as_the_simulation(load: str, delay: int) -> None:
+    import control
+
+    p, servo = read(load=load, delay=delay)
+    system = closed_loop(p, servo)
+    ticks = 400
+    for source in (MOTOR, ENVIRONMENT):
+        wanted = simulate(p, servo, (1.0, 0.0) if source == MOTOR else (0.0, 1.0), ticks)
+        step = control.step_response(system[SENSED, source], TICK_S * np.arange(ticks))
+        # Rounding over 400 ticks; the torque is of the order of 1 N m.
+        assert np.max(np.abs(np.squeeze(step.outputs) - wanted)) < 1e-9
+
+
+@pytest.mark.parametrize("delay", [0, 4])
+def test_sampled_response_is_the_settled_simulation(delay: int) -> None:
+    """With torques that hold for a tick, sensed at ticks, `closed_loop` is exact; `response` is its continuous kin.
+
+    They differ by the hold of the input, and by what of the input's staircase comes through around the servo's rate.
+    """
+    p, servo = read(load="base", delay=delay)
+    frequency = np.array([0.5, 3.0, 20.0])
+    z = np.exp(2j * np.pi * frequency * TICK_S)
+    hold = (1.0 - 1.0 / z) / np.log(z)
+    discrete = closed_loop(p, servo)(z)
+    for source in (MOTOR, ENVIRONMENT):
+        # At 20 Hz the first image is 1 % of the sine and passes at a hundredth of the sine's gain.
+        assert np.max(np.abs(discrete[SENSED, source] / (hold * response(p, servo, source, frequency)) - 1.0)) < 3e-4
+
+
+def test_a_slow_servo_is_a_spring_and_a_damper_at_the_motor() -> None:
+    """Gains that hardly move anything within a tick, a filter far above: kp + kd s acts on the motor."""
+    p = Drivetrain(motor_inertia=5.0, stiffness=300.0, damping=20.0, gear_viscous=0.1, load_inertia=8.0)
+    servo = Servo(kp=50.0, kd=30.0, derivative_cutoff=900.0)
+    s = 2j * np.pi * (frequency := np.geomspace(0.01, 2.0, 30))
+    motor = p.motor_inertia * s**2 + (p.gear_viscous + servo.kd) * s + servo.kp
+    load, c = p.load_inertia * s**2, p.damping * s + p.stiffness
+    wanted = -c * motor / (motor * load + c * (motor + load))
+    # Half a tick of hold, half of differentiation, 0.2 ms of filter: w * 0.7 ms = 0.9 % at 2 Hz of the servo's share.
+    assert np.max(np.abs(response(p, servo, ENVIRONMENT, frequency) / wanted - 1.0)) < 0.01
+
+
+@pytest.mark.parametrize(("load", "delay"), [("base", 0), ("wheel", 0), ("wheel", 6), (0.02, 3)])
+def test_margins_are_where_the_loop_becomes_unstable(load: str | float, delay: int) -> None:
+    p, servo = read(load=load, delay=delay)
+    margins = analyse(p, servo).margins
+    # A pair of poles of the free rotation lies at or near 1: growth counts above rounding.
+    stable = 1.0 + 1e-7
+    assert margins.gain is not None
+    assert margins.delay_s is not None
+    assert margins.phase_deg is not None
+    assert largest_multiplier(p, servo) < stable
+    assert largest_multiplier(p, servo, 0.999 * margins.gain) < stable
+    assert largest_multiplier(p, servo, 1.001 * margins.gain) > stable
+    ticks = margins.delay_s / TICK_S
+    assert largest_multiplier(p, servo, delay=delay + math.floor(ticks)) < stable
+    assert largest_multiplier(p, servo, delay=delay + math.ceil(ticks)) > stable
+    dense = np.geomspace(0.05, 999.0, 50_000)
+    loop = loop_gain(p, servo)(np.exp(2j * np.pi * dense * TICK_S))
+    assert margins.distance == pytest.approx(float(np.min(np.abs(1.0 + loop))), rel=1e-3)
+    rows = np.flatnonzero(np.diff(np.abs(loop) > 1.0))
+    assert margins.crossover_hz == pytest.approx(list(dense[rows]), rel=1e-3)
+    distances = np.abs((np.degrees(np.angle(loop[rows])) + 360.0) % 360.0 - 180.0)
+    assert margins.phase_deg == pytest.approx(float(distances.min()), abs=0.1)
+
+
+def test_bandwidth_and_resonance_lie_on_the_curve() -> None:
+    p, servo = read()
+    for name, case in analyse(p, servo).cases.items():
+        channel = case.channels["environment"]
+        used = servo if name == "servo" else None
+
+        def gain(frequency: float | None, used: Servo | None = used, name: str = name) -> float:
+            assert frequency is not None
+            return float(np.abs(response(p, used, ENVIRONMENT, np.array([frequency]), stuck=name == "gear stuck"))[0])
+
+        assert channel.static_gain == pytest.approx(-1.0, abs=1e-3)  # 1e-6 Hz stands for zero
+        assert gain(channel.bandwidth_hz) == pytest.approx(math.sqrt(0.5), rel=1e-3)
+        if channel.resonance_hz is not None:
+            assert gain(channel.resonance_hz) == pytest.approx(channel.resonance_gain, rel=1e-6)
+            for aside in (0.98, 1.02):
+                assert gain(aside * channel.resonance_hz) < gain(channel.resonance_hz)
+
+
+def test_a_delay_beyond_the_margin_is_called_unstable() -> None:
+    p, servo = read(load="wheel", delay=20)
+    analysis = analyse(p, servo)
+    assert not analysis.cases["servo"].stable
+    assert analysis.cases["servo"].channels == {}
+    assert analysis.margins.gain is None
+    assert analysis.margins.delay_s is None
+    assert analysis.cases["unpowered"].stable
+
+
+def test_motor_torque_turns_the_motor_of_a_free_drivetrain() -> None:
+    p, _ = read()
+    slow = np.array([1e-3])
+    s = 2j * np.pi * slow
+    rigid = 1.0 / (s * ((p.motor_inertia + p.load_inertia) * s + p.gear_viscous))
+    assert abs(response(p, None, MOTOR, slow, sink=ANGLE) / rigid - 1.0)[0] < 1e-6
+
+
+def test_what_cannot_move_or_is_not_a_number_is_refused() -> None:
+    good = {"motor_inertia": 0.05, "stiffness": 600.0, "damping": 1.0, "gear_viscous": 0.02, "load_inertia": 0.2}
+    for field, value in (
+        ("stiffness", -1.0),
+        ("stiffness", math.nan),
+        ("load_inertia", 0.0),
+        ("load_inertia", -math.inf),
+    ):
+        with pytest.raises(GivewayError, match=field.split("_")[0]):
+            Drivetrain(**{**good, field: value})
+    with pytest.raises(GivewayError, match=r"servo\.delay"):
+        Servo(kp=1.0, kd=1.0, derivative_cutoff=60.0, delay=-1)
+    with pytest.raises(GivewayError, match="nothing does"):
+        plant(read(load="locked")[0], stuck=True)
+    with pytest.raises(GivewayError, match="below 1000 Hz"):
+        response(*read(), MOTOR, np.array([1000.0]))
+    with pytest.raises(GivewayError, match="base, wheel, locked"):
+        read(load="bse")
+
+
+def test_the_robot_file_counts(tmp_path: Path) -> None:
+    text = native.robot().read_text()
+    robot = tmp_path / "stiff.toml"
+    robot.write_text(text.replace("value = 668.0", "value = 2672.0"))
+    soft, stiff = (analyse(*read(path)).cases["gear stuck"].poles[0].frequency_hz for path in (None, robot))
+    assert stiff == pytest.approx(2.0 * soft, rel=1e-9)
+    robot.write_text(text.replace("value = 668.0", "value = -668.0"))
+    with pytest.raises(FileError, match=r"stiff\.toml.*drivetrain\.stiffness.*-668"):
+        read(robot)
+
+
+def test_command_writes_table_picture_and_numbers(cli: Cli, tmp_path: Path) -> None:
+    done = cli("drivetrain", "--plot", "--servo-delay", "2")
+    assert done.returncode == 0, done.stderr
+    for word in ("base in straight motion", "servo delay: 2 ticks", "phase margin, deg", "8.37 Hz, 0.039"):
+        assert word in done.stdout
+    written = ["out", "out/drivetrain", "out/drivetrain/drivetrain.json", "out/drivetrain/drivetrain.png"]
+    assert folder_content(tmp_path) == written
+    with Image.open(tmp_path / written[3]) as picture:
+        assert picture.width > 1000
+    document = json.loads((tmp_path / written[2]).read_text())
+    assert document["schema_version"] == 1
+    assert document["parameters"]["servo.delay"] == 2
+    assert document["servo_loop"]["margins"]["delay_s"] == pytest.approx(analyse(*read(delay=2)).margins.delay_s)
+    curve = document["cases"]["servo"]["channels"]["environment"]
+    assert len(curve["magnitude"]) == len(curve["phase_deg"]) == len(document["frequency_hz"])
+    assert len(curve["step"]) == len(document["time_s"])
+    assert cli("drivetrain", "--plot").returncode == 0  # over its own result
+
+
+def test_command_writes_single_files(cli: Cli, tmp_path: Path) -> None:
+    for name in ("curves.svg", "numbers.json"):
+        done = cli("drivetrain", "--load", "locked", "--out", name)
+        assert done.returncode == 0, done.stderr
+        assert "gear stuck" not in done.stdout
+    assert folder_content(tmp_path) == ["curves.svg", "numbers.json"]
+    assert "Motor torque to sensed torque" in (tmp_path / "curves.svg").read_text()
+    assert json.loads((tmp_path / "numbers.json").read_text())["parameters"]["load.inertia"] == "locked"
+
+
+def test_only_the_analysis_loads_python_control() -> None:
+    """It costs a second at start-up."""
+    code = (
+        "import sys, giveway.cli, giveway.drivetrain, giveway.drivetrain_analysis; sys.exit('control' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
