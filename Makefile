@@ -25,8 +25,8 @@ test: build lint ## every test
 bench: build ## how fast a co-simulated second runs
 	$(BIN)/giveway bench
 
-fmus: build ## the FMUs, copied to out/fmus
-	@mkdir -p out/fmus && cp -p build/fmus/*.fmu out/fmus/ && ls -l out/fmus
+fmus: build ## the FMUs, with their variable tables, the robot file and the batch library, in out/fmus
+	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
 
 # Ninja does nothing when nothing changed; the install step copies what the Python package needs beside it.
 build: build/CMakeCache.txt .venv/package-installed ## compile everything and prepare .venv/bin/giveway
