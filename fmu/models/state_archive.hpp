@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 #include <type_traits>
+
+#include "model.hpp"
 
 namespace giveway {
 
@@ -56,5 +59,22 @@ private:
     std::size_t left_;
     bool sufficed_ = true;
 };
+
+// Message and status of a state that does not fit are the same for every model.
+template <class M> std::size_t save_archive(M& model, void* bytes) {
+    StateWriter writer(bytes);
+    model.archive(writer);
+    return writer.size();
+}
+
+template <class M> Status load_archive(M& model, const void* bytes, std::size_t size, Message& message) {
+    StateReader reader(bytes, size);
+    model.archive(reader);
+    if (!reader.exact()) {
+        std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
+        return Status::error;
+    }
+    return Status::ok;
+}
 
 } // namespace giveway

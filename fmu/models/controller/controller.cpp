@@ -26,20 +26,17 @@ public:
         set_start_values(v_);
     }
 
-    std::size_t save_state(void *bytes) override {
-        StateWriter writer(bytes);
-        archive(writer);
-        return writer.size();
+    template <class Archive> void archive(Archive &a) {
+        a(v_);
+        a(controller_);
+        a(start_time_s_);
+        a(ticks_);
     }
 
+    std::size_t save_state(void *bytes) override { return save_archive(*this, bytes); }
+
     Status load_state(const void *bytes, std::size_t size, Message &message) override {
-        StateReader reader(bytes, size);
-        archive(reader);
-        if (!reader.exact()) {
-            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
-            return Status::error;
-        }
-        return Status::ok;
+        return load_archive(*this, bytes, size, message);
     }
 
     Status initialise(double start_time_s, Message &message) override {
@@ -74,13 +71,6 @@ public:
     }
 
 private:
-    template <class Archive> void archive(Archive &a) {
-        a(v_);
-        a(controller_);
-        a(start_time_s_);
-        a(ticks_);
-    }
-
     static void explain(const gw_config_error_t &error, Message &message) {
         const char *name = gw_config_limit(error.field)->name;
         const auto value = static_cast<double>(error.value);

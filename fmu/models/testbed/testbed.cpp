@@ -33,20 +33,36 @@ public:
         running_ = false;
     }
 
-    std::size_t save_state(void* bytes) override {
-        StateWriter writer(bytes);
-        archive(writer);
-        return writer.size();
+    // Everything but what resume() makes of it.
+    template <class Archive> void archive(Archive& a) {
+        a(v_);
+        a(running_);
+        if (!running_) {
+            return;
+        }
+        if constexpr (std::is_same_v<Archive, StateWriter>) {
+            checkpoint_ = integrator_.checkpoint();
+            std::copy_n(integrator_.state(), checkpoint_state_.size(), checkpoint_state_.begin());
+        }
+        a(checkpoint_);
+        a(checkpoint_state_);
+        system_.archive(a);
+        a(drives_);
+        a(start_time_s_);
+        a(stored_at_start_j_);
+        a(tick_);
+        a(due_);
+        a(now_s_);
+        a(last_event_s_);
+        a(events_);
+        a(exchanging_);
     }
 
+    std::size_t save_state(void* bytes) override { return save_archive(*this, bytes); }
+
     Status load_state(const void* bytes, std::size_t size, Message& message) override {
-        StateReader reader(bytes, size);
-        archive(reader);
-        if (!reader.exact()) {
-            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
-            return Status::error;
-        }
-        return resume(message);
+        const Status status = load_archive(*this, bytes, size, message);
+        return status == Status::ok ? resume(message) : status;
     }
 
     Status initialise(double start_time_s, Message& message) override {
@@ -208,31 +224,6 @@ public:
     }
 
 private:
-    // Everything but what resume() makes of it.
-    template <class Archive> void archive(Archive& a) {
-        a(v_);
-        a(running_);
-        if (!running_) {
-            return;
-        }
-        if constexpr (std::is_same_v<Archive, StateWriter>) {
-            checkpoint_ = integrator_.checkpoint();
-            std::copy_n(integrator_.state(), checkpoint_state_.size(), checkpoint_state_.begin());
-        }
-        a(checkpoint_);
-        a(checkpoint_state_);
-        system_.archive(a);
-        a(drives_);
-        a(start_time_s_);
-        a(stored_at_start_j_);
-        a(tick_);
-        a(due_);
-        a(now_s_);
-        a(last_event_s_);
-        a(events_);
-        a(exchanging_);
-    }
-
     Status resume(Message& message) {
         if (running_) {
             system_.derive();

@@ -43,20 +43,11 @@ public:
         return Status::ok;
     }
 
-    std::size_t save_state(void *bytes) override {
-        StateWriter writer(bytes);
-        writer(variables_);
-        return writer.size();
-    }
+    template <class Archive> void archive(Archive &a) { a(variables_); }
+    std::size_t save_state(void *bytes) override { return save_archive(*this, bytes); }
 
     Status load_state(const void *bytes, std::size_t size, Message &message) override {
-        StateReader reader(bytes, size);
-        reader(variables_);
-        if (!reader.exact()) {
-            std::snprintf(message.text, sizeof message.text, "the state is not one of this build");
-            return Status::error;
-        }
-        return Status::ok;
+        return load_archive(*this, bytes, size, message);
     }
 
     void reset() override { set_start_values(variables_); }
