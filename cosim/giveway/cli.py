@@ -133,7 +133,8 @@ def list_experiments() -> None:
     from giveway import experiments
 
     for experiment in experiments.all_experiments().values():
-        typer.echo(f"{experiment.name}: {experiment.summary} Bumpers: {', '.join(experiment.bumpers)}.")
+        bumpers = f" Bumpers: {', '.join(experiment.bumpers)}." if experiment.bumpers else ""
+        typer.echo(f"{experiment.name}: {experiment.summary}{bumpers}")
 
 
 @app.command()
@@ -227,7 +228,7 @@ def _scenario(
     from giveway.variables import parse_assignments
 
     chosen = experiments.get(experiment)
-    if bumper not in chosen.bumpers:
+    if chosen.bumpers and bumper not in chosen.bumpers:
         raise UnknownNameError("--bumper", bumper, chosen.bumpers)
     scenario = chosen.scenario(bumper)
     overrides = parse_assignments(assignments or [])

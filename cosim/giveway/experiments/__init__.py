@@ -1,4 +1,7 @@
-"""The experiments. Each module of this package that defines ``EXPERIMENT`` is one: adding one is adding a file."""
+"""The experiments. Each module of this package that defines ``EXPERIMENT`` is one: adding one is adding a file.
+
+`giveway run NAME` runs those with a ``scenario``, `giveway reproduce` those with a ``reproduce``.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from giveway.errors import UnknownNameError
+from giveway.errors import GivewayError, UnknownNameError
 
 if TYPE_CHECKING:
+    from giveway.reproduction import Effort, Findings
     from giveway.scenario import Scenario
 
 __all__ = ["Experiment", "all_experiments", "get"]
+
+
+def _no_single_run(bumper: str) -> Scenario:
+    raise GivewayError("bumper", bumper, "nothing: this experiment is more than one run; see `giveway reproduce`")
 
 
 @dataclass(frozen=True)
@@ -24,14 +32,18 @@ class Experiment:
     Attributes:
         name: what the command line calls it.
         summary: one sentence.
-        bumpers: the bumpers it is run with.
-        scenario: makes the scenario for a bumper; refuses an unknown one.
+        section: where the paper has it ("5.2"), or "" for what the paper has not; orders the report.
+        bumpers: the bumpers its scenario is run with.
+        scenario: makes the scenario for a bumper; refuses an unknown one. Left out by what is more than one run.
+        reproduce: computes its part of the reproduction, or None if it has none.
     """
 
     name: str
     summary: str
-    bumpers: tuple[str, ...]
-    scenario: Callable[[str], Scenario]
+    section: str = ""
+    bumpers: tuple[str, ...] = ()
+    scenario: Callable[[str], Scenario] = _no_single_run
+    reproduce: Callable[[Effort], Findings] | None = None
 
 
 @functools.cache

@@ -22,6 +22,7 @@ def scenario(bumper: str) -> Scenario:
 EXPERIMENT = Experiment(
     name="motionless",
     summary="A pulled slider at 0.5 m/s hits the resting robot, which notices and gives way (paper, 5.2).",
+    section="5.2",
     bumpers=tuple(BUMPERS),
     scenario=scenario,
 )
