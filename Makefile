@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo test bench fmus build lint lock clean
+.PHONY: help demo reproduce test bench fmus build lint lock clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -17,6 +17,9 @@ help: ## this list
 
 demo: build ## the paper's collision experiment as a co-simulation; table, report and summary in out/demo
 	$(BIN)/giveway demo --out out/demo
+
+reproduce: build ## every experiment of the paper: table, table.json and report in out/reproduce
+	$(BIN)/giveway reproduce --out out/reproduce --threads $(JOBS)
 
 test: build lint ## every test
 	$(BIN)/ctest --test-dir build --output-on-failure -j $(JOBS)

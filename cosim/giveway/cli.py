@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -125,6 +125,42 @@ def demo(
         write_summary(folder / "summary.json", results)
     _print_table(name, results)
     typer.echo(f"Written: {out / 'report.html'}, {out / 'overview.png'} and {out / 'summary.json'}")
+
+
+@app.command()
+def reproduce(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for table.json and report.html.")] = Path(
+        "out/reproduce"
+    ),
+    only: Annotated[list[str] | None, typer.Option("--only", metavar="NAME", help="Only this experiment.")] = None,
+    reduced: Annotated[bool, typer.Option("--reduced", help="Fewer and shorter runs, as in the tests.")] = False,
+    threads: Annotated[int, typer.Option("--threads", help="Native threads, 1 to 256.")] = 2,
+) -> None:
+    """Run every experiment of the paper: one table (paper, ours, target), table.json and an HTML report."""
+    from giveway.files import check_output, replace_folder
+    from giveway.reproduce import HEADER, chosen, table_rows, write_table
+    from giveway.reproduce import reproduce as run_all
+
+    names = [experiment.name for experiment in chosen(only or ())]
+    check_output(out)
+    with _shares(names) as progress:
+        found = run_all(names, not reduced, threads, progress)
+    from giveway.report.reproduction import write_report
+
+    with replace_folder(out) as folder:
+        write_table(folder / "table.json", found)
+        write_report(folder / "report.html", found)
+    _print_columns("The paper, reproduced", HEADER, table_rows(found))
+    for chapter, row in found.rows():
+        if row.met is False:
+            typer.echo(f"MISS {chapter.experiment.name}: {row.quantity}: {row.reason or 'reason not yet known'}")
+    typer.echo(f"{found.count(True)} targets met, {found.count(False)} missed")
+    typer.echo(f"Written: {out / 'report.html'} and {out / 'table.json'}")
+    if found.interrupted:
+        typer.echo(f"Interrupted; not run: {', '.join(found.interrupted)}. What was found is kept.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    if found.failed:
+        raise typer.Exit(FAILED)
 
 
 @app.command("list")
@@ -259,6 +295,38 @@ def _progress(duration_s: float) -> Iterator[Progress | None]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("simulating", total=duration_s)
         yield lambda now_s, _duration_s: bar.update(task, completed=now_s)
+
+
+@contextmanager
+def _shares(names: Sequence[str]) -> Iterator[Callable[[str, float], None]]:
+    """One progress bar per experiment on stderr at a terminal, else a line when one begins."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    if not sys.stderr.isatty():
+        begun: set[str] = set()
+
+        def say(name: str, _share: float) -> None:
+            if name not in begun:
+                begun.add(name)
+                typer.echo(f"[{len(begun)} of {len(names)}] {name}", err=True)
+
+        yield say
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as bars:
+        tasks = {name: bars.add_task(name, total=1.0, start=False) for name in names}
+
+        def draw(name: str, share: float) -> None:
+            bars.start_task(tasks[name])
+            bars.update(tasks[name], completed=share)
+
+        yield draw
 
 
 def _print_table(experiment: str, results: dict[str, Result]) -> None:

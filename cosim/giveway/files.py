@@ -13,7 +13,7 @@ from giveway.errors import FileError
 
 __all__ = ["check_file", "check_output", "replace_file", "replace_folder", "write_text"]
 
-MARKERS = ("manifest.json", "summary.json", "drivetrain.json")
+MARKERS = ("manifest.json", "summary.json", "drivetrain.json", "table.json")
 
 
 def check_output(folder: Path) -> None:

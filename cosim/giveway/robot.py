@@ -4,14 +4,32 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from giveway.errors import FileError, nearest_names
 
-__all__ = ["Robot", "read_robot"]
+__all__ = ["Entry", "Robot", "read_robot"]
 
 SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Entry:
+    """How a value of a robot file is to be read.
+
+    Attributes:
+        text: value with unit.
+        provenance: given, sourced, fitted or assumed; "" if the file does not say.
+        source, note: in words; "" likewise.
+    """
+
+    text: str
+    provenance: str
+    source: str
+    note: str
 
 
 class Robot:
@@ -44,6 +62,14 @@ class Robot:
         if not isinstance(value, int | float) or not math.isfinite(value):
             raise FileError(self.path, f"{name} = {value} is not a finite number")
         return value
+
+    def entries(self) -> Iterator[tuple[str, Entry]]:
+        """Every entry with its name, in the order of the file."""
+        for name, entry in self._entries.items():
+            value, unit = entry["value"], self.unit(name)
+            values = ", ".join(f"{part:g}" for part in (value if isinstance(value, list) else [value]))
+            words = (str(entry.get(key, "")) for key in ("provenance", "source", "note"))
+            yield name, Entry(f"{values} {unit}" if unit not in ("", "1") else values, *words)
 
     def count(self, name: str) -> int:
         """Number of values at ``name``: the length of a list, 1 for a single number."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.style import context
 
 from giveway.metrics import WHEELS
+from giveway.report.inline_svg import inline_svg
 from giveway.report.runs import IMPACT_MS, Run
 from giveway.report.style import STYLE, TRUTH_COLOUR
 
@@ -41,7 +40,7 @@ def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
     drawn = []
     with context(STYLE):
         for number, (title, caption, draw) in enumerate(_FIGURES):
-            drawn.append(NamedFigure(title, caption, _inline_svg(draw(runs), f"f{number}-")))
+            drawn.append(NamedFigure(title, caption, inline_svg(draw(runs), f"f{number}-")))
     return drawn
 
 
@@ -152,16 +151,3 @@ _FIGURES: tuple[tuple[str, str, Callable[[list[Run]], Figure]], ...] = (
 def _legend_below(figure: Figure, axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-
-
-def _inline_svg(figure: Figure, prefix: str) -> str:
-    """The figure as an SVG element whose ids do not collide with those of other figures in the page."""
-    buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
-    text = buffer.getvalue()
-    text = text[text.index("<svg") :]
-    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
-    text = re.sub(r' (?:width|height)="[^"]*pt"', "", text, count=2)
-    text = re.sub(r' xmlns(?::xlink)?="[^"]*"', "", text).replace("xlink:href", "href")
-    text = text.replace('id="', f'id="{prefix}').replace("url(#", f"url(#{prefix}")
-    return text.replace('href="#', f'href="#{prefix}')
