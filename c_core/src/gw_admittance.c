@@ -4,6 +4,15 @@
 #include "giveway/gw_wrench.h"
 
 #define SPEED_MAX ((gw_real_t)100.0)
+/* Of one tick, and of an escape: the longest period and the largest impulse over the smallest damping, with room. */
+#define DISPLACEMENT_MAX ((gw_real_t)100.0)
+#define ESCAPE_MAX ((gw_real_t)1.1e5)
+
+static gw_vector_t within(gw_vector_t vector, gw_real_t limit)
+{
+    const gw_vector_t result = {gw_clamp(vector.x, -limit, limit), gw_clamp(vector.y, -limit, limit)};
+    return result;
+}
 
 void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
 {
@@ -58,9 +67,11 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
         gw_admittance_config_check(&admittance->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
                 gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
-                gw_is_finite(admittance->goal_m.x) && gw_is_finite(admittance->goal_m.y) &&
+                gw_in_range(admittance->goal_m.x, -ESCAPE_MAX, ESCAPE_MAX) &&
+                gw_in_range(admittance->goal_m.y, -ESCAPE_MAX, ESCAPE_MAX) &&
                 gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
-                gw_is_finite(admittance->velocity_mps.x) && gw_is_finite(admittance->velocity_mps.y);
+                gw_in_range(admittance->velocity_mps.x, -SPEED_MAX, SPEED_MAX) &&
+                gw_in_range(admittance->velocity_mps.y, -SPEED_MAX, SPEED_MAX);
     }
     return holds;
 }
@@ -124,7 +135,7 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
                                gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
     const gw_real_t distance_m = gw_length(ahead);
     if (distance_m > GW_ZERO) {
-        const gw_vector_t unit = {ahead.x / distance_m, ahead.y / distance_m};
+        const gw_vector_t unit = {gw_fraction(ahead.x, distance_m), gw_fraction(ahead.y, distance_m)};
         const gw_real_t end_rate = admittance->rate_per_s * admittance->decay;
         const gw_vector_t end_mps = {end_rate * ahead.x, end_rate * ahead.y};
         const gw_vector_t exact_m = {admittance->approach * ahead.x, admittance->approach * ahead.y};
@@ -193,10 +204,16 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
         } else {
             if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
                 *output = step_frozen(admittance);
-                admittance->moved_x_m = gw_sum_add(admittance->moved_x_m, output->displacement_m.x);
-                admittance->moved_y_m = gw_sum_add(admittance->moved_y_m, output->displacement_m.y);
             } else {
                 *output = step_live(admittance, force_n);
+            }
+            output->velocity_mps = within(output->velocity_mps, SPEED_MAX);
+            output->displacement_m = within(output->displacement_m, DISPLACEMENT_MAX);
+            if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
+                admittance->moved_x_m =
+                    gw_sum_limit(gw_sum_add(admittance->moved_x_m, output->displacement_m.x), ESCAPE_MAX);
+                admittance->moved_y_m =
+                    gw_sum_limit(gw_sum_add(admittance->moved_y_m, output->displacement_m.y), ESCAPE_MAX);
             }
             admittance->velocity_mps = output->velocity_mps;
         }

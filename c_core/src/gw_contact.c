@@ -2,6 +2,9 @@
 
 #include "giveway/gw_math.h"
 
+/* A lever arm beyond this says only that there is no force to speak of. */
+#define LEVER_ARM_MAX ((gw_real_t)1.0e6)
+
 static gw_real_t cross(gw_vector_t a, gw_vector_t b)
 {
     return (a.x * b.y) - (a.y * b.x);
@@ -92,7 +95,7 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
             const gw_real_t along_m = (vertex.x * direction.x) + (vertex.y * direction.y);
             /* Going counter-clockwise, the side grows exactly on the edges that the direction enters. */
             if ((previous_side_m <= GW_ZERO) && (side_m > GW_ZERO)) {
-                const gw_real_t fraction = -previous_side_m / (side_m - previous_side_m);
+                const gw_real_t fraction = gw_fraction(-previous_side_m, side_m - previous_side_m);
                 const gw_vector_t edge = from_to(previous, vertex);
                 estimate->point_m.x = previous.x + (fraction * edge.x);
                 estimate->point_m.y = previous.y + (fraction * edge.y);
@@ -144,8 +147,8 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
             const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};
             const gw_real_t force_n = gw_length(force);
             if (force_n >= contact->config.minimum_force_n) {
-                const gw_vector_t direction = {force.x / force_n, force.y / force_n};
-                const gw_real_t arm_m = wrench.torque_nm / force_n;
+                const gw_vector_t direction = {gw_fraction(force.x, force_n), gw_fraction(force.y, force_n)};
+                const gw_real_t arm_m = gw_clamp(wrench.torque_nm / force_n, -LEVER_ARM_MAX, LEVER_ARM_MAX);
                 /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
                 const gw_vector_t spread = {sigma.torque_nm / force_n, (arm_m * sigma.force_n) / force_n};
                 estimate->valid = true;

@@ -297,7 +297,7 @@ static gw_vector_t hit_direction(const gw_controller_t *controller, const tick_t
 {
     const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
     const gw_real_t length = gw_length(force);
-    const gw_vector_t unit = {force.x / length, force.y / length};
+    const gw_vector_t unit = {gw_fraction(force.x, length), gw_fraction(force.y, length)};
     return gw_rotate(reference_rotation(controller), unit);
 }
 
@@ -341,8 +341,8 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
     const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
-        felt.x = base.x * (left / length);
-        felt.y = base.y * (left / length);
+        felt.x = base.x * gw_fraction(left, length);
+        felt.y = base.y * gw_fraction(left, length);
     }
     return gw_rotate(reference_rotation(controller), felt);
 }

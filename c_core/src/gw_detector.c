@@ -3,6 +3,11 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
 
+/* Bounds of the integral: it trips and starts anew far below; a pure moment, which does not trip, ends there. */
+#define IMPULSE_MAX ((gw_real_t)1.0e9)
+/* Impulse below which no lever arm can be told, N s; below every threshold. */
+#define IMPULSE_MIN ((gw_real_t)0.0001)
+
 void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_count(error, GW_FIELD_DETECTOR_KIND, 0U, config->kind);
@@ -48,8 +53,9 @@ bool gw_detector_invariant_holds(const gw_detector_t *detector)
         gw_config_check_begin(&error);
         gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, detector->period_s);
         gw_detector_config_check(&detector->config, &error);
-        holds = (error.field == GW_FIELD_NONE) && gw_is_finite(detector->impulse_x_newton_s) &&
-                gw_is_finite(detector->impulse_y_newton_s) && gw_is_finite(detector->impulse_moment_nms) &&
+        holds = (error.field == GW_FIELD_NONE) && gw_in_range(detector->impulse_x_newton_s, -IMPULSE_MAX, IMPULSE_MAX) &&
+                gw_in_range(detector->impulse_y_newton_s, -IMPULSE_MAX, IMPULSE_MAX) &&
+                gw_in_range(detector->impulse_moment_nms, -IMPULSE_MAX, IMPULSE_MAX) &&
                 (detector->ticks_since_trip <= detector->config.blanking_ticks);
     }
     return holds;
@@ -106,23 +112,24 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
     const gw_real_t leak_n = gw_detector_leak(detector, input->regime);
     const gw_vector_t sum = {detector->impulse_x_newton_s + (input->wrench.force_x_n * detector->period_s),
                              detector->impulse_y_newton_s + (input->wrench.force_y_n * detector->period_s)};
-    const gw_real_t moment = detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s);
+    const gw_real_t moment =
+        gw_clamp(detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s), -IMPULSE_MAX, IMPULSE_MAX);
     const gw_real_t length = gw_length(sum);
     const gw_real_t left = length - (leak_n * detector->period_s);
     bool trips = false;
     if (left > GW_ZERO) {
-        const gw_real_t shrink = left / length;
-        detector->impulse_x_newton_s = sum.x * shrink;
-        detector->impulse_y_newton_s = sum.y * shrink;
+        const gw_real_t shrink = gw_fraction(left, length);
+        detector->impulse_x_newton_s = gw_clamp(sum.x * shrink, -IMPULSE_MAX, IMPULSE_MAX);
+        detector->impulse_y_newton_s = gw_clamp(sum.y * shrink, -IMPULSE_MAX, IMPULSE_MAX);
         detector->impulse_moment_nms = moment * shrink;
         if (detector->samples < GW_TICK_MASK) {
             detector->samples++;
         }
         /* What leaked away is part of the mean force. */
         const gw_real_t mean_n = (left / ((gw_real_t)detector->samples * detector->period_s)) + leak_n;
-        output->mean_wrench.force_x_n = (sum.x / length) * mean_n;
-        output->mean_wrench.force_y_n = (sum.y / length) * mean_n;
-        output->mean_wrench.torque_nm = (moment / length) * mean_n;
+        output->mean_wrench.force_x_n = gw_fraction(sum.x, length) * mean_n;
+        output->mean_wrench.force_y_n = gw_fraction(sum.y, length) * mean_n;
+        output->mean_wrench.torque_nm = (moment / gw_max(length, IMPULSE_MIN)) * mean_n;
         output->samples = detector->samples;
         output->statistic = left;
         trips = (left > detector->config.impulse_threshold_newton_s);

@@ -124,17 +124,27 @@ gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t co
     return gw_wrap_angle((gw_real_t)within_turn * estimator->rate_constants.rad_per_count);
 }
 
-static bool input_is_finite(const gw_estimator_input_t *input)
+/* No robot plans to move or accelerate beyond these; a reference that does is a fault. */
+#define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
+#define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
+
+static bool within(gw_real_t value, gw_real_t limit)
 {
-    bool finite = gw_is_finite(input->planned_twist.vx_mps) && gw_is_finite(input->planned_twist.vy_mps) &&
-                  gw_is_finite(input->planned_twist.omega_radps) &&
-                  gw_is_finite(input->planned_acceleration.ax_mps2) &&
-                  gw_is_finite(input->planned_acceleration.ay_mps2) &&
-                  gw_is_finite(input->planned_acceleration.alpha_radps2);
+    return gw_in_range(value, -limit, limit);
+}
+
+static bool input_is_valid(const gw_estimator_input_t *input)
+{
+    bool valid = within(input->planned_twist.vx_mps, PLANNED_SPEED_MAX) &&
+                 within(input->planned_twist.vy_mps, PLANNED_SPEED_MAX) &&
+                 within(input->planned_twist.omega_radps, PLANNED_SPEED_MAX) &&
+                 within(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX) &&
+                 within(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX) &&
+                 within(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        finite = finite && gw_is_finite(input->torque_nm.wheel[i]);
+        valid = valid && within(input->torque_nm.wheel[i], GW_TORQUE_MAX);
     }
-    return finite;
+    return valid;
 }
 
 /* The faster of the base and of the wheels' circle. */
@@ -219,7 +229,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
     nothing_known(output);
     if (!estimator->initialised) {
         status = GW_STATUS_NOT_INITIALISED;
-    } else if (!input_is_finite(input)) {
+    } else if (!input_is_valid(input)) {
         status = GW_STATUS_INPUT_INVALID;
         gw_estimator_restart(estimator);
     } else {

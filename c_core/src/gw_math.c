@@ -166,6 +166,23 @@ gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
     return gw_min(gw_max(x, low), high);
 }
 
+gw_real_t gw_fraction(gw_real_t part, gw_real_t whole)
+{
+    gw_real_t fraction = GW_ZERO;
+    if (whole > GW_ZERO) {
+        if (part >= whole) {
+            fraction = GW_ONE;
+        } else if (part <= -whole) {
+            fraction = -GW_ONE;
+        } else if (gw_abs(part) < whole) {
+            fraction = part / whole;
+        } else {
+            /* NaN: 0 */
+        }
+    }
+    return fraction;
+}
+
 /* Nearest integer for |x| < 2^30, ties away from zero. */
 static int32_t nearest_integer(gw_real_t x)
 {
@@ -426,9 +443,10 @@ gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
     gw_vector_t result = vector;
     const gw_real_t length = gw_length(vector);
     if (length > limit) {
+        /* Rounding must not lead beyond the limit: what bounds a speed has to bound it exactly. */
         const gw_real_t factor = limit / length;
-        result.x = vector.x * factor;
-        result.y = vector.y * factor;
+        result.x = gw_clamp(vector.x * factor, -limit, limit);
+        result.y = gw_clamp(vector.y * factor, -limit, limit);
     }
     return result;
 }

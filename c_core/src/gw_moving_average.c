@@ -5,15 +5,25 @@
 
 static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
 
+/* Bound of a sum of valid wrenches, with room for its rounding. */
+#define SUM_MAX ((gw_real_t)1.1e12)
+
+static gw_real_t limited(gw_real_t sum)
+{
+    return gw_clamp(sum, -SUM_MAX, SUM_MAX);
+}
+
 static gw_wrench_t plus(gw_wrench_t a, gw_wrench_t b)
 {
-    const gw_wrench_t sum = {a.force_x_n + b.force_x_n, a.force_y_n + b.force_y_n, a.torque_nm + b.torque_nm};
+    const gw_wrench_t sum = {limited(a.force_x_n + b.force_x_n), limited(a.force_y_n + b.force_y_n),
+                             limited(a.torque_nm + b.torque_nm)};
     return sum;
 }
 
 static gw_wrench_t minus(gw_wrench_t a, gw_wrench_t b)
 {
-    const gw_wrench_t difference = {a.force_x_n - b.force_x_n, a.force_y_n - b.force_y_n, a.torque_nm - b.torque_nm};
+    const gw_wrench_t difference = {limited(a.force_x_n - b.force_x_n), limited(a.force_y_n - b.force_y_n),
+                                    limited(a.torque_nm - b.torque_nm)};
     return difference;
 }
 

@@ -2,6 +2,11 @@
 
 #include "giveway/gw_config.h"
 #include "giveway/gw_math.h"
+#include "giveway/gw_wrench.h"
+
+/* No wheel turns or accelerates faster; whatever the counts do, the filter's state stays a number. */
+#define RATE_MAX ((gw_real_t)1.0e6)
+#define DERIVATIVE_MAX ((gw_real_t)1.0e10)
 
 gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
                                      uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad)
@@ -51,10 +56,12 @@ void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constant
         /* Exact step of y'' = w^2 (u - y) - 2 w y' with u held. */
         const gw_real_t error = filter->rate_radps - input;
         const gw_real_t mixed = filter->derivative_radps2 + (constants->cutoff_radps * error);
-        filter->rate_radps = input + (constants->decay * (error + (constants->period_s * mixed)));
-        filter->derivative_radps2 =
+        const gw_real_t derivative =
             constants->decay *
             (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
+        filter->rate_radps =
+            gw_clamp(input + (constants->decay * (error + (constants->period_s * mixed))), -RATE_MAX, RATE_MAX);
+        filter->derivative_radps2 = gw_clamp(derivative, -DERIVATIVE_MAX, DERIVATIVE_MAX);
     }
     filter->last_count = count;
     filter->last_torque_nm = torque_nm;
@@ -63,6 +70,7 @@ void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constant
 
 bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
 {
-    return (filter != NULL) && gw_is_finite(filter->last_torque_nm) && gw_is_finite(filter->rate_radps) &&
-           gw_is_finite(filter->derivative_radps2);
+    return (filter != NULL) && gw_in_range(filter->last_torque_nm, -GW_TORQUE_MAX, GW_TORQUE_MAX) &&
+           gw_in_range(filter->rate_radps, -RATE_MAX, RATE_MAX) &&
+           gw_in_range(filter->derivative_radps2, -DERIVATIVE_MAX, DERIVATIVE_MAX);
 }

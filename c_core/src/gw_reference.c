@@ -5,6 +5,8 @@
 #define POSITION_MAX ((gw_real_t)1.0e4)
 #define SPEED_MAX ((gw_real_t)100.0)
 #define YAW_RATE_MAX ((gw_real_t)1000.0)
+/* A reference that walked this far from the origin stops there. */
+#define REFERENCE_MAX ((gw_real_t)1.0e5)
 #define ACCELERATION_MAX ((gw_real_t)1.0e4)
 /* Correction speeds, m/s and rad/s, up to which the reference counts as being on the plan. */
 #define CORRECTION_FREE ((gw_real_t)0.001)
@@ -125,7 +127,8 @@ static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, const
     const gw_vector_t change = {wanted_mps.x - reference->twist.vx_mps, wanted_mps.y - reference->twist.vy_mps};
     const gw_vector_t allowed = gw_limit_length(change, most);
     const gw_real_t half_s = GW_HALF * reference->period_s;
-    const gw_vector_t velocity = {reference->twist.vx_mps + allowed.x, reference->twist.vy_mps + allowed.y};
+    const gw_vector_t velocity = {gw_clamp(reference->twist.vx_mps + allowed.x, -SPEED_MAX, SPEED_MAX),
+                                  gw_clamp(reference->twist.vy_mps + allowed.y, -SPEED_MAX, SPEED_MAX)};
     if ((planned != NULL) && (gw_length(change) <= most)) {
         reference->acceleration.ax_mps2 = planned->ax_mps2;
         reference->acceleration.ay_mps2 = planned->ay_mps2;
@@ -144,7 +147,7 @@ static void move_yaw(gw_reference_t *reference, gw_real_t wanted_radps, const gw
     const gw_real_t most = reference->config.yaw_acceleration_limit_radps2 * reference->period_s;
     const gw_real_t change = wanted_radps - reference->twist.omega_radps;
     const gw_real_t allowed = gw_clamp(change, -most, most);
-    const gw_real_t omega = reference->twist.omega_radps + allowed;
+    const gw_real_t omega = gw_clamp(reference->twist.omega_radps + allowed, -YAW_RATE_MAX, YAW_RATE_MAX);
     if ((planned != NULL) && (gw_abs(change) <= most)) {
         reference->acceleration.alpha_radps2 = planned->alpha_radps2;
     } else {
@@ -156,8 +159,8 @@ static void move_yaw(gw_reference_t *reference, gw_real_t wanted_radps, const gw
 
 static void add_displacement(gw_reference_t *reference)
 {
-    reference->x_m = gw_sum_add(reference->x_m, reference->displacement.x_m);
-    reference->y_m = gw_sum_add(reference->y_m, reference->displacement.y_m);
+    reference->x_m = gw_sum_limit(gw_sum_add(reference->x_m, reference->displacement.x_m), REFERENCE_MAX);
+    reference->y_m = gw_sum_limit(gw_sum_add(reference->y_m, reference->displacement.y_m), REFERENCE_MAX);
     reference->theta_rad = gw_sum_add_angle(reference->theta_rad, reference->displacement.theta_rad);
 }
 
@@ -194,8 +197,8 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
         const gw_real_t rate = rejoining_speed(reference, gw_abs(yaw_error), finish_rate,
                                                 config->yaw_acceleration_limit_radps2);
         if (distance_m > GW_ZERO) {
-            wanted.x = error.x * (speed / distance_m);
-            wanted.y = error.y * (speed / distance_m);
+            wanted.x = gw_fraction(error.x, distance_m) * speed;
+            wanted.y = gw_fraction(error.y, distance_m) * speed;
         }
         wanted_omega = (yaw_error < GW_ZERO) ? -rate : rate;
     }

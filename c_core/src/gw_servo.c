@@ -3,6 +3,8 @@
 #include "giveway/gw_math.h"
 
 #define REFERENCE_SPEED_MAX ((gw_real_t)1.0e4)
+/* No motor turns faster; whatever the counts do, the measured speed stays a number. */
+#define SPEED_MAX ((gw_real_t)1.0e6)
 
 void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
 {
@@ -60,8 +62,8 @@ bool gw_servo_invariant_holds(const gw_servo_t *servo)
         gw_config_check_begin(&error);
         gw_servo_config_check(&servo->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_sum_invariant_holds(servo->desired_rad) &&
-                gw_in_range(servo->desired_rad.value, -GW_PI, GW_PI) && gw_is_finite(servo->desired_speed_radps) &&
-                gw_is_finite(servo->speed_radps) && (servo->position_count >= 0) &&
+                gw_in_range(servo->desired_rad.value, -GW_PI, GW_PI) && gw_in_range(servo->desired_speed_radps, -REFERENCE_SPEED_MAX, REFERENCE_SPEED_MAX) &&
+                gw_in_range(servo->speed_radps, -SPEED_MAX, SPEED_MAX) && (servo->position_count >= 0) &&
                 (servo->position_count < (int32_t)servo->config.encoder_counts) &&
                 gw_in_range(servo->filter_gain, GW_ZERO, GW_ONE) &&
                 gw_in_range(servo->torque_nm, -servo->config.torque_limit_nm, servo->config.torque_limit_nm);
@@ -82,7 +84,8 @@ static void measure(gw_servo_t *servo, int32_t count)
     if (servo->started) {
         const int32_t moved = gw_count_difference(count, servo->last_count);
         const gw_real_t raw_radps = (gw_real_t)moved * servo->count_rate;
-        servo->speed_radps += servo->filter_gain * (raw_radps - servo->speed_radps);
+        servo->speed_radps = gw_clamp(
+            servo->speed_radps + (servo->filter_gain * (raw_radps - servo->speed_radps)), -SPEED_MAX, SPEED_MAX);
         servo->position_count =
             modulo_turn(servo->position_count + modulo_turn(moved, servo->config.encoder_counts),
                         servo->config.encoder_counts);

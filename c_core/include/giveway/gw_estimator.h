@@ -105,8 +105,8 @@ void gw_estimator_start_tare(gw_estimator_t *estimator);
 gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm);
 /* Filters and average start afresh after a gap; zeros and mode stay. */
 void gw_estimator_restart(gw_estimator_t *estimator);
-/* One tick. Input that is not finite, or a wrench that is not gw_wrench_is_valid: GW_STATUS_INPUT_INVALID, wrench zero,
- * filters and average start afresh. */
+/* One tick. Input that is not finite or beyond any robot, or a wrench that is not gw_wrench_is_valid:
+ * GW_STATUS_INPUT_INVALID, wrench zero, filters and average start afresh. */
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                               gw_estimator_output_t *output);
 /* Angle of the motor side of a wheel from its count, rad, [-pi, pi). */

@@ -31,6 +31,8 @@ gw_real_t gw_min(gw_real_t a, gw_real_t b);
 gw_real_t gw_max(gw_real_t a, gw_real_t b);
 /* x limited to [low, high], low <= high; low if x is NaN. */
 gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high);
+/* part / whole limited to [-1, 1], for the share of a whole that rounding must not exceed; 0 unless whole > 0. */
+gw_real_t gw_fraction(gw_real_t part, gw_real_t whole);
 /* Square root, correctly rounded; 0 for negative x and NaN; infinity stays GW_REAL_MAX's root at most. */
 gw_real_t gw_sqrt(gw_real_t x);
 /* e^x; 0 below the smallest normal number and for NaN, GW_REAL_MAX where it would overflow. */

@@ -23,6 +23,8 @@ gw_sum_t gw_sum_of(gw_real_t value);
 gw_sum_t gw_sum_add(gw_sum_t sum, gw_real_t increment);
 /* For angles: sum + increment modulo one turn, its value in [-pi, pi). |increment| <= GW_ANGLE_MAX. */
 gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad);
+/* The sum, its value kept within [-limit, limit]. */
+gw_sum_t gw_sum_limit(gw_sum_t sum, gw_real_t limit);
 /* minuend - sum, with the sum's full precision. */
 gw_real_t gw_sum_subtract_from(gw_real_t minuend, gw_sum_t sum);
 bool gw_sum_invariant_holds(gw_sum_t sum);

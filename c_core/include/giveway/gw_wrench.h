@@ -18,6 +18,9 @@ typedef struct {
 /* Largest force, N, and torque, N m, that the library works with; beyond it a value is a fault, not a push. */
 #define GW_WRENCH_MAX ((gw_real_t)1.0e9)
 
+/* Largest torque at a wheel that is taken for one, N m: beyond any sensor's limit. */
+#define GW_TORQUE_MAX ((gw_real_t)1.0e6)
+
 /* True if no component is NaN or beyond GW_WRENCH_MAX. */
 bool gw_wrench_is_valid(gw_wrench_t wrench);
 /* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
