@@ -7,6 +7,7 @@ stands still while the robot reacts to a collision: the controller owns that clo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["PLAN_INPUTS", "PUSH_INPUTS", "Plan", "Push", "Rest"]
+__all__ = ["PLAN_INPUTS", "PUSH_INPUTS", "Plan", "Push", "Rest", "Straight"]
 
 PLAN_INPUTS = tuple(f"plan.{column}" for column in ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha"))
 PUSH_INPUTS = ("push.force_x", "push.force_y", "push.point_x", "push.point_y")
@@ -51,4 +52,49 @@ class Rest:
 
         table = np.zeros((len(time_s), len(PLAN_INPUTS)))
         table[:, :3] = self.x_m, self.y_m, self.theta_rad
+        return table
+
+
+@dataclass(frozen=True)
+class Straight:
+    """From rest at the origin of the world along a straight line, with constant acceleration up to a constant speed.
+
+    Attributes:
+        speed_mps: speed that is reached and kept, in m/s.
+        direction_rad: direction of travel in the world frame, in rad; the heading stays 0.
+        acceleration_mps2: on the way to that speed, in m/s2.
+    """
+
+    speed_mps: float
+    direction_rad: float = 0.0
+    acceleration_mps2: float = 0.2
+
+    def __post_init__(self) -> None:
+        finite("Straight.speed_mps", self.speed_mps, 0.0, 10.0, "m/s")
+        finite("Straight.direction_rad", self.direction_rad)
+        finite("Straight.acceleration_mps2", self.acceleration_mps2, 1e-3, 100.0, "m/s2")
+
+    @property
+    def ramp_s(self) -> float:
+        """Time from rest to full speed, s."""
+        return self.speed_mps / self.acceleration_mps2
+
+    @property
+    def ramp_m(self) -> float:
+        """Way from rest to full speed, m."""
+        return 0.5 * self.speed_mps * self.ramp_s
+
+    def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        import numpy as np
+
+        rising = np.minimum(time_s, self.ramp_s)
+        along = (
+            0.5 * self.acceleration_mps2 * rising**2 + self.speed_mps * (time_s - rising),
+            self.acceleration_mps2 * rising,
+            np.where(time_s < self.ramp_s, self.acceleration_mps2, 0.0),
+        )
+        table = np.zeros((len(time_s), len(PLAN_INPUTS)))
+        for column, values in zip((0, 3, 6), along, strict=True):
+            table[:, column] = values * math.cos(self.direction_rad)
+            table[:, column + 1] = values * math.sin(self.direction_rad)
         return table

@@ -1,4 +1,4 @@
-"""A result as figures need it: time from contact, travel along the slider's run-up."""
+"""A result as figures need it: time from contact, travel along the slider's rail."""
 
 from __future__ import annotations
 
@@ -34,19 +34,17 @@ class Run:
         self.impact = (self.time_ms >= IMPACT_MS[0]) & (self.time_ms <= IMPACT_MS[1])
         self.detected_ms = None if self.hit.detected is None else float(self.time_ms[self.hit.detected])
         nose = np.stack([self.hit["testbed.truth.nose_x"], self.hit["testbed.truth.nose_y"]], axis=1)
-        start = self.hit.until_detection().start
-        run_up = nose[min(start, len(nose) - 1)] - nose[0]
-        length = math.hypot(*run_up)
-        self.along = run_up / length if length > 0.0 else np.array([1.0, 0.0])
-        self.contact_row = min(start, len(nose) - 1)
+        direction = float(self.parameters["testbed"]["slider.direction"])
+        self.along = np.array([math.cos(direction), math.sin(direction)])
+        self.contact_row = min(self.hit.until_detection().start, len(nose) - 1)
         self.nose = nose
 
     def travel(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Travel of a point along the slider's run-up since contact, m."""
+        """Travel of a point along the slider's rail since contact, m."""
         return np.asarray((xy - xy[self.contact_row]) @ self.along)
 
     def position(self, source: str) -> NDArray[np.float64]:
-        """Travel of ``source`` (x and y traces) along the run-up since contact, m."""
+        """Travel of ``source`` (x and y traces) along the rail since contact, m."""
         return self.travel(np.stack([self.hit[f"{source}.x"], self.hit[f"{source}.y"]], axis=1))
 
     def mark_detection(self, axes: Axes, scale: float = 1.0) -> None:

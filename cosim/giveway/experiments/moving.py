@@ -1,0 +1,149 @@
+"""The moving robot drives into a resting slider (Kim, Llado, Sentis 2016, 5.3).
+
+The robot drives at 0.22 m/s, with the middle of one side ahead, into a slider of 13.62 kg that nothing pulls. It
+notices, reverses and gives way by 0.5 m.
+
+It starts from rest and speeds up slowly: the servo is a PD loop that owes its torque to its own lag, so a robot that
+is set in motion at once first falls behind its plan, which the estimator takes for a push. By the time of the contact
+lag, rollers and drivetrains are those of steady motion.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from giveway.experiments import Experiment, motionless
+from giveway.plan import Straight
+from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.scenario import BUMPERS, Scenario
+from giveway.variables import table
+
+if TYPE_CHECKING:
+    from giveway.result import Result
+
+SPEED_MPS = 0.22
+SLIDER_KG = 13.62
+STEADY_S = 0.4  # at full speed before the contact: more than ten time constants kd/kp of the servo's lag
+ESCAPE_S = 8.0  # as in 5.2
+HOLD = 0  # after the escape; 1 would go back to the path and into the slider again
+PAPER_BUMPER = "magnetic"
+REVERSAL_S = 1.2  # after the contact: the reversal, and the time in which it might be taken for another hit
+
+
+def scenario(bumper: str, after_contact_s: float = ESCAPE_S) -> Scenario:
+    """The experiment with ``bumper`` on the slider, up to ``after_contact_s`` after the planned contact.
+
+    The paper has the magnetic one only.
+    """
+    variables = table("testbed")
+    slider_direction, target_x, target_y = (
+        float(variables[f"slider.{name}"].start or 0.0) for name in ("direction", "target_x", "target_y")
+    )
+    plan = Straight(SPEED_MPS, slider_direction + math.pi)
+    way_m = plan.ramp_m + SPEED_MPS * STEADY_S
+    controller = table("controller")
+    tare_s = float(controller["estimator.tare_ticks"].start or 0) * float(controller["controller.period"].start or 0.0)
+    testbed = {
+        "slider.mass": SLIDER_KG,
+        "slider.run_up": 0.0,
+        "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),
+        "slider.target_y": target_y + way_m * math.sin(plan.direction_rad),
+        "rope.attached": False,
+    }
+    return Scenario(
+        "moving",
+        math.ceil(1e3 * (tare_s + plan.ramp_s + STEADY_S + after_contact_s)) / 1e3,
+        bumper=bumper,
+        testbed=testbed,
+        controller={"supervisor.after_settled": HOLD},
+        plan=plan,
+    )
+
+
+def reproduce(effort: Effort) -> Findings:
+    """5.3's rows and Fig. 11."""
+    from giveway import batch
+    from giveway.noise_range import noise_note
+    from giveway.report import BUMPER_LABELS
+    from giveway.report.reversal import draw
+
+    bumpers = ("spring", "magnetic")
+    while_still = [batch.run(motionless.scenario(bumper, motionless.IMPACT_S)) for bumper in bumpers]
+    effort.progress(0.2)
+    result = batch.run(scenario(PAPER_BUMPER))
+    effort.progress(0.5)
+    seeds = effort.pick(motionless.SEEDS, motionless.FEW_SEEDS)
+    note = noise_note("Detection time", scenario(PAPER_BUMPER, REVERSAL_S), "detection time", seeds, effort)
+    picture = Picture(
+        "fig11",
+        "Hit while moving (Fig. 11)",
+        "The robot drives into the resting slider and compresses its bumper; dashed: the moment of detection, from "
+        "which on it reverses. The torque of the reversal is larger than that of the impact.",
+        draw(BUMPER_LABELS[PAPER_BUMPER], result),
+        paper=[
+            ("speed at contact", "0.22 m/s"),
+            ("detection", "105 ms"),
+            ("largest spring deflection", "at 180 ms"),
+            ("peak torque", "about twice the peaks with bumpers of 5.2"),
+        ],
+    )
+    peaks = [motionless.value(still, "peak wheel torque") for still in while_still]
+    return Findings(_rows(result, sum(peaks) / len(peaks)), [picture], [note])
+
+
+def _rows(result: Result, still_nm: float) -> list[Row]:
+    """The table; ``still_nm`` is the mean of 5.2's peaks with bumpers."""
+    peak_nm = motionless.value(result, "peak torque, any sign")
+    reversal_ms, deflection_ms = _times_ms(result)
+    speed, detection, escape, false = (
+        motionless.value(result, name)
+        for name in ("contact speed", "detection time", "escape distance", "false detections")
+    )
+    happens = Target(minimum=0.0, text="happens")
+    fitted = "fitted"
+    return [
+        Row("speed at contact", speed, "m/s", "given", SPEED_MPS, Target.around(SPEED_MPS, 0.005), decimals=3),
+        Row("detection time", detection, "ms", fitted, 105.0, Target.around(105.0, 10.0)),
+        Row("reversal after contact", reversal_ms, "ms", fitted, "reverses", happens),
+        Row(
+            "peak torque over 5.2's with bumpers",
+            peak_nm / still_nm,
+            "1",
+            fitted,
+            "about 2",
+            Target.around(2.0, 0.2),
+            decimals=2,
+        ),
+        Row("peak torque of either sign", peak_nm, "N.m", fitted, decimals=2),
+        Row("peak torque against the motion", motionless.value(result, "peak wheel torque"), "N.m", fitted, decimals=2),
+        Row("peak contact force", motionless.value(result, "peak contact force"), "N", "assumed"),
+        Row("largest spring deflection", motionless.value(result, "bumper travel"), "mm", fitted),
+        Row("time of the largest spring deflection", deflection_ms, "ms", fitted, 180.0, decimals=0),
+        Row("escape of the admittance", escape, "m", "given", 0.5, Target.around(0.5, 0.005), decimals=3),
+        Row("false detections", false, "1", "computed", None, Target(maximum=0.0), decimals=0),
+    ]
+
+
+def _times_ms(result: Result) -> tuple[float, float]:
+    """Times since contact in ms: of the robot's reversal (NaN if it did not), of the largest spring deflection."""
+    import numpy as np
+
+    from giveway.report import BUMPER_LABELS
+    from giveway.report.runs import Run
+
+    run = Run(BUMPER_LABELS[PAPER_BUMPER], result)
+    velocity = np.stack([run.hit["testbed.truth.vx"], run.hit["testbed.truth.vy"]], axis=1) @ run.along
+    backwards = np.flatnonzero((run.time_s > 0.0) & (velocity > 0.0))
+    reversal = float(run.time_ms[backwards[0]]) if backwards.size else float("nan")
+    return reversal, float(run.time_ms[int(np.argmax(run.hit["testbed.truth.bumper_compression"]))])
+
+
+EXPERIMENT = Experiment(
+    name="moving",
+    summary="The robot drives at 0.22 m/s into a resting slider, notices, reverses and gives way (paper, 5.3).",
+    section="5.3",
+    bumpers=tuple(BUMPERS),
+    scenario=scenario,
+    reproduce=reproduce,
+)

@@ -1,0 +1,42 @@
+"""5.2 as the reproduction computes it: every target is met, also at reduced effort, whose runs are the same."""
+
+from __future__ import annotations
+
+import pytest
+from giveway import experiments
+from giveway.reproduction import Effort, Findings
+
+
+@pytest.fixture(scope="module")
+def findings() -> Findings:
+    reproduce = experiments.get("motionless").reproduce
+    assert reproduce is not None
+    return reproduce(Effort(full=False))
+
+
+def test_every_target_is_met(findings: Findings) -> None:
+    missed = [(row.quantity, row.ours, row.target) for row in findings.rows if row.met is False]
+    assert not missed
+
+
+def test_the_papers_numbers_are_there(findings: Findings) -> None:
+    paper = {row.quantity: row.paper for row in findings.rows}
+    assert [paper[f"detection time, {label}"] for label in ("no bumper", "spring", "magnetic spring")] == [45, 95, 85]
+    assert sum(row.target is not None for row in findings.rows) >= 10
+
+
+def test_plate_and_cover_are_stated(findings: Findings) -> None:
+    (row,) = [row for row in findings.rows if "magnetic spring against spring" in row.quantity]
+    assert "plate 0.5 kg, cover " in row.quantity
+    assert "kN/m" in row.quantity
+
+
+def test_figure_10_overlays_three_bumpers(findings: Findings) -> None:
+    (picture,) = findings.pictures
+    (detections,) = {len([line for line in axes.lines if line.get_linestyle() == "--"]) for axes in picture.figure.axes}
+    assert detections == 3
+    assert ("detection, spring", "95 ms") in picture.paper
+
+
+def test_the_noise_is_told(findings: Findings) -> None:
+    assert sum("over 3 seeds of the sensor noise" in note for note in findings.notes) == 3
