@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test bench fmus build lint lock clean
+.PHONY: help demo reproduce test bench fit fmus build lint lock clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -27,6 +27,9 @@ test: build lint ## every test
 
 bench: build ## how fast a co-simulated second runs
 	$(BIN)/giveway bench
+
+fit: build ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
+	$(BIN)/giveway fit --robot robots/trikey.toml --out robots/trikey.toml
 
 fmus: build ## the FMUs, with their variable tables, the robot file and the batch library, in out/fmus
 	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu

@@ -213,8 +213,9 @@ class _Batch:
 
     def _set_parameters(self) -> None:
         counts = [sum(map(len, values.values())) for values in self.parameters]
+        tables = {model: table(model) for model in native.MODELS}
         rows = [
-            (number, table(model)[name].reference, float(value))
+            (number, tables[model][name].reference, float(value))
             for values in self.parameters
             for number, model in enumerate(native.MODELS)
             for name, value in values[model].items()
