@@ -27,6 +27,7 @@ std::vector<Push> pushes_from_all_sides(const gw_contact_config_t &outline, int 
 
 TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere) {
     Random random(131);
+    const double threshold = GW_TRIKEY_DETECTOR_IMPULSE_THRESHOLD_NEWTON_S;
     int trial = 0;
     for (const auto &order : wheel_orders) {
         auto config = trikey_config();
@@ -69,7 +70,7 @@ TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere) {
             }
             ASSERT_EQ(robot.output.detection_count, 1U);
             // Impulse minus leak reaches J: 20 samples were in before.
-            ASSERT_NEAR(ticks_to_hit + 20, std::floor(1.4 / ((force - 1.0) * 1e-3)) + 1, 1.0);
+            ASSERT_NEAR(ticks_to_hit + 20, std::floor(threshold / ((force - 1.0) * 1e-3)) + 1, 1.0);
             ASSERT_NEAR(robot.output.detection_wrench.force_x_n, wrench(0), is_double ? 1e-9 : 1e-3);
             ASSERT_NEAR(robot.output.detection_wrench.torque_nm, wrench(2), is_double ? 1e-9 : 1e-3);
             ASSERT_NEAR(robot.output.detection_contact.point_m.x, push.x, is_double ? 1e-9 : 1e-4);

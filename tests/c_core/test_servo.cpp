@@ -26,6 +26,8 @@ gw_servo_input_t input_of(double angle, double speed, std::int32_t count, bool i
 }
 
 constexpr double rad_per_count = 2.0 * pi / 8500;
+constexpr double kp = GW_TRIKEY_SERVO_KP_NM_PER_RAD;
+constexpr double kd = GW_TRIKEY_SERVO_KD_NMS_PER_RAD;
 
 TEST(Servo, TorqueIsProportionalDerivative) {
     auto s = servo_of(trikey_servo());
@@ -45,8 +47,8 @@ TEST(Servo, TorqueIsProportionalDerivative) {
         ASSERT_EQ(gw_servo_step(&s, &in, &out), GW_STATUS_OK);
         filtered += gain * ((count - before) * rad_per_count / 0.0005 - filtered);
         before = count;
-        const double wanted = 203.0 * (angle - count * rad_per_count) + 8.0 * (speed - filtered);
-        // Speeds from counts reach 4.4 rad/s, angles are rounded to 2e-7 and multiplied by 203.
+        const double wanted = kp * (angle - count * rad_per_count) + kd * (speed - filtered);
+        // Speeds from counts reach 4.4 rad/s, angles are rounded to 2e-7 and multiplied by kp.
         ASSERT_NEAR(out.torque_nm, std::clamp(wanted, -20.0, 20.0), is_double ? 1e-9 : 5e-4) << i;
         ASSERT_NEAR(out.speed_radps, filtered, 100.0 * tolerance);
         ASSERT_TRUE(gw_servo_invariant_holds(&s));
@@ -96,7 +98,7 @@ TEST(Servo, ReferencesAreExtrapolatedBetweenTheirArrivals) {
     for (int i = 0; i < 100; ++i) {
         ASSERT_EQ(gw_servo_step(&s, &in, &out), GW_STATUS_REFERENCE_STALE);
         ASSERT_EQ(out.angle_error_rad, real(held));
-        ASSERT_NEAR(out.torque_nm, 203.0 * held, 100.0 * tolerance);
+        ASSERT_NEAR(out.torque_nm, kp * held, 100.0 * tolerance);
     }
     in.reference_is_new = true;
     EXPECT_EQ(gw_servo_step(&s, &in, &out), GW_STATUS_OK);
@@ -113,7 +115,7 @@ TEST(Servo, BadReferencesHoldTheLastAngle) {
             (in_angle ? broken.angle_rad : broken.speed_radps) = bad;
             for (int i = 0; i < 30; ++i) {
                 ASSERT_EQ(gw_servo_step(&s, &broken, &out), GW_STATUS_REFERENCE_INVALID);
-                ASSERT_NEAR(out.torque_nm, 203.0 * 0.02, 100.0 * tolerance);
+                ASSERT_NEAR(out.torque_nm, kp * 0.02, 100.0 * tolerance);
                 broken.reference_is_new = false;
             }
         }

@@ -148,5 +148,5 @@ def test_steps_across_ticks_agree_to_the_tolerance() -> None:
 
 
 def test_what_does_not_fit_together_is_refused() -> None:
-    text = refusal("drivetrain", {"drivetrain.gear_stiction": 1.0})
+    text = refusal("drivetrain", {"drivetrain.gear_stiction": 1.0, "drivetrain.gear_coulomb": 2.8})
     assert "drivetrain.gear_stiction = 1 is not allowed: it must be at least drivetrain.gear_coulomb = 2.8" in text
