@@ -1,4 +1,4 @@
-// A consistent start: at rest with zero bristles, or in steady motion with rollers and drivetrains wound up.
+// A consistent start: at rest, or in steady motion with rollers wound up; drivetrains carry what the rollers pull.
 #pragma once
 
 #include "plant.hpp"
@@ -9,6 +9,7 @@ template <class T> struct InitialMotion {
     T x, y, theta;    // world frame
     T vx, vy, omega;
     T slider_speed;
+    std::array<T, wheel_count> bristle_offset; // beyond that of the motion, m: what earlier motion left in stuck rollers
 };
 
 template <class T>
@@ -36,7 +37,7 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
     for (int i = 0; i < wheel_count; ++i) {
         const Vector2<T> radial{T(wheel_cos[i]), T(wheel_sin[i])};
         const T speed = dot(radial, velocity);
-        x[bristle + i] = steady_deflection(p, i, speed);
+        x[bristle + i] = steady_deflection(p, i, speed) + start.bristle_offset[i];
         const T force = p.wheel_traction[i] * roller_force(p, i, speed, x[bristle + i]).force;
         friction = friction + Planar3<T>{force * radial.x, force * radial.y, T(0.0)};
     }

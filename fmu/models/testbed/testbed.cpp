@@ -75,7 +75,8 @@ public:
         now_s_ = 0.0;
         events_ = 0;
         exchanging_ = false;
-        const plant::InitialMotion<double> motion{v_.start_x, v_.start_y, v_.start_theta, v_.start_vx, v_.start_vy, v_.start_omega, v_.slider_speed};
+        const plant::InitialMotion<double> motion{v_.start_x, v_.start_y, v_.start_theta, v_.start_vx, v_.start_vy, v_.start_omega, v_.slider_speed,
+                                                   {v_.start_bristle[0], v_.start_bristle[1], v_.start_bristle[2]}};
         plant::StateVector<double> state{};
         system_.start(plant_parameters(v_), motion, push_inputs({}), state);
         const auto truth = system_.outputs(state.data());

@@ -115,7 +115,7 @@ class Plant:
         return modes_from(mode)
 
     def initial_state(self, motion: list[float], u: Inputs) -> tuple[np.ndarray, Modes]:
-        """`motion`: x, y, theta, vx, vy, omega, slider speed."""
+        """`motion`: x, y, theta, vx, vy, omega, slider speed, bristle offsets[3]."""
         start, inputs, state, mode = (
             _array(motion),
             _array(input_row(u)),

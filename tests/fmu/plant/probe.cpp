@@ -282,12 +282,13 @@ EXPORT void probe_transition(void* handle, double* x, const double* u, double* m
     modes_to(modes, m);
 }
 
-// motion: x, y, theta, vx, vy, omega, slider speed.
+// motion: x, y, theta, vx, vy, omega, slider speed, bristle offsets[3].
 EXPORT void probe_initial_state(void* handle, const double* motion, const double* u, double* x,
                                 double* m) {
     const auto* probe = static_cast<const Probe*>(handle);
     const plant::InitialMotion<double> start = {motion[0], motion[1], motion[2], motion[3],
-                                                motion[4], motion[5], motion[6]};
+                                                motion[4], motion[5], motion[6],
+                                                {motion[7], motion[8], motion[9]}};
     plant::StateVector<double> state = {};
     Modes modes = {};
     plant::initial_state(start, inputs_from(u), probe->p, probe->d, state, modes);

@@ -104,6 +104,29 @@ TEST(Testbed, UnpoweredDrivesGiveNoTorque) {
     EXPECT_EQ(run.v().energy_work_in, 0.0);
 }
 
+TEST(Testbed, LoadedRollersAreHeldByTheDrivetrains) {
+    Bench run;
+    run.v().command_enable = false;
+    run.v().slider_present = false;
+    run.v().start_bristle[0] = 2e-4; // 5.2 N along -x
+    run.v().start_bristle[2] = -1e-4;
+    run.initialise();
+    run.step_to(0.5, 1e-3);
+    const Variables& v = run.v();
+    double force_x = 0.0;
+    double force_y = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const double azimuth = 2.0 * M_PI / 3.0 * i;
+        EXPECT_NEAR(v.truth_roller_force[i], v.roller_presliding_stiffness[i] * v.start_bristle[i], 1e-12); // rounding of 5 N, a thousand times
+        force_x += -std::cos(azimuth) * v.truth_roller_force[i] - std::sin(azimuth) * v.truth_wheel_torque[i] / v.wheel_radius;
+        force_y += -std::sin(azimuth) * v.truth_roller_force[i] + std::cos(azimuth) * v.truth_wheel_torque[i] / v.wheel_radius;
+    }
+    EXPECT_NEAR(force_x, 0.0, 1e-9); // sums of 5 N
+    EXPECT_NEAR(force_y, 0.0, 1e-9);
+    EXPECT_NEAR(v.truth_x, 0.0, 1e-12);
+    EXPECT_NEAR(v.truth_y, 0.0, 1e-12);
+}
+
 TEST(Testbed, RefusesWhatDoesNotFitTogether) {
     const auto refusal = [](auto change) {
         Bench run;
