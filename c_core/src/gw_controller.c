@@ -46,6 +46,13 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     config->estimator.tare_ticks = 100U;
     config->estimator.retare_ticks = 100U;
     config->estimator.tare_variation_nm = (gw_real_t)0.5;
+    config->estimator.friction_model = GW_FRICTION_TANH;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        config->estimator.presliding.stiffness_n_per_m[i] = GW_TRIKEY_ROLLER_PRESLIDING_STIFFNESS_N_PER_M;
+    }
+    config->estimator.presliding.damping_newton_s_per_m = GW_TRIKEY_ROLLER_PRESLIDING_DAMPING_NEWTON_S_PER_M;
+    config->estimator.presliding.stribeck_speed_mps = GW_TRIKEY_ROLLER_STRIBECK_SPEED_MPS;
+    config->estimator.presliding.elastic_fraction = GW_TRIKEY_ROLLER_ELASTIC_FRACTION;
 
     config->contact.minimum_force_n = GW_ONE;
     config->contact.vertex_count = GW_TRIKEY_OUTLINE_COUNT;

@@ -22,6 +22,8 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_TARE_TICKS, 0U, config->tare_ticks);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_RETARE_TICKS, 0U, config->retare_ticks);
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, 0U, config->tare_variation_nm);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, 0U, config->friction_model);
+    gw_presliding_config_check(&config->presliding, error);
 }
 
 gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
@@ -46,6 +48,9 @@ gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_conf
         if (status == GW_STATUS_OK) {
             status = gw_rate_filter_constants(&estimator->rate_constants, period_s, config->rate_cutoff_radps,
                                               config->encoder_counts, config->drivetrain_stiffness_nm_per_rad);
+        }
+        if (status == GW_STATUS_OK) {
+            status = gw_presliding_init(&estimator->presliding, &config->presliding, friction, &estimator->kinematics);
         }
         estimator->initialised = (status == GW_STATUS_OK);
         if (estimator->initialised) {
@@ -77,6 +82,7 @@ bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
         holds = (error.field == GW_FIELD_NONE) && gw_kinematics_invariant_holds(&estimator->kinematics) &&
                 gw_nominal_invariant_holds(&estimator->nominal) && gw_tare_invariant_holds(&estimator->run_tare) &&
                 gw_tare_invariant_holds(&estimator->stop_tare) &&
+                gw_presliding_invariant_holds(&estimator->presliding) &&
                 gw_moving_average_invariant_holds(&estimator->average) &&
                 (estimator->average.window == estimator->config.average_window);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
@@ -87,7 +93,7 @@ bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
     return holds;
 }
 
-void gw_estimator_restart(gw_estimator_t *estimator)
+static void restart_filters(gw_estimator_t *estimator)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_restart(&estimator->rate[i]);
@@ -95,9 +101,31 @@ void gw_estimator_restart(gw_estimator_t *estimator)
     gw_moving_average_reset(&estimator->average);
 }
 
+void gw_estimator_restart(gw_estimator_t *estimator)
+{
+    restart_filters(estimator);
+    gw_presliding_gap(&estimator->presliding);
+}
+
 void gw_estimator_start_tare(gw_estimator_t *estimator)
 {
     gw_tare_start(&estimator->run_tare);
+}
+
+/* The zero of a tare: its mean torque, less what deflected bristles have a part in. */
+static gw_wheels_t zero_of(gw_estimator_t *estimator, const gw_wheels_t *mean_nm)
+{
+    gw_wheels_t zero_nm = *mean_nm;
+    if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
+        const gw_wheels_t elastic_nm = gw_presliding_elastic_torques(&estimator->presliding, &estimator->kinematics);
+        const gw_wheels_t held_nm = gw_kinematics_torques_of_wrench(
+            &estimator->kinematics, gw_kinematics_wrench_of_rollers(&estimator->kinematics, &elastic_nm));
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            zero_nm.wheel[i] = mean_nm->wheel[i] - held_nm.wheel[i];
+        }
+        gw_presliding_settle(&estimator->presliding, mean_nm);
+    }
+    return zero_nm;
 }
 
 gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm)
@@ -109,11 +137,11 @@ gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_
                                estimator->config.tare_variation_nm, &mean_nm);
     }
     if (progress == GW_TARE_DONE) {
-        estimator->run_zero_nm = mean_nm;
-        estimator->rest_zero_nm = mean_nm;
+        estimator->run_zero_nm = (estimator->config.tare_ticks > 0U) ? zero_of(estimator, &mean_nm) : no_torque;
+        estimator->rest_zero_nm = estimator->run_zero_nm;
         estimator->rest = true;
         estimator->slow_ticks = estimator->config.rest_ticks;
-        gw_estimator_restart(estimator);
+        restart_filters(estimator);
     }
     return progress;
 }
@@ -175,7 +203,7 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *in
                 gw_tare_add(&estimator->stop_tare, &input->torque_nm, estimator->config.retare_ticks,
                             estimator->config.tare_variation_nm, &mean_nm);
             if (progress == GW_TARE_DONE) {
-                estimator->rest_zero_nm = mean_nm;
+                estimator->rest_zero_nm = zero_of(estimator, &mean_nm);
                 estimator->rest = true;
             }
         }
@@ -184,7 +212,7 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *in
 }
 
 /* T|0 from the present zero and the model. */
-static gw_wheels_t nominal_with_zero(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                                      gw_twist_t measured_twist, gw_acceleration_t measured_acceleration)
 {
     const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
@@ -201,7 +229,16 @@ static gw_wheels_t nominal_with_zero(const gw_estimator_t *estimator, const gw_e
     } else {
         /* planned */
     }
-    gw_wheels_t nominal = gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist, acceleration);
+    gw_wheels_t nominal;
+    if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
+        const gw_wheels_t friction_nm =
+            gw_presliding_step(&estimator->presliding, &estimator->kinematics, &estimator->rate_constants,
+                               input->encoder_count, &input->torque_nm, measured_twist);
+        nominal = gw_nominal_torques_with_friction(&estimator->nominal, &estimator->kinematics, twist, acceleration,
+                                                   &friction_nm);
+    } else {
+        nominal = gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist, acceleration);
+    }
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         nominal.wheel[i] += zero->wheel[i];
     }
@@ -233,9 +270,12 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         status = GW_STATUS_INPUT_INVALID;
         gw_estimator_restart(estimator);
     } else {
+        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, input->planned_twist);
         gw_wheels_t rates = no_torque;
         gw_wheels_t derivatives = no_torque;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            /* Without it a robot that already moves would seem to be thrown into motion. */
+            gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
             gw_rate_filter_step(&estimator->rate[i], &estimator->rate_constants, input->encoder_count[i],
                                 input->torque_nm.wheel[i]);
             rates.wheel[i] = estimator->rate[i].rate_radps;

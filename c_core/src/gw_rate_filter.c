@@ -8,6 +8,8 @@
 #define RATE_MAX ((gw_real_t)1.0e6)
 #define DERIVATIVE_MAX ((gw_real_t)1.0e10)
 
+#define PRESUMED_MAX_RADPS ((gw_real_t)10000.0)
+
 gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
                                      uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad)
 {
@@ -45,13 +47,24 @@ void gw_rate_filter_restart(gw_rate_filter_t *filter)
     filter->started = false;
 }
 
+void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
+{
+    if ((!filter->started) && gw_in_range(rate_radps, -PRESUMED_MAX_RADPS, PRESUMED_MAX_RADPS)) {
+        filter->rate_radps = rate_radps;
+    }
+}
+
+gw_real_t gw_rate_filter_turned(const gw_rate_filter_constants_t *constants, int32_t counts, gw_real_t torque_change_nm)
+{
+    return ((gw_real_t)counts * constants->rad_per_count) - (torque_change_nm * constants->compliance_rad_per_nm);
+}
+
 void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constants_t *constants, int32_t count,
                          gw_real_t torque_nm)
 {
     if (filter->started) {
-        const gw_real_t turned_rad =
-            ((gw_real_t)gw_count_difference(count, filter->last_count) * constants->rad_per_count) -
-            ((torque_nm - filter->last_torque_nm) * constants->compliance_rad_per_nm);
+        const gw_real_t turned_rad = gw_rate_filter_turned(constants, gw_count_difference(count, filter->last_count),
+                                                           torque_nm - filter->last_torque_nm);
         const gw_real_t input = turned_rad / constants->period_s;
         /* Exact step of y'' = w^2 (u - y) - 2 w y' with u held. */
         const gw_real_t error = filter->rate_radps - input;

@@ -41,6 +41,9 @@ const std::map<gw_config_field_t, Setter> real_fields = {
     {GW_FIELD_ESTIMATOR_REST_SPEED, CONTROLLER_FIELD(estimator.rest_speed_mps)},
     {GW_FIELD_ESTIMATOR_CREEP_SPEED, CONTROLLER_FIELD(estimator.creep_speed_mps)},
     {GW_FIELD_ESTIMATOR_TARE_VARIATION, CONTROLLER_FIELD(estimator.tare_variation_nm)},
+    {GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, CONTROLLER_FIELD(estimator.presliding.damping_newton_s_per_m)},
+    {GW_FIELD_ESTIMATOR_STRIBECK_SPEED, CONTROLLER_FIELD(estimator.presliding.stribeck_speed_mps)},
+    {GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, CONTROLLER_FIELD(estimator.presliding.elastic_fraction)},
     {GW_FIELD_CONTACT_MINIMUM_FORCE, CONTROLLER_FIELD(contact.minimum_force_n)},
     {GW_FIELD_DETECTOR_FORCE_THRESHOLD, CONTROLLER_FIELD(detector.force_threshold_n)},
     {GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, CONTROLLER_FIELD(detector.impulse_threshold_newton_s)},
@@ -77,6 +80,7 @@ const std::map<gw_config_field_t, Setter> count_fields = {
     {GW_FIELD_ESTIMATOR_REST_TICKS, CONTROLLER_FIELD(estimator.rest_ticks)},
     {GW_FIELD_ESTIMATOR_TARE_TICKS, CONTROLLER_FIELD(estimator.tare_ticks)},
     {GW_FIELD_ESTIMATOR_RETARE_TICKS, CONTROLLER_FIELD(estimator.retare_ticks)},
+    {GW_FIELD_ESTIMATOR_FRICTION_MODEL, CONTROLLER_FIELD(estimator.friction_model)},
     {GW_FIELD_DETECTOR_KIND, CONTROLLER_FIELD(detector.kind)},
     {GW_FIELD_DETECTOR_BLANKING_TICKS, CONTROLLER_FIELD(detector.blanking_ticks)},
     {GW_FIELD_ADMITTANCE_KIND, CONTROLLER_FIELD(admittance.kind)},
@@ -101,7 +105,8 @@ const std::map<gw_config_field_t, ServoSetter> servo_count_fields = {
 // Tested on their own: arrays and the rule on the whole outline.
 const std::set<gw_config_field_t> special_fields = {GW_FIELD_NONE,      GW_FIELD_GEOMETRY_WHEEL_SLOT,
                                                     GW_FIELD_OUTLINE_COUNT, GW_FIELD_OUTLINE_X,
-                                                    GW_FIELD_OUTLINE_Y,     GW_FIELD_OUTLINE_CONVEX};
+                                                    GW_FIELD_OUTLINE_Y,     GW_FIELD_OUTLINE_CONVEX,
+                                                    GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS};
 
 gw_controller_config_t trikey() {
     gw_controller_config_t config;
@@ -197,6 +202,23 @@ TEST(Config, EveryFieldOfTheTableIsTested) {
     }
     EXPECT_STREQ(gw_config_limit(GW_FIELD_COUNT)->name, "none");
     EXPECT_STREQ(gw_config_limit(static_cast<gw_config_field_t>(-1))->name, "none");
+}
+
+TEST(Config, PreslidingStiffnessOfEachWheel) {
+    const gw_config_limit_t *limit = gw_config_limit(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto with = [&](Real value) {
+            auto config = trikey();
+            config.estimator.presliding.stiffness_n_per_m[i] = value;
+            return refused(config);
+        };
+        EXPECT_EQ(with(limit->minimum), GW_FIELD_NONE);
+        EXPECT_EQ(with(limit->maximum), GW_FIELD_NONE);
+        for (const Real bad : {std::nextafter(limit->minimum, -infinite), std::nextafter(limit->maximum, infinite),
+                               -infinite, infinite, not_a_number}) {
+            EXPECT_EQ(with(bad), GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS) << bad;
+        }
+    }
 }
 
 TEST(Config, OutlineFields) {

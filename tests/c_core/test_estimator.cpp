@@ -232,4 +232,184 @@ TEST(Estimator, BrokenInputsGiveNoWrenchAndLeaveNoTrace) {
     EXPECT_FALSE(gw_estimator_invariant_holds(raw.get()));
 }
 
+gw_controller_config_t with_bristles() {
+    auto config = trikey();
+    config.estimator.friction_model = GW_FRICTION_BRISTLE;
+    return config;
+}
+
+// Drivetrain torques (motors stuck) and displacement of the base under a push: stiffness of drivetrains and bristles.
+struct Static {
+    Eigen::Vector3d torque, shift;
+};
+Static static_push(const gw_controller_config_t &c, const Eigen::Vector3d &push) {
+    const Eigen::Matrix3d wheel = wheel_jacobian(c.geometry, 0.0);
+    const Eigen::Matrix3d axles = static_cast<double>(c.geometry.roller_radius_m) * roller_jacobian(c.geometry, 0.0);
+    Eigen::Vector3d sigma;
+    for (int i = 0; i < 3; ++i) {
+        sigma(i) = c.estimator.presliding.stiffness_n_per_m[i];
+    }
+    const double k = c.estimator.drivetrain_stiffness_nm_per_rad;
+    const Eigen::Matrix3d stiffness =
+        k * wheel.transpose() * wheel + axles.transpose() * sigma.asDiagonal() * axles;
+    const Eigen::Vector3d shift = stiffness.fullPivLu().solve(push);
+    return {-k * wheel * shift, shift};
+}
+
+TEST(Estimator, WhatRollersCarryPastTheWheelsIsSeenWithBristles) {
+    // 5.1: a push on the unpowered robot, all sticks. Wheels alone see k_w/(k_w + sigma0) of the force and all of the
+    // moment (uniform bristles); with bristles, scattered ones too, all of both.
+    Random random(123);
+    for (int trial = 0; trial < 200; ++trial) {
+        auto config = with_bristles();
+        const bool uniform = trial % 2 == 0;
+        const double common = random.uniform(1.6e4, 6.7e4);
+        for (auto &stiffness : config.estimator.presliding.stiffness_n_per_m) {
+            stiffness = real(uniform ? common : random.uniform(1.6e4, 6.7e4));
+        }
+        config.geometry.azimuth_rad = real(random.uniform(-3.0, 3.0));
+        auto paper_config = config;
+        paper_config.estimator.friction_model = GW_FRICTION_TANH;
+        Estimated e(config);
+        Estimated paper(paper_config);
+        const Eigen::Vector3d zero = random_vector(random, 3.0);
+        e.tare(zero);
+        paper.tare(zero);
+        Eigen::Vector3d push = random_vector(random, 12.0);
+        push(2) *= 0.2;
+        gw_estimator_output_t out{};
+        gw_estimator_output_t sensed{};
+        // Pushed harder and harder, then held until the rates have died out: e^-60 of them is left, and of the damper.
+        for (int k = 1; k <= 400; ++k) {
+            const Static now = static_push(config, push * std::min(k, 100) / 100.0);
+            out = e.step(moving_at(0.0, zero + now.torque));
+            sensed = paper.step(moving_at(0.0, zero + now.torque));
+            ASSERT_TRUE(gw_estimator_invariant_holds(e.state.get()));
+        }
+        EXPECT_EQ(out.regime, GW_REGIME_REST);
+        // Offsets of 3 N m are 50 N at the wheels' rims.
+        EXPECT_VECTOR_NEAR(vector(out.wrench), push, 100.0 * tolerance * 50.0);
+        if (uniform) {
+            const double radius = config.geometry.wheel_radius_m;
+            const double wheel_stiffness = config.estimator.drivetrain_stiffness_nm_per_rad / radius / radius;
+            const double sigma0 = config.estimator.presliding.stiffness_n_per_m[0];
+            Eigen::Vector3d expected = push;
+            expected.head<2>() *= wheel_stiffness / (wheel_stiffness + sigma0);
+            EXPECT_VECTOR_NEAR(vector(sensed.wrench), expected, 100.0 * tolerance * 50.0);
+        }
+    }
+}
+
+TEST(Estimator, MotorsThatTurnMoveTheBristlesToo) {
+    // The same push with motors that give way by whole counts: what counts is where the wheels are.
+    auto config = with_bristles();
+    config.estimator.presliding.stribeck_speed_mps = real(1); // so that this jerk by some mm/s does not make them slide
+    Estimated e(config);
+    e.tare({0, 0, 0});
+    (void)e.step(moving_at(0.0, {0, 0, 0}));
+    const double count_rad = 2.0 * pi / 8500.0;
+    const Eigen::Matrix3d wheel = wheel_jacobian(e.config.geometry, 0.0);
+    const Eigen::Vector3d turned = Eigen::Vector3d(3, -2, 1) * count_rad;
+    // The base is held by bristles alone: no torque, so wheels turned as the motors did.
+    auto in = moving_at(0.0, {0, 0, 0});
+    in.encoder_count[0] = 3;
+    in.encoder_count[1] = -2;
+    in.encoder_count[2] = 1;
+    const auto out = e.step(in);
+    const Eigen::Matrix3d axles =
+        static_cast<double>(e.config.geometry.roller_radius_m) * roller_jacobian(e.config.geometry, 0.0);
+    const Eigen::Vector3d shift = wheel.inverse() * turned;
+    // Elastic part; the rate filters saw three counts within one tick, so the damper has a part, too.
+    const Eigen::Vector3d measured = vector(out.measured_twist);
+    const Eigen::Vector3d along = 25900.0 * axles * shift + 20.0 * axles * measured;
+    EXPECT_VECTOR_NEAR(vector(out.wrench), axles.transpose() * along, 100.0 * tolerance * along.norm());
+}
+
+TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold) {
+    // A stop leaves the rollers wound up. The tare of the stop takes that as zero; when the robot is planned to move
+    // again nothing has happened yet, and the estimate must not jump. The tanh law forgets the wind-up: it jumps.
+    for (const std::uint32_t model : {GW_FRICTION_BRISTLE, GW_FRICTION_TANH}) {
+        auto config = with_bristles();
+        config.estimator.friction_model = model;
+        Estimated e(config);
+        const Eigen::Vector3d offset(0.3, -0.2, 0.1);
+        e.tare(offset);
+        (void)e.step(moving_at(0.1, offset));
+        const Eigen::Vector3d pull(8.0, -6.0, 0.0); // of the rollers on the base
+        Static wound{};
+        for (int k = 1; k <= 50; ++k) {
+            wound = static_push(config, pull * k / 50.0);
+            (void)e.step(moving_at(0.1, offset + wound.torque));
+        }
+        // What winds them up here is a push; it stays through the stop, and so it is zero.
+        gw_estimator_output_t out{};
+        for (int k = 0; k < 300; ++k) {
+            out = e.step(moving_at(0.0, offset + wound.torque));
+        }
+        ASSERT_EQ(out.regime, GW_REGIME_REST);
+        EXPECT_VECTOR_NEAR(vector(out.wrench), Eigen::Vector3d(0, 0, 0), 100.0 * tolerance * 50.0);
+        auto in = moving_at(0.0, offset + wound.torque);
+        in.planned_twist.omega_radps = real(0.01); // any plan; this one needs no force
+        const auto left = e.step(in);
+        ASSERT_NE(left.regime, GW_REGIME_REST);
+        if (model == GW_FRICTION_BRISTLE) {
+            // The run's zero knows nothing of the push that the stop's tare took in: it is there again, whole.
+            EXPECT_VECTOR_NEAR(vector(left.wrench), pull, 100.0 * tolerance * 50.0);
+        } else {
+            EXPECT_LT(vector(left.wrench).norm(), 0.9 * pull.norm());
+        }
+    }
+}
+
+TEST(Estimator, ANoisyEndOfATareIsNoPush) {
+    // The last sample of the tare is off by a tenth of a newton metre: 1.5 N at the rim. Without more ado the bristles
+    // would keep that for ever.
+    Random random(124);
+    Estimated e(with_bristles());
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (unsigned k = 0; k < e.config.estimator.tare_ticks; ++k) {
+        const Eigen::Vector3d noisy = random_vector(random, 0.1);
+        mean += vector(wheels(noisy)) / e.config.estimator.tare_ticks;
+        (void)e.step(moving_at(0.0, noisy));
+        const gw_wheels_t torque = wheels(noisy);
+        (void)gw_estimator_tare(e.state.get(), &torque);
+    }
+    const auto out = e.step(moving_at(0.0, mean));
+    EXPECT_EQ(out.regime, GW_REGIME_REST);
+    // A hundred samples of 0.1 N m were summed, and traction is ten times the torque.
+    EXPECT_VECTOR_NEAR(vector(out.wrench), Eigen::Vector3d(0, 0, 0), 1000.0 * tolerance);
+}
+
+TEST(Estimator, ARobotThatAlreadyMovesIsNotThrownIntoMotion) {
+    // No tare, 0.2 m/s from the first sample on: the measured acceleration starts at zero.
+    auto config = with_bristles();
+    config.estimator.acceleration_source = GW_SOURCE_MEASURED;
+    config.estimator.tare_ticks = 0;
+    config.estimator.encoder_counts = 1'000'000;
+    Estimated e(config);
+    const gw_wheels_t nothing{};
+    EXPECT_EQ(gw_estimator_tare(e.state.get(), &nothing), GW_TARE_DONE);
+    const Eigen::Vector3d rates = wheel_jacobian(config.geometry, 0.0) * Eigen::Vector3d(0.2, 0, 0);
+    // The torques of steady motion along x: one roller slides ahead, two at half the speed.
+    const Eigen::Matrix3d roller = roller_jacobian(config.geometry, 0.0);
+    const Eigen::Vector3d friction = 0.2 * (0.4 * roller * Eigen::Vector3d(0.2, 0, 0)).array().tanh().matrix();
+    const Eigen::Vector3d torque =
+        wheel_jacobian(config.geometry, 0.0).transpose().inverse() * roller.transpose() * friction;
+    double impulse = 0.0;
+    double worst = 0.0;
+    for (int k = 0; k < 300; ++k) {
+        auto in = moving_at(0.2, torque);
+        for (int i = 0; i < 3; ++i) {
+            in.encoder_count[i] = static_cast<std::int32_t>(std::lround(rates(i) * k * 1e-3 / (2.0 * pi) * 1e6));
+        }
+        const auto out = e.step(in);
+        impulse += out.wrench.force_x_n * 1e-3;
+        worst = std::max(worst, std::fabs(impulse));
+    }
+    // The bristles reach their limit after some 2 mm, 10 ms, and carry less than 42 N until then; thrown into motion the
+    // robot would seem to be hit by 34.7 kg x 0.2 m/s = 7 N s.
+    EXPECT_LT(worst, 0.42);
+    EXPECT_GT(worst, 0.01); // the bristles did start from zero
+}
+
 } // namespace

@@ -99,4 +99,25 @@ TEST(RateFilter, Refusals) {
     EXPECT_FALSE(gw_rate_filter_invariant_holds(nullptr));
 }
 
+TEST(RateFilter, StartsAtThePresumedRate) {
+    gw_rate_filter_constants_t constants{};
+    ASSERT_EQ(gw_rate_filter_constants(&constants, real(0.001), real(200), 8500, real(668)), GW_STATUS_OK);
+    gw_rate_filter_t filter{};
+    gw_rate_filter_restart(&filter);
+    gw_rate_filter_presume(&filter, real(1.5));
+    gw_rate_filter_step(&filter, &constants, 0, real(0));
+    EXPECT_EQ(filter.rate_radps, real(1.5));
+    EXPECT_EQ(filter.derivative_radps2, real(0));
+    gw_rate_filter_presume(&filter, real(7)); // it has started
+    EXPECT_EQ(filter.rate_radps, real(1.5));
+    for (const Real bad : {real(10000.1), real(-10000.1), not_a_number, infinite}) {
+        gw_rate_filter_restart(&filter);
+        gw_rate_filter_presume(&filter, bad);
+        EXPECT_EQ(filter.rate_radps, real(0));
+    }
+    gw_rate_filter_presume(&filter, real(-10000));
+    EXPECT_EQ(filter.rate_radps, real(-10000));
+    EXPECT_TRUE(gw_rate_filter_invariant_holds(&filter));
+}
+
 } // namespace

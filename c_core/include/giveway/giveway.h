@@ -14,6 +14,7 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_moving_average.h"
 #include "giveway/gw_nominal.h"
+#include "giveway/gw_presliding.h"
 #include "giveway/gw_rate_filter.h"
 #include "giveway/gw_reference.h"
 #include "giveway/gw_sensor_check.h"

@@ -5,6 +5,10 @@
  * Creeping: slower than creep_speed, or just stopped. The model holds badly, because stuck rollers keep wind-up while
  * tanh(0) = 0; the detector forgives more. To come to rest or to leave it empties the average.
  *
+ * With bristles the wind-up is in the model: a tare takes as zero what their deflections leave of the torques, so the
+ * deflections live on from motion to rest and back, and leaving rest brings no step of the estimate but their error.
+ * At rest a push is then seen whole: what the drivetrains feel and what the rollers carry past them.
+ *
  * Life cycle: gw_estimator_init; gw_estimator_tare per tick until done (at once if tare_ticks is 0); then
  * gw_estimator_step per tick; gw_estimator_restart after a gap in the samples. All members are private.
  */
@@ -15,6 +19,7 @@
 #include "giveway/gw_kinematics.h"
 #include "giveway/gw_moving_average.h"
 #include "giveway/gw_nominal.h"
+#include "giveway/gw_presliding.h"
 #include "giveway/gw_rate_filter.h"
 #include "giveway/gw_tare.h"
 #include "giveway/gw_types.h"
@@ -27,6 +32,9 @@ extern "C" {
 #define GW_SOURCE_PLANNED 0U
 #define GW_SOURCE_MEASURED 1U
 #define GW_SOURCE_ZERO 2U
+
+#define GW_FRICTION_TANH 0U
+#define GW_FRICTION_BRISTLE 1U
 
 typedef struct {
     /* Velocity of the friction model: GW_SOURCE_PLANNED (0) or GW_SOURCE_MEASURED (1). */
@@ -55,6 +63,11 @@ typedef struct {
     uint32_t retare_ticks;
     /* Largest variation of a torque within a tare, N m, [0, 100]. */
     gw_real_t tare_variation_nm;
+    /* Friction of the rollers: GW_FRICTION_TANH (0), the paper's (28) at velocity_source, or GW_FRICTION_BRISTLE (1),
+     * presliding at the measured motion. */
+    uint32_t friction_model;
+    /* Read by GW_FRICTION_BRISTLE only, checked always. */
+    gw_presliding_config_t presliding;
 } gw_estimator_config_t;
 
 typedef struct {
@@ -63,6 +76,7 @@ typedef struct {
     gw_nominal_t nominal;
     gw_rate_filter_constants_t rate_constants;
     gw_rate_filter_t rate[GW_WHEEL_COUNT];
+    gw_presliding_t presliding;
     gw_moving_average_t average;
     gw_tare_t run_tare;
     gw_tare_t stop_tare;

@@ -43,6 +43,10 @@ bool gw_nominal_invariant_holds(const gw_nominal_t *nominal);
 /* T|0, N m, at a twist and an acceleration over the floor, both along the base's axes and finite. Pointers not NULL. */
 gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics, gw_twist_t twist,
                                gw_acceleration_t acceleration);
+/* The same with the rollers' friction, N m per roller, as somebody else knows it. */
+gw_wheels_t gw_nominal_torques_with_friction(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics,
+                                             gw_twist_t twist, gw_acceleration_t acceleration,
+                                             const gw_wheels_t *friction_nm);
 
 #ifdef __cplusplus
 }

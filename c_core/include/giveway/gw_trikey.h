@@ -16,6 +16,10 @@
 #define GW_TRIKEY_ROLLER_INERTIA_KGM2 ((gw_real_t)1.23e-6)    /* (sourced) CAD of the lab, 2015 */
 #define GW_TRIKEY_ROLLER_COULOMB_TORQUE_NM ((gw_real_t)0.2)   /* (given) 4.2 */
 #define GW_TRIKEY_ROLLER_TANH_SLOPE_S_PER_RAD ((gw_real_t)0.4) /* (given) 4.2 */
+#define GW_TRIKEY_ROLLER_PRESLIDING_STIFFNESS_N_PER_M ((gw_real_t)28900.0) /* (fitted) to 5.1, 5.2 and 5.3 */
+#define GW_TRIKEY_ROLLER_PRESLIDING_DAMPING_NEWTON_S_PER_M ((gw_real_t)20.0) /* (assumed) */
+#define GW_TRIKEY_ROLLER_STRIBECK_SPEED_MPS ((gw_real_t)0.0025) /* (assumed) */
+#define GW_TRIKEY_ROLLER_ELASTIC_FRACTION ((gw_real_t)0.7)    /* (assumed) */
 #define GW_TRIKEY_DRIVETRAIN_STIFFNESS_NM_PER_RAD ((gw_real_t)721.0) /* (fitted) to 5.1, 5.2 and 5.3 */
 #define GW_TRIKEY_DRIVETRAIN_ENCODER_COUNTS 8500U             /* (sourced) successor robot, per wheel turn */
 #define GW_TRIKEY_DRIVETRAIN_TORQUE_LIMIT_NM ((gw_real_t)20.0) /* (assumed) about 9 A */

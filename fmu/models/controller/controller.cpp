@@ -88,7 +88,8 @@ private:
             break;
         case GW_FIELD_OUTLINE_X:
         case GW_FIELD_OUTLINE_Y:
-            std::snprintf(message.text, sizeof message.text, "%s[%u] = %.9g is not allowed: [%.9g, %.9g] m", name,
+        case GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS:
+            std::snprintf(message.text, sizeof message.text, "%s[%u] = %.9g is not allowed: [%.9g, %.9g]", name,
                           static_cast<unsigned>(error.index), value, static_cast<double>(error.minimum),
                           static_cast<double>(error.maximum));
             break;

@@ -49,6 +49,13 @@ inline gw_controller_config_t configuration(const Variables &v) {
     c.estimator.tare_ticks = count(v.estimator_tare_ticks);
     c.estimator.retare_ticks = count(v.estimator_retare_ticks);
     c.estimator.tare_variation_nm = rounded(v.estimator_tare_variation);
+    c.estimator.friction_model = count(v.estimator_friction_model);
+    for (std::size_t i = 0; i < GW_WHEEL_COUNT; ++i) {
+        c.estimator.presliding.stiffness_n_per_m[i] = rounded(v.estimator_presliding_stiffness[i]);
+    }
+    c.estimator.presliding.damping_newton_s_per_m = rounded(v.estimator_presliding_damping);
+    c.estimator.presliding.stribeck_speed_mps = rounded(v.estimator_stribeck_speed);
+    c.estimator.presliding.elastic_fraction = rounded(v.estimator_elastic_fraction);
 
     c.contact.minimum_force_n = rounded(v.contact_minimum_force);
     c.contact.vertex_count = count(v.outline_count);

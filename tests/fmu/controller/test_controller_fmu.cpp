@@ -82,7 +82,11 @@ TEST(ControllerFmu, RefusalsNameVariableValueAndRange) {
     fmu.model->reset();
     fmu.v.outline_y[1] = 11.0;
     ASSERT_EQ(fmu.initialise(), Status::error);
-    EXPECT_NE(std::strstr(fmu.message.text, "outline.y[1] = 11"), nullptr);
+    EXPECT_STREQ(fmu.message.text, "outline.y[1] = 11 is not allowed: [-10, 10]");
+    fmu.model->reset();
+    fmu.v.estimator_presliding_stiffness[2] = 9.0;
+    ASSERT_EQ(fmu.initialise(), Status::error);
+    EXPECT_STREQ(fmu.message.text, "estimator.presliding_stiffness[2] = 9 is not allowed: [10, 10000000]");
     fmu.model->reset();
     fmu.v.controller_period = 0.02;
     fmu.v.reference_follow_gain = 30.0;
@@ -142,6 +146,44 @@ TEST(ControllerFmu, BadSensorsAreHandledNotRefused) {
         ASSERT_EQ(fmu.initialise(), Status::ok);
         ASSERT_EQ(fmu.model->step(0.0, 0.001, fmu.message), Status::ok);
     }
+}
+
+TEST(ControllerFmu, BristlesReachTheLibrary) {
+    // The estimate of the FMU is that of the library with the same numbers, and not that of the tanh law.
+    const auto run = [](bool bristles) {
+        Fmu fmu;
+        fmu.v.estimator_friction_model = bristles ? 1 : 0;
+        fmu.v.estimator_presliding_stiffness[0] = 2.0e4;
+        fmu.v.estimator_presliding_stiffness[1] = 3.0e4;
+        fmu.v.estimator_presliding_stiffness[2] = 4.0e4;
+        fmu.v.estimator_presliding_damping = 10.0;
+        fmu.v.estimator_stribeck_speed = 0.004;
+        fmu.v.estimator_elastic_fraction = 0.5;
+        fmu.v.detector_impulse_threshold = 100.0; // no reaction
+        EXPECT_EQ(fmu.initialise(), Status::ok);
+        gw_controller_t library{};
+        const gw_controller_config_t config = giveway::controller::configuration(fmu.v);
+        EXPECT_EQ(gw_controller_init(&library, &config, nullptr), GW_STATUS_OK);
+        double seen = 0.0;
+        for (int k = 0; k < 400; ++k) {
+            fmu.v.sensor_counter = k;
+            const double ramp = k < 150 ? 0.0 : 0.5 * std::min(1.0, (k - 150) / 100.0);
+            fmu.v.sensor_torque[1] = ramp;
+            fmu.v.sensor_torque[2] = -ramp;
+            const gw_controller_input_t input = giveway::controller::inputs(fmu.v);
+            gw_controller_output_t output{};
+            EXPECT_EQ(gw_controller_step(&library, &input, &output), GW_STATUS_OK);
+            EXPECT_EQ(fmu.model->step(k * 1e-3, 1e-3, fmu.message), Status::ok);
+            EXPECT_EQ(fmu.v.estimate_force_x, static_cast<double>(output.estimate.force_x_n));
+            seen = fmu.v.estimate_force_x;
+        }
+        return seen;
+    };
+    const double with = run(true);
+    const double without = run(false);
+    EXPECT_GT(std::fabs(without), 5.0);
+    // Wheels and rollers share a push as k/r_w^2 = 64.7 kN/m to some 30.
+    EXPECT_NEAR(with / without, 1.0 + 30.0 / 64.7, 0.1);
 }
 
 } // namespace

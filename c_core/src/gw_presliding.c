@@ -1,0 +1,181 @@
+#include "giveway/gw_presliding.h"
+
+#include "giveway/gw_math.h"
+
+/* Keeps rho finite for rollers without friction, N. */
+#define BEARABLE_MIN_N ((gw_real_t)0.000001)
+/* Longest way of a wheel within a sample, m; beyond it the sensors are wrong, and nothing is learnt from them. */
+#define WAY_MAX_M GW_ONE
+#define THREE ((gw_real_t)3.0)
+
+void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        gw_config_check_real(error, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, i, config->stiffness_n_per_m[i]);
+    }
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, 0U, config->damping_newton_s_per_m);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_STRIBECK_SPEED, 0U, config->stribeck_speed_mps);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, 0U, config->elastic_fraction);
+}
+
+gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
+                               const gw_friction_config_t *friction, const gw_kinematics_t *kinematics)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if ((presliding == NULL) || (config == NULL) || (friction == NULL) || (kinematics == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_presliding_config_check(config, &error);
+        gw_friction_config_check(friction, &error);
+        if (error.field != GW_FIELD_NONE) {
+            status = GW_STATUS_CONFIG_INVALID;
+        } else {
+            presliding->config = *config;
+            presliding->friction = *friction;
+            presliding->bearable_n = gw_max(friction->coulomb_torque_nm * kinematics->per_roller_radius, BEARABLE_MIN_N);
+            for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+                presliding->deflection_m[i] = gw_sum_of(GW_ZERO);
+                presliding->last_torque_nm.wheel[i] = GW_ZERO;
+                presliding->last_count[i] = 0;
+            }
+            gw_presliding_gap(presliding);
+        }
+    }
+    return status;
+}
+
+/* Deflection of a roller that bears force_n. */
+static gw_real_t deflection_of(const gw_presliding_t *presliding, uint32_t wheel, gw_real_t force_n)
+{
+    return force_n / presliding->config.stiffness_n_per_m[wheel];
+}
+
+bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
+{
+    bool holds = (presliding != NULL);
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_presliding_config_check(&presliding->config, &error);
+        gw_friction_config_check(&presliding->friction, &error);
+        holds = (error.field == GW_FIELD_NONE) && gw_in_range(presliding->bearable_n, BEARABLE_MIN_N, GW_REAL_MAX);
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            const gw_real_t most_m = deflection_of(presliding, i, presliding->bearable_n);
+            holds = holds && gw_in_range(presliding->deflection_m[i].value, -most_m, most_m) &&
+                    gw_sum_invariant_holds(presliding->deflection_m[i]) &&
+                    gw_is_finite(presliding->last_torque_nm.wheel[i]);
+        }
+    }
+    return holds;
+}
+
+void gw_presliding_gap(gw_presliding_t *presliding)
+{
+    presliding->torque_known = false;
+    presliding->count_known = false;
+}
+
+void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm)
+{
+    presliding->last_torque_nm = *mean_torque_nm;
+    presliding->torque_known = true;
+}
+
+gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics)
+{
+    gw_wheels_t torques;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        torques.wheel[i] = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) *
+                           kinematics->roller_radius_m;
+    }
+    return torques;
+}
+
+/* Wheel angles since the last sample: encoders, less the change of the drivetrains' twist. */
+static gw_wheels_t turned(gw_presliding_t *presliding, const gw_rate_filter_constants_t *rate_constants,
+                          const int32_t encoder_count[GW_WHEEL_COUNT], const gw_wheels_t *torque_nm)
+{
+    gw_wheels_t turned_rad;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const int32_t counts =
+            presliding->count_known ? gw_count_difference(encoder_count[i], presliding->last_count[i]) : 0;
+        const gw_real_t change_nm =
+            presliding->torque_known ? (torque_nm->wheel[i] - presliding->last_torque_nm.wheel[i]) : GW_ZERO;
+        turned_rad.wheel[i] = gw_rate_filter_turned(rate_constants, counts, change_nm);
+        presliding->last_count[i] = encoder_count[i];
+    }
+    presliding->last_torque_nm = *torque_nm;
+    presliding->torque_known = true;
+    presliding->count_known = true;
+    return turned_rad;
+}
+
+/* g: what a roller bears at a speed along the axle. */
+static gw_real_t bearable_at(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics, gw_real_t speed_mps)
+{
+    const gw_real_t slow = speed_mps / presliding->config.stribeck_speed_mps;
+    const gw_real_t stick = gw_exp(-(slow * slow));
+    const gw_real_t steady =
+        gw_tanh(presliding->friction.tanh_slope_s_per_rad * (gw_abs(speed_mps) * kinematics->per_roller_radius));
+    const gw_real_t share = stick + ((GW_ONE - stick) * steady);
+    return gw_clamp(presliding->bearable_n * share, BEARABLE_MIN_N, presliding->bearable_n);
+}
+
+/* 1 - A rho: how much of a motion that way deflects the bristle further. */
+static gw_real_t deflecting_share(const gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t way)
+{
+    const gw_real_t deflection_m = presliding->deflection_m[wheel].value;
+    gw_real_t share = GW_ONE;
+    if (((deflection_m > GW_ZERO) && (way > GW_ZERO)) || ((deflection_m < GW_ZERO) && (way < GW_ZERO))) {
+        const gw_real_t rho = (presliding->config.stiffness_n_per_m[wheel] * gw_abs(deflection_m)) / bearable_n;
+        const gw_real_t beyond = (rho - presliding->config.elastic_fraction) /
+                                 (GW_ONE - presliding->config.elastic_fraction);
+        const gw_real_t y = gw_clamp(beyond, GW_ZERO, GW_ONE);
+        const gw_real_t sliding = (y * y) * (THREE - (GW_TWO * y));
+        share = GW_ONE - (sliding * rho);
+    }
+    return share;
+}
+
+/* Moves the deflection by one sample's way. The exact solution ends at g/sigma0 and never passes it, from either side:
+ * nor does this, however long the way. */
+static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t way_m)
+{
+    const gw_sum_t before_m = presliding->deflection_m[wheel];
+    const gw_real_t most_m = deflection_of(presliding, wheel, presliding->bearable_n);
+    const gw_real_t end_m = deflection_of(presliding, wheel, (way_m > GW_ZERO) ? bearable_n : -bearable_n);
+    const bool below = before_m.value < end_m;
+    const gw_real_t low_m = below ? -most_m : end_m;
+    const gw_real_t high_m = below ? end_m : most_m;
+    gw_sum_t after_m = gw_sum_add(before_m, way_m * deflecting_share(presliding, wheel, bearable_n, way_m));
+    if (!gw_in_range(after_m.value, low_m, high_m)) {
+        after_m = gw_sum_of(gw_clamp(after_m.value, low_m, high_m));
+    }
+    presliding->deflection_m[wheel] = after_m;
+}
+
+gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_t *kinematics,
+                               const gw_rate_filter_constants_t *rate_constants,
+                               const int32_t encoder_count[GW_WHEEL_COUNT], const gw_wheels_t *torque_nm,
+                               gw_twist_t twist)
+{
+    gw_wheels_t torques;
+    const gw_wheels_t turned_rad = turned(presliding, rate_constants, encoder_count, torque_nm);
+    const gw_twist_t moved = gw_kinematics_twist(kinematics, &turned_rad);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_vector_t n = kinematics->radial[i];
+        const gw_real_t speed_mps = (n.x * twist.vx_mps) + (n.y * twist.vy_mps);
+        const gw_real_t way_m = (n.x * moved.vx_mps) + (n.y * moved.vy_mps);
+        const gw_real_t bearable_n = bearable_at(presliding, kinematics, speed_mps);
+        const gw_real_t rate_mps = speed_mps * deflecting_share(presliding, i, bearable_n, speed_mps);
+        if (gw_in_range(way_m, -WAY_MAX_M, WAY_MAX_M)) {
+            deflect(presliding, i, bearable_n, way_m);
+        }
+        const gw_real_t force_n = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) +
+                                  (presliding->config.damping_newton_s_per_m * rate_mps);
+        torques.wheel[i] = force_n * kinematics->roller_radius_m;
+    }
+    return torques;
+}
