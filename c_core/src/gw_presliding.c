@@ -1,6 +1,7 @@
 #include "giveway/gw_presliding.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_wrench.h"
 
 /* Keeps rho finite for rollers without friction, N. */
 #define BEARABLE_MIN_N ((gw_real_t)0.000001)
@@ -65,7 +66,7 @@ bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
             const gw_real_t most_m = deflection_of(presliding, i, presliding->bearable_n);
             holds = holds && gw_in_range(presliding->deflection_m[i].value, -most_m, most_m) &&
                     gw_sum_invariant_holds(presliding->deflection_m[i]) &&
-                    gw_is_finite(presliding->last_torque_nm.wheel[i]);
+                    gw_in_range(presliding->last_torque_nm.wheel[i], -GW_TORQUE_MAX, GW_TORQUE_MAX);
         }
     }
     return holds;

@@ -8,8 +8,6 @@
 #define RATE_MAX ((gw_real_t)1.0e6)
 #define DERIVATIVE_MAX ((gw_real_t)1.0e10)
 
-#define PRESUMED_MAX_RADPS ((gw_real_t)10000.0)
-
 gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
                                      uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad)
 {
@@ -49,7 +47,7 @@ void gw_rate_filter_restart(gw_rate_filter_t *filter)
 
 void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
 {
-    if ((!filter->started) && gw_in_range(rate_radps, -PRESUMED_MAX_RADPS, PRESUMED_MAX_RADPS)) {
+    if ((!filter->started) && gw_in_range(rate_radps, -RATE_MAX, RATE_MAX)) {
         filter->rate_radps = rate_radps;
     }
 }

@@ -290,7 +290,7 @@ TEST(Presliding, NoInputBreaksTheState) {
             gw_wheels_t torque{};
             for (std::size_t i = 0; i < 3; ++i) {
                 const Real drawn = any(30.0);
-                torque.wheel[i] = std::isfinite(drawn) ? drawn : real(1); // finite, says the header
+                torque.wheel[i] = gw_clamp(drawn, -GW_TORQUE_MAX, GW_TORQUE_MAX); // says the header
                 b.count[i] = random.integer(0, 9) == 0 ? static_cast<std::int32_t>(random.bits())
                                                        : b.count[i] + random.integer(-3, 3) % 4;
                 b.count[i] = std::min(std::max(b.count[i], INT32_MIN + 10), INT32_MAX - 10);

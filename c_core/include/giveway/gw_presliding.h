@@ -58,8 +58,8 @@ void gw_presliding_gap(gw_presliding_t *presliding);
 void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm);
 /* Elastic part of the friction, sigma0 z r_r per roller, N m. */
 gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics);
-/* One tick: counts and finite torques of this sample, the twist of the base as it was measured. Friction f r_r per
- * roller, N m; not finite if the twist is not, the state then stays sound. */
+/* One tick: counts and torques of this sample, |torque| <= GW_TORQUE_MAX, and the twist of the base as it was measured.
+ * Friction f r_r per roller, N m; not finite if the twist is not, the state then stays sound. */
 gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_t *kinematics,
                                const gw_rate_filter_constants_t *rate_constants,
                                const int32_t encoder_count[GW_WHEEL_COUNT], const gw_wheels_t *torque_nm,

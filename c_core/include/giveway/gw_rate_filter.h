@@ -38,7 +38,7 @@ gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_r
                                      uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad);
 /* Forgets the past: the next sample starts the filter at rate zero. Pointer not NULL. */
 void gw_rate_filter_restart(gw_rate_filter_t *filter);
-/* The next sample starts a filter that has not started at this rate, unless that is more than 10000 rad/s. */
+/* The next sample starts a filter that has not started at this rate, unless that is more than 1e6 rad/s. */
 void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps);
 /* How far a wheel turned, rad: its motor side by so many counts, less the twist torque/k of the drivetrain. */
 gw_real_t gw_rate_filter_turned(const gw_rate_filter_constants_t *constants, int32_t counts,
