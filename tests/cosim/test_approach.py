@@ -1,0 +1,156 @@
+"""The slider meets the robot where, when and as fast as `meet` was asked: measured in the plant, not computed again."""
+
+from __future__ import annotations
+
+import math
+
+import giveway
+import numpy as np
+import pytest
+from giveway import batch
+from giveway.approach import Approach, edge_middle, meet, outline_of, outward_normal
+from giveway.errors import GivewayError
+from giveway.plan import Circle, Plan, Rest, Straight, start_values
+from giveway.variables import Value, table
+
+TARE_S = 0.1
+
+
+def parameters(**changes: Value) -> dict[str, Value]:
+    """All of the testbed's parameters for a bare slider; names with "__" for the dot."""
+    values = {v.name: v.start for v in table("testbed").select("parameter")}
+    values |= {"bumper.kind": 0} | {name.replace("__", "."): value for name, value in changes.items()}
+    return values  # type: ignore[return-value]
+
+
+def first_touch(approach: Approach, plan: Plan, **changes: Value) -> tuple[float, float, float, float]:
+    """Time (s), point (m, base frame) and slider speed (m/s) of the first contact in the testbed."""
+    values = meet(approach, parameters(**changes), plan, TARE_S)
+    overrides = {name.replace("__", "."): value for name, value in changes.items()} | values | start_values(plan)
+    # Short: what comes after the contact is of no interest. The rope's run-up is below half a second here.
+    duration = (0.4 if approach.time_s is None else approach.time_s) + 0.1
+    scenario = giveway.Scenario("touch", duration, bumper="none", testbed=overrides, plan=plan)
+    traces = batch.run(scenario).traces
+    time_s = float(traces["testbed.truth.first_contact_time"][-1])
+    assert time_s >= 0.0, "no contact"
+    row = int(np.flatnonzero(traces["testbed.truth.contact"].values)[0])
+    x, y = (float(traces[f"testbed.truth.contact_base_{axis}"][row]) for axis in "xy")
+    return time_s, x, y, float(traces["testbed.truth.slider_speed"][row - 1])
+
+
+OUTLINE = outline_of(parameters())
+MIDDLE = edge_middle(OUTLINE, 0)
+
+
+@pytest.mark.parametrize("changes", [{}, {"slider__friction": 4.0}, {"slider__damping": 5.0, "slider__mass": 20.0}])
+@pytest.mark.parametrize(("edge", "offset"), [(0, 0.0), (1, -0.12), (2, 0.2)])
+def test_a_free_slider_meets_the_resting_robot(edge: int, offset: float, changes: dict[str, Value]) -> None:
+    point = edge_middle(OUTLINE, edge, offset)
+    time_s, x, y, speed = first_touch(Approach(point, 0.4, time_s=0.5), Rest(), **changes)
+    # The rail's friction is full from 5 mm/s on and the robot stands: rounding, and 1 ms of deceleration, remain.
+    assert time_s == pytest.approx(0.5, abs=1e-4)
+    assert (x, y) == pytest.approx(point, abs=1e-5)
+    assert speed == pytest.approx(0.4, abs=1e-3)
+
+
+def test_the_weight_makes_the_slider_as_fast_as_asked() -> None:
+    for speed in (0.25, 0.5, 0.7):
+        _, x, y, found = first_touch(Approach(MIDDLE, speed, rope=True), Rest())
+        assert (x, y) == pytest.approx(MIDDLE, abs=1e-5)
+        assert found == pytest.approx(speed, abs=4e-3)  # the sample before contact: 1 ms at 3.2 m/s2
+
+
+@pytest.mark.parametrize("angle_deg", [-60.0, -25.0, 25.0, 60.0])
+def test_an_oblique_nose_touches_the_point_all_the_same(angle_deg: float) -> None:
+    # 60 deg off, the disc's side touches, 17 mm beside its tip. The sample after the contact is up to 1 ms at 0.5 m/s
+    # late, while the nose slides along.
+    point = edge_middle(OUTLINE, 1)  # the side that looks along -x
+    _, x, y, _ = first_touch(Approach(point, 0.5, math.radians(angle_deg), time_s=0.5), Rest())
+    assert (x, y) == pytest.approx(point, abs=5e-4)
+
+
+def test_a_corner_is_met() -> None:
+    corner = (float(OUTLINE[0, 0]), float(OUTLINE[0, 1]))
+    _, x, y, _ = first_touch(Approach(corner, 0.5, time_s=0.5), Rest())
+    assert (x, y) == pytest.approx(corner, abs=1e-5)
+
+
+def test_the_robot_may_stand_anywhere() -> None:
+    plan = Rest(2.0, -1.0, 2.5)
+    _, x, y, _ = first_touch(Approach(MIDDLE, 0.5, time_s=0.5), plan)
+    assert (x, y) == pytest.approx(MIDDLE, abs=1e-5)
+
+
+MOVING = {
+    "straight": (Straight(0.22, 1.0, acceleration_mps2=0.3), 2.0),
+    "around a circle": (Circle(1.5, 0.16, theta_rad=0.3, acceleration_mps2=0.1), 4.0),
+    "around a circle, clockwise, turning": (Circle(1.5, -0.16, heading="turning", acceleration_mps2=0.1), 4.0),
+}
+
+
+@pytest.mark.parametrize("case", MOVING)
+@pytest.mark.parametrize("speed", [0.0, 0.3])
+def test_a_moving_robot_is_led(case: str, speed: float) -> None:
+    plan, when = MOVING[case]
+    heading = plan(np.array([when - TARE_S]))[0]
+    # The point that looks most along the robot's motion, so that a resting slider is reached at all.
+    world = math.atan2(heading[4], heading[3]) - heading[2]
+    edge = max(range(3), key=lambda e: float(normal_of(e) @ (math.cos(world), math.sin(world))))
+    point = edge_middle(OUTLINE, edge, 0.05)
+    time_s, x, y, found = first_touch(Approach(point, speed, time_s=when), plan)
+    # The robot lags its plan by what friction deflects servo and drivetrains (2.8 N m over 203 N m/rad at a wheel of
+    # 0.1 m: 1.4 mm, plus the rollers' 42 N over 29 kN/m) and by two bus cycles: 5 mm, or 5 mm/0.16 m/s = 31 ms.
+    assert (x, y) == pytest.approx(point, abs=5e-3)
+    assert time_s == pytest.approx(when, abs=0.031)
+    assert found == pytest.approx(speed, abs=1e-3)
+
+
+def normal_of(edge: int) -> np.ndarray:
+    return outward_normal(OUTLINE, edge_middle(OUTLINE, edge))
+
+
+REFUSED: dict[str, tuple[dict[str, object], Plan, str, str]] = {
+    "beside the robot": ({"point_m": (0.5, 0.5)}, Rest(), "point_m", "nearest is"),
+    "inside the robot": ({"point_m": (0.0, 0.0)}, Rest(), "point_m", "outline"),
+    "away from the side": ({"direction_rad": 1.0}, Rest(), "direction_rad", "approach"),
+    "both stand": ({"speed_mps": 0.0}, Rest(), "speed_mps", "approach"),
+    "too fast for the weight": ({"speed_mps": 3.0, "rope": True, "time_s": None}, Rest(), "speed_mps", "at most 1.1"),
+    "a corner sweeps over the nose": ({"speed_mps": 0.05, "time_s": 3.0}, Circle(0.2, 0.5, heading="turning"),
+                                      "point_m", "before"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be_met_is_refused(case: str) -> None:
+    changes, plan, field, words = REFUSED[case]
+    given = {"point_m": MIDDLE, "speed_mps": 0.5, "time_s": 0.5, **changes}
+    with pytest.raises(GivewayError, match=words) as caught:
+        meet(Approach(**given), parameters(), plan)  # type: ignore[arg-type]
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"speed_mps": -0.1}, "speed_mps"),
+        ({"time_s": None}, "time_s"),
+        ({"time_s": math.nan}, "time_s"),
+        ({"rope": True}, "time_s"),
+        ({"rope": True, "time_s": None, "speed_mps": 0.0}, "speed_mps"),
+        ({"direction_rad": math.inf}, "direction_rad"),
+    ],
+)
+def test_an_approach_refuses(changes: dict[str, object], field: str) -> None:
+    given = {"point_m": MIDDLE, "speed_mps": 0.5, "time_s": 0.5, **changes}
+    with pytest.raises(GivewayError) as caught:
+        Approach(**given)  # type: ignore[arg-type]
+    assert caught.value.field == field
+
+
+def test_edges_are_counted_from_their_first_corner() -> None:
+    assert edge_middle(OUTLINE, 1) == pytest.approx((-0.176092, 0.0), abs=1e-12)
+    assert edge_middle(OUTLINE, 1, 0.1) == pytest.approx((-0.176092, -0.1), abs=1e-12)
+    with pytest.raises(GivewayError, match="0 to 2"):
+        edge_middle(OUTLINE, 3)
+    with pytest.raises(GivewayError, match="offset_m"):
+        edge_middle(OUTLINE, 0, 0.31)
