@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from giveway.master import Progress
     from giveway.result import Result
 
-__all__ = ["GivewayError", "Scenario", "__version__", "experiment", "load", "run"]
+__all__ = ["GivewayError", "Scenario", "__version__", "experiment", "load", "read_scenario", "run"]
 
 try:
     __version__ = importlib.metadata.version("giveway")
@@ -57,6 +57,13 @@ def experiment(name: str) -> Experiment:
     from giveway import experiments
 
     return experiments.get(name)
+
+
+def read_scenario(path: Path | str) -> Scenario:
+    """The scenario in a TOML file, checked; see ``examples/``."""
+    from giveway import scenario_file
+
+    return scenario_file.read_scenario(path)
 
 
 def __getattr__(name: str) -> Any:

@@ -13,6 +13,7 @@ import typer
 
 from giveway import __version__
 from giveway.errors import GivewayError, SimulationError, UnknownNameError, one_line
+from giveway.scenario import BUMPERS
 
 if TYPE_CHECKING:
     from giveway.master import Progress
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["app", "main"]
 
 FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+DEFAULT_BUMPER = "magnetic"
 LONG_RUN_S = 20.0  # simulated; shorter runs end before a bar could be read
 
 app = typer.Typer(
@@ -62,20 +64,29 @@ def _options(
 
 @app.command()
 def run(
-    experiment: Annotated[str, typer.Argument(help="Name of the experiment; see `giveway list`.")],
+    what: Annotated[
+        str,
+        typer.Argument(
+            metavar="EXPERIMENT|FILE", help="Name of an experiment (`giveway list`), or a scenario file (TOML)."
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for traces, manifest and report.")],
-    bumper: Annotated[str, typer.Option("--bumper", help="none, spring or magnetic.")] = "magnetic",
+    bumper: Annotated[
+        str | None,
+        typer.Option("--bumper", help="none, spring or magnetic. Without it: magnetic, or what the scenario has."),
+    ] = None,
     assignments: SetOption = None,
     fmi: FmiOption = 3,
     duration: Annotated[float | None, typer.Option("--duration", metavar="S", help="Simulated time in s.")] = None,
     seed: SeedOption = None,
     robot: RobotOption = None,
 ) -> None:
-    """Run one experiment with one bumper; writes traces, metrics, manifest and a report."""
+    """Run one experiment, or your own scenario, with one bumper; writes traces, metrics, manifest and a report."""
     import giveway
     from giveway.files import check_output, replace_folder
 
-    scenario = _scenario(experiment, bumper, assignments, fmi, duration, seed, robot)
+    scenario, summary = _scenario(what, bumper, robot)
+    scenario = _changed(scenario, assignments, fmi, duration, seed)
     check_output(out)
     with _progress(scenario.duration_s) as progress:
         result = giveway.run(scenario, progress)
@@ -83,8 +94,8 @@ def run(
 
     with replace_folder(out) as folder:
         result.write_into(folder)
-        write_report(folder / "report.html", experiment, [result])
-    _print_table(experiment, {scenario.bumper: result})
+        write_report(folder / "report.html", scenario.name, summary, [result])
+    _print_table(scenario.name, {scenario.bumper: result})
     typer.echo(f"Written: {out / 'report.html'}")
     if result.interrupted:
         typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)
@@ -108,8 +119,9 @@ def demo(
     check_output(out)
     name = "motionless"
     results: dict[str, Result] = {}
-    for bumper in experiments.get(name).bumpers:
-        scenario = _scenario(name, bumper, None, fmi, None, seed, None)
+    experiment = experiments.get(name)
+    for bumper in experiment.bumpers:
+        scenario = _changed(experiment.scenario(bumper), None, fmi, None, seed)
         with _progress(scenario.duration_s) as progress:
             results[bumper] = giveway.run(scenario, progress)
         if results[bumper].interrupted:
@@ -120,7 +132,7 @@ def demo(
         for bumper, result in results.items():
             (folder / bumper).mkdir()
             result.write_into(folder / bumper)
-        write_report(folder / "report.html", name, list(results.values()))
+        write_report(folder / "report.html", name, experiment.summary, list(results.values()))
         write_picture(folder / "overview.png", list(results.values()))
         write_summary(folder / "summary.json", results)
     _print_table(name, results)
@@ -286,25 +298,35 @@ def bench(
     _print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
 
 
-def _scenario(
-    experiment: str,
-    bumper: str,
-    assignments: list[str] | None,
-    fmi: int,
-    duration: float | None,
-    seed: int | None,
-    robot: Path | None,
-) -> Scenario:
-    """The experiment's scenario with the command line's changes, all of it checked before anything runs."""
+def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenario, str]:
+    """The scenario of an experiment or of a file, and a sentence about it."""
     import dataclasses
 
     from giveway import experiments
-    from giveway.variables import parse_assignments
 
-    chosen = experiments.get(experiment)
-    if chosen.bumpers and bumper not in chosen.bumpers:
+    if what.endswith(".toml") or "/" in what:
+        from giveway.scenario_file import read_scenario
+
+        if bumper is not None and bumper not in BUMPERS:
+            raise UnknownNameError("--bumper", bumper, BUMPERS)
+        return read_scenario(what, bumper=bumper, robot=robot), f"A scenario from the file {Path(what).name}."
+    chosen = experiments.get(what)
+    if bumper is None:
+        bumper = DEFAULT_BUMPER if DEFAULT_BUMPER in chosen.bumpers or not chosen.bumpers else chosen.bumpers[0]
+    elif chosen.bumpers and bumper not in chosen.bumpers:
         raise UnknownNameError("--bumper", bumper, chosen.bumpers)
     scenario = chosen.scenario(bumper)
+    return (scenario if robot is None else dataclasses.replace(scenario, robot=robot)), chosen.summary
+
+
+def _changed(
+    scenario: Scenario, assignments: list[str] | None, fmi: int, duration: float | None, seed: int | None
+) -> Scenario:
+    """``scenario`` with the command line's changes, all of it checked before anything runs."""
+    import dataclasses
+
+    from giveway.variables import parse_assignments
+
     overrides = parse_assignments(assignments or [])
     scenario = dataclasses.replace(
         scenario,
@@ -312,8 +334,7 @@ def _scenario(
         testbed={**scenario.testbed, **overrides["testbed"]},
         controller={**scenario.controller, **overrides["controller"]},
         fmi_version=fmi,
-        seed=seed,
-        robot=robot,
+        seed=scenario.seed if seed is None else seed,
     )
     for model in overrides:
         scenario.parameters(model)
@@ -367,11 +388,11 @@ def _shares(names: Sequence[str]) -> Iterator[Callable[[str, float], None]]:
         yield draw
 
 
-def _print_table(experiment: str, results: dict[str, Result]) -> None:
+def _print_table(name: str, results: dict[str, Result]) -> None:
     from giveway.summary import table_rows
 
     header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
-    _print_columns(f"Experiment {experiment}: estimated or measured (true)", header, table_rows(results))
+    _print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
 
 
 def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 __all__ = [
     "FileError",
     "GivewayError",
+    "InputFileError",
     "NativeMissingError",
     "SimulationError",
     "UnknownNameError",
@@ -60,6 +61,22 @@ class FileError(GivewayError):
     def __str__(self) -> str:
         hint = f"; {self.allowed}" if self.allowed else ""
         return one_line(f"{self.field}: {self.value}{hint}")
+
+
+class InputFileError(GivewayError):
+    """A value in a file that is not usable: the message begins with file and line.
+
+    Attributes:
+        path, line: where; lines count from 1.
+        cause: what is wrong there.
+    """
+
+    def __init__(self, path: Path | str, line: int, cause: GivewayError) -> None:
+        super().__init__(cause.field, cause.value, cause.allowed)
+        self.path, self.line, self.cause = Path(path), line, cause
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {self.cause}"
 
 
 class NativeMissingError(GivewayError):

@@ -37,7 +37,7 @@ class References(HTMLParser):
 
 @pytest.fixture(scope="module")
 def page(full_runs: dict[str, Result]) -> str:
-    return render("motionless", list(full_runs.values()))
+    return render("motionless", "A sentence.", list(full_runs.values()))
 
 
 def test_the_report_needs_nothing_else(page: str) -> None:
@@ -68,8 +68,10 @@ def test_the_animation_data_is_json_with_the_detection(page: str, full_runs: dic
 
 def test_an_interrupted_run_says_so_in_its_report(short_run: Result) -> None:
     manifest = {**short_run.manifest, "interrupted": True}
-    assert "was interrupted" in render("motionless", [Result(short_run.traces, short_run.metrics, manifest)])
-    assert "was interrupted" not in render("motionless", [short_run])
+    assert "was interrupted" in render(
+        "motionless", "A sentence.", [Result(short_run.traces, short_run.metrics, manifest)]
+    )
+    assert "was interrupted" not in render("motionless", "A sentence.", [short_run])
 
 
 def test_demo_writes_what_it_prints(cli: Cli, tmp_path: Path) -> None:

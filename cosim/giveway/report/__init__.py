@@ -18,9 +18,9 @@ __all__ = ["render", "write_picture", "write_report"]
 BUMPER_LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic spring bumper"}
 
 
-def write_report(path: Path, experiment: str, results: Sequence[Result]) -> None:
+def write_report(path: Path, title: str, summary: str, results: Sequence[Result]) -> None:
     """Write the report of ``results`` (one per bumper) to ``path``, atomically."""
-    write_text(path, render(experiment, results))
+    write_text(path, render(title, summary, results))
 
 
 def write_picture(path: Path, results: Sequence[Result]) -> None:
@@ -30,11 +30,10 @@ def write_picture(path: Path, results: Sequence[Result]) -> None:
     write_overview(path, {BUMPER_LABELS[result.manifest["scenario"]["bumper"]]: result for result in results})
 
 
-def render(experiment: str, results: Sequence[Result]) -> str:
-    """The report as HTML text; it refers to nothing outside itself."""
+def render(title: str, summary: str, results: Sequence[Result]) -> str:
+    """The report as HTML text; it refers to nothing outside itself. ``summary`` is a sentence below the title."""
     import jinja2
 
-    from giveway import experiments
     from giveway.report.animation import scene
     from giveway.report.figures import figures
     from giveway.summary import table_rows
@@ -46,8 +45,8 @@ def render(experiment: str, results: Sequence[Result]) -> str:
     resources = files("giveway.report") / "templates"
     scenes = [scene(BUMPER_LABELS[bumper], result) for bumper, result in by_bumper.items()]
     return environment.get_template("report.html.j2").render(
-        experiment=experiment,
-        summary=experiments.get(experiment).summary,
+        title=title,
+        summary=summary,
         header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
         rows=table_rows(by_bumper),
         figures=figures({BUMPER_LABELS[bumper]: result for bumper, result in by_bumper.items()}),

@@ -1,0 +1,315 @@
+"""A user's own scenario as a TOML file; `cosim/README.md` lists its keys, `examples/` has files to start from.
+
+Points are on the robot (base frame, m), directions and headings in the world (degrees). A wrong file is refused with
+one message that names file, line and key; ranges are those of the variable tables and of the plans, not stated twice.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from giveway.checks import finite
+from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
+from giveway.scenario import BUMPERS, Scenario
+from giveway.toml_lines import line_of
+from giveway.variables import Value, table
+
+__all__ = ["read_scenario"]
+
+SCHEMA_VERSION = 1
+NAME_MAX = 80
+START_ACCELERATION_MPS2 = 0.2
+MEETING_S = 0.5
+PLANS = ("rest", "straight", "circle")
+
+_TOP = (
+    "schema_version", "name", "duration", "bumper", "robot", "seed",
+    "plan", "collision", "push", "testbed", "controller",
+)  # fmt: skip
+_POSE = ("x", "y", "heading")
+_PLAN_KEYS = {
+    "rest": _POSE,
+    "straight": (*_POSE, "speed", "direction", "acceleration"),
+    "circle": ("diameter", "speed", "centre", "start", "heading", "turning", "acceleration"),
+}
+_COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope")
+_PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
+# Parameters that a key of the file sets; [testbed] must not set them once more.
+_SET_BY = {
+    "bumper.kind": "bumper",
+    "electronics.seed": "seed",
+    "rope.attached": "collision.rope",
+    "slider.present": "collision",
+    "slider.mass": "collision.mass",
+    "slider.direction": "collision.direction",
+    "slider.target_x": "collision.point",
+    "slider.target_y": "collision.point",
+    "slider.run_up": "collision.time",
+    "slider.speed": "collision.speed",
+    **{f"start.{name}": "plan" for name in ("x", "y", "theta", "vx", "vy", "omega")},
+}
+
+
+def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | None = None) -> Scenario:
+    """The scenario in the file ``path``, checked; ``bumper`` and ``robot`` replace the file's.
+
+    Raises:
+        FileError: the file cannot be read.
+        InputFileError: it is no TOML, or something in it is unknown, of the wrong type, out of range or contradicts
+            something else in it; names the line.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise FileError(path, "no such file", "give the path of a scenario file (TOML)") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(path, f"cannot be read: {error}") from None
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputFileError(path, *_syntax(text, str(error))) from None
+    try:
+        return _scenario(document, path, bumper, robot)
+    except FileError:
+        raise  # about another file, which it names
+    except GivewayError as error:
+        raise InputFileError(path, line_of(text, error.field), error) from None
+
+
+def _syntax(text: str, message: str) -> tuple[int, GivewayError]:
+    """Line and cause of what tomllib said."""
+    found = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)", message)
+    if found is None:
+        return 1, FileError("not TOML", message)
+    line = int(found[1]) if found[1] else max(1, len(text.splitlines()))
+    return line, FileError("not TOML", message[: found.start()])
+
+
+def _scenario(document: dict[str, Any], path: Path, bumper: str | None, robot: Path | None) -> Scenario:
+    top = _Section("", document, _TOP)
+    version = top.required("schema_version", "1")
+    if version != SCHEMA_VERSION:
+        raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+    seed = top.values.get("seed")
+    if robot is None and "robot" in top.values:
+        robot = path.parent / top.text("robot")
+        if not robot.is_file():
+            raise GivewayError("robot", top.values["robot"], "a robot file, its path seen from this file")
+    collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
+    if collision is None and top.values.get("bumper", "none") != "none":
+        raise GivewayError("bumper", top.values["bumper"], "none without [collision]: the bumper is on what collides")
+    plan = _plan(top)
+    overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
+    with _renamed("", duration_s="duration"):
+        bare = Scenario(
+            name=top.text("name", path.stem),
+            duration_s=top.number("duration"),
+            bumper=bumper or top.choice("bumper", BUMPERS, "none"),
+            testbed={**overrides["testbed"], **start_values(plan), "slider.present": collision is not None},
+            controller=overrides["controller"],
+            plan=plan,
+            push=pushes,
+            seed=seed,
+            robot=robot,
+        )
+    if not 1 <= len(bare.name) <= NAME_MAX:
+        raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")
+    if collision is None:
+        return bare
+    return dataclasses.replace(bare, testbed={**bare.testbed, **_collision(collision, bare)})
+
+
+def _plan(top: _Section) -> Plan:
+    kind = "rest"
+    if "plan" in top.values:
+        kind = _Section("plan", top.values["plan"], None).choice("kind", PLANS)
+    section = top.table("plan", ("kind", *_PLAN_KEYS[kind])) or _Section("plan", {}, None)
+    heading = section.angle("heading", 0.0)
+    if kind == "rest":
+        with _renamed("plan", x_m="x", y_m="y"):
+            return Rest(section.number("x", 0.0), section.number("y", 0.0), heading)
+    speed, acceleration = section.number("speed"), section.number("acceleration", START_ACCELERATION_MPS2)
+    names = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}
+    if kind == "straight":
+        with _renamed("plan", x_m="x", y_m="y", **names):
+            x, y = section.number("x", 0.0), section.number("y", 0.0)
+            return Straight(speed, section.angle("direction", 0.0), x, y, heading, acceleration)
+    centre = section.pair("centre", (0.0, 0.0))
+    turning = "turning" if section.flag("turning", False) else "fixed"
+    with _renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **names):
+        start = section.angle("start", 0.0)
+        return Circle(section.number("diameter"), speed, *centre, start, turning, heading, acceleration)
+
+
+def _pushes(top: _Section) -> Pushes | None:
+    if "push" not in top.values:
+        return None
+    entries = top.values["push"]
+    if not isinstance(entries, list):
+        raise GivewayError("push", entries, "one or more [[push]]")
+    names = {"force_n": "force", "start_s": "start", "duration_s": "duration", "ramp_s": "ramp"}
+    pushes: list[TimedPush] = []
+    for index, entry in enumerate(entries):
+        section = _Section(f"push[{index}]", entry, _PUSH_KEYS)
+        point = section.pair("point")
+        with _renamed(section.name, point_x_m="point", point_y_m="point", **names):
+            pushes.append(
+                TimedPush(
+                    section.number("force"),
+                    section.angle("direction"),
+                    *point,
+                    section.number("start"),
+                    section.number("duration"),
+                    section.number("ramp", 0.0),
+                )
+            )
+            Pushes(tuple(pushes))  # so that an overlap is told with the later one's line
+    return Pushes(tuple(pushes))
+
+
+def _overrides(top: _Section, model: str) -> dict[str, Value]:
+    """Checked parameters of [testbed] or [controller]; dotted names and lists as in the variable tables."""
+    values = top.values.get(model, {})
+    if not isinstance(values, dict):
+        raise GivewayError(model, values, "a table")
+    found: dict[str, Value] = {}
+    for name, value in _scalars(values):
+        if model == "testbed" and name in _SET_BY:
+            raise GivewayError(f"{model}.{name}", value, f"one place to set it: {_SET_BY[name]}")
+        try:
+            found[name] = table(model).check(name, value)
+        except GivewayError as error:
+            error.field = f"{model}.{name}"
+            raise
+    return found
+
+
+def _scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            yield from _scalars(value, f"{prefix}{key}.")
+        elif isinstance(value, list):
+            yield from ((f"{prefix}{key}[{index}]", entry) for index, entry in enumerate(value))
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _collision(section: _Section, bare: Scenario) -> dict[str, Value]:
+    """The testbed's parameters for the dummy."""
+    from giveway.approach import Approach, edge_middle, meet, outline_of
+
+    set_already = bare.parameters("testbed")
+    mass = section.number("mass", float(table("testbed")["slider.mass"].start or 0.0))
+    with _renamed("collision", **{"testbed.slider.mass": "mass"}):
+        set_already["slider.mass"] = table("testbed").check("slider.mass", mass)
+    everything = {v.name: set_already.get(v.name, v.start) for v in table("testbed").select("parameter")}
+    testbed = {name: value for name, value in everything.items() if value is not None}
+    if "edge" in section.values and "point" in section.values:
+        raise GivewayError("collision.edge", section.values["edge"], "one place to choose: edge and offset, or point")
+    if "offset" in section.values and "edge" not in section.values:
+        raise GivewayError("collision.offset", section.values["offset"], "only with edge: it counts from its middle")
+    names = {"point_m": "point", "offset_m": "offset", "speed_mps": "speed", "direction_rad": "direction"}
+    with _renamed("collision", edge="edge", time_s="time", **names):
+        if "edge" in section.values:
+            point = edge_middle(outline_of(testbed), section.values["edge"], section.number("offset", 0.0))
+        else:
+            point = section.pair("point")
+        rope = section.flag("rope", False)
+        time_s = None if rope and "time" not in section.values else section.number("time", MEETING_S)
+        direction = section.angle("direction") if "direction" in section.values else None
+        approach = Approach(point, section.number("speed"), direction, time_s, rope)
+        return {"slider.mass": mass} | meet(approach, testbed, bare.plan, _tare_s(bare))
+
+
+def _tare_s(scenario: Scenario) -> float:
+    """How long the controller tares before the plan's clock starts, s."""
+    values, variables = scenario.parameters("controller"), table("controller")
+    ticks, period = (values.get(n, variables[n].start) for n in ("estimator.tare_ticks", "controller.period"))
+    return float(ticks or 0) * float(period or 0.0)
+
+
+@contextmanager
+def _renamed(section: str, **names: str) -> Iterator[None]:
+    """Errors of what the file's values are handed to, in the names of the file."""
+    try:
+        yield
+    except GivewayError as error:
+        key = error.field.rpartition(".")[2] if error.field not in names else error.field
+        if key in names:
+            error.field = f"{section}.{names[key]}" if section else names[key]
+        raise
+
+
+class _Section:
+    """One table of the file; every reader names the key, what was found and what is allowed."""
+
+    def __init__(self, name: str, values: Any, known: Sequence[str] | None) -> None:
+        """``known``: the keys it may have; None: any."""
+        if not isinstance(values, dict):
+            raise GivewayError(name, values, "a table")
+        self.name, self.values = name, values
+        if known is not None:
+            for key in values:
+                if key not in known:
+                    raise UnknownNameError(self.full(key), key, known)
+
+    def full(self, key: str) -> str:
+        return f"{self.name}.{key}" if self.name else key
+
+    def table(self, key: str, known: Sequence[str]) -> _Section | None:
+        return _Section(self.full(key), self.values[key], known) if key in self.values else None
+
+    def required(self, key: str, allowed: str) -> Any:
+        if key not in self.values:
+            raise GivewayError(self.full(key), "nothing", f"{allowed}; it is needed")
+        return self.values[key]
+
+    def number(self, key: str, default: float | None = None) -> float:
+        if key not in self.values and default is not None:
+            return default
+        return finite(self.full(key), self.required(key, "a finite number"))
+
+    def angle(self, key: str, default_rad: float | None = None) -> float:
+        """Degrees in the file, rad here."""
+        if key not in self.values and default_rad is not None:
+            return default_rad
+        found = self.required(key, "a number from -360 to 360 deg")
+        return math.radians(finite(self.full(key), found, -360.0, 360.0, "deg"))
+
+    def pair(self, key: str, default: tuple[float, float] | None = None) -> tuple[float, float]:
+        if key not in self.values and default is not None:
+            return default
+        found = self.required(key, "two numbers, [x, y] in m")
+        if not isinstance(found, list) or len(found) != 2:
+            raise GivewayError(self.full(key), found, "two numbers, [x, y] in m")
+        x, y = (finite(self.full(key), value) for value in found)
+        return x, y
+
+    def flag(self, key: str, default: bool) -> bool:
+        found = self.values.get(key, default)
+        if not isinstance(found, bool):
+            raise GivewayError(self.full(key), found, "true or false")
+        return found
+
+    def text(self, key: str, default: str | None = None) -> str:
+        found = self.values.get(key, default)
+        if not isinstance(found, str):
+            raise GivewayError(self.full(key), found, "a text in quotes")
+        return found
+
+    def choice(self, key: str, known: Sequence[str] | Mapping[str, Any], default: str | None = None) -> str:
+        if key not in self.values and default is None:
+            self.required(key, ", ".join(known))
+        found = self.text(key, default)
+        if found not in known:
+            raise UnknownNameError(self.full(key), found, known)
+        return found

@@ -1,0 +1,251 @@
+"""Scenario files: every example runs; every wrong file is refused in one line with file, line and key."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import giveway
+import numpy as np
+import pytest
+from cosim_helpers import Cli, folder_content
+from giveway import batch
+from giveway.errors import InputFileError
+from giveway.plan import Circle, Pushes, Straight
+from giveway.scenario_file import read_scenario
+from giveway.toml_lines import flatten, line_of
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+
+GOOD = """\
+schema_version = 1
+name = "a case"
+duration = 2.0
+bumper = "spring"
+
+[collision]
+mass = 12.0
+speed = 0.4
+edge = 0
+offset = 0.05
+time = 0.6
+
+[testbed]
+slider.friction = 2.0
+electronics.torque_offset = [
+    0.1,
+    0.0,
+    -0.1,
+]
+"""
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_example_runs_and_is_noticed(path: Path) -> None:
+    scenario = giveway.read_scenario(path)
+    result = batch.run(scenario)
+    detections = int(result.traces["controller.detection.count"][-1])
+    assert detections >= (1 if scenario.push is None else len(scenario.push.pushes))  # type: ignore[attr-defined]
+    asked = {"trolley": 0.4, "weight_and_rope": 0.5, "into_a_leg": 0.22}.get(path.stem)
+    # 1 % is the last millisecond before contact, at the rope's 3 m/s2.
+    assert result.metric("contact speed").value == (None if asked is None else pytest.approx(asked, rel=0.01))
+
+
+def test_there_are_examples() -> None:
+    assert len(EXAMPLES) >= 4
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_file_becomes_a_scenario(tmp_path: Path) -> None:
+    scenario = read_scenario(written(tmp_path, GOOD))
+    assert (scenario.name, scenario.duration_s, scenario.bumper, scenario.seed) == ("a case", 2.0, "spring", None)
+    found = scenario.parameters("testbed")
+    assert found["slider.mass"] == 12.0
+    assert found["slider.friction"] == 2.0
+    assert found["electronics.torque_offset[2]"] == -0.1
+    assert found["rope.attached"] is False
+    assert found["slider.speed"] == pytest.approx(0.4 + 2.0 / 12.0 * 0.6, rel=1e-12)  # v + F t/m
+    assert found["slider.direction"] == pytest.approx(math.radians(-120.0), abs=1e-6)  # corners to micrometres
+
+
+def test_without_a_collision_there_is_no_slider(tmp_path: Path) -> None:
+    scenario = read_scenario(written(tmp_path, "schema_version = 1\nduration = 1"))
+    assert scenario.name == "case"
+    assert scenario.bumper == "none"
+    assert scenario.parameters("testbed")["slider.present"] is False
+
+
+def test_plans_and_pushes(tmp_path: Path) -> None:
+    head = "schema_version = 1\nduration = 9.0\n"
+    line = read_scenario(written(tmp_path, head + '[plan]\nkind = "straight"\nspeed = 0.2\ndirection = 90\ny = -1\n'))
+    assert line.plan == Straight(0.2, math.pi / 2, 0.0, -1.0, 0.0, 0.2)
+    assert line.testbed["start.y"] == -1.0
+    text = """
+[plan]
+kind = "circle"
+diameter = 2
+speed = -0.3
+centre = [1, 2]
+start = 180
+heading = 45
+turning = true
+acceleration = 0.5
+[[push]]
+force = 30
+direction = 180
+point = [0.3, 0]
+start = 2
+duration = 0.5
+ramp = 0.1
+"""
+    round_ = read_scenario(written(tmp_path, head + text))
+    assert round_.plan == Circle(2.0, -0.3, 1.0, 2.0, math.pi, "turning", math.pi / 4, 0.5)
+    assert isinstance(round_.push, Pushes)
+    np.testing.assert_allclose(round_.push(np.array([2.2]))[0], [-30.0, 0.0, 0.3, 0.0], atol=1e-12)
+
+
+def test_robot_files_are_found_beside_the_scenario(tmp_path: Path) -> None:
+    robot = (Path(__file__).parents[2] / "robots" / "trikey.toml").read_text(encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(robot.replace("value = 34.7", "value = 41.0"), encoding="utf-8")
+    scenario = read_scenario(written(tmp_path, 'robot = "mine.toml"\n' + GOOD))
+    assert scenario.parameters("testbed")["base.mass"] == 41.0
+
+
+PUSH = "[[push]]\npoint=[0,0]\nforce=1\ndirection=0\nstart={}\nduration=1\n"
+# What replaces what in GOOD; the line; words of the message.
+WRONG: dict[str, tuple[str, str, int, tuple[str, ...]]] = {
+    "syntax": ("mass = 12.0", "mass = = 12.0", 7, ("Invalid value",)),
+    "end": ("\n]\n", "\n", 18, ("not TOML",)),
+    "twice": ("speed = 0.4", "mass = 1.0", 8, ("overwrite",)),
+    "no version": ("schema_version = 1\n", "", 1, ("schema_version: nothing", "needed")),
+    "other version": ("schema_version = 1", "schema_version = 2", 1, ("schema_version: 2", "allowed: 1")),
+    "no duration": ("duration = 2.0\n", "", 1, ("duration: nothing",)),
+    "negative duration": ("duration = 2.0", "duration = -2.0", 3, ("duration: -2.0", "0 to 3600 s")),
+    "infinite duration": ("duration = 2.0", "duration = inf", 3, ("duration: inf", "finite")),
+    "unknown key": ("mass = 12.0", "weight = 1", 7, ("collision.weight", "unknown")),
+    "misspelt key": ("speed = 0.4", "sped = 0.4", 8, ("collision.sped", "did you mean speed")),
+    "misspelt table": ("[collision]", "[colision]", 6, ("colision", "did you mean collision")),
+    "unknown bumper": ('"spring"', '"sprnig"', 4, ("bumper: sprnig", "did you mean spring")),
+    "text for a number": ("speed = 0.4", 'speed = "fast"', 8, ("collision.speed: fast", "number")),
+    "number for a text": ('name = "a case"', "name = 3", 2, ("name: 3", "text")),
+    "truth for a number": ("speed = 0.4", "speed = true", 8, ("collision.speed: True", "number")),
+    "negative speed": ("speed = 0.4", "speed = -1", 8, ("collision.speed: -1.0", "0 to 20 m/s")),
+    "no speed": ("speed = 0.4\n", "", 6, ("collision.speed: nothing",)),
+    "mass out of range": ("mass = 12.0", "mass = 1e6", 7, ("collision.mass: 1000000.0", "0.1 to 1000 kg")),
+    "edge out of range": ("edge = 0", "edge = 3", 9, ("collision.edge: 3", "0 to 2")),
+    "offset too long": ("offset = 0.05", "offset = 0.5", 10, ("collision.offset: 0.5", "0.305 m")),
+    "edge and point": ("edge = 0", "edge = 0\npoint = [0, 0]", 9, ("collision.edge", "one place")),
+    "offset without edge": ("edge = 0", "point = [0.088046, 0.1525]", 10, ("collision.offset", "only with edge")),
+    "point beside the robot": ("edge = 0\noffset = 0.05", "point = [0.2, 0.2]", 9, ("collision.point", "nearest is")),
+    "point of one number": ("edge = 0\noffset = 0.05", "point = [0.2]", 9, ("collision.point", "[x, y]")),
+    "away from the robot": ("time = 0.6", "time = 0.6\ndirection = 60", 12, ("collision.direction", "approach")),
+    "direction too large": ("time = 0.6", "time = 0.6\ndirection = 999", 12, ("collision.direction: 999", "360 deg")),
+    "rope and time": ("time = 0.6", "time = 0.6\nrope = true", 11, ("collision.time", "rope")),
+    "rope too slow": ("speed = 0.4\nedge = 0\noffset = 0.05\ntime = 0.6", "speed = 9\nrope = true\nedge = 0", 8,
+                      ("collision.speed: 9.0", "at most")),
+    "set twice": ("slider.friction = 2.0", "slider.mass = 2.0", 14, ("testbed.slider.mass", "collision.mass")),
+    "bumper set twice": ("slider.friction = 2.0", "bumper.kind = 2", 14, ("testbed.bumper.kind", "bumper")),
+    "misspelt parameter": ("slider.friction = 2.0", "slider.frictoin = 2.0", 14,
+                           ("testbed.slider.frictoin", "did you mean slider.friction")),
+    "parameter out of range": ("slider.friction = 2.0", "slider.friction = -2.0", 14, ("slider.friction: -2.0", "N")),
+    "list out of range": ("    -0.1,", "    -1e9,", 15, ("testbed.electronics.torque_offset[2]", "N.m")),
+    "an output": ("slider.friction = 2.0", "truth.x = 1.0", 14, ("testbed.truth.x", "is an output")),
+    "no robot": ('name = "a case"', 'robot = "nowhere.toml"', 2, ("robot: nowhere.toml", "robot file")),
+    "seed": ('name = "a case"', "seed = -1", 2, ("seed: -1",)),
+    "no name": ('name = "a case"', 'name = ""', 2, ("name", "1 to 80")),
+    "bumper without a collision": (GOOD[GOOD.index("[coll"):], "", 4, ("bumper: spring", "without [collision]")),
+    "plan is no table": ("[collision]", "plan = 3\n[collision]", 6, ("plan: 3", "table")),
+    "plan without kind": ("[collision]", "[plan]\nx = 1\n[collision]", 6, ("plan.kind",)),
+    "unknown plan": ("[collision]", '[plan]\nkind = "cirle"\n[collision]', 7, ("plan.kind", "did you mean circle")),
+    "key of another plan": ("[collision]", '[plan]\nkind = "rest"\nspeed = 1\n[collision]', 8, ("plan.speed",)),
+    "plan out of range": ("[collision]", '[plan]\nkind = "circle"\nspeed = 1\ndiameter = 0\n[collision]', 9,
+                          ("plan.diameter: 0.0", "m")),
+    "plan too fast": ("[collision]", '[plan]\nkind = "straight"\nspeed = 99\n[collision]', 8, ("plan.speed: 99.0",)),
+    "push is no list": ("[collision]", "push = 1\n[collision]", 6, ("push: 1", "[[push]]")),
+    "push without force": ("[collision]", "[[push]]\npoint = [0, 0]\n[collision]", 6, ("push[0].force: nothing",)),
+    "second push too early": (
+        "[collision]",
+        "".join(PUSH.format(start) for start in (1, 1.5)) + "[collision]",
+        16, ("push[1].start: 1.5", "one at a time")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_file_is_refused_with_line_and_key(case: str, tmp_path: Path) -> None:
+    old, new, line, words = WRONG[case]
+    assert GOOD.count(old) == 1
+    path = written(tmp_path, GOOD.replace(old, new))
+    with pytest.raises(InputFileError) as caught:
+        read_scenario(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}:{line}: "), message
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+def test_the_command_line_refuses_with_one_line_and_writes_nothing(cli: Cli, tmp_path: Path) -> None:
+    written(tmp_path, GOOD.replace("speed = 0.4", "speed = -1"))
+    done = cli("run", "case.toml", "--out", "out")
+    assert done.returncode == 2
+    assert done.stderr.splitlines() == [
+        "giveway: case.toml:8: collision.speed: -1.0 is not allowed; allowed: a number from 0 to 20 m/s"
+    ]
+    assert not done.stdout
+    assert folder_content(tmp_path) == ["case.toml"]
+    assert "no such file" in cli("run", "./nowhere", "--out", "out").stderr
+    assert "--bumper: rubber is unknown" in cli("run", "case.toml", "--bumper", "rubber", "--out", "out").stderr
+
+
+def test_the_command_line_runs_a_file(cli: Cli, tmp_path: Path) -> None:
+    written(tmp_path, GOOD)
+    done = cli(
+        "run", "case.toml", "--bumper", "magnetic", "--seed", "4", "--set", "testbed.base.mass=40", "--out", "out"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "a case" in done.stdout
+    result = giveway.load(tmp_path / "out")
+    assert result.manifest["scenario"]["bumper"] == "magnetic"
+    assert result.manifest["seed"] == 4
+    assert result.manifest["parameters"]["testbed"]["base.mass"] == 40.0
+    assert result.metric("contact speed").value == pytest.approx(0.4, rel=0.01)
+    assert "<h1>A case</h1>" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+LINES = """\
+# a comment
+a = 1
+
+[b]
+c = [
+  1,
+  2,
+]   # after it
+# another
+d.e = "x"
+[[f]]
+g = 1
+[[f]]
+g = '''
+h = 1
+'''
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [("a", 2), ("b", 4), ("b.c", 5), ("b.c[1]", 5), ("b.d.e", 10), ("b.d", 10), ("f[0].g", 12), ("f[1]", 13),
+     ("f[1].g", 14), ("f[1].h", 13), ("f[7].g", 11), ("b.d.nothing", 10), ("b.missing.entirely", 4), ("nothing", 1)],
+)  # fmt: skip
+def test_a_name_is_found_in_its_line(name: str, line: int) -> None:
+    assert line_of(LINES, name) == line
+
+
+def test_tables_are_flattened_with_the_names_of_messages() -> None:
+    names = [name for name, _ in flatten({"a": {"b": [{"c": 1}]}})]
+    assert names == ["a", "a.b", "a.b[0]", "a.b[0].c"]
