@@ -89,7 +89,8 @@ class Straight:
         direction_rad: of travel, world frame, in rad.
         x_m, y_m: where path time 0 is, in m.
         theta_rad: heading in rad.
-        acceleration_mps2: from rest with at most this, in m/s2 (half a sine wave over time); None: already moving.
+        acceleration_mps2: from rest with at most this, in m/s2 (half a sine wave over time); None: already moving,
+            which a servo that still has to fall behind to make its torque follows with a jolt.
     """
 
     speed_mps: float
@@ -97,12 +98,22 @@ class Straight:
     x_m: float = 0.0
     y_m: float = 0.0
     theta_rad: float = 0.0
-    acceleration_mps2: float | None = None
+    acceleration_mps2: float | None = 0.2
 
     def __post_init__(self) -> None:
         finite("Straight.speed_mps", self.speed_mps, 0.0, MAXIMUM_SPEED_MPS, "m/s")
         _check_pose(self, ("x_m", "y_m"), ("direction_rad", "theta_rad"))
         _check_acceleration("Straight.acceleration_mps2", self.acceleration_mps2)
+
+    @property
+    def ramp_s(self) -> float:
+        """Time from rest to full speed, s."""
+        return 0.0 if self.acceleration_mps2 is None else 0.5 * math.pi * self.speed_mps / self.acceleration_mps2
+
+    @property
+    def ramp_m(self) -> float:
+        """Way from rest to full speed, m."""
+        return 0.5 * self.speed_mps * self.ramp_s
 
     def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
         import numpy as np
@@ -128,7 +139,7 @@ class Circle:
         heading: "fixed", or "turning" at the rate of the path: the same side of the robot looks ahead all the time.
         theta_rad: heading at path time 0 in rad.
         acceleration_mps2: from rest with at most this along the path, in m/s2 (half a sine wave over time); None:
-            already moving. The centripetal acceleration, speed^2 over radius, comes on top.
+            already moving, see `Straight`. The centripetal acceleration, speed^2 over radius, comes on top.
     """
 
     diameter_m: float
@@ -138,7 +149,7 @@ class Circle:
     start_rad: float = 0.0
     heading: str = "fixed"
     theta_rad: float = 0.0
-    acceleration_mps2: float | None = None
+    acceleration_mps2: float | None = 0.2
 
     def __post_init__(self) -> None:
         finite("Circle.diameter_m", self.diameter_m, 1e-3, MAXIMUM_POSITION_M, "m")

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 POSITION, VELOCITY, ACCELERATION = slice(0, 3), slice(3, 6), slice(6, 9)
 MOVING = {
-    "straight": Straight(0.22, 2.0, -1.0, 0.5, 0.3),
+    "straight": Straight(0.22, 2.0, -1.0, 0.5, 0.3, acceleration_mps2=None),
     "straight from rest": Straight(0.22, 2.0, -1.0, 0.5, 0.3, acceleration_mps2=0.4),
-    "circle": Circle(1.5, 0.16, 0.2, -0.1, 1.0, theta_rad=0.4),
-    "circle, turning, clockwise": Circle(1.5, -0.16, start_rad=-2.0, heading="turning"),
+    "circle": Circle(1.5, 0.16, 0.2, -0.1, 1.0, theta_rad=0.4, acceleration_mps2=None),
+    "circle, turning, clockwise": Circle(1.5, -0.16, start_rad=-2.0, heading="turning", acceleration_mps2=None),
     "circle from rest": Circle(1.5, 0.16, acceleration_mps2=0.1),
     "circle from rest, turning": Circle(0.8, -0.3, heading="turning", acceleration_mps2=0.5),
 }
@@ -41,19 +41,21 @@ def test_velocity_and_acceleration_are_the_derivatives(name: str) -> None:
 
 def test_a_circle_is_a_circle() -> None:
     time_s = np.linspace(0.0, 100.0, 1001)
-    table = Circle(1.5, 0.16, 0.2, -0.1, 1.0)(time_s)
+    table = Circle(1.5, 0.16, 0.2, -0.1, 1.0, acceleration_mps2=None)(time_s)
     from_centre = table[:, :2] - (0.2, -0.1)
     np.testing.assert_allclose(np.hypot(*from_centre.T), 0.75, rtol=1e-14)
     np.testing.assert_allclose(np.hypot(*table[:, 3:5].T), 0.16, rtol=1e-14)
     np.testing.assert_allclose(table[:, 6:8], -from_centre * (0.16 / 0.75) ** 2, atol=1e-15)
     round_s = 1.5 * math.pi / 0.16
-    np.testing.assert_allclose(Circle(1.5, 0.16)(np.array([0.0, round_s]))[:, :2], [[0.75, 0.0]] * 2, atol=1e-15)
+    np.testing.assert_allclose(
+        Circle(1.5, 0.16, acceleration_mps2=None)(np.array([0.0, round_s]))[:, :2], [[0.75, 0.0]] * 2, atol=1e-15
+    )
     anticlockwise = from_centre[0, 0] * from_centre[1, 1] - from_centre[0, 1] * from_centre[1, 0]
     assert anticlockwise > 0.0
 
 
 def test_a_turning_heading_keeps_the_same_side_ahead() -> None:
-    table = Circle(1.5, -0.16, start_rad=0.7, heading="turning", theta_rad=-0.2)(np.linspace(0.0, 60.0, 200))
+    table = MOVING["circle, turning, clockwise"](np.linspace(0.0, 60.0, 200))
     ahead = np.arctan2(table[:, 4], table[:, 3]) - table[:, 2]
     np.testing.assert_allclose(np.cos(ahead - ahead[0]), 1.0, rtol=1e-14)
     assert (table[:, 5] == -0.16 / 0.75).all()
@@ -73,8 +75,19 @@ def test_starting_from_rest_stays_below_the_asked_acceleration_and_reaches_it(na
     assert rate[-1] == pytest.approx(abs(speed), rel=1e-14)
 
 
+def test_the_ramp_is_as_long_as_it_says() -> None:
+    plan = Straight(0.22, acceleration_mps2=0.4)
+    ends = plan(np.array([plan.ramp_s]))[0]
+    assert ends[0] == pytest.approx(plan.ramp_m, rel=1e-12)
+    assert ends[3] == pytest.approx(0.22, rel=1e-12)
+    assert plan(np.array([0.99 * plan.ramp_s]))[0, 3] < 0.22
+    assert Straight(0.22, acceleration_mps2=None).ramp_m == 0.0
+
+
 def test_the_testbed_starts_where_the_plan_starts() -> None:
-    found = start_values(Circle(1.5, 0.16, start_rad=math.pi / 2, heading="turning", theta_rad=0.5))
+    found = start_values(
+        Circle(1.5, 0.16, start_rad=math.pi / 2, heading="turning", theta_rad=0.5, acceleration_mps2=None)
+    )
     wanted = {"x": 0.0, "y": 0.75, "theta": 0.5, "vx": -0.16, "vy": 0.0, "omega": 0.16 / 0.75}
     assert found == {f"start.{name}": pytest.approx(value, abs=1e-15) for name, value in wanted.items()}
     assert start_values(Rest(1.0, 2.0, 0.5))["start.vx"] == 0.0
