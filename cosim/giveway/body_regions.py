@@ -1,0 +1,231 @@
+"""What a contact does to a person, judged against the force limits of a body region (ISO/TS 15066:2016, Annex A).
+
+Two limits: the *peak* within the first 0.5 s of a contact (transient), and the *lasting* force after them, which is
+what clamping does (quasi-static). `contact_peak` and `speed_limit` are the standard's two-mass estimate of the first.
+The numbers are in `body_regions.toml`. They judge a design; they do not replace the standard: `NOTICE` says so in every
+output.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from giveway.checks import finite
+from giveway.errors import FileError, GivewayError, UnknownNameError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["NOTICE", "TRANSIENT_S", "BodyRegion", "Judgement", "body_region", "body_regions", "contact_peak"]
+__all__ += ["judge", "source", "speed_limit"]
+
+TRANSIENT_S = 0.5
+"""How long a contact counts as transient; a force that lasts longer is quasi-static."""
+
+SCHEMA_VERSION = 1
+_FILE = Path(__file__).with_suffix(".toml")
+_Largest = tuple[float, float | None]  # a force in N and its time in s
+_NOTHING: _Largest = (0.0, None)
+
+
+@dataclass(frozen=True)
+class BodyRegion:
+    """A part of the body.
+
+    Attributes:
+        name: what scenario files call it ("lower leg").
+        covers: what belongs to it.
+        lasting_limit_n: highest quasi-static force, N.
+        peak_limit_n: highest force within the first 0.5 s of a contact, N; 0 where no transient contact is allowed.
+        stiffness_npm: effective stiffness, N/m.
+        mass_kg: effective mass, kg.
+        source: the tables of the standard.
+    """
+
+    name: str
+    covers: str
+    lasting_limit_n: float
+    peak_limit_n: float
+    stiffness_npm: float
+    mass_kg: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A force over time against the limits of a body region.
+
+    Attributes:
+        region: the body region.
+        peak_n: largest force within the first 0.5 s of any contact, N; 0 without contact.
+        peak_time_s: when; None without contact.
+        lasting_n: largest force later than that in any contact, N; 0 if none lasted so long.
+        lasting_time_s: when; None if none lasted so long.
+        longest_contact_s: length of the longest contact, s.
+    """
+
+    region: BodyRegion
+    peak_n: float
+    peak_time_s: float | None
+    lasting_n: float
+    lasting_time_s: float | None
+    longest_contact_s: float
+
+    @property
+    def peak_ok(self) -> bool:
+        """The peak is within the transient limit; where no transient contact is allowed, there was none at all."""
+        return self.peak_n <= self.region.peak_limit_n
+
+    @property
+    def lasting_ok(self) -> bool:
+        """The lasting force is within the quasi-static limit."""
+        return self.lasting_n <= self.region.lasting_limit_n
+
+    @property
+    def ok(self) -> bool:
+        """Both limits are kept."""
+        return self.peak_ok and self.lasting_ok
+
+    def __str__(self) -> str:
+        """One line with the verdict, both forces, their limits, and who decides in the end."""
+        region = self.region
+        allowed = f"{region.peak_limit_n:g} N" if region.peak_limit_n else "no transient contact"
+        verdict = "within" if self.ok else "above"
+        return (
+            f"{region.name}: {verdict} the limits: peak {self.peak_n:.0f} N (allowed: {allowed}), "
+            f"lasting {self.lasting_n:.0f} N (allowed: {region.lasting_limit_n:g} N). {NOTICE}"
+        )
+
+
+def body_regions() -> Mapping[str, BodyRegion]:
+    """All body regions by name, from head to foot."""
+    return _read()[0]
+
+
+def body_region(name: str) -> BodyRegion:
+    """The body region called ``name``; UnknownNameError offers the nearest ones."""
+    regions = body_regions()
+    if name not in regions:
+        raise UnknownNameError("body_region", name, regions)
+    return regions[name]
+
+
+def source() -> str:
+    """Where the limits come from."""
+    return str(_read()[1]["source"])
+
+
+def judge(time_s: ArrayLike, force_n: ArrayLike, region: BodyRegion | str, *, touch_n: float = 0.0) -> Judgement:
+    """Judge the magnitude of a contact force over time against the limits of ``region``.
+
+    A contact begins when the force rises above ``touch_n`` and ends when it stays at or below it for 0.5 s: what comes
+    back sooner belongs to the same contact. So chatter does not escape the lower, lasting limit, and a second blow
+    within one contact is judged by it too, which errs on the safe side.
+
+    Args:
+        time_s: shape (n,), s, strictly rising.
+        force_n: shape (n,), N, at least 0.
+        region: a body region or its name.
+        touch_n: force that counts as no contact, N, at least 0: above the noise of a measured trace.
+    """
+    import numpy as np
+
+    chosen = body_region(region) if isinstance(region, str) else region
+    finite("touch_n", touch_n, 0.0, math.inf, "N")
+    time, force = _trace(time_s, force_n)
+    peak = lasting = _NOTHING
+    longest = 0.0
+    touching = np.flatnonzero(force > touch_n)
+    groups = np.split(touching, np.flatnonzero(np.diff(time[touching]) >= TRANSIENT_S) + 1) if touching.size else []
+    for rows in groups:
+        since = time[rows] - time[rows[0]]
+        longest = max(longest, float(since[-1]))
+        peak = max(peak, _largest(time, force, rows[since <= TRANSIENT_S]), key=_force)
+        lasting = max(lasting, _largest(time, force, rows[since > TRANSIENT_S]), key=_force)
+    return Judgement(chosen, *peak, *lasting, longest_contact_s=longest)
+
+
+def contact_peak(region: BodyRegion | str, speed_mps: float, robot_kg: float, padding_npm: float = math.inf) -> float:
+    """Peak force of a free contact at ``speed_mps``, N: two masses and a spring, F = v sqrt(mu k).
+
+    Args:
+        region: a body region or its name.
+        speed_mps: speed of the robot relative to the body, m/s, at least 0.
+        robot_kg: moving mass of the robot, reflected rotors included, kg.
+        padding_npm: stiffness of a cover or bumper in series with the body, N/m; infinite: none.
+    """
+    finite("speed_mps", speed_mps, 0.0, 100.0, "m/s")
+    return speed_mps * _impedance(region, robot_kg, padding_npm)
+
+
+def speed_limit(region: BodyRegion | str, robot_kg: float, padding_npm: float = math.inf) -> float:
+    """Speed at which `contact_peak` reaches the transient limit of ``region``, m/s; 0 where none is allowed."""
+    chosen = body_region(region) if isinstance(region, str) else region
+    return chosen.peak_limit_n / _impedance(chosen, robot_kg, padding_npm)
+
+
+def _impedance(region: BodyRegion | str, robot_kg: float, padding_npm: float) -> float:
+    """sqrt(mu k), N s/m."""
+    chosen = body_region(region) if isinstance(region, str) else region
+    finite("robot_kg", robot_kg, 1e-3, 1e6, "kg")
+    if padding_npm != math.inf:
+        finite("padding_npm", padding_npm, 1e-3, 1e12, "N/m")
+    mass = 1.0 / (1.0 / chosen.mass_kg + 1.0 / robot_kg)
+    stiffness = 1.0 / (1.0 / chosen.stiffness_npm + 1.0 / padding_npm)
+    return math.sqrt(mass * stiffness)
+
+
+def _trace(time_s: ArrayLike, force_n: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    import numpy as np
+
+    time, force = np.asarray(time_s, dtype=np.float64), np.asarray(force_n, dtype=np.float64)
+    if time.ndim != 1 or time.shape != force.shape:
+        raise GivewayError("force_n", f"an array of shape {force.shape}", f"one force per time, shape {time.shape}")
+    if not np.isfinite(time).all() or not (np.diff(time) > 0.0).all():
+        raise GivewayError("time_s", "an array with a step that is not forward", "finite, strictly rising times in s")
+    if not np.isfinite(force).all() or not (force >= 0.0).all():
+        raise GivewayError("force_n", "an array with NaN, infinity or a negative force", "magnitudes in N, at least 0")
+    return time, force
+
+
+def _largest(time: NDArray[np.float64], force: NDArray[np.float64], rows: NDArray[np.intp]) -> _Largest:
+    if not rows.size:
+        return _NOTHING
+    row = rows[force[rows].argmax()]
+    return float(force[row]), float(time[row])
+
+
+def _force(found: _Largest) -> float:
+    return found[0]
+
+
+@functools.cache
+def _read() -> tuple[Mapping[str, BodyRegion], dict[str, Any]]:
+    document = tomllib.loads(_FILE.read_text(encoding="utf-8"))
+    if document["schema_version"] != SCHEMA_VERSION:
+        raise FileError(_FILE, f"schema_version is {document['schema_version']}", f"need {SCHEMA_VERSION}")
+    regions = {
+        entry["name"]: BodyRegion(
+            name=entry["name"],
+            covers=entry["covers"],
+            lasting_limit_n=entry["force_limit_n"],
+            peak_limit_n=entry["force_limit_n"] * entry["transient_factor"],
+            stiffness_npm=entry["stiffness_npm"],
+            mass_kg=entry["mass_kg"],
+            source=entry["source"],
+        )
+        for entry in document["region"]
+    }
+    return MappingProxyType(regions), document
+
+
+NOTICE: str = _read()[1]["notice"]
+"""Who decides in the end; part of every output that shows a limit."""
