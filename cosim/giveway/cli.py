@@ -277,6 +277,23 @@ def fit(
 
 
 @app.command()
+def calibrate(
+    logs: Annotated[
+        list[Path], typer.Argument(metavar="LOG.csv...", help="Logs of free motion: arcs, without contact.")
+    ],
+    robot: Annotated[Path, typer.Option("--robot", metavar="FILE", help="Robot file (TOML) of the robot of the logs.")],
+    out: Annotated[Path, typer.Option("--out", metavar="NEW.toml", help="The new robot file; NEW.png lies beside it.")],
+) -> None:
+    """Fit the roller friction to logs of wheel angles and torques; write a new robot file and a residual plot."""
+    from giveway.calibrate import calibrate_robot, table_rows
+
+    calibration, written = calibrate_robot(logs, robot, out)
+    title = f"Roller friction (28) from {', '.join(log.name for log in calibration.logs)}"
+    _print_columns(title, ("", "value", "95 % interval", "unit"), table_rows(calibration))
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+@app.command()
 def bench(
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,

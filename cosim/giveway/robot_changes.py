@@ -1,0 +1,69 @@
+"""A robot file with some values replaced; comments, order and everything else stay as they are."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from giveway.checks import finite
+from giveway.errors import FileError
+from giveway.robot import read_robot
+
+__all__ = ["NewValue", "changed_robot"]
+
+
+@dataclass(frozen=True)
+class NewValue:
+    """What replaces an entry of a robot file; the unit stays.
+
+    Attributes:
+        value: in the entry's unit.
+        source: where it comes from.
+        confidence: high, medium or low.
+        provenance: given, sourced, fitted or assumed.
+        note: what to know about it.
+    """
+
+    value: float
+    source: str
+    confidence: str
+    provenance: str
+    note: str
+
+
+def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
+    """The text of the robot file ``path`` with the entries ``changes`` ("roller.coulomb_torque") replaced."""
+    import tomlkit
+    from tomlkit.items import AbstractTable
+
+    robot = read_robot(path)
+    document = tomlkit.parse(path.read_text(encoding="utf-8"))
+    for name, new in changes.items():
+        robot.value(name)  # refuses what the file does not have
+        table = document
+        for key in name.split("."):
+            table = table[key]
+        assert isinstance(table, AbstractTable)
+        table["value"] = finite(name, new.value)
+        for key in ("source", "confidence", "provenance", "note"):
+            table[key] = getattr(new, key)
+    text = tomlkit.dumps(document)
+    _check(path, text, changes)
+    return text
+
+
+def _check(path: Path, text: str, changes: Mapping[str, NewValue]) -> None:
+    """The new text says what the old one said, but for ``changes``."""
+    old, new = tomllib.loads(path.read_text(encoding="utf-8")), tomllib.loads(text)
+    for name, change in changes.items():
+        *tables, key = name.split(".")
+        before, after = old, new
+        for table in tables:
+            before, after = before[table], after[table]
+        if after[key]["value"] != change.value:
+            raise FileError(path, f"{name} could not be replaced")
+        before[key] = after[key]
+    if old != new:
+        raise FileError(path, "could not be changed without changing more than was wanted")
