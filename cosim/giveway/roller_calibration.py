@@ -32,7 +32,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.errors import GivewayError, one_line
-from giveway.roller_fit import LONGEST_STEP_S, SMOOTHING_S, Fit, RestZone, Samples, fit, half_widths, prepare
+from giveway.roller_fit import (
+    LONGEST_STEP_S,
+    SMOOTHING_S,
+    Fit,
+    RestZone,
+    Samples,
+    enough_blocks,
+    fit,
+    half_widths,
+    prepare,
+)
 from giveway.torque_model import TorqueModel
 
 if TYPE_CHECKING:
@@ -44,7 +54,8 @@ if TYPE_CHECKING:
 __all__ = ["Calibration", "Estimate", "FittedLog", "UnidentifiableError", "calibrate"]
 
 EXPLAINED_MIN = 0.5  # below, something else than (27) makes most of the torque
-VARIATIONS = ((0.7, 1.0), (1.5, 1.0), (1.0, 1.5))
+ALIKE = 1.5  # speeds within this factor show the tanh at one point
+VARIATIONS = ((0.7, 1.0), (1.5, 1.0), (1.0, 2.0))
 """Widths of the zone near rest and of the low-pass, relative to those of the fit, whose results give the spread."""
 
 
@@ -157,17 +168,12 @@ def calibrate(logs: Sequence[MotionLog], robot: Robot) -> Calibration:
     used = data.used(samples)
     _check_motion(data, samples, used)
     found = fit(samples, used, data.model)
-    _check_fit(data, found)
     noise = half_widths(found)[:2]
     spread = _spread(data, found)
     coulomb, slope = (Estimate(float(found.x[i]), float(noise[i]), float(spread[i])) for i in range(2))
     uncertainty = _force_uncertainty(coulomb, slope) / data.model.roller_radius_m
-    if not uncertainty <= data.leak_n:
-        missing, remedy = _remedy(data, found, samples, used)
-        reason = f"the friction force would be uncertain by {uncertainty:.2g} N a roller at some speed"
-        raise UnidentifiableError(
-            data.names, f"{missing} ({reason}, and the detector forgives {data.leak_n:g} N)", remedy
-        )
+    if refusal := _refusal(data, found, samples, used, uncertainty):
+        raise UnidentifiableError(data.names, *refusal)
     fitted = tuple(_fitted(log, samples[i], used[i], found, i, data.model) for i, log in enumerate(logs))
     return Calibration(coulomb, slope, uncertainty, found.explained, found.blocks, found.block_s, fitted)
 
@@ -235,19 +241,6 @@ def _check_motion(data: _Data, samples: Sequence[Samples], used: Sequence[NDArra
     raise UnidentifiableError(data.names, what, f"they have to roll {wanted}")
 
 
-def _check_fit(data: _Data, found: Fit) -> None:
-    """Refuse what is no calibration at all."""
-    if found.explained < EXPLAINED_MIN:
-        reason = f"(27) explains {max(0.0, 100.0 * found.explained):.0f} % of the torques"
-        hints = (
-            "is the order of the wheels right, the sign of angles and torques, the robot free, the robot file its own?"
-        )
-        raise UnidentifiableError(data.names, reason, hints)
-    if found.x[0] <= 0.0:
-        reason = f"B_r comes out as {found.x[0]:.3g} N m: the rollers would push the robot"
-        raise UnidentifiableError(data.names, reason, "the signs of angles and torques do not belong together")
-
-
 def _spread(data: _Data, found: Fit) -> NDArray[np.float64]:
     """Largest change of B_r and alpha over `VARIATIONS`, in quadrature over zone and low-pass, shape (2,)."""
     changes: dict[bool, NDArray[np.float64]] = {True: np.zeros(2), False: np.zeros(2)}
@@ -270,31 +263,56 @@ def _force_uncertainty(coulomb: Estimate, slope: Estimate) -> float:
     return float(np.hypot(coulomb.half_width, 0.5 * abs(coulomb.value) * (high - low)).max())
 
 
-def _remedy(data: _Data, found: Fit, samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]]) -> tuple[str, str]:
-    """What the data lack, and what to do: from where on the tanh they lie."""
+def _refusal(
+    data: _Data, found: Fit, samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], uncertainty_n: float
+) -> tuple[str, str] | None:
+    """What the logs lack, and what to do about it, the deepest reason first; None if nothing."""
+    uncertain = not uncertainty_n <= data.leak_n
     rates = np.concatenate([s.roller_rate[rows] for s, rows in zip(samples, used, strict=True)])
+    one_way = all((rates[:, roller] > 0.0).mean() in (0.0, 1.0) for roller in range(rates.shape[1]))
+    if one_way and (uncertain or found.explained < EXPLAINED_MIN):
+        return "every roller turns one way only: friction and zero of the sensors look alike", "drive forth and back"
+    if found.explained < EXPLAINED_MIN:
+        return (
+            f"(27) explains {max(0.0, 100.0 * found.explained):.0f} % of the torques",
+            "is the order of the wheels right, the sign of angles and torques, the robot free, the robot file its own?",
+        )
+    if found.x[0] <= 0.0:
+        reason = f"B_r comes out as {found.x[0]:.3g} N m: the rollers would push the robot"
+        return reason, "the signs of angles and torques do not belong together"
+    if not uncertain:
+        return None
+    seconds = sum(float(rows.sum()) * s.step_s for s, rows in zip(samples, used, strict=True))
+    missing, remedy = _too_little(data, found, rates, seconds)
+    reason = f"the friction force would be uncertain by {uncertainty_n:.2g} N a roller at some speed"
+    return f"{missing} ({reason}, and the detector forgives {data.leak_n:g} N)", remedy
+
+
+def _too_little(data: _Data, found: Fit, rates: NDArray[np.float64], seconds: float) -> tuple[str, str]:
+    """Why the friction stays uncertain: from where on the tanh the used roller rates lie."""
     moving = np.abs(rates[np.abs(rates) * data.model.roller_radius_m > data.zone.speed_mps])
-    reach = found.x[1] * moving
+    slowest, fastest = np.quantile(moving, (0.05, 0.95))
     rim = 1e3 * data.model.roller_radius_m
-    if reach.max() < 1.0:  # tanh(1) = 0.76: its bend has not been seen
+    if not enough_blocks(found):
+        blocks = f"{found.blocks} blocks of {found.block_s:.2g} s for {len(found.x)} numbers"
+        return f"too short: {seconds:.3g} s away from rest make {blocks}", "drive longer"
+    if fastest < ALIKE * slowest:
+        return (
+            f"one speed only, {rim * slowest:.3g} to {rim * fastest:.3g} mm/s: B_r and alpha show only together",
+            "drive in sines, fast and slow",
+        )
+    if found.x[1] * moving.max() < 1.0:  # tanh(1) = 0.76: its bend has not been seen
         return (
             f"too slow: up to {rim * moving.max():.3g} mm/s the friction grows with the speed, and only "
             f"B_r alpha = {found.x[0] * found.x[1]:.3g} N m s/rad shows",
             "drive faster",
         )
-    if reach.min() > 1.5:  # tanh(1.5) = 0.91: its slope has not been seen
+    if found.x[1] * slowest > 1.5:  # tanh(1.5) = 0.91: its slope has hardly been seen
         return (
-            f"never slow: from {rim * moving.min():.3g} mm/s on the friction is B_r alone, and alpha does not show",
+            f"never slow: from {rim * slowest:.3g} mm/s on the friction is B_r alone, and alpha does not show",
             "drive slower, or in sines that pass through low speeds",
         )
-    one_way = [(rates[:, roller] > 0.0).mean() in (0.0, 1.0) for roller in range(rates.shape[1])]
-    if all(one_way):
-        return "every roller turns one way only: friction and zero of the sensors look alike", "drive forth and back"
-    seconds = sum(float(rows.sum()) * s.step_s for s, rows in zip(samples, used, strict=True))
-    return (
-        f"too short or too noisy: {seconds:.3g} s away from rest make {found.blocks} blocks of {found.block_s:.2g} s",
-        "drive longer",
-    )
+    return "too noisy", "drive longer"
 
 
 def _fitted(

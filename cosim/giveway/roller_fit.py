@@ -19,7 +19,18 @@ if TYPE_CHECKING:
     from giveway.motion_log import MotionLog
     from giveway.robot import Robot
 
-__all__ = ["CONFIDENCE", "LONGEST_STEP_S", "SMOOTHING_S", "Fit", "RestZone", "Samples", "fit", "half_widths", "prepare"]
+__all__ = [
+    "CONFIDENCE",
+    "LONGEST_STEP_S",
+    "SMOOTHING_S",
+    "Fit",
+    "RestZone",
+    "Samples",
+    "enough_blocks",
+    "fit",
+    "half_widths",
+    "prepare",
+]
 
 SMOOTHING_S = 0.05
 """Standard deviation of the Gaussian: -3 dB at 2.7 Hz. Arcs take seconds; encoder steps and servo ripple do not."""
@@ -33,6 +44,7 @@ REST_LENGTHS = 5.0  # exp(-5) = 0.7 %: the bristles have turned over
 ROBUST = 2.0  # residuals beyond two standard deviations lose weight (soft l1)
 ROUNDS = 3  # of fitting and re-estimating each wheel's noise; the third changes nothing visible any more
 CORRELATIONS_PER_BLOCK = 3.0
+BLOCKS_PER_PARAMETER = 2  # with fewer, how much the blocks differ is itself unknown
 GAUSSIAN_MAD = 1.4826  # standard deviation over median absolute deviation
 SLOPES = np.geomspace(0.03, 300.0, 24)  # starting values of alpha, times the largest roller rate
 
@@ -255,17 +267,22 @@ def fit(samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], model: To
     return Fit(x, scores, curvature, len(scores), block_s, problem.explained(x))
 
 
+def enough_blocks(found: Fit) -> bool:
+    """Whether the blocks are enough to know how much they differ."""
+    return found.blocks >= BLOCKS_PER_PARAMETER * len(found.x)
+
+
 def half_widths(found: Fit) -> NDArray[np.float64]:
     """Half-widths of the 95 % intervals of ``found.x`` from its residuals, shape of x; infinite where undetermined.
 
     The covariance is H^-1 (sum over blocks of g g^T) H^-1: right for residuals that hang together within a block and
-    differ in size. Student's quantile makes up for few blocks.
+    differ in size. Student's quantile makes up for few blocks, down to two for each parameter.
     """
     from scipy.special import stdtrit
 
     freedom = found.blocks - len(found.x)
     scale = np.sqrt(np.diag(found.curvature))
-    if freedom < 1 or not (scale > 0.0).all():
+    if not enough_blocks(found) or not (scale > 0.0).all():
         return np.full(len(found.x), np.inf)
     scaled = found.curvature / np.outer(scale, scale)
     if np.linalg.cond(scaled) > 1.0 / np.sqrt(np.finfo(np.float64).eps):

@@ -39,7 +39,7 @@ def torque_figure(calibration: Calibration) -> Figure:
             left.set_ylabel("wheel torque (N m)")
         for axis in axes[-1]:
             axis.set_xlabel("time (s)")
-        axes[0, 1].legend(loc="upper right", ncols=4, fontsize=7.5)
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
 
@@ -60,7 +60,7 @@ def residual_figure(calibration: Calibration) -> Figure:
             over_time.set_ylabel("torque (N m)")
         axes[-1, 0].set_xlabel("time (s)")
         axes[-1, 1].set_xlabel("rate of the fastest roller (rad/s)")
-        axes[0, 0].legend(loc="upper right", ncols=4, fontsize=7.5)
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4, markerscale=3.0)
     return figure
 
 

@@ -1,0 +1,74 @@
+"""Logs of free motion made without the package: the literal world-frame equations (13) to (30) of Kim et al. 2016."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from giveway.motion_log import MotionLog
+
+# Trikey, as in its robot file.
+R_W, R_R, DISTANCE, MASS, YAW, I_W, I_R = 0.1016, 0.009525, 0.24, 34.7, 1.31, 0.002798, 1.23e-6
+B_R, ALPHA = 0.2, 0.4
+STEP_S = 0.002
+
+Swing = Callable[[np.ndarray], np.ndarray]
+
+
+def sine(swing_rad: float, frequency_hz: float) -> Swing:
+    return lambda t: swing_rad * (1.0 - np.cos(2.0 * math.pi * frequency_hz * t))
+
+
+def jacobians(theta: float) -> tuple[np.ndarray, np.ndarray]:
+    """J_c,w (15) and J_c,r (16) at yaw ``theta``."""
+    angle = theta + np.arange(3) * 2.0 * math.pi / 3.0
+    ones = np.ones(3)
+    wheel = np.stack([-np.sin(angle), np.cos(angle), DISTANCE * ones], axis=1) / R_W
+    roller = np.stack([np.cos(angle), np.sin(angle), 0.0 * ones], axis=1) / R_R
+    return wheel, roller
+
+
+def world_torques(
+    angle: np.ndarray, step_s: float, friction: Callable[[np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Torques (27) and roller rates along wheel angles (n, 3); every derivative is a difference in the world frame."""
+    yaw = angle.sum(axis=1) * R_W / (3.0 * DISTANCE)
+    maps = [jacobians(theta) for theta in yaw]
+    rate = np.gradient(angle, step_s, axis=0)
+    twist = np.stack([np.linalg.solve(wheel, q) for (wheel, _), q in zip(maps, rate, strict=True)])
+    roller_rate = np.stack([roller @ v for (_, roller), v in zip(maps, twist, strict=True)])
+    acceleration = np.gradient(twist, step_s, axis=0)
+    roller_acceleration = np.gradient(roller_rate, step_s, axis=0)
+    wheel_acceleration = np.gradient(rate, step_s, axis=0)
+    torque = np.empty_like(angle)
+    for k, (wheel, roller) in enumerate(maps):
+        rollers = I_R * roller_acceleration[k] + friction(roller_rate[k])
+        wrench = np.array([MASS, MASS, YAW]) * acceleration[k] + roller.T @ rollers
+        torque[k] = np.linalg.solve(wheel.T, wrench) + I_W * wheel_acceleration[k]
+    return torque, roller_rate
+
+
+def arc_log(
+    wheels: Sequence[float],
+    swing: Swing,
+    seconds: float,
+    *,
+    noise_nm: float = 0.03,
+    offset_nm: Sequence[float] = (0.08, -0.05, 0.02),
+    seed: int = 1,
+    name: str = "arc.csv",
+) -> MotionLog:
+    """A robot with the friction (28) whose wheels follow ``swing`` times ``wheels``."""
+    time = np.arange(0.0, seconds, STEP_S)
+    angle = swing(time)[:, None] * np.array(wheels)
+    torque, _ = world_torques(angle, STEP_S, lambda rate: B_R * np.tanh(ALPHA * rate))
+    torque += np.array(offset_nm) + np.random.default_rng(seed).normal(0.0, noise_nm, angle.shape)
+    return MotionLog(name, time, angle, torque)
+
+
+def csv_lines(log: MotionLog) -> list[str]:
+    """``log`` as the lines of a file that `giveway calibrate` reads."""
+    header = ["time_s", *(f"wheel_angle_{i}_rad" for i in range(3)), *(f"torque_{i}_nm" for i in range(3))]
+    rows = np.column_stack([log.time_s, log.wheel_angle_rad, log.torque_nm])
+    return [",".join(header), *(",".join(f"{value:.9g}" for value in row) for row in rows)]

@@ -1,0 +1,144 @@
+"""Logs from CSV files: columns, units, and every way to be wrong with its line."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arc_logs import arc_log, csv_lines, sine
+from giveway import native
+from giveway.errors import FileError
+from giveway.motion_log import read_log
+from giveway.robot import Robot, read_robot
+
+SHORT = arc_log((1.0, 0.5, 0.0), sine(4.0, 1.0), 1.0)
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return read_robot(native.robot())
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[list[str]], Path]:
+    def to_file(lines: list[str]) -> Path:
+        path = tmp_path / "log.csv"
+        path.write_text("\n".join(lines) + "\n")
+        return path
+
+    return to_file
+
+
+def table(**columns: np.ndarray) -> list[str]:
+    rows = np.column_stack(list(columns.values()))
+    return [",".join(columns), *(",".join(repr(float(value)) for value in row) for row in rows)]
+
+
+def test_si_units(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    path = write(csv_lines(SHORT))
+    log = read_log(path, robot)
+    assert log.name == "log.csv"
+    assert len(log.sha256) == 64
+    for name in ("time_s", "wheel_angle_rad", "torque_nm"):
+        assert getattr(log, name) == pytest.approx(getattr(SHORT, name), rel=1e-8, abs=1e-8)  # 9 digits were written
+
+
+def test_other_units_order_and_columns(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    angle, torque = SHORT.wheel_angle_rad, SHORT.torque_nm
+    lines = table(
+        battery_v=np.full(len(SHORT.time_s), 24.0),
+        torque_2_mnm=1e3 * torque[:, 2],
+        torque_1_nm=torque[:, 1],
+        torque_0_nm=torque[:, 0],
+        wheel_angle_0_deg=np.rad2deg(angle[:, 0]),
+        wheel_angle_1_rad=(angle[:, 1] + math.pi) % (2.0 * math.pi) - math.pi,
+        wheel_angle_2_counts=(angle[:, 2] * 8500.0 / (2.0 * math.pi) + 2.0**31 - 5.0) % 2.0**32 - 2.0**31,
+        time_ms=1e3 * SHORT.time_s,
+    )
+    log = read_log(write(lines), robot)
+    assert log.time_s == pytest.approx(SHORT.time_s, abs=1e-12)
+    assert log.torque_nm == pytest.approx(torque, abs=1e-12)
+    assert log.wheel_angle_rad - log.wheel_angle_rad[0] == pytest.approx(angle - angle[0], abs=1e-6)  # of 1.6e6 rad
+
+
+def test_counts_go_on_over_their_wrap(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    counts = np.arange(len(SHORT.time_s)) * 40.0 + 2.0**31 - 400.0
+    wrapped = (counts + 2.0**31) % 2.0**32 - 2.0**31
+    columns = {f"wheel_angle_{i}_counts": wrapped for i in range(3)} | {
+        f"torque_{i}_nm": SHORT.torque_nm[:, i] for i in range(3)
+    }
+    log = read_log(write(table(time_s=SHORT.time_s, **columns)), robot)
+    assert np.diff(log.wheel_angle_rad, axis=0) == pytest.approx(40.0 * 2.0 * math.pi / 8500.0, rel=1e-6)
+
+
+def test_motor_angles_lose_the_deflection(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    motor = dataclasses.replace(SHORT, wheel_angle_rad=SHORT.wheel_angle_rad + SHORT.torque_nm / 668.0)
+    lines = csv_lines(motor)
+    lines[0] = lines[0].replace("wheel_angle", "motor_angle")
+    assert float(robot.value("drivetrain.stiffness")) == 668.0
+    assert read_log(write(lines), robot).wheel_angle_rad == pytest.approx(SHORT.wheel_angle_rad, abs=1e-7)
+
+
+def changed(line: int, old: str, new: str) -> list[str]:
+    """The good file with something replaced in one line, counted from 1."""
+    lines = csv_lines(SHORT)
+    assert old in lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(old, new, 1)
+    return lines
+
+
+def cell(line: int, column: int, text: str) -> list[str]:
+    lines = csv_lines(SHORT)
+    cells = lines[line - 1].split(",")
+    cells[column] = text
+    lines[line - 1] = ",".join(cells)
+    return lines
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (changed(1, "torque_2_nm", "torque_3_nm"), "line 1: there is no column for torque_2"),
+        (changed(1, "time_s", "time"), "column time states no unit; allowed: time_s or time_ms"),
+        (changed(1, "torque_0_nm", "torque_0_lbft"), "column torque_0_lbft has the unit lbft; allowed: torque_0_nm"),
+        (changed(1, "wheel_angle_1_rad", "wheel_angle_1_turns"), "unit turns; allowed: wheel_angle_1_rad or"),
+        (changed(1, "torque_2_nm", "torque_1_mnm"), "torque_1_nm and torque_1_mnm say the same thing"),
+        (cell(7, 2, ""), "line 7: wheel_angle_1_rad is empty"),
+        (cell(8, 5, "NaN"), "line 8: torque_1_nm is NaN"),
+        (cell(9, 0, "soon"), "line 9: time_s is soon"),
+        (cell(10, 6, "inf"), "line 10: torque_2_nm is inf"),
+        (cell(11, 0, "0.001"), "line 11: time goes from 0.016 s to 0.001 s; it has to rise"),
+        (cell(11, 0, "0.016"), "line 11: time goes from 0.016 s to 0.016 s"),
+        (csv_lines(SHORT)[:100] + csv_lines(SHORT)[200:], "line 101: 0.202 s since the line before, 101 times"),
+        ([*csv_lines(SHORT)[:20], "0.04,1,2"], "line 21: 3 values"),
+        (csv_lines(SHORT)[:5], "has 4 lines of data"),
+        ([], "line 1: there is no column for time"),
+    ],
+)
+def test_refusals_name_file_line_and_column(
+    lines: list[str], words: str, robot: Robot, write: Callable[[list[str]], Path]
+) -> None:
+    path = write(lines)
+    with pytest.raises(FileError) as refusal:
+        read_log(path, robot)
+    assert words in str(refusal.value)
+    assert str(path) in str(refusal.value)
+
+
+def test_empty_lines_do_not_shift_the_count(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    lines = cell(8, 5, "NaN")
+    lines[3:3] = ["", "   "]
+    with pytest.raises(FileError, match="line 10: torque_1_nm is NaN"):
+        read_log(write(lines), robot)
+
+
+def test_unreadable_files(robot: Robot, tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="no such file"):
+        read_log(tmp_path / "none.csv", robot)
+    (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00\x01" * 10)
+    with pytest.raises(FileError, match="cannot be read"):
+        read_log(tmp_path / "binary.csv", robot)

@@ -1,0 +1,47 @@
+"""A robot file with values replaced keeps all the rest, comments and order included."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+import pytest
+from giveway import native
+from giveway.errors import FileError
+from giveway.robot import read_robot
+from giveway.robot_changes import NewValue, changed_robot
+
+NEW = NewValue(0.25, "a test", "medium", "fitted", "a note")
+
+
+def test_only_the_entry_changes(tmp_path: Path) -> None:
+    old = native.robot().read_text()
+    new = changed_robot(native.robot(), {"roller.coulomb_torque": NEW})
+    changes = [line for line in difflib.ndiff(old.splitlines(), new.splitlines()) if line[0] in "+-"]
+    assert [line for line in changes if line.startswith("+")] == [
+        "+ value = 0.25",
+        '+ source = "a test"',
+        '+ confidence = "medium"',
+        '+ provenance = "fitted"',
+        '+ note = "a note"',
+    ]
+    assert sum(line.startswith("-") for line in changes) == 5
+    (tmp_path / "new.toml").write_text(new)
+    read = read_robot(tmp_path / "new.toml")
+    assert read.value("roller.coulomb_torque") == 0.25
+    assert read.unit("roller.coulomb_torque") == "N.m"
+
+
+def test_comments_and_odd_layouts_stay(tmp_path: Path) -> None:
+    text = (
+        "# mine\nschema_version = 1 # first\nroller.b = { value = 1.0, unit = 'N.m' } # inline\n[other.x]\nvalue = 3\n"
+    )
+    (tmp_path / "robot.toml").write_text(text)
+    new = changed_robot(tmp_path / "robot.toml", {"roller.b": NEW, "other.x": NEW})
+    for kept in ("# mine", "schema_version = 1 # first", "# inline", "unit = 'N.m'"):
+        assert kept in new
+
+
+def test_what_is_not_there_is_not_added() -> None:
+    with pytest.raises(FileError, match=r"roller\.coulomb is missing.*roller\.coulomb_torque"):
+        changed_robot(native.robot(), {"roller.coulomb": NEW})

@@ -1,0 +1,240 @@
+"""The fit of the roller friction: recovers what was put in, says how sure it is, refuses what cannot tell."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arc_logs import ALPHA, B_R, STEP_S, Swing, arc_log, csv_lines, sine
+from cosim_helpers import Cli, folder_content
+from giveway import native
+from giveway.errors import GivewayError
+from giveway.motion_log import MotionLog
+from giveway.robot import Robot, read_robot
+from giveway.roller_calibration import Calibration, UnidentifiableError, calibrate
+from giveway.roller_fit import RestZone, fit, half_widths, prepare
+from giveway.torque_model import TorqueModel
+from PIL import Image
+
+GOOD = arc_log((1.0, 0.0, 0.0), sine(1.5, 0.1), 30.0)
+# Peak speed at the rim of the moving rollers per wheel rate, wheel 0 alone: r_w / sqrt(3).
+RIM_M = 0.1016 / math.sqrt(3.0)
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return read_robot(native.robot())
+
+
+@pytest.fixture(scope="module")
+def good(robot: Robot) -> Calibration:
+    return calibrate([GOOD], robot)
+
+
+def test_recovers_friction_and_tare(good: Calibration) -> None:
+    assert good.coulomb_torque_nm.value == pytest.approx(B_R, rel=0.01)
+    assert good.tanh_slope_s_rad.value == pytest.approx(ALPHA, rel=0.01)
+    assert good.coulomb_torque_nm.holds(B_R)
+    assert good.tanh_slope_s_rad.holds(ALPHA)
+    # Five standard deviations of the mean of 15,000 samples of 0.03 N m.
+    assert good.logs[0].offset_nm == pytest.approx([0.08, -0.05, 0.02], abs=5.0 * 0.03 / math.sqrt(15000.0))
+    assert good.explained > 0.99
+
+
+def test_model_and_log_agree_where_it_was_fitted(good: Calibration) -> None:
+    log = good.logs[0]
+    left = (log.torque_nm - log.model_nm)[log.used]
+    # Noise of 0.03 N m at 500 Hz behind a Gaussian of 25 samples: 0.03/sqrt(2 sqrt(pi) 25) = 3.2 mN m.
+    assert np.std(left) == pytest.approx(0.0032, rel=0.1)
+    assert 0.5 < log.used.mean() < 0.95
+
+
+def interval_hits(logs: Sequence[MotionLog], robot: Robot) -> tuple[int, int]:
+    hits = [0, 0]
+    for log in logs:
+        model = TorqueModel.of(robot)
+        samples = prepare(log, model, 28.0)
+        found = fit([samples], [RestZone.of(robot).free(samples, model.roller_radius_m)], model)
+        widths = half_widths(found)
+        hits[0] += abs(found.x[0] - B_R) <= widths[0]
+        hits[1] += abs(found.x[1] - ALPHA) <= widths[1]
+    return hits[0], hits[1]
+
+
+def correlated(log: MotionLog, seed: int, nm: float, time_s: float) -> MotionLog:
+    """``log`` with noise that hangs together over ``time_s``, of ``nm``, stronger at speed."""
+    rng = np.random.default_rng(seed)
+    keep = math.exp(-STEP_S / time_s)
+    noise = np.zeros_like(log.torque_nm)
+    for k in range(1, len(noise)):
+        noise[k] = keep * noise[k - 1] + math.sqrt(1.0 - keep**2) * rng.normal(0.0, nm, 3)
+    speed = np.abs(np.gradient(log.wheel_angle_rad[:, :1], STEP_S, axis=0))
+    return dataclasses.replace(log, torque_nm=log.torque_nm + noise * (0.3 + speed))
+
+
+def test_intervals_hold_what_they_promise_for_correlated_uneven_noise(robot: Robot) -> None:
+    """Residual part of the interval alone, 40 logs. Intervals for independent samples would be five times narrower."""
+    logs = [correlated(GOOD, seed, 0.1, 0.3) for seed in range(40)]
+    # Of 40 intervals of 95 % fewer than 33 hold with a probability of 0.1 %; few blocks cost some coverage, too.
+    assert min(interval_hits(logs, robot)) >= 33
+    assert interval_hits(logs[:3], robot) != (0, 0)
+
+
+def test_two_logs_have_their_own_tares(robot: Robot) -> None:
+    other = arc_log((1.0, 1.0, 0.0), sine(1.5, 0.1), 20.0, offset_nm=(-0.3, 0.2, 0.1), name="other.csv")
+    both = calibrate([GOOD, other], robot)
+    assert both.logs[1].offset_nm == pytest.approx([-0.3, 0.2, 0.1], abs=0.005)
+    assert both.tanh_slope_s_rad.holds(ALPHA)
+    assert [log.name for log in both.logs] == ["arc.csv", "other.csv"]
+
+
+def test_a_short_push_does_not_carry_the_fit_away(robot: Robot, good: Calibration) -> None:
+    torque = GOOD.torque_nm.copy()
+    torque[4000:4500] += 1.5  # one second of a hand on the robot
+    pushed = calibrate([dataclasses.replace(GOOD, torque_nm=torque)], robot)
+    assert pushed.coulomb_torque_nm.value == pytest.approx(B_R, rel=0.05)
+    assert pushed.coulomb_torque_nm.half_width > good.coulomb_torque_nm.half_width
+
+
+def test_uneven_sampling(robot: Robot) -> None:
+    rng = np.random.default_rng(4)
+    keep = np.sort(rng.choice(len(GOOD.time_s), len(GOOD.time_s) // 2, replace=False))
+    thinned = dataclasses.replace(
+        GOOD,
+        time_s=GOOD.time_s[keep],
+        wheel_angle_rad=GOOD.wheel_angle_rad[keep],
+        torque_nm=GOOD.torque_nm[keep],
+    )
+    assert calibrate([thinned], robot).tanh_slope_s_rad.value == pytest.approx(ALPHA, rel=0.02)
+
+
+def zigzag(rims_mps: Sequence[float], period_s: float) -> Swing:
+    """Forth and back at constant speeds, one after the other."""
+
+    def swing(t: np.ndarray) -> np.ndarray:
+        speed = np.array(rims_mps)[(t / period_s).astype(int) % len(rims_mps)] / RIM_M
+        forth = np.where((t / period_s) % 1.0 < 0.5, 1.0, -1.0)
+        return np.cumsum(speed * forth) * STEP_S
+
+    return swing
+
+
+def negated(log: MotionLog) -> MotionLog:
+    return dataclasses.replace(log, torque_nm=-log.torque_nm)
+
+
+ARC = (1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("log", "words"),
+    [
+        (lambda: arc_log(ARC, lambda t: 0.0 * t, 10.0), "never get away from rest"),
+        (lambda: arc_log((1.0, 1.0, 1.0), sine(3.0, 0.2), 10.0), "spins on the spot"),
+        # 18 mm/s at the rim at most: alpha times the rate is 0.76.
+        (lambda: arc_log(ARC, sine(0.018 / RIM_M / (2.0 * math.pi * 0.05), 0.05), 40.0, noise_nm=1.0), "too slow"),
+        (lambda: arc_log(ARC, zigzag((0.1, 0.25), 4.0), 32.0, noise_nm=0.3), "never slow"),
+        (lambda: arc_log(ARC, zigzag((0.1, 0.1), 4.0), 32.0), "one speed only"),
+        (lambda: arc_log(ARC, lambda t: 2.0 * t + 0.8 * np.sin(t), 30.0, noise_nm=0.3), "one way only"),
+        (lambda: arc_log(ARC, sine(0.5, 0.5), 4.0), "too short: "),
+        (lambda: arc_log(ARC, sine(1.5, 0.1), 20.0, noise_nm=8.0), "too noisy ("),
+        (lambda: dataclasses.replace(GOOD, torque_nm=4.0 * np.roll(GOOD.torque_nm, 1250, axis=0)), "explains"),
+        (lambda: arc_log(ARC, sine(1.5, 0.1), 0.3), "too short"),
+        (lambda: negated(GOOD), "signs of angles and torques"),
+        (lambda: dataclasses.replace(GOOD, torque_nm=GOOD.torque_nm[:, [1, 2, 0]]), "order of the wheels"),
+        (lambda: dataclasses.replace(GOOD, torque_nm=GOOD.torque_nm * [1.0, 0.0, 1.0]), "torque_1 never changes"),
+        (lambda: dataclasses.replace(GOOD, torque_nm=GOOD.torque_nm + 40.0), "sensor's limit of 28 N m"),
+        (lambda: dataclasses.replace(GOOD, time_s=GOOD.time_s * 100.0), "at most 0.05 s"),
+    ],
+)
+def test_refuses_what_cannot_tell(log: Callable[[], MotionLog], words: str, robot: Robot) -> None:
+    with pytest.raises(GivewayError, match=r"arc\.csv") as refusal:
+        calibrate([log()], robot)
+    assert words in str(refusal.value)
+
+
+def test_a_refused_log_counts_beside_a_good_one(robot: Robot) -> None:
+    slow = arc_log(ARC, sine(1.5, 0.1), 4.0, name="short.csv")
+    with pytest.raises(UnidentifiableError):
+        calibrate([slow], robot)
+    assert calibrate([GOOD, slow], robot).tanh_slope_s_rad.holds(ALPHA)
+
+
+def test_saturated_samples_do_not_take_part(robot: Robot) -> None:
+    torque = GOOD.torque_nm.copy()
+    torque[3000:3500] = 28.0
+    found = calibrate([dataclasses.replace(GOOD, torque_nm=torque)], robot)
+    log = found.logs[0]
+    near = np.abs(log.time_s - 3250 * STEP_S) < 0.6
+    assert not log.used[near].any()
+    assert found.coulomb_torque_nm.value == pytest.approx(B_R, rel=0.01)
+
+
+# The command
+
+
+@pytest.fixture
+def log_file(tmp_path: Path) -> Path:
+    path = tmp_path / "drive.csv"
+    path.write_text("\n".join(csv_lines(GOOD)))
+    return path
+
+
+def test_command_writes_robot_file_and_picture(cli: Cli, tmp_path: Path, log_file: Path, good: Calibration) -> None:
+    done = cli("calibrate", "drive.csv", "--robot", str(native.robot()), "--out", "new/mine.toml")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "B_r" in done.stdout
+    assert folder_content(tmp_path / "new") == ["mine.png", "mine.toml"]
+    new = read_robot(tmp_path / "new" / "mine.toml")
+    # 5 digits are written; the log's own text has 9.
+    assert new.value("roller.coulomb_torque") == pytest.approx(good.coulomb_torque_nm.value, rel=1e-4)
+    assert new.value("roller.tanh_slope") == pytest.approx(good.tanh_slope_s_rad.value, rel=1e-4)
+    text = (tmp_path / "new" / "mine.toml").read_text()
+    for words in ("drive.csv (sha256 ", "95 % interval", 'provenance = "fitted"', "# --- Wheels and rollers"):
+        assert words in text
+    with Image.open(tmp_path / "new" / "mine.png") as picture:
+        assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50  # something is drawn
+
+
+def test_new_robot_file_runs(cli: Cli, tmp_path: Path, log_file: Path) -> None:
+    cli("calibrate", "drive.csv", "--robot", str(native.robot()), "--out", "mine.toml")
+    done = cli("run", "motionless", "--robot", "mine.toml", "--duration", "0.05", "--out", "run")
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("drive.csv", "--out", "new.txt"), "ends with .toml"),
+        (("none.csv", "--out", "new.toml"), "none.csv: no such file"),
+        (("drive.csv", "slow.csv", "--out", "new.toml"), "slow.csv: line 1: there is no column"),
+        (("still.csv", "--out", "new.toml"), "never get away from rest"),
+        (("drive.csv", "--out", "folder/new.toml"), "is not a file"),
+        (("--out", "new.toml"), "Missing argument"),
+    ],
+)
+def test_command_refuses_and_writes_nothing(
+    cli: Cli, tmp_path: Path, log_file: Path, arguments: tuple[str, ...], words: str
+) -> None:
+    still = dataclasses.replace(GOOD, wheel_angle_rad=0.0 * GOOD.wheel_angle_rad)
+    (tmp_path / "still.csv").write_text("\n".join(csv_lines(still)))
+    (tmp_path / "slow.csv").write_text("a,b\n1,2\n")
+    (tmp_path / "folder" / "new.toml").mkdir(parents=True)
+    before = folder_content(tmp_path)
+    done = cli("calibrate", *arguments, "--robot", str(native.robot()))
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert folder_content(tmp_path) == before
+
+
+def test_command_keeps_the_old_robot_file(cli: Cli, tmp_path: Path, log_file: Path) -> None:
+    (tmp_path / "robot.toml").write_text(native.robot().read_text())
+    done = cli("calibrate", "drive.csv", "--robot", "robot.toml", "--out", "./robot.toml")
+    assert done.returncode == 2
+    assert "another file" in done.stderr
+    assert (tmp_path / "robot.toml").read_text() == native.robot().read_text()
