@@ -1,0 +1,211 @@
+"""A leg between robot and wall: quasi-static clamping (the future work of Kim, Llado, Sentis 2016, first step).
+
+The robot drives at the speed of 5.3 into the paper's slider, which stands in front of a wall and cannot get out of the
+way. It pushes on until it notices, then gives way. The slider stands for a body region: its effective stiffness lies in
+series with the cover in front, and again between the slider and the wall behind. What it feels, the larger one of both
+sides, is judged against the region's limits: the peak within 0.5 s of the contact, and the lasting force after that.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from giveway.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
+from giveway.experiments import Experiment
+from giveway.plan import Straight
+from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.scenario import BUMPERS, Scenario
+from giveway.variables import table
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+REGION = "lower leg"
+SPEED_MPS = 0.22
+SPEEDS_MPS = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5)  # up to the robot's own limit
+SLIDER_KG = 13.62  # the paper's, of 5.3
+GAPS_M: Mapping[str, float] = {"at the wall": 0.001, "20 mm before the wall": 0.02}
+STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
+AFTER_S = 2.0  # of which 1.5 s count as lasting
+NO_REFLEX = {"detector.impulse_threshold": 1000.0, "detector.force_threshold": 10000.0}
+RECORDED = (
+    *(f"testbed.truth.{name}" for name in ("contact_force", "wall_force", "first_contact_time", "contact")),
+    "controller.detection.count",
+)
+LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic spring bumper"}
+NO_REFLEX_COLOUR = "#8a8f98"
+
+
+def scenario(
+    bumper: str, speed_mps: float = SPEED_MPS, gap_m: float = 0.001, region: str = REGION, *, reflex: bool = True
+) -> Scenario:
+    """The robot drives into a clamped body region with ``bumper`` on it.
+
+    Args:
+        bumper: "none", "spring" or "magnetic".
+        speed_mps: of the robot, m/s.
+        gap_m: between the slider and the wall, m, above 0.
+        region: the body region.
+        reflex: False: the detector is off and the robot pushes on.
+    """
+    testbed, controller = table("testbed"), table("controller")
+    stiffness = body_region(region).stiffness_npm
+    direction, target_x, target_y = (
+        float(testbed[f"slider.{name}"].start or 0.0) for name in ("direction", "target_x", "target_y")
+    )
+    plan = Straight(speed_mps, direction + math.pi)
+    way_m = plan.ramp_m + speed_mps * STEADY_S
+    tare_s = float(controller["estimator.tare_ticks"].start or 0) * float(controller["controller.period"].start or 0.0)
+    return Scenario(
+        "clamping",
+        math.ceil(1e3 * (tare_s + plan.ramp_s + STEADY_S + AFTER_S)) / 1e3,
+        bumper=bumper,
+        testbed={
+            "slider.mass": SLIDER_KG,
+            "slider.run_up": 0.0,
+            "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),
+            "slider.target_y": target_y + way_m * math.sin(plan.direction_rad),
+            "rope.attached": False,
+            "contact.stiffness": 1.0 / (1.0 / stiffness + 1.0 / float(testbed["contact.stiffness"].start or 0.0)),
+            "wall.present": True,
+            "wall.distance": gap_m,
+            "wall.stiffness": stiffness,
+        },
+        controller={"supervisor.after_settled": 0} | (NO_REFLEX if not reflex else {}),
+        plan=plan,
+    )
+
+
+def reproduce(effort: Effort) -> Findings:
+    """Forces on the leg with each bumper and gap, without the reflex, and over the speed."""
+    import dataclasses
+
+    from giveway import batch
+
+    speeds = effort.pick(SPEEDS_MPS, (0.1, 0.4))
+    cases: dict[tuple[object, ...], Scenario] = {
+        (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in BUMPERS
+    }
+    cases |= {("no reflex", place): scenario("none", gap_m=gap, reflex=False) for place, gap in GAPS_M.items()}
+    cases |= {(bumper, speed): scenario(bumper, speed) for bumper in BUMPERS for speed in speeds}
+    longest = max(case.duration_s for case in cases.values())  # traces need one duration
+    table = batch.run_many(
+        [dataclasses.replace(case, duration_s=longest) for case in cases.values()],
+        threads=effort.threads,
+        traces=RECORDED,
+        progress=lambda done, of: effort.progress(done / of),
+    )
+    forces = {case: Clamped(table, run) for run, case in enumerate(cases)}
+    rows = [row for place in GAPS_M for bumper in BUMPERS for row in _rows(bumper, place, forces[bumper, place])]
+    rows += [
+        Row(f"lasting force, no reflex, {place}", forces["no reflex", place].judgement.lasting_n, "N", "assumed")
+        for place in GAPS_M
+    ]
+    for bumper in BUMPERS:
+        safe = _safe_speed({speed: forces[bumper, speed] for speed in speeds})
+        rows.append(Row(f"limits kept up to this speed, {bumper}, at the wall", safe, "m/s", "assumed", decimals=2))
+    picture = Picture(
+        "clamping",
+        "A lower leg between robot and wall",
+        "Left: force on the leg at the wall, robot at 0.22 m/s. Up to 0.5 s after the contact it has to stay below the "
+        f"upper limit, from then on below the lower one. Right: its peak over the robot's speed. {NOTICE}",
+        _figure(forces, speeds),
+    )
+    return Findings(rows, [picture], _notes(forces))
+
+
+class Clamped:
+    """What the leg felt in one run of a batch that recorded `RECORDED`.
+
+    Attributes:
+        time_s: since the first contact, shape (n,), s; from 0.2 s before.
+        force_n: larger one of robot's and wall's force, shape (n,), N.
+        judgement: of the force.
+        detection_ms: from the first contact to the decision; None without one.
+    """
+
+    def __init__(self, table: xarray.Dataset, run: int) -> None:
+        import numpy as np
+
+        time = table["time"].values
+        both = [np.abs(table[f"testbed.truth.{side}_force"].values[run]) for side in ("contact", "wall")]
+        self.force_n = np.maximum(*both)
+        contact = float(table["testbed.truth.first_contact_time"].values[run, -1])
+        self.time_s = time - contact
+        self.judgement: Judgement = judge(time, self.force_n, REGION)
+        hits = np.flatnonzero(np.diff(table["controller.detection.count"].values[run]) > 0) + 1
+        self.detection_ms = 1e3 * float(self.time_s[hits[0]]) if hits.size else None
+
+
+def _rows(bumper: str, place: str, clamped: Clamped) -> list[Row]:
+    found = clamped.judgement
+    region = found.region
+    case = f"{bumper}, {place}"
+    return [
+        Row(f"detection time, {case}", clamped.detection_ms, "ms", "assumed", target=Target(0.0, text="happens")),
+        Row(f"peak force, {case}", found.peak_n, "N", "assumed", target=Target(maximum=region.peak_limit_n)),
+        Row(f"lasting force, {case}", found.lasting_n, "N", "assumed", target=Target(maximum=region.lasting_limit_n)),
+    ]
+
+
+def _safe_speed(found: Mapping[float, Clamped]) -> float | None:
+    """The largest speed up to which every tried one keeps both limits; None if not even the slowest does."""
+    safe = None
+    for speed, clamped in found.items():
+        if not clamped.judgement.ok:
+            return safe
+        safe = speed
+    return safe
+
+
+def _figure(forces: Mapping[tuple[object, ...], Clamped], speeds: Sequence[float]) -> Figure:
+    from matplotlib.figure import Figure
+    from matplotlib.style import context
+
+    from giveway.report.style import COLOURS, STYLE
+
+    region = body_region(REGION)
+    place = next(iter(GAPS_M))
+    with context(STYLE):
+        figure = Figure(figsize=(9.6, 3.6), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
+        for bumper in BUMPERS:
+            colour, label = COLOURS[LABELS[bumper]], LABELS[bumper]
+            clamped = forces[bumper, place]
+            left.plot(clamped.time_s, clamped.force_n, color=colour, label=label)
+            right.plot(speeds, [forces[bumper, speed].judgement.peak_n for speed in speeds], "o-", color=colour)
+        clamped = forces["no reflex", place]
+        left.plot(clamped.time_s, clamped.force_n, color=NO_REFLEX_COLOUR, label="no bumper, no reflex")
+        limits = ([0.0, TRANSIENT_S, TRANSIENT_S, 1.5], [region.peak_limit_n] * 2 + [region.lasting_limit_n] * 2)
+        left.plot(*limits, "--", color="#b3261e", linewidth=1.2, label=f"limits, {REGION}")
+        right.axhline(region.peak_limit_n, linestyle="--", color="#b3261e", linewidth=1.2)
+        left.set(xlabel="time since contact (s)", ylabel="force on the leg (N)", xlim=(-0.1, 1.5))
+        right.set(xlabel="speed of the robot (m/s)", ylabel="peak force (N)")
+        left.set_ylim(bottom=0.0)
+        right.set_ylim(bottom=0.0)
+        left.legend(loc="upper right")
+    return figure
+
+
+def _notes(forces: Mapping[tuple[object, ...], Clamped]) -> list[str]:
+    estimate = contact_peak(REGION, SPEED_MPS, float(table("testbed")["base.mass"].start or 0.0))
+    pushing = forces["no reflex", next(iter(GAPS_M))].judgement.lasting_n
+    return [
+        NOTICE,
+        f"Without the reflex the robot pushes with {pushing:.0f} N for as long as its plan goes on; the drives' torque "
+        "limit sets that force. A leg that can move away feels a peak of "
+        f"{estimate:.0f} N from a bare robot by the standard's two-mass estimate, more than here: the cover is soft.",
+    ]
+
+
+EXPERIMENT = Experiment(
+    name="clamping",
+    summary="The robot drives into a leg that stands in front of a wall; forces against ISO/TS 15066 limits.",
+    section="",
+    bumpers=tuple(BUMPERS),
+    scenario=scenario,
+    reproduce=reproduce,
+)
