@@ -29,14 +29,15 @@ SPEEDS_MPS = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5)  # up to th
 SLIDER_KG = 13.62  # the paper's, of 5.3
 GAPS_M: Mapping[str, float] = {"at the wall": 0.001, "20 mm before the wall": 0.02}
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
-AFTER_S = 2.0  # of which 1.5 s count as lasting
+AFTER_S = 1.6  # of which 1.1 s count as lasting; a robot that pushes on for longer lags by half a wheel turn
 NO_REFLEX = {"detector.impulse_threshold": 1000.0, "detector.force_threshold": 10000.0}
 RECORDED = (
     *(f"testbed.truth.{name}" for name in ("contact_force", "wall_force", "first_contact_time", "contact")),
     "controller.detection.count",
 )
 LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic spring bumper"}
-NO_REFLEX_COLOUR = "#8a8f98"
+STYLES = ("o-", "s:")  # per gap
+NO_REFLEX_COLOUR, INK, LIMIT_COLOUR = "#8a8f98", "#2b2f36", "#b3261e"
 
 
 def scenario(
@@ -85,12 +86,17 @@ def reproduce(effort: Effort) -> Findings:
 
     from giveway import batch
 
-    speeds = effort.pick(SPEEDS_MPS, (0.1, 0.4))
+    speeds = effort.pick(SPEEDS_MPS, (0.1, 0.5))
     cases: dict[tuple[object, ...], Scenario] = {
         (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in BUMPERS
     }
     cases |= {("no reflex", place): scenario("none", gap_m=gap, reflex=False) for place, gap in GAPS_M.items()}
-    cases |= {(bumper, speed): scenario(bumper, speed) for bumper in BUMPERS for speed in speeds}
+    cases |= {
+        (bumper, place, speed): scenario(bumper, speed, gap)
+        for place, gap in GAPS_M.items()
+        for bumper in BUMPERS
+        for speed in speeds
+    }
     longest = max(case.duration_s for case in cases.values())  # traces need one duration
     table = batch.run_many(
         [dataclasses.replace(case, duration_s=longest) for case in cases.values()],
@@ -99,14 +105,16 @@ def reproduce(effort: Effort) -> Findings:
         progress=lambda done, of: effort.progress(done / of),
     )
     forces = {case: Clamped(table, run) for run, case in enumerate(cases)}
-    rows = [row for place in GAPS_M for bumper in BUMPERS for row in _rows(bumper, place, forces[bumper, place])]
+    safe = {
+        (bumper, place): _safe_speed({speed: forces[bumper, place, speed] for speed in speeds})
+        for place in GAPS_M
+        for bumper in BUMPERS
+    }
+    rows = [row for case in safe for row in _rows(*case, forces[case], safe[case])]
     rows += [
         Row(f"lasting force, no reflex, {place}", forces["no reflex", place].judgement.lasting_n, "N", "assumed")
         for place in GAPS_M
     ]
-    for bumper in BUMPERS:
-        safe = _safe_speed({speed: forces[bumper, speed] for speed in speeds})
-        rows.append(Row(f"limits kept up to this speed, {bumper}, at the wall", safe, "m/s", "assumed", decimals=2))
     picture = Picture(
         "clamping",
         "A lower leg between robot and wall",
@@ -140,14 +148,31 @@ class Clamped:
         self.detection_ms = 1e3 * float(self.time_s[hits[0]]) if hits.size else None
 
 
-def _rows(bumper: str, place: str, clamped: Clamped) -> list[Row]:
+def _rows(bumper: str, place: str, clamped: Clamped, safe_mps: float | None) -> list[Row]:
     found = clamped.judgement
     region = found.region
     case = f"{bumper}, {place}"
+    below = "at no speed that was tried" if safe_mps is None else f"up to {safe_mps:g} m/s, not at {SPEED_MPS:g} m/s"
+    reason = "" if found.ok else f"tried at other speeds, with all else as it is: the limits are kept {below}"
     return [
         Row(f"detection time, {case}", clamped.detection_ms, "ms", "assumed", target=Target(0.0, text="happens")),
-        Row(f"peak force, {case}", found.peak_n, "N", "assumed", target=Target(maximum=region.peak_limit_n)),
-        Row(f"lasting force, {case}", found.lasting_n, "N", "assumed", target=Target(maximum=region.lasting_limit_n)),
+        Row(
+            f"peak force, {case}",
+            found.peak_n,
+            "N",
+            "assumed",
+            target=Target(maximum=region.peak_limit_n),
+            reason="" if found.peak_ok else reason,
+        ),
+        Row(
+            f"lasting force, {case}",
+            found.lasting_n,
+            "N",
+            "assumed",
+            target=Target(maximum=region.lasting_limit_n),
+            reason="" if found.lasting_ok else reason,
+        ),
+        Row(f"limits kept up to this speed, {case}", safe_mps, "m/s", "assumed", decimals=2),
     ]
 
 
@@ -170,23 +195,28 @@ def _figure(forces: Mapping[tuple[object, ...], Clamped], speeds: Sequence[float
     region = body_region(REGION)
     place = next(iter(GAPS_M))
     with context(STYLE):
-        figure = Figure(figsize=(9.6, 3.6), layout="constrained")
+        figure = Figure(figsize=(9.6, 3.9), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
         for bumper in BUMPERS:
             colour, label = COLOURS[LABELS[bumper]], LABELS[bumper]
             clamped = forces[bumper, place]
             left.plot(clamped.time_s, clamped.force_n, color=colour, label=label)
-            right.plot(speeds, [forces[bumper, speed].judgement.peak_n for speed in speeds], "o-", color=colour)
+            for style, gap in zip(STYLES, GAPS_M, strict=True):
+                peaks = [forces[bumper, gap, speed].judgement.peak_n for speed in speeds]
+                right.plot(speeds, peaks, style, markersize=4, color=colour)
         clamped = forces["no reflex", place]
         left.plot(clamped.time_s, clamped.force_n, color=NO_REFLEX_COLOUR, label="no bumper, no reflex")
         limits = ([0.0, TRANSIENT_S, TRANSIENT_S, 1.5], [region.peak_limit_n] * 2 + [region.lasting_limit_n] * 2)
-        left.plot(*limits, "--", color="#b3261e", linewidth=1.2, label=f"limits, {REGION}")
-        right.axhline(region.peak_limit_n, linestyle="--", color="#b3261e", linewidth=1.2)
+        left.plot(*limits, "--", color=LIMIT_COLOUR, linewidth=1.2, label=f"limits, {REGION}")
+        right.axhline(region.peak_limit_n, linestyle="--", color=LIMIT_COLOUR, linewidth=1.2)
         left.set(xlabel="time since contact (s)", ylabel="force on the leg (N)", xlim=(-0.1, 1.5))
         right.set(xlabel="speed of the robot (m/s)", ylabel="peak force (N)")
         left.set_ylim(bottom=0.0)
         right.set_ylim(bottom=0.0)
-        left.legend(loc="upper right")
+        for style, gap in zip(STYLES, GAPS_M, strict=True):
+            right.plot([], [], style, color=INK, markersize=4, label=f"leg {gap}")
+        right.legend(loc="upper left")
+        figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 
 
@@ -196,8 +226,9 @@ def _notes(forces: Mapping[tuple[object, ...], Clamped]) -> list[str]:
     return [
         NOTICE,
         f"Without the reflex the robot pushes with {pushing:.0f} N for as long as its plan goes on; the drives' torque "
-        "limit sets that force. A leg that can move away feels a peak of "
-        f"{estimate:.0f} N from a bare robot by the standard's two-mass estimate, more than here: the cover is soft.",
+        "limit sets that force, if the floor lets the wheels bear it: the plant's wheels do not slip.",
+        f"A leg that can move away feels a peak of {estimate:.0f} N from a bare rigid robot by the standard's two-mass "
+        "estimate.",
     ]
 
 

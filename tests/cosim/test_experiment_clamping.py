@@ -1,0 +1,93 @@
+"""The clamped leg: forces of robot and wall, and their judgement."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from giveway import batch, experiments
+from giveway.body_regions import NOTICE, body_region
+from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, _safe_speed, scenario
+from giveway.reproduction import Effort, Findings
+from giveway.result import Result
+from giveway.scenario import BUMPERS
+
+
+@pytest.fixture(scope="module")
+def findings() -> Findings:
+    return experiments.get("clamping").reproduce(Effort(full=False))
+
+
+@pytest.fixture(scope="module")
+def pushing_on() -> Result:
+    return batch.run(scenario("none", reflex=False))
+
+
+def settled(run: Result, side: str) -> np.ndarray:
+    """Magnitude of the force of the robot ("contact") or the wall from 1 s to 1.5 s after the contact, N."""
+    since = run.traces["time"].values - float(run.traces["testbed.truth.first_contact_time"].values[-1])
+    return np.abs(run.traces[f"testbed.truth.{side}_force"].values[(since > 1.0) & (since < 1.5)])
+
+
+def test_clamped_leg_is_in_balance(pushing_on: Result) -> None:
+    """Robot and wall press alike once all is at rest; the rail's friction may make up 1 N of difference."""
+    assert settled(pushing_on, "contact") == pytest.approx(settled(pushing_on, "wall"), abs=1.5)
+
+
+def test_torque_limit_sets_the_lasting_force(pushing_on: Result) -> None:
+    """Two wheels push straight at the wall with their torque limit; stuck gears hold some more or less."""
+    parameters = pushing_on.manifest["parameters"]["testbed"]
+    force = float(settled(pushing_on, "contact").mean())
+    # J^-T of a force along the middle between two wheels: 2/3 cos 30 deg r_w on each.
+    torque = 2.0 / 3.0 * math.cos(math.pi / 6.0) * float(parameters["wheel.radius"]) * force
+    limit, friction = (float(parameters[f"drivetrain.{name}"]) for name in ("torque_limit", "gear_stiction"))
+    assert limit - friction <= torque <= limit + friction
+
+
+def test_reflex_ends_the_clamping(pushing_on: Result) -> None:
+    with_reflex = batch.run(scenario("none"))
+    force = np.abs(with_reflex.traces["testbed.truth.contact_force"].values)
+    time = with_reflex.traces["time"].values - float(with_reflex.traces["testbed.truth.first_contact_time"].values[-1])
+    assert force.max() > 20.0
+    assert force[time > 0.5].max() == 0.0
+    before = pushing_on.traces["testbed.truth.contact_force"].values
+    same = (time < 0.03) & (time > 0.0)  # nothing has been noticed yet
+    assert force[same] == pytest.approx(np.abs(before[same]))
+
+
+def test_contact_is_as_stiff_as_leg_and_cover_in_series() -> None:
+    stiffness = scenario("none").testbed["contact.stiffness"]
+    cover = batch.run(scenario("none", speed_mps=0.05)).manifest["parameters"]["testbed"]
+    assert float(stiffness) < body_region(REGION).stiffness_npm
+    assert cover["contact.stiffness"] == stiffness
+    assert cover["wall.stiffness"] == body_region(REGION).stiffness_npm
+
+
+def test_rows(findings: Findings) -> None:
+    rows = {row.quantity: row for row in findings.rows}
+    for place in GAPS_M:
+        for bumper in BUMPERS:
+            assert rows[f"detection time, {bumper}, {place}"].met
+            assert rows[f"lasting force, {bumper}, {place}"].met
+        soft, hard = (rows[f"peak force, {bumper}, {place}"].ours for bumper in ("magnetic", "none"))
+        assert soft is not None
+        assert hard is not None
+        assert soft < hard
+        pushed = rows[f"lasting force, no reflex, {place}"].ours
+        assert pushed is not None
+        assert pushed > body_region(REGION).lasting_limit_n
+    assert all((row.reason != "") == (row.met is False) for row in findings.rows)
+    assert NOTICE in findings.notes
+    assert NOTICE in findings.pictures[0].caption
+
+
+def test_safe_speed_is_the_last_one_before_the_first_that_fails() -> None:
+    def found(*verdicts: bool) -> dict[float, object]:
+        return {0.1 * (i + 1): SimpleNamespace(judgement=SimpleNamespace(ok=ok)) for i, ok in enumerate(verdicts)}
+
+    assert _safe_speed(found(True, True, False, True)) == pytest.approx(0.2)  # type: ignore[arg-type]
+    assert _safe_speed(found(False, True)) is None  # type: ignore[arg-type]
+    assert _safe_speed(found(True)) == pytest.approx(0.1)  # type: ignore[arg-type]
+    assert SPEED_MPS == 0.22  # of the paper's 5.3

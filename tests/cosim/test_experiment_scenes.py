@@ -1,0 +1,92 @@
+"""The scenes of Fig. 13: what is hit, where, and what is judged."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from giveway import batch, experiments
+from giveway.body_regions import NOTICE
+from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, scenario
+from giveway.footprint import hull, wheel_corners
+from giveway.metrics import Collision
+from giveway.plan import Straight
+from giveway.reproduction import Effort, Findings
+from giveway.result import Result
+
+
+@pytest.fixture(scope="module")
+def findings() -> Findings:
+    return experiments.get("scenes").reproduce(Effort(full=False))
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, Result]:
+    return {name: batch.run(scenario(name)) for name in SCENES}
+
+
+def collision(result: Result) -> Collision:
+    return Collision(result.traces, result.manifest["parameters"])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_robot_is_steady_when_it_hits(name: str, results: dict[str, Result]) -> None:
+    hit, scene = collision(results[name]), SCENES[name]
+    plan = Straight(scene.speed_mps, scene.direction_rad)
+    tare_s = 0.1
+    # The base lags its plan by what servo and drivetrain give, some millimetres: at most 20 mm.
+    assert hit.contact_s == pytest.approx(tare_s + plan.ramp_s + STEADY_S, abs=0.02 / scene.speed_mps)
+    row = hit.until_detection().start - 1
+    speed = np.hypot(hit["testbed.truth.vx"][row], hit["testbed.truth.vy"][row])
+    assert speed == pytest.approx(scene.speed_mps, rel=0.02)
+
+
+def test_hand_is_hit_by_the_wheel_itself(results: dict[str, Result]) -> None:
+    hit = collision(results["hand"])
+    point = hit.true_point()
+    assert point is not None
+    wheel = wheel_corners(results["hand"].manifest["parameters"]["testbed"], SCENES["hand"].height_m)[0]
+    low, high = wheel.min(axis=0), wheel.max(axis=0)
+    assert (point >= low - 1e-3).all()
+    assert (point <= high + 1e-3).all()
+    assert point[1] == pytest.approx(high[1], abs=1e-3)  # its front
+
+
+def test_bicycle_meets_a_corner_and_person_the_body(results: dict[str, Result]) -> None:
+    for name, corners in (("bicycle", True), ("person", False)):
+        hit = collision(results[name])
+        row = hit.until_detection().start
+        point = np.array([hit[f"testbed.truth.contact_base_{axis}"][row] for axis in "xy"])
+        parameters = results[name].manifest["parameters"]["testbed"]
+        body = np.array([[parameters[f"outline.{axis}[{i}]"] for axis in "xy"] for i in range(3)])
+        everything = hull([*body, *wheel_corners(parameters, SCENES[name].height_m).reshape(-1, 2)])
+        assert (np.hypot(*(everything - point).T).min() < 1e-3) == corners
+
+
+def test_every_scene_is_noticed_and_no_limit_is_broken_by_force(findings: Findings) -> None:
+    rows = {row.quantity: row for row in findings.rows}
+    for name in SCENES:
+        assert rows[f"detection time, {name}"].met
+        assert rows[f"moves away by, {name}"].met
+    forces = [row for row in findings.rows if "force" in row.quantity and row.target is not None]
+    assert len(forces) == 4  # two persons, peak and lasting
+    assert all(row.met for row in forces)
+    assert NOTICE in findings.notes
+
+
+def test_peak_is_that_of_the_plant(findings: Findings, results: dict[str, Result]) -> None:
+    rows = {row.quantity: row.ours for row in findings.rows}
+    for name in ("hand", "person"):
+        force = results[name].traces["testbed.truth.contact_force"].values
+        assert rows[f"peak force, {name} ({SCENES[name].region})"] == pytest.approx(force.max())
+
+
+def test_a_miss_says_what_was_changed(findings: Findings) -> None:
+    for row in findings.rows:
+        assert (row.reason != "") == (row.met is False)
+        if row.reason:
+            assert all(variant in row.reason for variant in VARIANTS)
+
+
+def test_picture_has_a_panel_for_each(findings: Findings) -> None:
+    (picture,) = findings.pictures
+    assert [axes.get_title("left") for axes in picture.figure.axes] == [scene.title for scene in SCENES.values()]
