@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from giveway import batch, experiments
 from giveway.body_regions import NOTICE
+from giveway.errors import UnknownNameError
 from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, scenario
 from giveway.footprint import hull, wheel_corners
 from giveway.metrics import Collision
@@ -85,6 +86,19 @@ def test_a_miss_says_what_was_changed(findings: Findings) -> None:
         assert (row.reason != "") == (row.met is False)
         if row.reason:
             assert all(variant in row.reason for variant in VARIANTS)
+
+
+def test_false_hits_are_explained_by_the_rollers(findings: Findings) -> None:
+    """If the robot takes its rollers for a hit, the note names the wheel and the force; else there is no such note."""
+    rows = {row.quantity: row.ours for row in findings.rows}
+    for name in SCENES:
+        explained = [note for note in findings.notes if note.startswith(f"{name}: ")]
+        assert len(explained) == (rows[f"false detections, {name}"] != 0.0)
+
+
+def test_unknown_scene() -> None:
+    with pytest.raises(UnknownNameError, match="bicycle"):
+        scenario("bycicle")
 
 
 def test_picture_has_a_panel_for_each(findings: Findings) -> None:
