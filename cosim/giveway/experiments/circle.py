@@ -232,7 +232,7 @@ def reproduce(effort: Effort) -> Findings:
         Picture(
             "path",
             "The path around the circle, pushed",
-            "Motion of the base as the testbed knows it. Arrows: pushes; the robot is drawn as it stood when it noticed "
+            "Motion of the base as the testbed knows it. Arrows: pushes; the robot is drawn as it stood when it felt "
             "them. It gives way along the push and comes back to where it left its path.",
             drawn.path({name: (run.traces, found[name]) for name, run in runs.items()}),
             (("circle", f"{DIAMETER_M:g} m"), ("speed", f"{SPEED_MPS:g} m/s"), ("figure", "12")),
@@ -240,7 +240,7 @@ def reproduce(effort: Effort) -> Findings:
         Picture(
             "alarm",
             "How far from a false alarm",
-            "What the detector compares with its threshold (dashed) during one undisturbed round, with rollers that rub "
+            "What the detector compares with its threshold (dashed) in one undisturbed round, with rollers that rub "
             "more or less than the estimator believes.",
             drawn.alarm(
                 {name: (shares, data) for name, data in mismatched.items()},

@@ -1,0 +1,88 @@
+"""The paper's 5.4 for real: pushed on a circle, noticed, gave way along the push, came back."""
+
+from __future__ import annotations
+
+import math
+
+import giveway
+import numpy as np
+import pytest
+from giveway import batch
+from giveway.errors import GivewayError
+from giveway.experiments import circle
+from giveway.push_response import Responses, responses
+from giveway.reproduction import Effort, Findings
+
+
+@pytest.fixture(scope="module")
+def findings() -> Findings:
+    return circle.reproduce(Effort(full=False))
+
+
+@pytest.fixture(scope="module")
+def pushed() -> Responses:
+    """The whole round with all pushes, as `giveway run circle` makes it."""
+    scenario = giveway.experiment("circle").scenario("none")
+    traces = batch.run(scenario).traces
+    return responses(scenario.push.pushes, traces["time"].values, lambda name: traces[name].values)  # type: ignore[union-attr]
+
+
+def row(findings: Findings, start: str) -> float | None:
+    (found,) = (one for one in findings.rows if one.quantity.startswith(start))
+    return found.ours
+
+
+def test_every_push_is_noticed_and_none_invented(pushed: Responses) -> None:
+    assert pushed.detected == len(circle.BY_HAND) == 6
+    assert pushed.invented_s == ()
+
+
+def test_it_moves_away_along_the_push(pushed: Responses) -> None:
+    for one in pushed.pushes:
+        assert abs(one.escape_error_deg) < 12.0  # the paper's largest error of a direction
+        assert one.escape_m == pytest.approx(0.5, abs=0.05)  # it had 0.16 m/s in another direction before
+
+
+def test_it_comes_back_to_its_path(pushed: Responses) -> None:
+    assert pushed.returned == 6
+    # Undisturbed it is up to 6 mm off, by the lag of the servo; a lasting error would be as large as an escape.
+    assert pushed.off_path_m < 0.01
+
+
+def test_pushes_come_from_all_sides_and_push_into_the_robot() -> None:
+    scenario = circle.scenario()
+    directions = [push.direction_rad for push in scenario.push.pushes]  # type: ignore[union-attr]
+    points = [(push.point_x_m, push.point_y_m) for push in scenario.push.pushes]  # type: ignore[union-attr]
+    assert {side for side, *_ in circle.BY_HAND} == {0, 1, 2}
+    for direction, point in zip(directions, points, strict=True):
+        inwards = math.cos(direction) * point[0] + math.sin(direction) * point[1]
+        assert inwards < 0.0
+
+
+def test_the_plan_is_the_papers_circle() -> None:
+    table = circle.scenario().plan(np.linspace(3.0, 33.0, 100))
+    np.testing.assert_allclose(np.hypot(table[:, 0], table[:, 1]), 0.75, rtol=1e-12)
+    np.testing.assert_allclose(np.hypot(table[:, 3], table[:, 4]), 0.16, rtol=1e-12)
+
+
+def test_the_reduced_experiment_has_every_row(findings: Findings) -> None:
+    by_name = {one.quantity: one for one in findings.rows}
+    assert len(by_name) == len(findings.rows)
+    assert by_name["pushes noticed, of 2"].met
+    assert by_name["pushes invented"].met
+    assert by_name["false alarms in 0.01 h undisturbed, full estimator"].ours == 0.0
+    assert all(one.ours is not None for one in findings.rows)
+    assert [picture.name for picture in findings.pictures] == ["path", "alarm"]
+
+
+def test_rollers_that_rub_unlike_the_model_do_raise_false_alarms(findings: Findings) -> None:
+    # The count of undisturbed rounds could not be trusted if nothing ever raised one: 20 % of 42 N is 8.4 N, far above
+    # the 3 N that are forgiven in motion, and below the 9 N of the last row.
+    for word in ("more", "less"):
+        assert row(findings, f"rollers may rub so much {word} without a false alarm, full") == 0.0
+    assert row(findings, "false alarms in a round each at friction +-20 %") == 0.0
+
+
+def test_the_experiment_has_no_bumper() -> None:
+    with pytest.raises(GivewayError, match="bumper"):
+        circle.scenario("spring")
