@@ -22,7 +22,7 @@ from giveway import native
 from giveway.checks import whole
 from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
 from giveway.master import Progress, Record, plan_table, push_table
-from giveway.plan import PLAN_INPUTS, Rest
+from giveway.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
 from giveway.variables import Value, Variable, table
 
 if TYPE_CHECKING:
@@ -207,7 +207,10 @@ class _Batch:
             self._plans.set(index, plan, functools.partial(_plan, scenario))
             if scenario.push is not None:
                 self._pushes.set(index, (grid, id(scenario.push)), functools.partial(push_table, scenario))
-        rows = max((scenario.steps for scenario in scenarios), default=0) + 1
+        longest = max(scenarios, key=lambda scenario: scenario.steps, default=None)
+        if longest is not None:
+            longest.check_traces(len(traces), len(scenarios))
+        rows = 0 if longest is None else longest.steps + 1
         self.traces = {trace.name: np.zeros((len(scenarios), rows), dtype=trace.dtype) for trace in traces}
         self._set_columns(traces)
 
@@ -308,11 +311,12 @@ def run(scenario: Scenario, progress: Progress | None = None) -> Result:
     """
     from giveway.runner import judge
 
+    inputs = {"controller": PLAN_INPUTS, "testbed": () if scenario.push is None else PUSH_INPUTS}
     traces = [
         _Trace(model, variable)
         for model in native.MODELS
         for variable in table(model)
-        if variable.causality == "output" or (model == "controller" and variable.name in PLAN_INPUTS)
+        if variable.causality == "output" or variable.name in inputs[model]
     ]
     batch = _Batch([scenario], traces)
 

@@ -167,6 +167,7 @@ def simulate(scenario: Scenario, progress: Progress | None = None, *, profile: b
     with the simulated time and the FMU's own message.
     """
     tables = {model: table(model) for model in native.MODELS}
+    scenario.check_traces(sum(len(variables.select("output")) for variables in tables.values()))
     parameters = {model: scenario.parameters(model) for model in native.MODELS}
     files = {model: open_fmu(native.fmu(model, scenario.fmi_version)) for model in native.MODELS}
     for model, file in files.items():
@@ -198,7 +199,8 @@ def _loop(
     plan, set_plan = _plan_port(scenario, controller, tables["controller"])
     plan_at, plan_row, plan_last = plan.ctypes.data, plan.strides[0], len(plan) - 1
     path_ticks, path_column, path_width = _integers(decided, "path_ticks")
-    set_push, push_at, push_row = _push_port(scenario, testbed, tables["testbed"])
+    push = push_table(scenario)
+    set_push, push_at, push_row = _push_port(push, testbed, tables["testbed"])
 
     wall: dict[str, float] = {}
     step_controller = _maybe_timed(controller.stepper(), "controller", wall, profile)
@@ -243,6 +245,10 @@ def _loop(
     used = np.clip(np.concatenate(([0], ticks[:-1])), 0, plan_last)
     for column, name in enumerate(PLAN_INPUTS):
         traces[f"controller.{name}"] = plan[used, column]
+    if push is not None:
+        held = np.minimum(np.arange(rows), steps - 1)  # nothing is set after the last step
+        for column, name in enumerate(PUSH_INPUTS):
+            traces[f"testbed.{name}"] = push[held, column]
     return Record(
         time_s=_times(rows, step_s),
         traces=traces,
@@ -263,18 +269,13 @@ def _plan_port(
 
 
 def _push_port(
-    scenario: Scenario, testbed: Instance, variables: VariableTable
+    push: NDArray[np.float64] | None, testbed: Instance, variables: VariableTable
 ) -> tuple[Callable[[int], int], int, int]:
     """Port, address and row size of the external push; a port that does nothing if there is none."""
-    push = push_table(scenario)
     if push is None:
         return (lambda _address: 0), 0, 0
     port = testbed.setter("real", [variables[name].reference for name in PUSH_INPUTS])
-
-    def set_push(address: int, _alive: NDArray[np.float64] = push) -> int:
-        return port(address)
-
-    return set_push, push.ctypes.data, push.strides[0]
+    return port, push.ctypes.data, push.strides[0]
 
 
 def plan_table(scenario: Scenario) -> NDArray[np.float64]:

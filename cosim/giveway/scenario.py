@@ -19,7 +19,8 @@ BUMPERS: Mapping[str, int] = MappingProxyType({"none": 0, "spring": 1, "magnetic
 FMI_VERSIONS = (3, 2)
 MAXIMUM_DURATION_S = 3600.0
 MINIMUM_STEP_S, MAXIMUM_STEP_S = 1e-4, 0.1
-MAXIMUM_STEPS = 300_000  # all traces of both FMUs stay in memory: about 1 kB per step
+MAXIMUM_STEPS = 4_000_000  # of the batch library
+MAXIMUM_TRACE_VALUES = 100_000_000  # kept in memory: 0.8 GB of numbers
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,14 @@ class Scenario:
     def steps(self) -> int:
         """Number of communication steps."""
         return round(self.duration_s / self.step_s)
+
+    def check_traces(self, columns: int, runs: int = 1) -> None:
+        """Refuse a run, or ``runs`` of them at once, whose ``columns`` traces would not fit into memory."""
+        rows = MAXIMUM_TRACE_VALUES // max(1, columns * runs)
+        if self.steps >= rows:
+            longest_s = (rows - 1) * self.step_s
+            allowed = f"at most {longest_s:g} s, of which {columns * runs} traces of steps of {self.step_s:g} s fit"
+            raise GivewayError("duration_s", self.duration_s, allowed)
 
     def parameters(self, model: str) -> dict[str, Value]:
         """The checked parameters to set on the FMU of ``model``: robot file, then scenario, then overrides."""

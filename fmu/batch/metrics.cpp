@@ -105,7 +105,7 @@ private:
             work = std::max(work, std::fabs(s.energy_work_in));
             dissipated = std::max(dissipated, s.energy_dissipated);
             residual = std::max(residual, std::fabs(s.energy_residual));
-            touched_s = s.contact ? s.time_s : touched_s;
+            touched_s = (s.contact || s.pushed) ? s.time_s : touched_s;
             if (s.detection_count > detections && !(touched_s >= s.time_s - cause_window_s)) {
                 ++false_detections;
             }

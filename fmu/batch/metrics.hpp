@@ -25,7 +25,7 @@ struct Sample {
     double reference_x, reference_y;
     int detection_count;
     int events;
-    bool contact, latched, rope_taut;
+    bool contact, pushed, latched, rope_taut;
 };
 
 struct MetricParameters {

@@ -382,6 +382,7 @@ private:
         s.detection_count = c.detection_count;
         s.events = t.events;
         s.contact = t.truth_contact;
+        s.pushed = t.push_force_x != 0.0 || t.push_force_y != 0.0;
         s.latched = t.truth_latched;
         s.rope_taut = t.truth_rope_taut;
         result_.rows = k + 1;

@@ -119,3 +119,15 @@ def test_importing_the_package_is_light() -> None:
     modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "giveway" in modules
     assert not heavy & set(modules)
+
+
+def test_a_long_run_is_allowed_where_its_traces_fit() -> None:
+    hour = giveway.Scenario("x", 3600.0)
+    hour.check_traces(columns=0)
+    hour.check_traces(columns=27)  # 27 x 3,600,001 values are below 1e8, 28 are not
+    with pytest.raises(GivewayError, match="28 traces"):
+        hour.check_traces(columns=28)
+    with pytest.raises(GivewayError, match="duration_s"):
+        hour.check_traces(columns=7, runs=4)
+    with pytest.raises(GivewayError, match="duration_s"):
+        giveway.run(hour)

@@ -22,7 +22,7 @@ WRONG = {
     "infinity": ((*RUN, "--set", "testbed.base.mass=inf"), ("testbed.base.mass", "inf")),
     "fraction for a whole number": ((*RUN, "--set", "testbed.bumper.mount=0.5"), ("testbed.bumper.mount", "whole")),
     "bumper set twice": ((*RUN, "--set", "testbed.bumper.kind=0"), ("testbed.bumper.kind", "--bumper")),
-    "too long for memory": ((*RUN, "--duration", "3000"), ("duration_s", "300000")),
+    "too long for memory": ((*RUN, "--duration", "3000"), ("duration_s", "3000", "traces")),
     "no value": ((*RUN, "--set", "testbed.base.mass"), ("--set", "MODEL.PARAMETER=VALUE")),
     "negative duration": ((*RUN, "--duration", "-1"), ("duration_s", "-1")),
     "zero duration": ((*RUN, "--duration", "0"), ("duration_s", "0")),
