@@ -61,6 +61,10 @@ def test_a_push_is_felt_and_the_robot_moves_away() -> None:
     assert traces["controller.detection.count"][-1] == 1
     assert abs(abs(float(traces["controller.detection.direction"][-1])) - np.pi) < np.radians(15.0)
     assert float(traces["testbed.truth.x"][-1]) < -0.1
+    # The push is on record, and explains the detection.
+    pushed = traces["time"].values[traces["testbed.push.force_x"].values == -60.0]
+    assert (pushed[0], pushed[-1]) == pytest.approx((0.3, 0.499), abs=1e-9)
+    assert result.metric("false detections").value == 0.0
 
 
 @pytest.mark.parametrize("shape", [(3, 4), (501, 3)])

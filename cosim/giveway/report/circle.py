@@ -32,11 +32,13 @@ METRES_PER_NEWTON = 0.006
 def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]]) -> Figure:
     """The path of each run by name, its pushes and escapes."""
     with context(STYLE):
-        figure = Figure(figsize=(9.6, 5.2), layout="constrained")
+        figure = Figure(figsize=(9.6, 5.6), layout="constrained")
         panels = figure.subplots(1, len(runs), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (name, (traces, found)) in zip(panels, runs.items(), strict=True):
             _draw_path(axes, traces, found)
-            axes.set(title=f"{name}: {found.detected} of {len(found.pushes)} noticed, {len(found.invented_s)} invented")
+            axes.set(
+                title=f"{name}:\n{found.detected} of {len(found.pushes)} noticed, {len(found.invented_s)} invented"
+            )
             axes.set(xlabel="x (m)", aspect="equal")
         panels[0].set_ylabel("y (m)")
         handles, labels = panels[0].get_legend_handles_labels()
@@ -75,6 +77,7 @@ def _draw_push(axes: Axes, one: PushResponse, number: int, base: NDArray[np.floa
         arrowprops={"arrowstyle": "-|>", "color": PUSH_COLOUR, "shrinkA": 0, "shrinkB": 0},
     )
     x, y = tail - 0.05 * along
+    axes.update_datalim([(x, y)])  # arrows and words do not count by themselves
     axes.text(x, y, str(number), ha="center", va="center", color=PUSH_COLOUR)
 
 
