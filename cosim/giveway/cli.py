@@ -96,6 +96,11 @@ def run(
         result.write_into(folder)
         write_report(folder / "report.html", scenario.name, summary, [result])
     _print_table(scenario.name, {scenario.bumper: result})
+    if scenario.body_region is not None:
+        from giveway.body_regions import judge
+
+        force = result.traces["testbed.truth.contact_force"]
+        typer.echo(str(judge(result.traces["time"].values, force.values, scenario.body_region)))
     typer.echo(f"Written: {out / 'report.html'}")
     if result.interrupted:
         typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)

@@ -70,6 +70,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "fmi_version": record.fmi_version,
             "plan": _describe(scenario.plan),
             "push": None if scenario.push is None else _describe(scenario.push),
+            "body_region": scenario.body_region,
         },
         "robot": {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()},
         "exchange_order": EXCHANGE_ORDER,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
+from giveway.body_regions import body_region
 from giveway.checks import finite, whole
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.plan import Plan, Push, Rest
@@ -38,6 +39,7 @@ class Scenario:
         seed: seed of the testbed's sensor noise, or None for the table's start value.
         fmi_version: 3 or 2.
         robot: a robot file that replaces the one the FMUs were built with, or None.
+        body_region: what the contact force is judged as, a name of `giveway.body_regions`, or None.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Scenario:
     seed: int | None = None
     fmi_version: int = 3
     robot: Path | None = None
+    body_region: str | None = None
 
     def __post_init__(self) -> None:
         finite("duration_s", self.duration_s, 0.0, MAXIMUM_DURATION_S, "s")
@@ -64,6 +67,8 @@ class Scenario:
             raise GivewayError("fmi_version", self.fmi_version, "3 or 2")
         if self.seed is not None:
             whole("seed", self.seed, 0, 2**31 - 1)
+        if self.body_region is not None:
+            body_region(self.body_region)  # refuses an unknown one
         # Copies, so that a frozen scenario cannot change behind the caller's back.
         object.__setattr__(self, "testbed", MappingProxyType(dict(self.testbed)))
         object.__setattr__(self, "controller", MappingProxyType(dict(self.controller)))

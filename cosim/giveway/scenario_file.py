@@ -31,7 +31,7 @@ MEETING_S = 0.5
 PLANS = ("rest", "straight", "circle")
 
 _TOP = (
-    "schema_version", "name", "duration", "bumper", "robot", "seed",
+    "schema_version", "name", "duration", "bumper", "robot", "seed", "body_region",
     "plan", "collision", "push", "testbed", "controller",
 )  # fmt: skip
 _POSE = ("x", "y", "heading")
@@ -107,6 +107,8 @@ def _scenario(document: dict[str, Any], path: Path, bumper: str | None, robot: P
     collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
     if collision is None and top.values.get("bumper", "none") != "none":
         raise GivewayError("bumper", top.values["bumper"], "none without [collision]: the bumper is on what collides")
+    if collision is None and "body_region" in top.values:
+        raise GivewayError("body_region", top.values["body_region"], "nothing without [collision]: it judges a contact")
     plan = _plan(top)
     overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
     with _renamed("", duration_s="duration"):
@@ -120,6 +122,7 @@ def _scenario(document: dict[str, Any], path: Path, bumper: str | None, robot: P
             push=pushes,
             seed=seed,
             robot=robot,
+            body_region=top.text("body_region") if "body_region" in top.values else None,
         )
     if not 1 <= len(bare.name) <= NAME_MAX:
         raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")

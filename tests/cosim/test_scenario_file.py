@@ -157,6 +157,8 @@ WRONG: dict[str, tuple[str, str, int, tuple[str, ...]]] = {
     "an output": ("slider.friction = 2.0", "truth.x = 1.0", 14, ("testbed.truth.x", "is an output")),
     "no robot": ('name = "a case"', 'robot = "nowhere.toml"', 2, ("robot: nowhere.toml", "robot file")),
     "seed": ('name = "a case"', "seed = -1", 2, ("seed: -1",)),
+    "unknown body region": ('name = "a case"', 'body_region = "lower lag"', 2, ("body_region: lower lag", "lower leg")),
+    "body region of nothing": (GOOD[GOOD.index('bumper'):], 'body_region = "hand"', 4, ("body_region: hand",)),
     "no name": ('name = "a case"', 'name = ""', 2, ("name", "1 to 80")),
     "bumper without a collision": (GOOD[GOOD.index("[coll"):], "", 4, ("bumper: spring", "without [collision]")),
     "plan is no table": ("[collision]", "plan = 3\n[collision]", 6, ("plan: 3", "table")),
@@ -200,6 +202,17 @@ def test_the_command_line_refuses_with_one_line_and_writes_nothing(cli: Cli, tmp
     assert folder_content(tmp_path) == ["case.toml"]
     assert "no such file" in cli("run", "./nowhere", "--out", "out").stderr
     assert "--bumper: rubber is unknown" in cli("run", "case.toml", "--bumper", "rubber", "--out", "out").stderr
+
+
+def test_the_contact_is_judged_as_a_body_region(cli: Cli, tmp_path: Path) -> None:
+    written(tmp_path, 'body_region = "hand"\n' + GOOD)
+    done = cli("run", "case.toml", "--out", "out")
+    assert done.returncode == 0, done.stderr
+    (line,) = (one for one in done.stdout.splitlines() if one.startswith("hand: "))
+    result = giveway.load(tmp_path / "out")
+    peak = float(result.traces["testbed.truth.contact_force"].max())
+    assert f"peak {peak:.0f} N (allowed: 280 N)" in line  # twice the quasi-static 140 N
+    assert result.manifest["scenario"]["body_region"] == "hand"
 
 
 def test_the_command_line_runs_a_file(cli: Cli, tmp_path: Path) -> None:

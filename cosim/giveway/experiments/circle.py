@@ -371,9 +371,9 @@ def _rows_of_mismatch(estimator: str, shares: Sequence[float], data: xarray.Data
 
 NOTES = (
     "Pushes, their shape, the start and the way back are chosen here: the paper prints the circle and the speed only.",
-    "The robot knows its place from its wheels alone. Its reference is back on the plan exactly; the base itself lags by "
-    "what servo and drivetrains give, and each escape, in which it yaws by a few tenths of a degree, leaves a millimetre "
-    "or so of dead reckoning.",
+    "The robot knows its place from its wheels alone. Its reference is back on the plan exactly; the base itself lags "
+    "by what servo and drivetrains give, and each escape, in which it yaws by a few tenths of a degree, leaves a "
+    "millimetre or so of dead reckoning.",
     "What the rollers rub more or less than the estimator believes looks like a push: three sliding rollers brake with "
     "42 N, so a mismatch of 20 % is 8.4 N. False alarms begin where that exceeds detector.leak_motion, the force that "
     f"is forgiven in motion: 3 N are 7 % of mismatch. The last row shows what {FORGIVEN_N:g} N would do.",

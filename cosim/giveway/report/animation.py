@@ -33,6 +33,12 @@ def scene(label: str, result: Result) -> dict[str, Any]:
     def sampled(name: str) -> list[float]:
         return _rounded(hit[name][rows])
 
+    force = [hit[f"testbed.truth.contact_force_{axis}"] for axis in "xy"]
+    point = [hit[f"testbed.truth.contact_point_{axis}"] for axis in "xy"]
+    if hit.pushed().any():
+        pushed_at = _to_world(hit, "testbed.push.point_x", "testbed.push.point_y", x, y, theta)
+        point = [np.where(hit.pushed(), at, touched) for at, touched in zip(pushed_at, point, strict=True)]
+        force = [total + hit[f"testbed.push.force_{axis}"] for total, axis in zip(force, "xy", strict=True)]
     estimated_point = _to_world(hit, "controller.estimate.point_x", "controller.estimate.point_y", x, y, theta)
     estimated_force = _to_world(hit, "controller.estimate.force_x", "controller.estimate.force_y", 0.0, 0.0, theta)
     return {
@@ -46,8 +52,9 @@ def scene(label: str, result: Result) -> dict[str, Any]:
         "base": [sampled(f"testbed.truth.{name}") for name in ("x", "y", "theta")],
         "nose": [sampled("testbed.truth.nose_x"), sampled("testbed.truth.nose_y")],
         "compression": sampled("testbed.truth.bumper_compression"),
-        "point": [sampled("testbed.truth.contact_point_x"), sampled("testbed.truth.contact_point_y")],
-        "force": [sampled("testbed.truth.contact_force_x"), sampled("testbed.truth.contact_force_y")],
+        "slider": parameters["slider.present"],
+        "point": [_rounded(values[rows]) for values in point],
+        "force": [_rounded(values[rows]) for values in force],
         "estimated_point": [_rounded(values[rows]) for values in estimated_point],
         "estimated_force": [_rounded(values[rows], 2) for values in estimated_force],
         "detection": _detection(hit, contact_s),

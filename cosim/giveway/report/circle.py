@@ -27,6 +27,8 @@ __all__ = ["alarm", "path"]
 MODES = {1: ("on the circle", "#0b64a8"), 2: ("giving way", "#c8500a"), 4: ("going back", "#0a8a63")}
 PUSH_COLOUR = "#2b2f36"
 METRES_PER_NEWTON = 0.006
+LESS, MORE = "#0b64a8", "#c8500a"
+BIN = 100  # samples, of which the highest is drawn
 
 
 def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]]) -> Figure:
@@ -94,15 +96,15 @@ def alarm(studies: Mapping[str, tuple[Sequence[float], xarray.Dataset]], thresho
                 data["controller.detection.statistic"].values,
                 strict=True,
             ):
-                rows = count == 0  # up to the first false alarm
-                colour = "#0b64a8" if share < 0.0 else "#c8500a" if share > 0.0 else PUSH_COLOUR
+                rows = int((count == 0).sum()) // BIN * BIN  # up to the first false alarm
+                colour = LESS if share < 0.0 else MORE if share > 0.0 else PUSH_COLOUR
                 strength = 1.0 - 0.75 * abs(share) / largest
-                label = f"{100.0 * share:+g} %" if abs(share) in (0.0, largest) else None
-                axes.plot(
-                    data["time"].values[rows], statistic[rows], color=colour, alpha=strength, linewidth=1.0, label=label
-                )
+                highest = statistic[:rows].reshape(-1, BIN).max(axis=1)
+                time_s = data["time"].values[:rows:BIN]
+                axes.plot(time_s, highest, color=colour, alpha=strength, linewidth=1.2, label=f"{100.0 * share:+g} %")
             axes.axhline(threshold_newton_s, color=PUSH_COLOUR, linestyle=(0, (4, 3)), linewidth=1.0)
             axes.set(title=name, xlabel="time (s)")
         panels[0].set_ylabel("leaky impulse (N s)")
-        panels[0].legend(loc="upper right")
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside right center", title="roller friction")
     return figure

@@ -24,7 +24,7 @@
       box[2] = Math.max(box[2], x + r); box[3] = Math.max(box[3], y + r);
     };
     s.base[0].forEach((x, i) => add(x, s.base[1][i], reach));
-    s.nose[0].forEach((x, i) => {
+    if (s.slider) s.nose[0].forEach((x, i) => {
       add(x, s.nose[1][i], 0.05);
       add(x - s.rail[0] * 0.3, s.nose[1][i] - s.rail[1] * 0.3, 0.1);
     });
@@ -116,7 +116,7 @@
       pen.save();
       pen.translate((index + .5) * cell, top + (height - top - 10) / 2); pen.scale(scale, -scale);
       pen.translate(-(box[0] + box[2]) / 2, -(box[1] + box[3]) / 2);
-      grid(scale); slider(s, pair(s.nose), mix(s.compression), scale); robot(s, pose, scale);
+      grid(scale); if (s.slider) slider(s, pair(s.nose), mix(s.compression), scale); robot(s, pose, scale);
       const force = pair(s.force), touching = Math.hypot(...force) >= smallestForce;
       if (touching) { arrow(pair(s.point), force, colours.truth, 5, scale); dot(pair(s.point), colours.truth, 5, scale); }
       if (hit && now >= hit.time) {
