@@ -1,4 +1,4 @@
-"""Logs of free motion made without the package: the literal world-frame equations (13) to (30) of Kim et al. 2016."""
+"""Logs of free motion, made by the literal world-frame equations (13) to (30) of Kim et al. 2016."""
 
 from __future__ import annotations
 
@@ -6,10 +6,23 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from giveway import native
 from giveway.motion_log import MotionLog
+from giveway.robot import read_robot
 
-# Trikey, as in its robot file.
-R_W, R_R, DISTANCE, MASS, YAW, I_W, I_R = 0.1016, 0.009525, 0.24, 34.7, 1.31, 0.002798, 1.23e-6
+_ROBOT = read_robot(native.robot())
+R_W, R_R, DISTANCE, MASS, YAW, I_W, I_R = (
+    float(_ROBOT.value(name))
+    for name in (
+        "wheel.radius",
+        "roller.radius",
+        "wheel.distance",
+        "base.mass",
+        "base.yaw_inertia",
+        "wheel.inertia",
+        "roller.inertia",
+    )
+)
 B_R, ALPHA = 0.2, 0.4
 STEP_S = 0.002
 

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arc_logs import ALPHA, B_R, STEP_S, Swing, arc_log, csv_lines, sine
+from arc_logs import ALPHA, B_R, R_W, STEP_S, Swing, arc_log, csv_lines, sine
 from cosim_helpers import Cli, folder_content
 from giveway import native
 from giveway.errors import GivewayError
 from giveway.motion_log import MotionLog
 from giveway.robot import Robot, read_robot
+from giveway.robot_changes import NewValue, changed_robot
 from giveway.roller_calibration import Calibration, UnidentifiableError, calibrate
 from giveway.roller_fit import RestZone, fit, half_widths, prepare
 from giveway.torque_model import TorqueModel
@@ -22,12 +23,24 @@ from PIL import Image
 
 GOOD = arc_log((1.0, 0.0, 0.0), sine(1.5, 0.1), 30.0)
 # Peak speed at the rim of the moving rollers per wheel rate, wheel 0 alone: r_w / sqrt(3).
-RIM_M = 0.1016 / math.sqrt(3.0)
+RIM_M = R_W / math.sqrt(3.0)
+
+
+# What decides which samples count and what is refused; not to move with the default robot.
+PINNED = {"detector.leak_motion": 3.0, "roller.presliding_stiffness": 25900.0, "roller.stribeck_speed": 0.0025}
 
 
 @pytest.fixture(scope="module")
-def robot() -> Robot:
-    return read_robot(native.robot())
+def robot_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    changes = {name: NewValue(value, "this test", "high", "assumed", "") for name, value in PINNED.items()}
+    path = tmp_path_factory.mktemp("robot") / "trikey.toml"
+    path.write_text(changed_robot(native.robot(), changes))
+    return path
+
+
+@pytest.fixture(scope="module")
+def robot(robot_file: Path) -> Robot:
+    return read_robot(robot_file)
 
 
 @pytest.fixture(scope="module")
@@ -184,8 +197,10 @@ def log_file(tmp_path: Path) -> Path:
     return path
 
 
-def test_command_writes_robot_file_and_picture(cli: Cli, tmp_path: Path, log_file: Path, good: Calibration) -> None:
-    done = cli("calibrate", "drive.csv", "--robot", str(native.robot()), "--out", "new/mine.toml")
+def test_command_writes_robot_file_and_picture(
+    cli: Cli, tmp_path: Path, log_file: Path, robot_file: Path, good: Calibration
+) -> None:
+    done = cli("calibrate", "drive.csv", "--robot", str(robot_file), "--out", "new/mine.toml")
     assert (done.returncode, done.stderr) == (0, "")
     assert "B_r" in done.stdout
     assert folder_content(tmp_path / "new") == ["mine.png", "mine.toml"]
@@ -200,8 +215,8 @@ def test_command_writes_robot_file_and_picture(cli: Cli, tmp_path: Path, log_fil
         assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50  # something is drawn
 
 
-def test_new_robot_file_runs(cli: Cli, tmp_path: Path, log_file: Path) -> None:
-    cli("calibrate", "drive.csv", "--robot", str(native.robot()), "--out", "mine.toml")
+def test_new_robot_file_runs(cli: Cli, log_file: Path, robot_file: Path) -> None:
+    cli("calibrate", "drive.csv", "--robot", str(robot_file), "--out", "mine.toml")
     done = cli("run", "motionless", "--robot", "mine.toml", "--duration", "0.05", "--out", "run")
     assert done.returncode == 0, done.stderr
 
@@ -218,14 +233,14 @@ def test_new_robot_file_runs(cli: Cli, tmp_path: Path, log_file: Path) -> None:
     ],
 )
 def test_command_refuses_and_writes_nothing(
-    cli: Cli, tmp_path: Path, log_file: Path, arguments: tuple[str, ...], words: str
+    cli: Cli, tmp_path: Path, log_file: Path, robot_file: Path, arguments: tuple[str, ...], words: str
 ) -> None:
     still = dataclasses.replace(GOOD, wheel_angle_rad=0.0 * GOOD.wheel_angle_rad)
     (tmp_path / "still.csv").write_text("\n".join(csv_lines(still)))
     (tmp_path / "slow.csv").write_text("a,b\n1,2\n")
     (tmp_path / "folder" / "new.toml").mkdir(parents=True)
     before = folder_content(tmp_path)
-    done = cli("calibrate", *arguments, "--robot", str(native.robot()))
+    done = cli("calibrate", *arguments, "--robot", str(robot_file))
     assert done.returncode == 2
     assert words in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

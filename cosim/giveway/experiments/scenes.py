@@ -333,7 +333,7 @@ def _moved_m(result: Result) -> float | None:
 
 EXPERIMENT = Experiment(
     name="scenes",
-    summary="Bicycle, hand on the floor, person lying down: low contacts in motion, wheels included (paper, Fig. 13).",
-    section="5.5",
+    summary="Bicycle, hand on the floor, person lying down: low contacts, wheels included (paper, 5.4 and Fig. 13).",
+    section="5.4",
     reproduce=reproduce,
 )
