@@ -284,8 +284,9 @@ def _refusal(
         return None
     seconds = sum(float(rows.sum()) * s.step_s for s, rows in zip(samples, used, strict=True))
     missing, remedy = _too_little(data, found, rates, seconds)
-    reason = f"the friction force would be uncertain by {uncertainty_n:.2g} N a roller at some speed"
-    return f"{missing} ({reason}, and the detector forgives {data.leak_n:g} N)", remedy
+    by = f"uncertain by {uncertainty_n:.2g} N" if math.isfinite(uncertainty_n) else "undetermined"
+    reason = f"at some speed the friction force of a roller would be {by}; the detector forgives {data.leak_n:g} N"
+    return f"{missing} ({reason})", remedy
 
 
 def _too_little(data: _Data, found: Fit, rates: NDArray[np.float64], seconds: float) -> tuple[str, str]:
