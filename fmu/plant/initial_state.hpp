@@ -56,6 +56,7 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
     m.rope_taut = positive(g[event_rope]);
     m.bottom_stop = positive(g[event_bottom_stop]);
     m.landed = positive(g[event_landing]);
+    m.walled = positive(g[event_wall]);
     m.end_stop = p.has_ideal_latch() ? T(0.0) : T(1.0) - positive(g[event_end_stop]);
 }
 

@@ -13,7 +13,7 @@ template <class T> struct Outputs {
     T contact_point_x, contact_point_y;     // world frame
     T contact_base_x, contact_base_y;       // base frame
     T nose_x, nose_y;                       // tip of the nose, world frame
-    T bumper_force, rope_tension;
+    T bumper_force, rope_tension, wall_force;
     T stored_energy;
 };
 
@@ -44,6 +44,9 @@ template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>&
             energy = energy + half * p.hanging_mass * math::square(x[weight_speed]);
         }
         energy = energy + e.bumper.stored + e.rope.stored + e.contact_force.stored;
+        if (p.wall_present != 0) {
+            energy = energy + e.wall.stored;
+        }
     }
     return energy;
 }
@@ -70,6 +73,7 @@ Outputs<T> outputs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& 
     o.nose_y = d.origin_y + travel * d.rail_y;
     o.bumper_force = e.internal_force;
     o.rope_tension = e.rope.tension;
+    o.wall_force = e.wall.force;
     o.stored_energy = stored_energy(x, e, p, d);
     return o;
 }

@@ -23,6 +23,7 @@ enum class RollerModel : std::uint8_t { bristle = 0, tanh = 1 };
 enum class BumperKind : std::uint8_t { none = 0, spring = 1, magnetic = 2 };
 enum class BumperMount : std::uint8_t { slider = 0, robot = 1 };
 enum class LatchModel : std::uint8_t { continuous = 0, ideal = 1 };
+enum class NoseShape : std::uint8_t { disc = 0, edge = 1 };
 
 template <class T> struct Parameters {
     // Base; mass and inertia include the wheels.
@@ -51,6 +52,10 @@ template <class T> struct Parameters {
     T target_x, target_y;   // where the nose's tip is after run_up, world frame
     T run_up;
 
+    std::int32_t wall_present;
+    T wall_distance; // free travel of the slider against its direction
+    T wall_stiffness, wall_damping;
+
     std::int32_t rope_attached;
     T hanging_mass, rope_stiffness, rope_damping;
     T drop_height, floor_stiffness, floor_damping;
@@ -64,9 +69,14 @@ template <class T> struct Parameters {
     T latch_force, latch_gap;
     T mount_x, mount_y, mount_azimuth; // robot-mounted plate at full extension, base frame
 
+    NoseShape nose_shape;
     T nose_radius, contact_stiffness, contact_damping;
     T contact_friction, contact_friction_speed;
+    T contact_height; // above the floor
 
+    // Parts of the outline at the contact's height: the body's polygon, the wheels.
+    std::int32_t outline_body, outline_wheels;
+    T wheel_width;
     std::int32_t outline_count;
     std::array<T, max_outline_vertices> outline_x, outline_y; // counter-clockwise, base frame
 
@@ -88,6 +98,7 @@ template <class T> struct Derived {
     T plate_x, plate_y;   // unit outward vector of a robot-mounted plate, base frame
     T carriage_mass;      // slider without a plate that moves on its own
     T rope_pretension_length; // ext0
+    T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
     std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
 };
 
@@ -103,6 +114,7 @@ template <class T> Derived<T> derive(const Parameters<T>& p) {
     d.plate_y = mount.sin;
     d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? p.slider_mass - p.plate_mass : p.slider_mass;
     d.rope_pretension_length = p.hanging_mass * T(gravity_mps2) / p.rope_stiffness;
+    d.wheel_half_length = math::sqrt(math::max(T(0.0), math::square(p.wheel_radius) - math::square(p.contact_height - p.wheel_radius)));
     for (int i = 0; i < p.outline_count; ++i) {
         const int next = (i + 1 == p.outline_count) ? 0 : i + 1;
         const T dx = p.outline_x[next] - p.outline_x[i];

@@ -20,6 +20,7 @@ template <class T> struct Evaluation {
     ContactForce<T> contact_force;
     BumperForce<T> bumper;
     RopeForces<T> rope;
+    StopForce<T> wall;
     T internal_force; // between plate and carrier, compressing; of a locked bumper the force that locks it
 };
 
@@ -40,15 +41,13 @@ template <class T> T locked(const Parameters<T>& p, const Modes<T>& m) {
 
 namespace detail {
 
-template <class T> Contact<T> find_contact(const StateVector<T>& x, const Parameters<T>& p, const Derived<T>& d,
-                                           const math::SinCos<T>& heading, Vector2<T> velocity) {
+template <class T> Nose<T> find_nose(const StateVector<T>& x, const Parameters<T>& p, const Derived<T>& d, const math::SinCos<T>& heading) {
     const bool plate_on_slider = p.has_plate() && !p.plate_on_robot();
     const T nose_travel = plate_on_slider ? x[slider_position] - x[compression] : x[slider_position];
     const T nose_speed = plate_on_slider ? x[slider_speed] - x[compression_rate] : x[slider_speed];
     const Vector2<T> rail{d.rail_x, d.rail_y};
     const Vector2<T> nose{d.origin_x + nose_travel * rail.x - x[base_x], d.origin_y + nose_travel * rail.y - x[base_y]};
-    return locate_contact(p, d, to_base(heading, nose), to_base(heading, nose_speed * rail), velocity, x[base_omega],
-                          x[compression], x[compression_rate]);
+    return {to_base(heading, nose), to_base(heading, nose_speed * rail), to_base(heading, rail)};
 }
 
 } // namespace detail
@@ -95,10 +94,12 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
                p.drivetrain_damping * math::square(x[motor_speed + i] - e.wheel_speed[i]) + p.wheel_traction[i] * roller.dissipation;
     }
 
-    e.contact = detail::find_contact(x, p, d, e.heading, e.velocity);
-    e.contact_force = contact_force(p, e.contact, p.slider_present != 0 ? m.contact : T(0.0));
+    const auto touching = touch(p, d, detail::find_nose(x, p, d, e.heading), e.velocity, omega, x[compression], x[compression_rate],
+                                p.slider_present != 0 ? m.contact : T(0.0));
+    e.contact = touching.contact;
+    e.contact_force = touching.force;
     const Vector2<T> force = e.contact_force.on_robot;
-    wrench = wrench + Planar3<T>{force.x, force.y, cross(e.contact.point, force)};
+    wrench = wrench + Planar3<T>{force.x, force.y, e.contact_force.moment};
     const Vector2<T> force_world = to_world(e.heading, force);
     // What the contact takes from the slider along its rail.
     const T decelerating = force_world.x * d.rail_x + force_world.y * d.rail_y;
@@ -113,7 +114,12 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
             e.bumper = bumper_force(p, m, x[compression], x[compression_rate]);
             loss = loss + e.bumper.dissipation;
         }
-        const T drive = e.rope.tension - rail;
+        T drive = e.rope.tension - rail;
+        if (p.wall_present != 0) {
+            e.wall = stop_force(m.walled, p.wall_stiffness, p.wall_damping, T(-1.0) * (x[slider_position] + p.wall_distance), T(-1.0) * x[slider_speed]);
+            drive = drive + e.wall.force;
+            loss = loss + e.wall.dissipation;
+        }
         const T whole = (drive - decelerating) / p.slider_mass;
         e.rate[slider_position] = x[slider_speed];
         e.rate[slider_speed] = whole;
@@ -185,7 +191,8 @@ EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, con
     }
     // What cannot happen keeps a constant sign.
     const bool slider = p.slider_present != 0;
-    g[event_contact] = slider ? detail::find_contact(x, p, d, heading, velocity).depth : T(-1.0);
+    g[event_contact] = slider ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity, x[base_omega], x[compression], x[compression_rate]).depth
+                              : T(-1.0);
     g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
     g[event_end_stop] = T(1.0);
     if (slider && p.has_ideal_latch()) {
@@ -196,6 +203,7 @@ EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, con
     }
     g[event_bottom_stop] = slider && p.has_plate() ? x[compression] - p.travel : T(-1.0);
     g[event_landing] = slider && p.rope_attached != 0 ? x[weight_drop] - p.drop_height : T(-1.0);
+    g[event_wall] = slider && p.wall_present != 0 ? T(-1.0) * (x[slider_position] + p.wall_distance) : T(-1.0);
     return g;
 }
 
@@ -219,6 +227,7 @@ void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventV
     m.rope_taut = follow(event_rope, m.rope_taut);
     m.bottom_stop = follow(event_bottom_stop, m.bottom_stop);
     m.landed = follow(event_landing, m.landed);
+    m.walled = follow(event_wall, m.walled);
     if (!p.has_ideal_latch()) {
         m.end_stop = T(1.0) - follow(event_end_stop, T(1.0) - m.end_stop);
         return;

@@ -42,7 +42,7 @@ template <class T> struct Inputs {
 // Constant between events. Numbers, not booleans: lanes differ.
 template <class T> struct Modes {
     std::array<T, wheel_count> gear_direction; // -1, 0 (stuck), +1
-    T contact, rope_taut, end_stop, bottom_stop, latched, landed; // 0 or 1
+    T contact, rope_taut, end_stop, bottom_stop, latched, landed, walled; // 0 or 1
 };
 
 enum EventIndex : int {
@@ -52,7 +52,8 @@ enum EventIndex : int {
     event_end_stop = 5,
     event_bottom_stop = 6,
     event_landing = 7,
-    event_count = 8,
+    event_wall = 8,
+    event_count = 9,
 };
 
 template <class T> using EventVector = std::array<T, event_count>;

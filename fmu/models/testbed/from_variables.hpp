@@ -45,6 +45,10 @@ inline plant::Parameters<double> plant_parameters(const Variables& v) {
     p.target_x = v.slider_target_x;
     p.target_y = v.slider_target_y;
     p.run_up = v.slider_run_up;
+    p.wall_present = v.wall_present ? 1 : 0;
+    p.wall_distance = v.wall_distance;
+    p.wall_stiffness = v.wall_stiffness;
+    p.wall_damping = v.wall_damping;
     p.rope_attached = v.rope_attached ? 1 : 0;
     p.hanging_mass = v.rope_hanging_mass;
     p.rope_stiffness = v.rope_stiffness;
@@ -69,11 +73,17 @@ inline plant::Parameters<double> plant_parameters(const Variables& v) {
     p.mount_x = v.bumper_mount_x;
     p.mount_y = v.bumper_mount_y;
     p.mount_azimuth = v.bumper_mount_azimuth;
+    p.nose_shape = static_cast<plant::NoseShape>(v.contact_nose_shape);
     p.nose_radius = v.contact_nose_radius;
     p.contact_stiffness = v.contact_stiffness;
     p.contact_damping = v.contact_damping;
     p.contact_friction = v.contact_friction;
     p.contact_friction_speed = v.contact_friction_speed;
+    p.contact_height = v.contact_height;
+    // What a cut at the contact's height goes through; without wheels the body reaches to the floor.
+    p.outline_body = !v.outline_wheels || v.contact_height >= v.outline_clearance ? 1 : 0;
+    p.outline_wheels = v.outline_wheels && v.contact_height < 2.0 * v.wheel_radius ? 1 : 0;
+    p.wheel_width = v.wheel_width;
     p.outline_count = v.outline_count;
     std::copy_n(v.outline_x, plant::max_outline_vertices, p.outline_x.begin());
     std::copy_n(v.outline_y, plant::max_outline_vertices, p.outline_y.begin());
@@ -108,6 +118,12 @@ inline bool check_relations(const Variables& v, Message& message) {
     }
     if (v.bumper_kind != 0 && v.bumper_mount == 0 && v.bumper_plate_mass > 0.95 * v.slider_mass) {
         return refuse("bumper.plate_mass", v.bumper_plate_mass, "at most 0.95 slider.mass =", 0.95 * v.slider_mass);
+    }
+    if (v.contact_nose_shape == static_cast<int>(plant::NoseShape::edge) && v.bumper_kind != 0 && v.bumper_mount != 0) {
+        return refuse("contact.nose_shape", v.contact_nose_shape, "0, a disc, with a bumper on the robot: bumper.mount =", v.bumper_mount);
+    }
+    if (v.outline_wheels && v.outline_clearance > 2.0 * v.wheel_radius) {
+        return refuse("outline.clearance", v.outline_clearance, "at most the wheels' height, 2 wheel.radius =", 2.0 * v.wheel_radius);
     }
     const int count = v.outline_count;
     for (int edge = 0; edge < count; ++edge) {

@@ -92,6 +92,8 @@ public:
             return above(modes_.bottom_stop);
         case plant::event_landing:
             return above(modes_.landed);
+        case plant::event_wall:
+            return above(modes_.walled);
         default:
             return 1;
         }

@@ -210,6 +210,7 @@ public:
         v_.truth_latched = p.has_ideal_latch() ? modes.latched > 0.5 : p.has_continuous_latch() && x[plant::compression] < p.latch_gap;
         v_.truth_rope_tension = truth.rope_tension;
         v_.truth_rope_taut = modes.rope_taut > 0.5;
+        v_.truth_wall_force = truth.wall_force;
         v_.truth_weight_drop = x[plant::weight_drop];
         v_.energy_stored = truth.stored_energy - stored_at_start_j_;
         v_.energy_work_in = x[plant::work_in];

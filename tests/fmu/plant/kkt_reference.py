@@ -29,13 +29,14 @@ from scipy.integrate import DOP853, DenseOutput
 from scipy.optimize import brentq
 
 STATES = 28
-INDICATORS = 8
+INDICATORS = 9
 KIND_NONE, KIND_SPRING, KIND_MAGNETIC = 0, 1, 2
 MOUNT_SLIDER, MOUNT_ROBOT = 0, 1
 LATCH_CONTINUOUS, LATCH_IDEALISED = 0, 1
+NOSE_DISC, NOSE_EDGE = 0, 1
 ROLLER_BRISTLE, ROLLER_TANH = 0, 1
 GRAVITY = 9.81
-GEAR, CONTACT, ROPE, BUMPER, BOTTOM, LANDING = 0, 3, 4, 5, 6, 7  # event indices; gears are 0, 1, 2
+GEAR, CONTACT, ROPE, BUMPER, BOTTOM, LANDING, WALL = 0, 3, 4, 5, 6, 7, 8  # event indices; gears are 0, 1, 2
 
 _COS = [math.cos(2.0 * math.pi * i / 3.0) for i in range(3)]
 _SIN = [math.sin(2.0 * math.pi * i / 3.0) for i in range(3)]
@@ -108,6 +109,15 @@ class Parameters:
     contact_damping: float = 0.3
     contact_friction: float = 0.0
     contact_friction_speed: float = 0.01
+    nose_shape: int = NOSE_DISC
+    contact_height: float = 0.05
+    outline_body: int = 1
+    outline_wheels: int = 0
+    wheel_width: float = 0.025
+    wall_present: int = 0
+    wall_distance: float = 0.0
+    wall_stiffness: float = 2.0e5
+    wall_damping: float = 1.0
     outline: list[tuple[float, float]] = field(
         default_factory=lambda: [(0.352184, 0.0), (-0.176092, 0.305), (-0.176092, -0.305)]
     )
@@ -133,6 +143,7 @@ class Modes:
     bottom_stop: int = 0
     latched: int = 0
     landed: int = 0
+    walled: int = 0
 
     def copy(self) -> Modes:
         return replace(self, gear=list(self.gear))
@@ -174,6 +185,18 @@ def closest_on_outline(
     return distance, cx, cy, (px - cx) / distance, (py - cy) / distance
 
 
+def parts_of_outline(p: Parameters) -> list[list[tuple[float, float]]]:
+    """Polygons of the base frame, counter-clockwise: the body, and each wheel as a disc cut at the contact's height."""
+    parts = [p.outline] if p.outline_body else []
+    if p.outline_wheels:
+        half = math.sqrt(max(0.0, p.wheel_radius**2 - (p.contact_height - p.wheel_radius) ** 2))
+        near, far = p.wheel_distance - 0.5 * p.wheel_width, p.wheel_distance + 0.5 * p.wheel_width
+        for c, s in zip(_COS, _SIN, strict=True):
+            corners = ((far, -half), (far, half), (near, half), (near, -half))
+            parts.append([(u * c - w * s, u * s + w * c) for u, w in corners])
+    return parts
+
+
 class Reference:
     """The plant with one set of parameters."""
 
@@ -198,6 +221,7 @@ class Reference:
         masses += [p.wheel_inertia] * 3 + [p.roller_inertia] * 3
         masses += [self.carriage_mass] * 2 + [p.plate_mass] * 2 + [p.hanging_mass]
         self.masses = np.array(masses)
+        self.parts = parts_of_outline(p)
         self.template = np.zeros((self.SIZE, self.SIZE))
         self.template[range(self.N_Q), range(self.N_Q)] = masses
         for i in range(3):
@@ -265,7 +289,9 @@ class Reference:
         else:
             ct, st = math.cos(x[2]), math.sin(x[2])
             dx, dy = cx - x[0], cy - x[1]
-            distance, lx, ly, mx, my = closest_on_outline(ct * dx + st * dy, ct * dy - st * dx, p.outline)
+            distance, lx, ly, mx, my = min(
+                closest_on_outline(ct * dx + st * dy, ct * dy - st * dx, part) for part in self.parts
+            )
             rx, ry = ct * lx - st * ly, st * lx + ct * ly
             qx, qy = x[0] + rx, x[1] + ry
             nx, ny = ct * mx - st * my, st * mx + ct * my
@@ -273,6 +299,25 @@ class Reference:
         depth_rate = (bx - ux) * nx + (by - uy) * ny
         slip = -(bx - ux) * ny + (by - uy) * nx
         return p.nose_radius - distance, depth_rate, slip, qx, qy, nx, ny
+
+    def touching(self, x: np.ndarray) -> list[tuple[float, ...]]:
+        """As `contact`, for each point that may carry force: one of a disc, every corner of an edge; deepest first."""
+        if self.p.nose_shape == NOSE_DISC:
+            return [self.contact(x)]
+        cx, cy, ux, uy = self.nose(x)
+        cx, cy = cx + self.p.nose_radius * self.ex, cy + self.p.nose_radius * self.ey
+        ct, st = math.cos(x[2]), math.sin(x[2])
+        points = []
+        for part in self.parts:
+            for lx, ly in part:
+                rx, ry = ct * lx - st * ly, st * lx + ct * ly
+                depth = (cx - x[0] - rx) * self.ex + (cy - x[1] - ry) * self.ey
+                wx, wy = x[3] - x[5] * ry - ux, x[4] + x[5] * rx - uy
+                points.append(
+                    (depth, -wx * self.ex - wy * self.ey, wx * self.ey - wy * self.ex,
+                     x[0] + rx, x[1] + ry, -self.ex, -self.ey)
+                )  # fmt: skip
+        return sorted(points, reverse=True)
 
     # --- Element laws -----------------------------------------------------------------------------
 
@@ -384,8 +429,13 @@ class Reference:
                 load[13] = p.hanging_mass * GRAVITY - tension - floor
             rail = p.slider_friction * math.tanh(x[19] / p.slider_friction_speed) + p.slider_damping * x[19]
             dissipated += rail * x[19]
-            load[9] += self.ex * (tension - rail)
-            load[10] += self.ey * (tension - rail)
+            wall = 0.0
+            if modes.walled:
+                depth = -x[18] - p.wall_distance
+                wall = one_sided(p.wall_stiffness, depth, -x[19], p.wall_damping)
+                dissipated += (wall - p.wall_stiffness * depth) * -x[19]
+            load[9] += self.ex * (tension - rail + wall)
+            load[10] += self.ey * (tension - rail + wall)
         if not (p.slider_present and p.rope_attached):
             self._fill(matrix, self.LOCK_WEIGHT, {13: 1.0})
         else:
@@ -439,25 +489,29 @@ class Reference:
         qx = qy = 0.0
         normal = 0.0
         if p.slider_present:
-            depth, depth_rate, slip, qx, qy, nx, ny = self.contact(x)
-            if modes.contact:
+            touching = self.touching(x)
+            qx, qy = touching[0][3:5]
+            total = [0.0, 0.0, 0.0]  # normal force, and its moments about the world's axes
+            for depth, depth_rate, slip, rx, ry, nx, ny in touching:
+                if not modes.contact or (p.nose_shape == NOSE_EDGE and depth <= 0.0):
+                    continue
                 normal = one_sided(p.contact_stiffness, depth, depth_rate, p.contact_damping)
                 shear = p.contact_friction * normal * math.tanh(slip / p.contact_friction_speed)
-                cfx, cfy = -normal * nx + shear * ny, -normal * ny - shear * nx
+                fx, fy = -normal * nx + shear * ny, -normal * ny - shear * nx
+                cfx, cfy = cfx + fx, cfy + fy
+                total = [total[0] + normal, total[1] + normal * rx, total[2] + normal * ry]
                 dissipated += (normal - p.contact_stiffness * depth) * depth_rate + shear * slip
                 s = p.fault_external_sign
-                if self.on_robot:  # the plate takes the force, its guide the moment about the plate
-                    load[11] += s * cfx
-                    load[12] += s * cfy
-                    load[2] += s * p.fault_contact_moment * ((qx - px) * cfy - (qy - py) * cfx)
-                    load[9] -= cfx
-                    load[10] -= cfy
-                else:
-                    load[0] += s * cfx
-                    load[1] += s * cfy
-                    load[2] += s * p.fault_contact_moment * ((qx - x[0]) * cfy - (qy - x[1]) * cfx)
-                    load[11] -= cfx
-                    load[12] -= cfy
+                load[9 if self.on_robot else 11] -= fx
+                load[10 if self.on_robot else 12] -= fy
+                # On the robot the plate takes the force, its guide the moment about the plate.
+                taker, ax, ay = (11, px, py) if self.on_robot else (0, x[0], x[1])
+                load[taker] += s * fx
+                load[taker + 1] += s * fy
+                load[2] += s * p.fault_contact_moment * ((rx - ax) * fy - (ry - ay) * fx)
+            normal = total[0]
+            if normal > 0.0:
+                qx, qy = total[1] / normal, total[2] / normal
 
         solution = np.linalg.solve(matrix, load).tolist()
         rate[0:3] = [vx, vy, omega]
@@ -479,6 +533,7 @@ class Reference:
             "contact_normal": normal,
             "contact_point": (qx, qy),
             "tension": tension,
+            "wall_force": wall if p.slider_present else 0.0,
             "internal_force": -solution[self.LOCK] if locked else force,
         }
 
@@ -521,7 +576,10 @@ class Reference:
             if modes.bottom_stop:
                 energy += 0.5 * p.stop_stiffness * (c - p.travel) ** 2
         if modes.contact:
-            energy += 0.5 * p.contact_stiffness * self.contact(x)[0] ** 2
+            depths = [point[0] for point in self.touching(x)]
+            energy += 0.5 * p.contact_stiffness * sum(d**2 for d in depths if p.nose_shape == NOSE_DISC or d > 0.0)
+        if modes.walled:
+            energy += 0.5 * p.wall_stiffness * (x[18] + p.wall_distance) ** 2
         return energy
 
     # --- Events -----------------------------------------------------------------------------------
@@ -541,7 +599,9 @@ class Reference:
             direction = modes.gear[i]
             g[i] = x[9 + i] * direction if direction else p.gear_stiction - abs(self.gear_surplus(i, x, u))
         if p.slider_present:
-            g[CONTACT] = self.contact(x)[0]
+            g[CONTACT] = self.touching(x)[0][0]
+            if p.wall_present:
+                g[WALL] = -x[18] - p.wall_distance
             if p.rope_attached:
                 g[ROPE] = self.rope(x)[0]
                 g[LANDING] = x[20] - p.drop_height
@@ -562,6 +622,8 @@ class Reference:
             return 0
         if index == CONTACT:
             return -1 if modes.contact else 1
+        if index == WALL:
+            return (-1 if modes.walled else 1) if p.wall_present else 0
         if index in (ROPE, LANDING):
             engaged = modes.rope_taut if index == ROPE else modes.landed
             return (-1 if engaged else 1) if p.rope_attached else 0
@@ -595,8 +657,10 @@ class Reference:
                 modes.latched = 1
         elif index == BOTTOM:
             modes.bottom_stop = 1 - modes.bottom_stop
-        else:
+        elif index == LANDING:
             modes.landed = 1 - modes.landed
+        else:
+            modes.walled = 1 - modes.walled
         return x, modes
 
     def relatch(self, x: np.ndarray) -> np.ndarray:

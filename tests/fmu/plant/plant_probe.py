@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from kkt_reference import INDICATORS, STATES, Inputs, Modes, Parameters
 
-MODE_COUNT = 9
+MODE_COUNT = 10
 # Fields of the reference that are not parameters of the plant under the same name.
 NOT_SHARED = {"outline", "fault_velocity_term", "fault_contact_moment", "fault_external_sign"}
 OUTPUTS = (
     *(f"{name}[{i}]" for name in ("wheel_speed", "wheel_torque", "roller_force") for i in range(3)),
     *("contact_force", "contact_force_x", "contact_force_y", "contact_point_x", "contact_point_y"),
-    *("contact_base_x", "contact_base_y", "nose_x", "nose_y", "bumper_force", "rope_tension"),
+    *("contact_base_x", "contact_base_y", "nose_x", "nose_y", "bumper_force", "rope_tension", "wall_force"),
     "stored_energy",
 )
 

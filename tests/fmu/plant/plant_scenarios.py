@@ -14,6 +14,7 @@ from kkt_reference import (
     LATCH_IDEALISED,
     MOUNT_ROBOT,
     MOUNT_SLIDER,
+    NOSE_EDGE,
     ROLLER_BRISTLE,
     ROLLER_TANH,
     STATES,
@@ -63,6 +64,54 @@ COLLISIONS = {
         MOUNT_SLIDER,
         LATCH_CONTINUOUS,
         {"spring_rate": 150.0, "travel": 0.03, "drop_height": 0.05},
+    ),
+    # Low enough that the wheels are all there is: the nose meets the end of wheel 1, off its middle, and slips off it.
+    "on a wheel, rubbing": (
+        KIND_NONE,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {
+            "outline_body": 0,
+            "outline_wheels": 1,
+            "contact_height": 0.03,
+            "contact_friction": 0.3,
+            "target_x": -0.183,
+            "target_y": 0.25,
+        },
+    ),
+    # Between the wheels, body and all: the nose comes to lie in the corner of body and wheel.
+    "beside a wheel": (
+        KIND_SPRING,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {"outline_wheels": 1, "contact_height": 0.1016, "target_x": -0.176092, "target_y": 0.12, "run_up": 0.06},
+    ),
+    # Along a whole side: both corners press, and the robot lays itself against the edge.
+    "long edge on a side": (
+        KIND_NONE,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {"nose_shape": NOSE_EDGE, "rail_direction": 0.03, "run_up": 0.02},
+    ),
+    "long edge on wheels, spring": (
+        KIND_SPRING,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {
+            "nose_shape": NOSE_EDGE,
+            "outline_wheels": 1,
+            "contact_height": 0.12,
+            "contact_friction": 0.2,
+            "rail_direction": -0.1,
+            "run_up": 0.08,
+        },
+    ),
+    # A light dummy bounces off against the wall behind it.
+    "against the wall": (
+        KIND_NONE,
+        MOUNT_SLIDER,
+        LATCH_CONTINUOUS,
+        {"rope_attached": 0, "slider_mass": 4.0, "wall_present": 1, "wall_distance": 0.004},
     ),
 }
 

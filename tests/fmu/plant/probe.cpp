@@ -23,7 +23,7 @@ namespace plant = giveway::plant;
 using Parameters = plant::Parameters<double>;
 using Modes = plant::Modes<double>;
 
-constexpr int mode_count = 9;
+constexpr int mode_count = 10;
 constexpr int input_count = 7;
 
 struct Probe {
@@ -70,6 +70,9 @@ constexpr Real reals[] = {
     REAL(target_x),
     REAL(target_y),
     REAL(run_up),
+    REAL(wall_distance),
+    REAL(wall_stiffness),
+    REAL(wall_damping),
     REAL(hanging_mass),
     REAL(rope_stiffness),
     REAL(rope_damping),
@@ -95,6 +98,8 @@ constexpr Real reals[] = {
     REAL(contact_damping),
     REAL(contact_friction),
     REAL(contact_friction_speed),
+    REAL(contact_height),
+    REAL(wheel_width),
 };
 constexpr RealPerWheel per_wheel[] = {REAL(wheel_load), REAL(wheel_traction),
                                       REAL(roller_presliding_stiffness)};
@@ -115,6 +120,14 @@ bool set_choice(Parameters& p, const char* name, int value) {
         p.slider_present = value;
     } else if (is("rope_attached")) {
         p.rope_attached = value;
+    } else if (is("wall_present")) {
+        p.wall_present = value;
+    } else if (is("nose_shape")) {
+        p.nose_shape = static_cast<plant::NoseShape>(value);
+    } else if (is("outline_body")) {
+        p.outline_body = value;
+    } else if (is("outline_wheels")) {
+        p.outline_wheels = value;
     } else {
         return false;
     }
@@ -132,13 +145,14 @@ plant::Inputs<double> inputs_from(const double* u) {
 }
 
 Modes modes_from(const double* m) {
-    return {{m[0], m[1], m[2]}, m[3], m[4], m[5], m[6], m[7], m[8]};
+    return {{m[0], m[1], m[2]}, m[3], m[4], m[5], m[6], m[7], m[8], m[9]};
 }
 
 void modes_to(const Modes& m, double* out) {
     const double flat[mode_count] = {m.gear_direction[0], m.gear_direction[1], m.gear_direction[2],
                                      m.contact,           m.rope_taut,         m.end_stop,
-                                     m.bottom_stop,       m.latched,           m.landed};
+                                     m.bottom_stop,       m.latched,           m.landed,
+                                     m.walled};
     std::copy_n(flat, mode_count, out);
 }
 
@@ -204,7 +218,8 @@ EXPORT void* probe_new() {
             (probe->p.*real.member).fill(unset);
         }
         for (const char* name : {"roller_model", "bumper_kind", "bumper_mount", "latch_model",
-                                 "slider_present", "rope_attached"}) {
+                                 "slider_present", "rope_attached", "wall_present", "nose_shape",
+                                 "outline_body", "outline_wheels"}) {
             set_choice(probe->p, name, -1);
         }
     }
@@ -304,7 +319,8 @@ EXPORT void probe_accept_inputs(void* handle, const double* x, const double* u, 
 }
 
 // wheel_speed[3], wheel_torque[3], roller_force[3], contact force (magnitude, x, y), contact point
-// (world x, y; base x, y), nose tip x, y, bumper force, rope tension, stored energy
+// (world x, y; base x, y), nose tip x, y, bumper force, rope tension, wall force,
+// stored energy
 EXPORT void probe_outputs(void* handle, const double* x, const double* u, const double* m,
                           double* out) {
     const auto* probe = static_cast<const Probe*>(handle);
@@ -317,7 +333,8 @@ EXPORT void probe_outputs(void* handle, const double* x, const double* u, const 
     const double rest[] = {o.contact_force,   o.contact_force_x, o.contact_force_y,
                            o.contact_point_x, o.contact_point_y, o.contact_base_x,
                            o.contact_base_y,  o.nose_x,          o.nose_y,
-                           o.bumper_force,    o.rope_tension,    o.stored_energy};
+                           o.bumper_force,    o.rope_tension,    o.wall_force,
+                           o.stored_energy};
     std::copy(std::begin(rest), std::end(rest), out + 9);
 }
 

@@ -27,6 +27,7 @@ _NOT_SCALED = {
     "mount_y",
     "mount_azimuth",
     "contact_friction",
+    "wall_distance",
 }
 
 
@@ -48,6 +49,11 @@ def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roll
     p.rail_direction, p.mount_azimuth = rng.uniform(-math.pi, math.pi, 2)
     p.target_x, p.target_y = rng.uniform(-1.0, 1.0, 2)
     p.mount_x, p.mount_y = rng.uniform(-0.3, 0.3, 2)
+    p.wall_present = int(rng.random() < 0.3)
+    p.contact_height = rng.uniform(0.0, 2.0 * p.wheel_radius)
+    p.outline_body, p.outline_wheels = ((1, 0), (1, 1), (0, 1))[rng.choice(3, p=(0.6, 0.2, 0.2))]
+    if not (kind != KIND_NONE and mount == MOUNT_ROBOT):
+        p.nose_shape = int(rng.random() < 0.3)
     if rng.random() < 0.7:  # else the triangle
         angles = np.sort(rng.uniform(0.0, 2.0 * math.pi, rng.integers(5, 17)))
         angles[:3] = 0.0, 2.1, 4.2  # the centre stays inside
@@ -58,11 +64,12 @@ def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roll
 
 def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, Modes]:
     p = r.p
-    modes = Modes(rng.integers(-1, 2, 3).tolist(), *rng.integers(0, 2, 6).tolist())
+    modes = Modes(rng.integers(-1, 2, 3).tolist(), *rng.integers(0, 2, 7).tolist())
     # The latch is a mode of the idealised model only; only that has no end stop.
     modes.latched *= int(r.ideal)
     modes.end_stop *= int(p.bumper_kind != KIND_NONE and not r.ideal)
     modes.bottom_stop *= int(p.bumper_kind != KIND_NONE)
+    modes.walled *= int(p.wall_present and p.slider_present)
     x = np.zeros(STATES)
     x[2] = rng.uniform(-10.0, 10.0)
     x[3:5] = rng.normal(0.0, 0.3, 2)
@@ -94,12 +101,13 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
         wanted = np.array([nose_x - away * out_x - side * out_y, nose_y - away * out_y + side * out_x])
         x[0:2] += wanted - plate
     else:
-        k = rng.integers(len(p.outline))
-        corner, following = np.array(p.outline[k]), np.array(p.outline[(k + 1) % len(p.outline)])
+        part = r.parts[rng.integers(len(r.parts))]
+        k = rng.integers(len(part))
+        corner, following = np.array(part[k]), np.array(part[(k + 1) % len(part)])
         along = following - corner
         normal = np.array([along[1], -along[0]]) / np.linalg.norm(along)
         if rng.random() < 0.4:  # a vertex: outside of it, in any direction between its edges' normals
-            previous = corner - np.array(p.outline[k - 1])
+            previous = corner - np.array(part[k - 1])
             other = np.array([previous[1], -previous[0]]) / np.linalg.norm(previous)
             share = rng.random()
             normal = share * normal + (1.0 - share) * other

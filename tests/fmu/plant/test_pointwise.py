@@ -97,6 +97,9 @@ def test_the_random_states_reach_every_element():
             seen["slack"] += bool(p.slider_present and p.rope_attached and not modes.rope_taut)
             seen["landed"] += bool(modes.landed and x[20] > p.drop_height)
             seen["end stop"] += bool(modes.end_stop and x[22] < 0.0)
+            seen["wall"] += bool(modes.walled and x[18] < -p.wall_distance)
+            seen["wheels"] += bool(p.outline_wheels and e["contact_normal"] > 0.0)
+            seen["edge"] += bool(p.nose_shape and e["contact_normal"] > 0.0)
             seen["bottom stop"] += bool(modes.bottom_stop and x[22] > p.travel)
             seen["latched"] += bool(modes.latched)
             seen["torque limit"] += max(map(abs, u.motor_torque)) > p.torque_limit
@@ -104,7 +107,7 @@ def test_the_random_states_reach_every_element():
             seen["sliding"] += any(modes.gear)
             seen["lifted wheel"] += 0.0 in p.wheel_traction
             seen["no slider"] += not p.slider_present
-    assert len(seen) == 13
+    assert len(seen) == 16
     assert min(seen.values()) > 20, seen
 
 
@@ -155,7 +158,7 @@ def test_transitions(library):
                 seen["impact"] += bool(np.abs(expected - x).max() > 1e-3)
     # Gears only fall; the bumper's indicator falls, or rises off the end stop; everything else goes
     # both ways.
-    assert len(seen) == 3 + 2 * 5 + 1
+    assert len(seen) == 3 + 2 * 6 + 1
     assert min(seen.values()) > 20, seen
 
 
@@ -175,12 +178,13 @@ def test_outputs(library):
             }
             expected |= {
                 "rope_tension": e["tension"],
+                "wall_force": e["wall_force"],
                 "stored_energy": reference.stored_energy(x, modes),
             }
             if p.bumper_kind != KIND_NONE and p.slider_present:
                 expected["bumper_force"] = e["internal_force"]
             if p.slider_present:
-                _, _, _, qx, qy, _, _ = reference.contact(x)
+                qx, qy = e["contact_point"]
                 turn = complex(np.cos(x[2]), -np.sin(x[2]))
                 base = complex(qx - x[0], qy - x[1]) * turn
                 nose = reference.nose(x)
@@ -236,7 +240,7 @@ def test_initial_state_is_steady(library):
         assert x[0:6] == pytest.approx(motion[0:6], abs=0.0)
         if combination[1] == "rest":
             assert x[15:18] == pytest.approx(offset, abs=0.0)
-        assert modes.contact == (reference.contact(x)[0] > 0.0)
+        assert modes.contact == (reference.touching(x)[0][0] > 0.0)
         modes.contact = 0  # the random nose may start anywhere
         e = reference.evaluate(0.0, x, Inputs(), modes)
         rate = np.array(e["rate"])

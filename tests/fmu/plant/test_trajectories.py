@@ -10,7 +10,7 @@ further, the two converge towards each other (3e-9 at 1e-12).
 
 import numpy as np
 import pytest
-from kkt_reference import BUMPER, STATES, Reference
+from kkt_reference import BUMPER, CONTACT, KIND_NONE, STATES, WALL, Reference
 from plant_probe import Plant
 from plant_scenarios import COLLISIONS, all_runs, collision, pushed, spinning
 
@@ -50,10 +50,20 @@ def test_the_collisions_are_collisions():
         reference, x, modes, inputs = collision(case)
         run = reference.simulate(x, modes, TIMES, inputs)
         assert np.hypot(*run.states[-1, 26:28]) > 1.0, name  # N s
-        if "none" not in name:
+        if reference.p.bumper_kind != KIND_NONE and not reference.p.outline_wheels:
             assert run.states[:, 22].max() > 0.02, name
         if reference.ideal:
             assert [i for _, i in run.events].count(BUMPER) == 1 + ("closes again" in name), name
+        if reference.p.wall_present:
+            assert [i for _, i in run.events].count(WALL) > 3, name
+        if reference.p.nose_shape:  # both ends of a side came to press, each by itself
+            touching = [
+                sum(depth > 0.0 for depth, *_ in reference.touching(s))
+                for s, m in zip(run.states, run.modes, strict=True)
+                if m.contact
+            ]
+            assert min(touching) == 1 < max(touching), name
+        assert CONTACT in [i for _, i in run.events], name
 
 
 @pytest.mark.parametrize(

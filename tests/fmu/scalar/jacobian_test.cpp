@@ -93,6 +93,8 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
                 magnitude[row] += std::fabs(matrix[column * state_count + row] * c.x[column]);
             }
         }
+        // A force that is turned into base axes and back brings the rounding of its whole to both components.
+        magnitude[impulse_x] = magnitude[impulse_y] = magnitude[impulse_x] + magnitude[impulse_y];
         for (int column = 0; column < state_count; ++column) {
             const auto differences = [&](double h) {
                 auto above = c.x;
@@ -129,7 +131,7 @@ TEST(PlantJacobian, IsFiniteOnKinks) {
     for (unsigned seed = 0; seed < 12U; ++seed) {
         auto c = random_case<double>(seed);
         c.x = {};
-        c.m = {{0.0, 1.0, -1.0}, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0};
+        c.m = {{0.0, 1.0, -1.0}, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0};
         Jacobian jacobian;
         jacobian.set_parameters(c.p, c.d);
         std::array<double, state_count * state_count> matrix{};

@@ -71,11 +71,20 @@ template <class T> Parameters<T> random_parameters(unsigned seed) {
     p.mount_x = draw(0.1, 0.2);
     p.mount_y = draw(0.1, 0.3);
     p.mount_azimuth = draw(0.0, 2.0);
+    p.wall_present = static_cast<std::int32_t>(seed / 12U % 2U);
+    p.wall_distance = draw(0.0, 0.2);
+    p.wall_stiffness = draw(1e5, 3e5);
+    p.wall_damping = draw(0.1, 2.0);
+    p.nose_shape = static_cast<NoseShape>(p.plate_on_robot() ? 0U : seed / 24U % 2U);
     p.nose_radius = draw(0.0, 0.03);
     p.contact_stiffness = draw(5e3, 5e4);
     p.contact_damping = draw(0.0, 1.0);
     p.contact_friction = draw(0.0, 0.5);
     p.contact_friction_speed = draw(0.002, 0.01);
+    p.contact_height = draw(0.0, 0.2);
+    p.outline_body = seed / 48U % 3U == 1U ? 0 : 1;
+    p.outline_wheels = seed / 48U % 3U == 0U ? 0 : 1;
+    p.wheel_width = draw(0.02, 0.06);
     p.outline_count = 3;
     p.outline_x = {T(0.352184), T(-0.176092), T(-0.176092)};
     p.outline_y = {T(0.0), T(0.305), T(-0.305)};
@@ -112,6 +121,7 @@ template <class T> Case<T> random_case(unsigned seed) {
     c.m.bottom_stop = flag();
     c.m.latched = flag();
     c.m.landed = flag();
+    c.m.walled = flag();
     for (auto& f : c.fired) {
         f = three_way();
     }
