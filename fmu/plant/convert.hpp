@@ -29,6 +29,15 @@ template <class To, class From> Parameters<To> convert(const Parameters<From>& p
         .roller_inertia = To(p.roller_inertia),
         .wheel_load = detail::converted<To>(p.wheel_load),
         .wheel_traction = detail::converted<To>(p.wheel_traction),
+        .tipping = p.tipping,
+        .tilt_inertia = To(p.tilt_inertia),
+        .com_height = To(p.com_height),
+        .floor_contact_stiffness = To(p.floor_contact_stiffness),
+        .floor_contact_damping = To(p.floor_contact_damping),
+        .grip_friction = To(p.grip_friction),
+        .grip_stiffness = To(p.grip_stiffness),
+        .grip_damping = To(p.grip_damping),
+        .push_height = To(p.push_height),
         .roller_model = p.roller_model,
         .roller_torque = To(p.roller_torque),
         .roller_slope = To(p.roller_slope),
@@ -106,6 +115,7 @@ template <class To, class From> Derived<To> convert(const Derived<From>& d) {
         .plate_y = To(d.plate_y),
         .carriage_mass = To(d.carriage_mass),
         .rope_pretension_length = To(d.rope_pretension_length),
+        .tip_rate = To(d.tip_rate),
         .wheel_half_length = To(d.wheel_half_length),
         .edge_x = detail::converted<To>(d.edge_x),
         .edge_y = detail::converted<To>(d.edge_y),
@@ -133,6 +143,8 @@ template <class To, class From> Modes<To> convert(const Modes<From>& m) {
         .latched = To(m.latched),
         .landed = To(m.landed),
         .walled = To(m.walled),
+        .on_floor = detail::converted<To>(m.on_floor),
+        .overturned = To(m.overturned),
     };
 }
 

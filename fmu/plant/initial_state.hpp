@@ -1,7 +1,7 @@
 // A consistent start: at rest, or in steady motion with rollers wound up; drivetrains carry what the rollers pull.
 #pragma once
 
-#include "plant.hpp"
+#include "tipping.hpp"
 
 namespace giveway::plant {
 
@@ -58,6 +58,23 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
     m.landed = positive(g[event_landing]);
     m.walled = positive(g[event_wall]);
     m.end_stop = p.has_ideal_latch() ? T(0.0) : T(1.0) - positive(g[event_end_stop]);
+}
+
+template <class T>
+void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Parameters<T>& p, const Derived<T>& d, TippingVector<T>& x, Modes<T>& m) {
+    StateVector<T> planar;
+    initial_state(start, u, p, d, planar, m);
+    x = {};
+    for (int i = 0; i < state_count; ++i) {
+        x[i] = planar[i];
+    }
+    // Level, on wheels that bear its weight in equal parts; each grips with what its drive gives.
+    x[base_heave] = T(-gravity_mps2 / wheel_count) * p.mass / p.floor_contact_stiffness;
+    m.on_floor = {T(1.0), T(1.0), T(1.0)};
+    for (int i = 0; i < wheel_count; ++i) {
+        x[wheel_spin + i] = x[motor_speed + i];
+        x[grip + i] = T(-1.0) * p.drivetrain_stiffness * x[motor_angle + i] / (p.wheel_radius * p.grip_stiffness);
+    }
 }
 
 } // namespace giveway::plant

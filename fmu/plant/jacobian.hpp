@@ -1,16 +1,15 @@
 // df/dx of the plant, exact, by dual numbers: a chunk of columns per evaluation of the right-hand side.
 #pragma once
 
+#include <algorithm>
+
 #include "convert.hpp"
-#include "plant.hpp"
+#include "tipping.hpp"
 
 namespace giveway::plant {
 
-// Nothing depends on the accounts at the end of the state (work, dissipation, impulses): their columns are zero.
-inline constexpr int differentiated_states = work_in;
 // Directions per evaluation.
 inline constexpr int jacobian_chunk = 8;
-static_assert(differentiated_states % jacobian_chunk == 0);
 
 class Jacobian {
 public:
@@ -22,26 +21,32 @@ public:
         derived_ = convert<Scalar>(d);
     }
 
-    // matrix[column * state_count + row] = d rate[row] / d x[column].
-    void evaluate(const StateVector<double>& x, const Inputs<double>& u, const Modes<double>& m, double* matrix) const {
+    // matrix[column * N + row] = d rate[row] / d x[column], N the number of states.
+    template <std::size_t N> void evaluate(const std::array<double, N>& x, const Inputs<double>& u, const Modes<double>& m, double* matrix) const {
         const auto inputs = convert<Scalar>(u);
         const auto modes = convert<Scalar>(m);
         auto state = detail::converted<Scalar>(x);
-        double* column = matrix;
-        for (int first = 0; first < differentiated_states; first += jacobian_chunk) {
-            for (int i = 0; i < jacobian_chunk; ++i) {
-                state[first + i] = Scalar::variable(x[first + i], i);
+        std::fill_n(matrix, N * N, 0.0);
+        for (std::size_t first = 0; first < N; first += jacobian_chunk) {
+            // Nothing depends on the accounts (work, dissipation, impulses): their columns are zero.
+            std::array<std::size_t, jacobian_chunk> columns{};
+            std::size_t count = 0;
+            for (std::size_t column = first; column < std::min<std::size_t>(first + jacobian_chunk, N); ++column) {
+                if (column < work_in || column >= state_count) {
+                    state[column] = Scalar::variable(x[column], static_cast<int>(count));
+                    columns[count++] = column;
+                }
+            }
+            if (count == 0) {
+                continue;
             }
             const auto rate = rhs(state, inputs, modes, parameters_, derived_);
-            for (int i = 0; i < jacobian_chunk; ++i) {
-                for (const Scalar& r : rate) {
-                    *column++ = r.derivative[i];
+            for (std::size_t i = 0; i < count; ++i) {
+                for (std::size_t row = 0; row < N; ++row) {
+                    matrix[columns[i] * N + row] = rate[row].derivative[i];
                 }
-                state[first + i] = Scalar(x[first + i]);
+                state[columns[i]] = Scalar(x[columns[i]]);
             }
-        }
-        for (int entry = differentiated_states * state_count; entry < state_count * state_count; ++entry) {
-            *column++ = 0.0;
         }
     }
 

@@ -1,7 +1,7 @@
 // What an observer with perfect sensors sees: the truth that estimates are judged against.
 #pragma once
 
-#include "plant.hpp"
+#include "tipping.hpp"
 
 namespace giveway::plant {
 
@@ -15,20 +15,15 @@ template <class T> struct Outputs {
     T nose_x, nose_y;                       // tip of the nose, world frame
     T bumper_force, rope_tension, wall_force;
     T stored_energy;
+    T roll, pitch;
+    std::array<T, wheel_count> wheel_load;
+    T tip_margin;
 };
 
-template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
+// Of slider, weight, bumper and contact; a plate on the robot included.
+template <class T, std::size_t N>
+T slider_energy(T energy, const std::array<T, N>& x, const Evaluation<T, N>& e, const Parameters<T>& p, const Derived<T>& d) {
     const T half = T(0.5);
-    T energy = half * p.mass * dot(e.velocity, e.velocity) + half * p.yaw_inertia * math::square(x[base_omega]);
-    for (int i = 0; i < wheel_count; ++i) {
-        const T roller_speed = (T(wheel_cos[i]) * e.velocity.x + T(wheel_sin[i]) * e.velocity.y) / p.roller_radius;
-        energy = energy + half * p.wheel_traction[i] * (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
-                 half * p.motor_inertia * math::square(x[motor_speed + i]) +
-                 half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
-        if (p.roller_model == RollerModel::bristle) {
-            energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[bristle + i]);
-        }
-    }
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
         const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
@@ -51,9 +46,39 @@ template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>&
     return energy;
 }
 
-template <class T>
-Outputs<T> outputs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
-    const Evaluation<T> e = evaluate(x, u, m, p, d);
+template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
+    const T half = T(0.5);
+    T energy = half * p.mass * dot(e.velocity, e.velocity) + half * p.yaw_inertia * math::square(x[base_omega]);
+    for (int i = 0; i < wheel_count; ++i) {
+        const T roller_speed = (T(wheel_cos[i]) * e.velocity.x + T(wheel_sin[i]) * e.velocity.y) / p.roller_radius;
+        energy = energy + half * p.wheel_traction[i] * (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
+                 half * p.motor_inertia * math::square(x[motor_speed + i]) +
+                 half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
+        if (p.roller_model == RollerModel::bristle) {
+            energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[bristle + i]);
+        }
+    }
+    return slider_energy(energy, x, e, p, d);
+}
+
+template <class T> T stored_energy(const TippingVector<T>& x, const TippingEvaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
+    const T half = T(0.5);
+    const Stance<T>& s = e.stance;
+    const Vector3<T> mass_centre = p.com_height * s.up;
+    const Vector3<T> velocity = s.velocity_of(mass_centre);
+    const T tilting = p.tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
+    T energy = half * p.mass * dot(velocity, velocity) + p.mass * T(gravity_mps2) * (x[base_heave] + mass_centre.z) + e.floor_stored +
+               half * tilting * (math::square(x[body_roll_rate]) + math::square(x[body_pitch_rate])) + half * p.yaw_inertia * math::square(s.yaw_rate);
+    for (int i = 0; i < wheel_count; ++i) {
+        energy = energy + half * p.wheel_inertia * math::square(x[wheel_spin + i]) + half * p.motor_inertia * math::square(x[motor_speed + i]) +
+                 half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
+    }
+    return slider_energy(energy, x, e, p, d);
+}
+
+template <class T, std::size_t N>
+Outputs<T> outputs(const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    const auto e = evaluate(x, u, m, p, d);
     Outputs<T> o{};
     o.wheel_speed = e.wheel_speed;
     o.wheel_torque = e.sensed_torque;
@@ -65,7 +90,18 @@ Outputs<T> outputs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& 
     o.contact_force_y = force.y;
     o.contact_base_x = e.contact.point.x;
     o.contact_base_y = e.contact.point.y;
-    const Vector2<T> point = to_world(e.heading, e.contact.point);
+    Vector2<T> reach = e.contact.point;
+    if constexpr (N == tipping_state_count) {
+        reach = reach + e.contact_offset;
+        o.roll = x[base_roll];
+        o.pitch = x[base_pitch];
+        o.wheel_load = e.load;
+        o.tip_margin = tip_margin(e.stance, p, d);
+    } else {
+        o.wheel_load.fill(p.mass * T(gravity_mps2) / T(wheel_count));
+        o.tip_margin = T(1.0);
+    }
+    const Vector2<T> point = to_world(e.heading, reach);
     o.contact_point_x = x[base_x] + point.x;
     o.contact_point_y = x[base_y] + point.y;
     const T travel = x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.nose_radius;

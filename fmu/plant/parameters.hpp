@@ -33,6 +33,14 @@ template <class T> struct Parameters {
     std::array<T, wheel_count> wheel_load;     // normal load over its nominal value; on a plane 1
     std::array<T, wheel_count> wheel_traction; // 1 on the floor, 0 lifted; on a plane 1
 
+    // Only with tipping.
+    std::int32_t tipping;
+    T tilt_inertia;                                        // about any horizontal axis through the centre of mass, wheels included
+    T com_height;
+    T floor_contact_stiffness, floor_contact_damping;      // vertical, of one wheel and the floor under it
+    T grip_friction, grip_stiffness, grip_damping;         // of a wheel along its rolling direction, at nominal load
+    T push_height;
+
     RollerModel roller_model;
     T roller_torque;                                       // B_r of (28)
     T roller_slope;                                        // alpha of (28), s/rad
@@ -98,6 +106,7 @@ template <class T> struct Derived {
     T plate_x, plate_y;   // unit outward vector of a robot-mounted plate, base frame
     T carriage_mass;      // slider without a plate that moves on its own
     T rope_pretension_length; // ext0
+    T tip_rate;               // of tipping over the line between two wheels, 1/s
     T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
     std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
 };
@@ -114,6 +123,8 @@ template <class T> Derived<T> derive(const Parameters<T>& p) {
     d.plate_y = mount.sin;
     d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? p.slider_mass - p.plate_mass : p.slider_mass;
     d.rope_pretension_length = p.hanging_mass * T(gravity_mps2) / p.rope_stiffness;
+    const T tipping_inertia = p.tilt_inertia + p.mass * (math::square(p.com_height) + math::square(T(0.5) * p.wheel_distance));
+    d.tip_rate = math::sqrt(p.mass * T(gravity_mps2) * p.com_height / tipping_inertia);
     d.wheel_half_length = math::sqrt(math::max(T(0.0), math::square(p.wheel_radius) - math::square(p.contact_height - p.wheel_radius)));
     for (int i = 0; i < p.outline_count; ++i) {
         const int next = (i + 1 == p.outline_count) ? 0 : i + 1;

@@ -11,8 +11,8 @@
 namespace giveway::plant {
 
 // Everything that the equations produce on the way to the state's rate.
-template <class T> struct Evaluation {
-    StateVector<T> rate;
+template <class T, std::size_t N = state_count> struct Evaluation {
+    std::array<T, N> rate;
     math::SinCos<T> heading;
     Vector2<T> velocity; // base axes
     std::array<T, wheel_count> wheel_speed, sensed_torque, net_torque, roller_force;
@@ -41,7 +41,7 @@ template <class T> T locked(const Parameters<T>& p, const Modes<T>& m) {
 
 namespace detail {
 
-template <class T> Nose<T> find_nose(const StateVector<T>& x, const Parameters<T>& p, const Derived<T>& d, const math::SinCos<T>& heading) {
+template <class T, std::size_t N> Nose<T> find_nose(const std::array<T, N>& x, const Parameters<T>& p, const Derived<T>& d, const math::SinCos<T>& heading) {
     const bool plate_on_slider = p.has_plate() && !p.plate_on_robot();
     const T nose_travel = plate_on_slider ? x[slider_position] - x[compression] : x[slider_position];
     const T nose_speed = plate_on_slider ? x[slider_speed] - x[compression_rate] : x[slider_speed];
@@ -51,6 +51,42 @@ template <class T> Nose<T> find_nose(const StateVector<T>& x, const Parameters<T
 }
 
 } // namespace detail
+
+// Slider, weight and bumper; `decelerating`: what the contact takes from the slider along its rail. Adds their losses to `loss`.
+template <class T, std::size_t N>
+void slider_rates(Evaluation<T, N>& e, const std::array<T, N>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d, T decelerating, T& loss) {
+    const T lock = locked(p, m);
+    const T free = T(1.0) - lock;
+    if (p.slider_present != 0) {
+        e.rope = rope_forces(p, d, m, x[slider_position], x[slider_speed], x[weight_drop], x[weight_speed]);
+        const T rail = rail_friction(p, x[slider_speed]);
+        loss = loss + e.rope.dissipation + rail * x[slider_speed] + e.contact_force.dissipation;
+        if (p.has_plate()) {
+            e.bumper = bumper_force(p, m, x[compression], x[compression_rate]);
+            loss = loss + e.bumper.dissipation;
+        }
+        T drive = e.rope.tension - rail;
+        if (p.wall_present != 0) {
+            e.wall = stop_force(m.walled, p.wall_stiffness, p.wall_damping, T(-1.0) * (x[slider_position] + p.wall_distance), T(-1.0) * x[slider_speed]);
+            drive = drive + e.wall.force;
+            loss = loss + e.wall.dissipation;
+        }
+        const T whole = (drive - decelerating) / p.slider_mass;
+        e.rate[slider_position] = x[slider_speed];
+        e.rate[slider_speed] = whole;
+        if (p.has_plate() && !p.plate_on_robot()) {
+            const T alone = (drive - e.bumper.force) / d.carriage_mass;
+            e.rate[slider_speed] = free * alone + lock * whole;
+            e.rate[compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.plate_mass);
+            e.internal_force = free * e.bumper.force + lock * (decelerating + p.plate_mass * whole);
+        }
+        e.rate[compression] = free * x[compression_rate];
+        if (p.rope_attached != 0) {
+            e.rate[weight_drop] = x[weight_speed];
+            e.rate[weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.hanging_mass;
+        }
+    }
+}
 
 template <class T>
 Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
@@ -104,37 +140,9 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
     // What the contact takes from the slider along its rail.
     const T decelerating = force_world.x * d.rail_x + force_world.y * d.rail_y;
 
+    slider_rates(e, x, m, p, d, decelerating, loss);
     const T lock = locked(p, m);
     const T free = T(1.0) - lock;
-    if (p.slider_present != 0) {
-        e.rope = rope_forces(p, d, m, x[slider_position], x[slider_speed], x[weight_drop], x[weight_speed]);
-        const T rail = rail_friction(p, x[slider_speed]);
-        loss = loss + e.rope.dissipation + rail * x[slider_speed] + e.contact_force.dissipation;
-        if (p.has_plate()) {
-            e.bumper = bumper_force(p, m, x[compression], x[compression_rate]);
-            loss = loss + e.bumper.dissipation;
-        }
-        T drive = e.rope.tension - rail;
-        if (p.wall_present != 0) {
-            e.wall = stop_force(m.walled, p.wall_stiffness, p.wall_damping, T(-1.0) * (x[slider_position] + p.wall_distance), T(-1.0) * x[slider_speed]);
-            drive = drive + e.wall.force;
-            loss = loss + e.wall.dissipation;
-        }
-        const T whole = (drive - decelerating) / p.slider_mass;
-        e.rate[slider_position] = x[slider_speed];
-        e.rate[slider_speed] = whole;
-        if (p.has_plate() && !p.plate_on_robot()) {
-            const T alone = (drive - e.bumper.force) / d.carriage_mass;
-            e.rate[slider_speed] = free * alone + lock * whole;
-            e.rate[compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.plate_mass);
-            e.internal_force = free * e.bumper.force + lock * (decelerating + p.plate_mass * whole);
-        }
-        e.rate[compression] = free * x[compression_rate];
-        if (p.rope_attached != 0) {
-            e.rate[weight_drop] = x[weight_speed];
-            e.rate[weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.hanging_mass;
-        }
-    }
 
     Planar3<T> acceleration;
     if (p.plate_on_robot()) {
@@ -178,21 +186,12 @@ StateVector<T> rhs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& 
     return evaluate(x, u, m, p, d).rate;
 }
 
-// Zero at an event; see the table in README.md for the meaning of the signs.
-template <class T>
-EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
-    EventVector<T> g{};
-    const auto heading = math::sincos(x[base_theta]);
-    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
-    const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
-    for (int i = 0; i < wheel_count; ++i) {
-        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
-        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
-    }
-    // What cannot happen keeps a constant sign.
+// Of slider, weight and bumper. What cannot happen keeps a constant sign.
+template <class T, std::size_t N, std::size_t E>
+void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d,
+                       T depth) {
     const bool slider = p.slider_present != 0;
-    g[event_contact] = slider ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity, x[base_omega], x[compression], x[compression_rate]).depth
-                              : T(-1.0);
+    g[event_contact] = depth;
     g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
     g[event_end_stop] = T(1.0);
     if (slider && p.has_ideal_latch()) {
@@ -204,13 +203,30 @@ EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, con
     g[event_bottom_stop] = slider && p.has_plate() ? x[compression] - p.travel : T(-1.0);
     g[event_landing] = slider && p.rope_attached != 0 ? x[weight_drop] - p.drop_height : T(-1.0);
     g[event_wall] = slider && p.wall_present != 0 ? T(-1.0) * (x[slider_position] + p.wall_distance) : T(-1.0);
-    return g;
 }
 
-// `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where it jumps.
+// Zero at an event; see the table in README.md for the meaning of the signs.
 template <class T>
-void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventVector<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
-    const Evaluation<T> e = evaluate(x, u, m, p, d);
+EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    EventVector<T> g{};
+    const auto heading = math::sincos(x[base_theta]);
+    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
+    const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
+    for (int i = 0; i < wheel_count; ++i) {
+        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
+        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
+    }
+    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity, x[base_omega], x[compression],
+                                                           x[compression_rate])
+                                                .depth
+                                          : T(-1.0);
+    slider_indicators(g, x, u, m, p, d, depth);
+    return g;
+}
+// The events that the planar plant has.
+template <class T, std::size_t N, std::size_t E>
+void planar_transition(std::array<T, N>& x, const Inputs<T>& u, Modes<T>& m, const std::array<T, E>& fired, const Parameters<T>& p, const Derived<T>& d) {
+    const auto e = evaluate(x, u, m, p, d);
     for (int i = 0; i < wheel_count; ++i) {
         const auto now = math::less(fired[event_gear + i], T(0.0));
         const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
@@ -260,6 +276,17 @@ void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventV
     m.latched = math::select(now, T(1.0) - m.latched, m.latched);
 }
 
+// `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where it jumps.
+template <class T>
+void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventVector<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
+    planar_transition(x, u, m, fired, p, d);
+}
+
+template <class T> void break_away(const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, int wheel, T sensed) {
+    const T direction = gear_direction_from_rest(p, net_motor_torque(p, u.motor_torque[wheel], sensed));
+    m.gear_direction[wheel] = math::select(math::less(math::abs(m.gear_direction[wheel]), T(0.5)), direction, m.gear_direction[wheel]);
+}
+
 // After the inputs changed: a stuck gear whose motor now pulls more than its stiction breaks away.
 template <class T>
 void accept_inputs(const StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {
@@ -268,8 +295,7 @@ void accept_inputs(const StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, con
     const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
     for (int i = 0; i < wheel_count; ++i) {
         const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
-        const T direction = gear_direction_from_rest(p, net_motor_torque(p, u.motor_torque[i], sensed));
-        m.gear_direction[i] = math::select(math::less(math::abs(m.gear_direction[i]), T(0.5)), direction, m.gear_direction[i]);
+        break_away(u, m, p, i, sensed);
     }
 }
 

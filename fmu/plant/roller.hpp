@@ -11,6 +11,14 @@ template <class T> struct RollerForce {
     T dissipation;     // W
 };
 
+// z' of an elasto-plastic bristle that slides past the floor at v and slips at `limit` (N).
+template <class T> T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction) {
+    const T rho = stiffness * math::abs(z) / limit;
+    const T y = math::clamp((rho - elastic_fraction) / (T(1.0) - elastic_fraction), T(0.0), T(1.0));
+    const T sliding = math::select(math::less(T(0.0), z * v), y * y * (T(3.0) - T(2.0) * y), T(0.0));
+    return v * (T(1.0) - sliding * rho);
+}
+
 // v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m.
 template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z) {
     const T coulomb = p.wheel_load[wheel] * p.roller_torque / p.roller_radius;
@@ -24,10 +32,7 @@ template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel
     // The floor keeps rho finite for a wheel without load.
     const T limit = math::max(coulomb * (stick + (T(1.0) - stick) * steady), T(1e-9));
     const T sigma0 = p.roller_presliding_stiffness[wheel];
-    const T rho = sigma0 * math::abs(z) / limit;
-    const T y = math::clamp((rho - p.roller_elastic_fraction) / (T(1.0) - p.roller_elastic_fraction), T(0.0), T(1.0));
-    const T sliding = math::select(math::less(T(0.0), z * v), y * y * (T(3.0) - T(2.0) * y), T(0.0));
-    const T rate = v * (T(1.0) - sliding * rho);
+    const T rate = bristle_rate(v, z, sigma0, limit, p.roller_elastic_fraction);
     const T force = sigma0 * z + p.roller_presliding_damping * rate;
     return {force, rate, force * v - sigma0 * z * rate};
 }

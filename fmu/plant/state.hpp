@@ -29,9 +29,20 @@ enum StateIndex : int {
     impulse_x = 26,
     impulse_y = 27,
     state_count = 28,
+    // Only with tipping.
+    base_heave = 28,
+    base_roll = 29,
+    base_pitch = 30,
+    heave_rate = 31,
+    body_roll_rate = 32, // about the body's own axes
+    body_pitch_rate = 33,
+    wheel_spin = 34, // 3
+    grip = 37,       // 3
+    tipping_state_count = 40,
 };
 
 template <class T> using StateVector = std::array<T, state_count>;
+template <class T> using TippingVector = std::array<T, tipping_state_count>;
 
 template <class T> struct Inputs {
     std::array<T, wheel_count> motor_torque;
@@ -43,6 +54,9 @@ template <class T> struct Inputs {
 template <class T> struct Modes {
     std::array<T, wheel_count> gear_direction; // -1, 0 (stuck), +1
     T contact, rope_taut, end_stop, bottom_stop, latched, landed, walled; // 0 or 1
+    // Only with tipping.
+    std::array<T, wheel_count> on_floor = {};
+    T overturned = T(0.0); // tilted further than the model goes
 };
 
 enum EventIndex : int {
@@ -54,8 +68,13 @@ enum EventIndex : int {
     event_landing = 7,
     event_wall = 8,
     event_count = 9,
+    // Only with tipping.
+    event_floor = 9, // 3
+    event_tilt = 12,
+    tipping_event_count = 13,
 };
 
 template <class T> using EventVector = std::array<T, event_count>;
+template <class T> using TippingEvents = std::array<T, tipping_event_count>;
 
 } // namespace giveway::plant

@@ -22,6 +22,15 @@ inline plant::Parameters<double> plant_parameters(const Variables& v) {
     p.roller_inertia = v.roller_inertia;
     p.wheel_load = {1.0, 1.0, 1.0};
     p.wheel_traction = {1.0, 1.0, 1.0};
+    p.tipping = v.base_tipping ? 1 : 0;
+    p.tilt_inertia = v.base_tilt_inertia;
+    p.com_height = v.base_com_height;
+    p.floor_contact_stiffness = v.wheel_floor_stiffness;
+    p.floor_contact_damping = v.wheel_floor_damping;
+    p.grip_friction = v.wheel_grip_friction;
+    p.grip_stiffness = v.wheel_grip_stiffness;
+    p.grip_damping = v.wheel_grip_damping;
+    p.push_height = v.push_height;
     p.roller_model = static_cast<plant::RollerModel>(v.roller_model);
     p.roller_torque = v.roller_coulomb_torque;
     p.roller_slope = v.roller_tanh_slope;
@@ -121,6 +130,13 @@ inline bool check_relations(const Variables& v, Message& message) {
     }
     if (v.contact_nose_shape == static_cast<int>(plant::NoseShape::edge) && v.bumper_kind != 0 && v.bumper_mount != 0) {
         return refuse("contact.nose_shape", v.contact_nose_shape, "0, a disc, with a bumper on the robot: bumper.mount =", v.bumper_mount);
+    }
+    if (v.base_tipping && v.bumper_kind != 0 && v.bumper_mount != 0) {
+        return refuse("bumper.mount", v.bumper_mount, "0, on the slider, where the base can tip: base.tipping =", 1.0);
+    }
+    const double wheels_tilt_inertia = 1.5 * v.wheel_inertia;
+    if (v.base_tilt_inertia <= wheels_tilt_inertia) {
+        return refuse("base.tilt_inertia", v.base_tilt_inertia, "greater than that of the wheels about their axles, 1.5 wheel.inertia =", wheels_tilt_inertia);
     }
     if (v.outline_wheels && v.outline_clearance > 2.0 * v.wheel_radius) {
         return refuse("outline.clearance", v.outline_clearance, "at most the wheels' height, 2 wheel.radius =", 2.0 * v.wheel_radius);

@@ -12,12 +12,20 @@ namespace giveway::testbed {
 
 class PlantSystem final : public ExchangeableSystem {
 public:
+    // `state` has room for the states of a base that tips; without tipping the rest of it is zero.
     void start(const plant::Parameters<double>& parameters, const plant::InitialMotion<double>& motion, const plant::Inputs<double>& inputs,
-               plant::StateVector<double>& state) {
+               plant::TippingVector<double>& state) {
         parameters_ = parameters;
         derive();
         inputs_ = inputs;
-        plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
+        state = {};
+        if (tips()) {
+            plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
+        } else {
+            plant::StateVector<double> planar{};
+            plant::initial_state(motion, inputs_, parameters_, derived_, planar, modes_);
+            std::copy(planar.begin(), planar.end(), state.begin());
+        }
         first_contact_time_s_ = modes_.contact > 0.5 ? 0.0 : -1.0;
     }
 
@@ -35,46 +43,55 @@ public:
 
     void set_inputs(const plant::Inputs<double>& inputs, const double* state) {
         inputs_ = inputs;
-        plant::accept_inputs(as_state(state), inputs_, modes_, parameters_, derived_);
+        with_state(state, [&](const auto& x) { plant::accept_inputs(x, inputs_, modes_, parameters_, derived_); });
     }
 
     // In continuous time: a gear that breaks away is left to the event that follows.
     void follow_inputs(const plant::Inputs<double>& inputs) { inputs_ = inputs; }
 
+    [[nodiscard]] bool tips() const { return parameters_.tipping != 0; }
+    // The model does not go further: the base is about to lie down.
+    [[nodiscard]] bool overturned() const { return modes_.overturned > 0.5; }
     [[nodiscard]] const plant::Modes<double>& modes() const { return modes_; }
     [[nodiscard]] const plant::Parameters<double>& parameters() const { return parameters_; }
     [[nodiscard]] const plant::Inputs<double>& inputs() const { return inputs_; }
     [[nodiscard]] double first_contact_time() const { return first_contact_time_s_; }
     [[nodiscard]] plant::Outputs<double> outputs(const double* state) const {
-        return plant::outputs(as_state(state), inputs_, modes_, parameters_, derived_);
+        plant::Outputs<double> result{};
+        with_state(state, [&](const auto& x) { result = plant::outputs(x, inputs_, modes_, parameters_, derived_); });
+        return result;
     }
 
-    [[nodiscard]] int state_count() const override { return plant::state_count; }
-    [[nodiscard]] int event_count() const override { return plant::event_count; }
+    [[nodiscard]] int state_count() const override { return tips() ? plant::tipping_state_count : plant::state_count; }
+    [[nodiscard]] int event_count() const override { return tips() ? plant::tipping_event_count : plant::event_count; }
 
     void rhs(double, const double* state, double* rate) override {
-        const auto value = plant::rhs(as_state(state), inputs_, modes_, parameters_, derived_);
-        std::copy(value.begin(), value.end(), rate);
+        with_state(state, [&](const auto& x) {
+            const auto value = plant::rhs(x, inputs_, modes_, parameters_, derived_);
+            std::copy(value.begin(), value.end(), rate);
+        });
     }
 
     bool jacobian(double, const double* state, double* matrix) override {
-        jacobian_.evaluate(as_state(state), inputs_, modes_, matrix);
+        with_state(state, [&](const auto& x) { jacobian_.evaluate(x, inputs_, modes_, matrix); });
         return true;
     }
 
     void indicators(double, const double* state, double* value) override {
-        const auto indicator = plant::event_indicators(as_state(state), inputs_, modes_, parameters_, derived_);
-        std::copy(indicator.begin(), indicator.end(), value);
+        with_state(state, [&](const auto& x) {
+            const auto indicator = plant::event_indicators(x, inputs_, modes_, parameters_, derived_);
+            std::copy(indicator.begin(), indicator.end(), value);
+        });
     }
 
     void transition(double time_s, double* state, const int* fired) override {
-        plant::EventVector<double> direction{};
-        for (int i = 0; i < plant::event_count; ++i) {
-            direction[static_cast<std::size_t>(i)] = static_cast<double>(fired[i]);
-        }
-        plant::StateVector<double> next = as_state(state);
-        plant::transition(next, inputs_, modes_, direction, parameters_, derived_);
-        std::copy(next.begin(), next.end(), state);
+        with_state(state, [&](const auto& x) {
+            decltype(plant::event_indicators(x, inputs_, modes_, parameters_, derived_)) direction{};
+            std::copy_n(fired, direction.size(), direction.begin());
+            auto next = x;
+            plant::transition(next, inputs_, modes_, direction, parameters_, derived_);
+            std::copy(next.begin(), next.end(), state);
+        });
         if (first_contact_time_s_ < 0.0 && modes_.contact > 0.5) {
             first_contact_time_s_ = time_s;
         }
@@ -94,6 +111,12 @@ public:
             return above(modes_.landed);
         case plant::event_wall:
             return above(modes_.walled);
+        case plant::event_floor:
+        case plant::event_floor + 1:
+        case plant::event_floor + 2:
+            return above(modes_.on_floor[static_cast<std::size_t>(event - plant::event_floor)]);
+        case plant::event_tilt:
+            return -above(modes_.overturned);
         default:
             return 1;
         }
@@ -104,6 +127,9 @@ public:
             const bool stuck = math::abs(modes_.gear_direction[static_cast<std::size_t>(event)]) < 0.5;
             return stuck ? 1e-8   // N m
                          : 1e-7;  // rad/s
+        }
+        if (event == plant::event_tilt) {
+            return 1e-9; // of the cosine of the tilt
         }
         return event == plant::event_end_stop && modes_.latched > 0.5 ? 1e-6  // N
                                                                       : 1e-9; // m
@@ -120,6 +146,12 @@ public:
         case plant::slider_speed:
         case plant::weight_speed:
         case plant::compression_rate:
+        case plant::heave_rate:
+        case plant::body_roll_rate:
+        case plant::body_pitch_rate:
+        case plant::wheel_spin:
+        case plant::wheel_spin + 1:
+        case plant::wheel_spin + 2:
             return 1e-8; // m/s, rad/s
         case plant::work_in:
         case plant::dissipated:
@@ -134,9 +166,13 @@ public:
 private:
     static int above(double mode) { return mode > 0.5 ? 1 : -1; }
 
-    static const plant::StateVector<double>& as_state(const double* state) {
-        // The solver's array has exactly state_count doubles.
-        return *reinterpret_cast<const plant::StateVector<double>*>(state);
+    // `state`: state_count() doubles. Calls use(x) with the plant's own type of them.
+    template <class Use> void with_state(const double* state, Use use) const {
+        if (tips()) {
+            use(*reinterpret_cast<const plant::TippingVector<double>*>(state));
+        } else {
+            use(*reinterpret_cast<const plant::StateVector<double>*>(state));
+        }
     }
 
     plant::Parameters<double> parameters_{};

@@ -42,7 +42,7 @@ public:
         }
         if constexpr (std::is_same_v<Archive, StateWriter>) {
             checkpoint_ = integrator_.checkpoint();
-            std::copy_n(integrator_.state(), checkpoint_state_.size(), checkpoint_state_.begin());
+            checkpoint_state_ = whole_state();
         }
         a(checkpoint_);
         a(checkpoint_state_);
@@ -77,7 +77,7 @@ public:
         exchanging_ = false;
         const plant::InitialMotion<double> motion{v_.start_x, v_.start_y, v_.start_theta, v_.start_vx, v_.start_vy, v_.start_omega, v_.slider_speed,
                                                    {v_.start_bristle[0], v_.start_bristle[1], v_.start_bristle[2]}};
-        plant::StateVector<double> state{};
+        plant::TippingVector<double> state{};
         system_.start(plant_parameters(v_), motion, push_inputs({}), state);
         const auto truth = system_.outputs(state.data());
         // A start inside the robot would be a catapult.
@@ -122,6 +122,10 @@ public:
                 std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
                 return Status::error;
             }
+            if (system_.overturned()) {
+                write_outputs();
+                return tell_overturned(start_time_s_ + integrator_.last_event_time(), message);
+            }
             if (!reaches) {
                 break;
             }
@@ -141,18 +145,25 @@ public:
 
     void set_time(double time_s) override {
         now_s_ = time_s - start_time_s_;
+        exchange_state_ = whole_state();
         exchanging_ = true;
     }
-    double* states() override { return integrator_.state(); }
+    // All that the model description lists; without tipping the states after the planar ones rest at zero.
+    double* states() override {
+        exchange_state_ = whole_state();
+        return exchange_state_.data();
+    }
 
     void derivatives(double* values) override {
         follow_push();
-        system_.rhs(now_s_, states(), values);
+        std::fill_n(values, plant::tipping_state_count, 0.0);
+        system_.rhs(now_s_, state(), values);
     }
 
     void indicators(double* values) override {
         follow_push();
-        margins(system_, now_s_, states(), values);
+        std::fill_n(values, plant::tipping_event_count, 1.0);
+        margins(system_, now_s_, state(), values);
     }
 
     Status update_events(EventUpdate& update, Message& message) override {
@@ -160,9 +171,12 @@ public:
         if (!settle_now(update, message) || !pass_tick(update, message)) {
             return Status::error;
         }
-        system_.set_inputs(push_inputs(system_.inputs().motor_torque), states());
+        system_.set_inputs(push_inputs(system_.inputs().motor_torque), state());
         if (!settle_now(update, message)) {
             return Status::error;
+        }
+        if (system_.overturned()) {
+            return tell_overturned(start_time_s_ + now_s_, message);
         }
         update.has_next_time = true;
         update.next_time_s = start_time_s_ + static_cast<double>(due_ ? tick_ : tick_ + 1) / static_cast<double>(servo_rate_hz);
@@ -171,7 +185,7 @@ public:
 
     void write_outputs() override {
         follow_push();
-        const double* x = integrator_.state();
+        const double* x = state();
         const auto truth = system_.outputs(x);
         const auto& modes = system_.modes();
         v_.truth_x = x[plant::base_x];
@@ -211,6 +225,10 @@ public:
         v_.truth_rope_tension = truth.rope_tension;
         v_.truth_rope_taut = modes.rope_taut > 0.5;
         v_.truth_wall_force = truth.wall_force;
+        v_.truth_roll = truth.roll;
+        v_.truth_pitch = truth.pitch;
+        std::copy_n(truth.wheel_load.begin(), 3, v_.truth_wheel_load);
+        v_.truth_tip_margin = truth.tip_margin;
         v_.truth_weight_drop = x[plant::weight_drop];
         v_.energy_stored = truth.stored_energy - stored_at_start_j_;
         v_.energy_work_in = x[plant::work_in];
@@ -229,12 +247,28 @@ private:
     Status resume(Message& message) {
         if (running_) {
             system_.derive();
+            exchange_state_ = checkpoint_state_;
             if (!integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
                 std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
                 return Status::error;
             }
         }
         return Status::ok;
+    }
+
+    static Status tell_overturned(double time_s, Message& message) {
+        std::snprintf(message.text, sizeof message.text,
+                      "the robot tips over: at t = %.9g s it leans by more than 15 deg, beyond which base.tipping has no model", time_s);
+        return Status::error;
+    }
+
+    // The states that are integrated, whoever does it.
+    double* state() { return exchanging_ ? exchange_state_.data() : integrator_.state(); }
+
+    plant::TippingVector<double> whole_state() {
+        plant::TippingVector<double> whole{};
+        std::copy_n(state(), system_.state_count(), whole.begin());
+        return whole;
     }
 
     [[nodiscard]] solver::IntegratorOptions solver_options() const {
@@ -263,7 +297,7 @@ private:
     }
 
     bool settle_now(EventUpdate& update, Message& message) {
-        const int count = settle(system_, now_s_, states());
+        const int count = settle(system_, now_s_, state());
         if (count == too_many_events) {
             std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
             return false;
@@ -317,14 +351,12 @@ private:
             command.enable = v_.command_enable;
             drives_.receive(command);
         }
-        const double* state = integrator_.state();
-        system_.set_inputs(push_inputs(drives_.regulate(motor_angles(state))), state);
+        system_.set_inputs(push_inputs(drives_.regulate(motor_angles(state()))), state());
         integrator_.restart();
     }
 
     void sample_sensors() {
-        const double* state = integrator_.state();
-        const SensorSample sample = drives_.sample(motor_angles(state), system_.outputs(state).wheel_torque);
+        const SensorSample sample = drives_.sample(motor_angles(state()), system_.outputs(state()).wheel_torque);
         std::copy_n(sample.torque_nm.begin(), 3, v_.sensor_torque);
         std::copy_n(sample.encoder_counts.begin(), 3, v_.sensor_encoder);
         v_.sensor_counter = sample.counter;
@@ -344,10 +376,11 @@ private:
     double last_event_s_ = 0.0;
     std::int32_t events_ = 0;
     bool exchanging_ = false;
+    plant::TippingVector<double> exchange_state_{};
     // State.
     bool running_ = false; // initialised
     solver::Checkpoint checkpoint_{};
-    plant::StateVector<double> checkpoint_state_{};
+    plant::TippingVector<double> checkpoint_state_{};
 };
 
 } // namespace

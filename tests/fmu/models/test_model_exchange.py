@@ -87,6 +87,23 @@ CASES = {
     "testbed, landing": Case(
         "testbed", {**SMOOTH, "rope.drop_height": 0.06, "roller.model": 1, "drivetrain.gear_stiction": 3.2}
     ),
+    "testbed, wheels and wall": Case(
+        "testbed",
+        {
+            **SMOOTH,
+            "bumper.kind": 0,
+            "outline.wheels": True,
+            "contact.height": 0.12,
+            "rope.attached": False,
+            "slider.speed": 0.5,
+            "slider.run_up": 0.06,
+            "slider.mass": 4.0,
+            "wall.present": True,
+            "wall.distance": 0.01,
+        },
+    ),
+    "testbed, long edge": Case("testbed", {**SMOOTH, "bumper.kind": 0, "contact.nose_shape": 1}),
+    "testbed, tipping": Case("testbed", {**SMOOTH, "base.tipping": True, "contact.height": 0.5, "bumper.kind": 0}),
 }
 
 

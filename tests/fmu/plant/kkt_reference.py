@@ -118,6 +118,16 @@ class Parameters:
     wall_distance: float = 0.0
     wall_stiffness: float = 2.0e5
     wall_damping: float = 1.0
+    # Those of a base that tips are used by tipping_reference.py.
+    tipping: int = 0
+    tilt_inertia: float = 2.0
+    com_height: float = 0.414
+    floor_contact_stiffness: float = 2.0e5
+    floor_contact_damping: float = 2.0
+    grip_friction: float = 0.7
+    grip_stiffness: float = 2.0e6
+    grip_damping: float = 400.0
+    push_height: float = 0.414
     outline: list[tuple[float, float]] = field(
         default_factory=lambda: [(0.352184, 0.0), (-0.176092, 0.305), (-0.176092, -0.305)]
     )

@@ -14,6 +14,7 @@
 #include "initial_state.hpp"
 #include "outputs.hpp"
 #include "plant.hpp"
+#include "probe.hpp"
 #include "state.hpp"
 
 namespace {
@@ -25,12 +26,6 @@ using Modes = plant::Modes<double>;
 
 constexpr int mode_count = 10;
 constexpr int input_count = 7;
-
-struct Probe {
-    Parameters p = {};
-    plant::Derived<double> d = {};
-    char error[512] = "";
-};
 
 struct Real {
     const char* name;
@@ -100,6 +95,14 @@ constexpr Real reals[] = {
     REAL(contact_friction_speed),
     REAL(contact_height),
     REAL(wheel_width),
+    REAL(tilt_inertia),
+    REAL(com_height),
+    REAL(floor_contact_stiffness),
+    REAL(floor_contact_damping),
+    REAL(grip_friction),
+    REAL(grip_stiffness),
+    REAL(grip_damping),
+    REAL(push_height),
 };
 constexpr RealPerWheel per_wheel[] = {REAL(wheel_load), REAL(wheel_traction),
                                       REAL(roller_presliding_stiffness)};
@@ -122,6 +125,8 @@ bool set_choice(Parameters& p, const char* name, int value) {
         p.rope_attached = value;
     } else if (is("wall_present")) {
         p.wall_present = value;
+    } else if (is("tipping")) {
+        p.tipping = value;
     } else if (is("nose_shape")) {
         p.nose_shape = static_cast<plant::NoseShape>(value);
     } else if (is("outline_body")) {
@@ -205,8 +210,6 @@ private:
 
 } // namespace
 
-#define EXPORT extern "C" __attribute__((visibility("default")))
-
 EXPORT void* probe_new() {
     auto* probe = new (std::nothrow) Probe;
     if (probe != nullptr) {
@@ -218,7 +221,7 @@ EXPORT void* probe_new() {
             (probe->p.*real.member).fill(unset);
         }
         for (const char* name : {"roller_model", "bumper_kind", "bumper_mount", "latch_model",
-                                 "slider_present", "rope_attached", "wall_present", "nose_shape",
+                                 "slider_present", "rope_attached", "wall_present", "tipping", "nose_shape",
                                  "outline_body", "outline_wheels"}) {
             set_choice(probe->p, name, -1);
         }

@@ -13,6 +13,7 @@ namespace {
 using namespace giveway::plant;
 using giveway::plant::random_cases::Case;
 using giveway::plant::random_cases::random_case;
+using giveway::plant::random_cases::random_tipping_case;
 
 // The shared cases, moved to where the plant's parts are at work: bristles around their sliding limit, motions slow enough
 // for friction that is smooth over millimetres per second, and every structural choice.
@@ -140,4 +141,34 @@ TEST(PlantJacobian, IsFiniteOnKinks) {
             EXPECT_TRUE(std::isfinite(entry)) << "case " << seed;
         }
     }
+}
+
+TEST(PlantJacobian, IsWhatFiniteDifferencesFindWhereTheBaseTips) {
+    constexpr double step = 1e-8; // the grip bends over microns
+    long compared = 0;
+    for (unsigned seed = 0; seed < 500U; ++seed) {
+        const auto [c, x, fired] = random_tipping_case<double>(seed);
+        Jacobian jacobian;
+        jacobian.set_parameters(c.p, c.d);
+        std::array<double, tipping_state_count * tipping_state_count> matrix{};
+        jacobian.evaluate(x, c.u, c.m, matrix.data());
+        const auto centre = rhs(x, c.u, c.m, c.p, c.d);
+        for (int column = 0; column < tipping_state_count; ++column) {
+            auto above = x;
+            auto below = x;
+            above[column] += step;
+            below[column] -= step;
+            const auto high = rhs(above, c.u, c.m, c.p, c.d);
+            const auto low = rhs(below, c.u, c.m, c.p, c.d);
+            for (int row = 0; row < tipping_state_count; ++row) {
+                const double exact = matrix[column * tipping_state_count + row];
+                const double slope = (high[row] - low[row]) / (above[column] - below[column]);
+                // Curvature and kinks show in the second difference; rounding is that of forces up to 1e5 N on a wheel's inertia, 1e-3 kg m2.
+                const double bend = std::fabs((high[row] - centre[row]) - (centre[row] - low[row])) / step;
+                EXPECT_NEAR(exact, slope, bend + 1e-4 * std::fabs(exact) + 2.0) << "case " << seed << ": d rate[" << row << "]/d x[" << column << "]";
+                compared += std::fabs(exact) > 100.0 ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(compared, 10000);
 }

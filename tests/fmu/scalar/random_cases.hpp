@@ -88,6 +88,15 @@ template <class T> Parameters<T> random_parameters(unsigned seed) {
     p.outline_count = 3;
     p.outline_x = {T(0.352184), T(-0.176092), T(-0.176092)};
     p.outline_y = {T(0.0), T(0.305), T(-0.305)};
+    p.tipping = 0;
+    p.tilt_inertia = draw(1.0, 3.0);
+    p.com_height = draw(0.1, 0.6);
+    p.floor_contact_stiffness = draw(1e5, 5e5);
+    p.floor_contact_damping = draw(0.0, 3.0);
+    p.grip_friction = draw(0.4, 1.0);
+    p.grip_stiffness = draw(1e6, 3e6);
+    p.grip_damping = draw(0.0, 500.0);
+    p.push_height = draw(0.0, 0.6);
     return p;
 }
 
@@ -124,6 +133,39 @@ template <class T> Case<T> random_case(unsigned seed) {
     c.m.walled = flag();
     for (auto& f : c.fired) {
         f = three_way();
+    }
+    return c;
+}
+
+// The same robot on wheels that it can lift: near the floor, leaning by up to 11 deg, bristles of a tenth of a millimetre.
+template <class T> struct TippingCase {
+    Case<T> planar;
+    TippingVector<T> x;
+    TippingEvents<T> fired;
+};
+
+template <class T> TippingCase<T> random_tipping_case(unsigned seed) {
+    TippingCase<T> c{random_case<T>(seed), {}, {}};
+    c.planar.p.tipping = 1;
+    c.planar.p.bumper_mount = BumperMount::slider;
+    c.planar.d = derive(c.planar.p);
+    std::mt19937 generator(seed + 2'000'000U);
+    const auto draw = [&](double low, double high) { return T(std::uniform_real_distribution<double>(low, high)(generator)); };
+    for (int i = 0; i < state_count; ++i) {
+        c.x[i] = c.planar.x[i];
+    }
+    c.x[base_heave] = draw(-0.002, 0.005);
+    for (const int i : {base_roll, base_pitch, heave_rate, body_roll_rate, body_pitch_rate}) {
+        c.x[i] = draw(-0.2, 0.2);
+    }
+    for (int i = 0; i < wheel_count; ++i) {
+        c.x[wheel_spin + i] = draw(-2.0, 2.0);
+        c.x[bristle + i] = draw(-1e-3, 1e-3);
+        c.x[grip + i] = draw(-5e-5, 5e-5);
+        c.planar.m.on_floor[i] = T(std::uniform_int_distribution<int>(0, 1)(generator));
+    }
+    for (auto& f : c.fired) {
+        f = T(std::uniform_int_distribution<int>(-1, 1)(generator));
     }
     return c;
 }

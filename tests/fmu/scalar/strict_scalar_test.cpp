@@ -40,6 +40,7 @@ namespace {
 using giveway::math::Strict;
 using namespace giveway::plant;
 using giveway::plant::random_cases::random_case;
+using giveway::plant::random_cases::random_tipping_case;
 
 template <std::size_t N> void expect_same_bits(const std::array<double, N>& a, const std::array<Strict, N>& b, unsigned seed) {
     static_assert(sizeof(Strict) == sizeof(double));
@@ -64,5 +65,27 @@ TEST(StrictScalar, GivesTheBitsOfDouble) {
         initial_state<double>({0.1, 0.2, 0.3, 0.1, -0.2, 0.4, 0.5}, a.u, a.p, a.d, a.x, a.m);
         initial_state<Strict>({Strict(0.1), Strict(0.2), Strict(0.3), Strict(0.1), Strict(-0.2), Strict(0.4), Strict(0.5)}, b.u, b.p, b.d, b.x, b.m);
         expect_same_bits(a.x, b.x, seed);
+    }
+}
+
+TEST(StrictScalar, GivesTheBitsOfDoubleWhereTheBaseTips) {
+    for (unsigned seed = 0; seed < 2000U; ++seed) {
+        auto [a, xa, fired_a] = random_tipping_case<double>(seed);
+        auto [b, xb, fired_b] = random_tipping_case<Strict>(seed);
+        expect_same_bits(rhs(xa, a.u, a.m, a.p, a.d), rhs(xb, b.u, b.m, b.p, b.d), seed);
+        expect_same_bits(event_indicators(xa, a.u, a.m, a.p, a.d), event_indicators(xb, b.u, b.m, b.p, b.d), seed);
+        const auto outputs_a = outputs(xa, a.u, a.m, a.p, a.d);
+        const auto outputs_b = outputs(xb, b.u, b.m, b.p, b.d);
+        EXPECT_EQ(std::memcmp(&outputs_a, &outputs_b, sizeof outputs_a), 0) << "case " << seed;
+        transition(xa, a.u, a.m, fired_a, a.p, a.d);
+        transition(xb, b.u, b.m, fired_b, b.p, b.d);
+        expect_same_bits(xa, xb, seed);
+        EXPECT_EQ(std::memcmp(&a.m, &b.m, sizeof a.m), 0) << "case " << seed;
+        initial_state<double>({0.1, 0.2, 0.3, 0.1, -0.2, 0.4, 0.5}, a.u, a.p, a.d, xa, a.m);
+        initial_state<Strict>({Strict(0.1), Strict(0.2), Strict(0.3), Strict(0.1), Strict(-0.2), Strict(0.4), Strict(0.5)}, b.u, b.p, b.d, xb, b.m);
+        expect_same_bits(xa, xb, seed);
+        accept_inputs(xa, a.u, a.m, a.p, a.d);
+        accept_inputs(xb, b.u, b.m, b.p, b.d);
+        EXPECT_EQ(std::memcmp(&a.m, &b.m, sizeof a.m), 0) << "case " << seed;
     }
 }

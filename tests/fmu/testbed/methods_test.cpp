@@ -59,7 +59,7 @@ Collision collide(Method method, int bumper, int latch_model, double stiffness, 
     v.contact_stiffness *= stiffness;
     v.bumper_stop_stiffness *= stiffness;
     Recorder recorder;
-    plant::StateVector<double> start{};
+    plant::TippingVector<double> start{};
     recorder.system.start(giveway::testbed::plant_parameters(v), {v.start_x, v.start_y, v.start_theta, 0.0, 0.0, 0.0, v.slider_speed}, {}, start);
     const double stored = recorder.system.outputs(start.data()).stored_energy;
     HybridIntegrator integrator;

@@ -1,4 +1,5 @@
 // The testbed as a model: step sizes, energy, refusals. The plant's equations have their own reference in ../plant.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -50,6 +51,58 @@ TEST(Testbed, CollisionClosesItsEnergyAccount) {
             EXPECT_LT(std::fabs(run.v().energy_residual), 1e-5) << "kind " << kind << ", mount " << mount;
         }
     }
+}
+
+TEST(Testbed, TippingClosesItsEnergyAccount) {
+    for (const int kind : {0, 1, 2}) {
+        Bench run;
+        run.v().base_tipping = true;
+        run.v().contact_height = 0.5;
+        run.v().bumper_kind = kind;
+        run.initialise();
+        EXPECT_NEAR(run.v().truth_tip_margin, 1.0, 1e-12);
+        double least_load_n = 1e9;
+        for (int k = 0; k < 500; ++k) {
+            ASSERT_EQ(run.model->step(1e-3 * k, 1e-3, run.message), Status::ok) << run.message.text;
+            for (const double load : run.v().truth_wheel_load) {
+                least_load_n = std::min(least_load_n, load);
+            }
+        }
+        EXPECT_LT(least_load_n, 60.0); // of 113 N: it did lean
+        EXPECT_LT(run.v().truth_tip_margin, 1.0);
+        // Of some 4 J turned over; floor and grip are stiff, and add to the 1e-6 each way of the planar robot.
+        EXPECT_LT(std::fabs(run.v().energy_residual), 4e-5) << "kind " << kind;
+    }
+}
+
+TEST(Testbed, StopsWhereTheRobotGoesOver) {
+    Bench run;
+    run.v().base_tipping = true;
+    run.v().slider_present = false;
+    run.v().command_enable = true;
+    run.v().push_height = 0.6;
+    run.initialise();
+    run.v().push_force_x = -400.0;
+    Status status = Status::ok;
+    for (int k = 0; k < 2000 && status == Status::ok; ++k) {
+        status = run.model->step(1e-3 * k, 1e-3, run.message);
+    }
+    EXPECT_EQ(status, Status::error);
+    EXPECT_NE(std::string(run.message.text).find("the robot tips over: at t = "), std::string::npos) << run.message.text;
+    EXPECT_NEAR(std::hypot(run.v().truth_pitch, run.v().truth_roll), 15.0 * 3.14159265358979 / 180.0, 2e-3);
+}
+
+TEST(Testbed, RefusesWhatDoesNotGoTogether) {
+    const auto refused = [](const auto& change, const char* name) {
+        Bench run;
+        change(run.v());
+        EXPECT_EQ(run.model->initialise(0.0, run.message), Status::error);
+        EXPECT_NE(std::string(run.message.text).find(name), std::string::npos) << run.message.text;
+    };
+    refused([](Variables& v) { v.bumper_mount = 1; v.base_tipping = true; }, "bumper.mount = 1 is not allowed");
+    refused([](Variables& v) { v.bumper_mount = 1; v.contact_nose_shape = 1; }, "contact.nose_shape = 1 is not allowed");
+    refused([](Variables& v) { v.outline_wheels = true; v.outline_clearance = 0.3; }, "outline.clearance = 0.3 is not allowed");
+    refused([](Variables& v) { v.base_tilt_inertia = 0.01; v.wheel_inertia = 0.01; }, "base.tilt_inertia = 0.01 is not allowed");
 }
 
 TEST(Testbed, StepsOfWholeTicksGiveTheSameBits) {

@@ -1,0 +1,251 @@
+// The plant whose base can tip: a rigid body on three wheels that press on the floor, grip it and leave it.
+// Everything but the base and its wheels is the planar plant's. README.md of this folder has the equations.
+#pragma once
+
+#include "plant.hpp"
+#include "vector3.hpp"
+
+namespace giveway::plant {
+
+// Beyond this tilt the model ends: 15 deg, a little short of where Trikey's centre of mass stands over the line between two wheels.
+inline constexpr double cos_greatest_tilt = 0.9659258262890683;
+
+// Attitude and motion of the tilted base. Axes: those of the base turned by its heading alone, "base axes".
+template <class T> struct Stance {
+    Vector3<T> forward, left, up; // the body's own axes
+    Vector3<T> velocity;          // of the body's point that is the base's centre at floor level
+    Vector3<T> turning;           // angular velocity
+    T yaw_rate;                   // about the body's own vertical axis
+    T roll_rate, pitch_rate;      // of the angles
+
+    [[nodiscard]] Vector3<T> at(T x, T y, T z) const { return x * forward + y * left + z * up; }
+    [[nodiscard]] Vector3<T> velocity_of(Vector3<T> point) const { return velocity + cross(turning, point); }
+};
+
+template <class T> Stance<T> stance(const TippingVector<T>& x, Vector2<T> velocity) {
+    const auto roll = math::sincos(x[base_roll]);
+    const auto pitch = math::sincos(x[base_pitch]);
+    Stance<T> s;
+    s.forward = {pitch.cos, T(0.0), T(-1.0) * pitch.sin};
+    s.left = {pitch.sin * roll.sin, roll.cos, pitch.cos * roll.sin};
+    s.up = {pitch.sin * roll.cos, T(-1.0) * roll.sin, pitch.cos * roll.cos};
+    s.velocity = {velocity.x, velocity.y, x[heave_rate]};
+    s.yaw_rate = (x[base_omega] * pitch.cos - x[body_pitch_rate] * roll.sin) / roll.cos;
+    s.turning = x[body_roll_rate] * s.forward + x[body_pitch_rate] * s.left + s.yaw_rate * s.up;
+    s.roll_rate = x[body_roll_rate] + pitch.sin * x[base_omega];
+    s.pitch_rate = x[body_pitch_rate] * roll.cos - s.yaw_rate * roll.sin;
+    return s;
+}
+
+// One wheel as a thin disc over the floor.
+template <class T> struct Footing {
+    Vector3<T> axle;            // unit vector, outwards
+    Vector3<T> rolling, radial; // horizontal unit vectors: where it rolls to, and across
+    Vector3<T> point;           // its lowest
+    Vector3<T> velocity;        // of the body at that point
+    T depth, depth_rate;
+    T wheel_speed;              // against the body
+};
+
+template <class T> Footing<T> footing(const TippingVector<T>& x, const Parameters<T>& p, const Stance<T>& s, int wheel) {
+    Footing<T> f;
+    f.axle = T(wheel_cos[wheel]) * s.forward + T(wheel_sin[wheel]) * s.left;
+    const T level = math::sqrt(f.axle.x * f.axle.x + f.axle.y * f.axle.y);
+    f.radial = {f.axle.x / level, f.axle.y / level, T(0.0)};
+    f.rolling = {T(-1.0) * f.radial.y, f.radial.x, T(0.0)};
+    const Vector3<T> rim = (T(-1.0) / level) * (Vector3<T>{T(0.0), T(0.0), T(1.0)} - f.axle.z * f.axle); // from the hub straight down in the wheel's plane
+    f.point = p.wheel_distance * f.axle + p.wheel_radius * (s.up + rim);
+    f.velocity = s.velocity_of(f.point);
+    f.depth = T(-1.0) * (x[base_heave] + f.point.z);
+    f.depth_rate = T(-1.0) * f.velocity.z;
+    f.wheel_speed = x[wheel_spin + wheel] + dot(s.turning, f.axle);
+    return f;
+}
+
+template <class T> struct TippingEvaluation : Evaluation<T, tipping_state_count> {
+    Stance<T> stance;
+    std::array<T, wheel_count> depth, load; // m, N
+    Vector2<T> contact_offset;              // of the body's axis at the contact's height
+    T floor_stored;
+};
+
+// The base's centre as a contact at the contact's height sees it, and the nose relative to that.
+namespace detail {
+
+template <class T> Nose<T> nose_at_height(const TippingVector<T>& x, const Parameters<T>& p, const Derived<T>& d, const math::SinCos<T>& heading,
+                                          const Stance<T>& s) {
+    Nose<T> nose = find_nose(x, p, d, heading);
+    nose.centre = nose.centre - (p.contact_height * s.up).plan();
+    return nose;
+}
+
+} // namespace detail
+
+template <class T>
+TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    TippingEvaluation<T> e{};
+    e.heading = math::sincos(x[base_theta]);
+    e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
+    e.stance = stance(x, e.velocity);
+    const Stance<T>& s = e.stance;
+    const Vector2<T> push_plan = to_base(e.heading, Vector2<T>{u.push_force_x, u.push_force_y});
+    const Vector3<T> push{push_plan.x, push_plan.y, T(0.0)};
+    const Vector3<T> push_point = s.at(u.push_point_x, u.push_point_y, p.push_height);
+    T loss = T(0.0);
+    T work = dot(push, s.velocity_of(push_point));
+
+    Vector3<T> force = push;
+    Vector3<T> moment = cross(push_point, push); // about the base's centre at floor level
+    const T nominal_load = p.mass * T(gravity_mps2) / T(wheel_count);
+    for (int i = 0; i < wheel_count; ++i) {
+        const Footing<T> f = footing(x, p, s, i);
+        e.wheel_speed[i] = f.wheel_speed;
+        e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
+        e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
+        const auto floor = stop_force(m.on_floor[i], p.floor_contact_stiffness, p.floor_contact_damping, f.depth, f.depth_rate);
+        e.depth[i] = f.depth;
+        e.load[i] = floor.force;
+        e.floor_stored = e.floor_stored + floor.stored;
+
+        // A bristle's deflection is that of nominal load; its force goes with the load.
+        const T share = floor.force / nominal_load;
+        const T axial_speed = dot(f.radial, f.velocity);
+        const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
+        const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
+        const T grip_rate = bristle_rate(slip, x[grip + i], p.grip_stiffness, p.grip_friction * nominal_load, p.roller_elastic_fraction);
+        const T traction = T(-1.0) * share * (p.grip_stiffness * x[grip + i] + p.grip_damping * grip_rate);
+        e.roller_force[i] = share * roller.force;
+        const Vector3<T> at_floor = traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
+        // About its axle the wheel takes the floor's moment, and the body the drive's; and the body carries the spin around with it.
+        const T spinning_up = e.sensed_torque[i] - p.wheel_radius * traction;
+        force = force + at_floor;
+        moment = moment + cross(f.point, at_floor) + spinning_up * f.axle + (p.wheel_inertia * x[wheel_spin + i]) * cross(s.turning, f.axle);
+
+        const T direction = m.gear_direction[i];
+        e.rate[motor_angle + i] = x[motor_speed + i];
+        e.rate[motor_speed + i] = motor_acceleration(p, direction, e.net_torque[i], x[motor_speed + i]);
+        e.rate[wheel_angle + i] = f.wheel_speed;
+        e.rate[wheel_spin + i] = spinning_up / p.wheel_inertia;
+        e.rate[bristle + i] = m.on_floor[i] * roller.deflection_rate;
+        e.rate[grip + i] = m.on_floor[i] * grip_rate;
+        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
+        loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
+               p.drivetrain_damping * math::square(x[motor_speed + i] - f.wheel_speed) + floor.dissipation - traction * slip +
+               e.roller_force[i] * axial_speed;
+    }
+
+    const Vector3<T> axis_point = p.contact_height * s.up;
+    const T omega = x[base_omega];
+    const auto touching = touch(p, d, detail::nose_at_height(x, p, d, e.heading, s), s.velocity_of(axis_point).plan(), omega, x[compression],
+                                x[compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
+    e.contact = touching.contact;
+    e.contact_force = touching.force;
+    e.contact_offset = axis_point.plan();
+    const Vector3<T> hit{e.contact_force.on_robot.x, e.contact_force.on_robot.y, T(0.0)};
+    force = force + hit;
+    // The outline turns with the heading alone; so its moment has to work on the heading's rate alone.
+    moment = moment + cross(axis_point, hit) + e.contact_force.moment * Vector3<T>{T(-1.0) * s.forward.z / s.forward.x, T(0.0), T(1.0)};
+    const Vector2<T> force_world = to_world(e.heading, e.contact_force.on_robot);
+    slider_rates(e, x, m, p, d, force_world.x * d.rail_x + force_world.y * d.rail_y, loss);
+
+    // Newton and Euler at the centre of mass. A wheel's own spin is accounted for by itself.
+    const Vector3<T> mass_centre = p.com_height * s.up;
+    const Vector3<T> torque = moment - cross(mass_centre, force);
+    const T tilting = p.tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
+    const T roll_rate = x[body_roll_rate];
+    const T pitch_rate = x[body_pitch_rate];
+    const T roll_acceleration = (dot(torque, s.forward) + (tilting - p.yaw_inertia) * pitch_rate * s.yaw_rate) / tilting;
+    const T pitch_acceleration = (dot(torque, s.left) + (p.yaw_inertia - tilting) * roll_rate * s.yaw_rate) / tilting;
+    const T yaw_acceleration = dot(torque, s.up) / p.yaw_inertia;
+    const Vector3<T> turning_rate = roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
+    const Vector3<T> weight{T(0.0), T(0.0), T(-gravity_mps2)};
+    const Vector3<T> acceleration =
+        (T(1.0) / p.mass) * force + weight - cross(turning_rate, mass_centre) - cross(s.turning, cross(s.turning, mass_centre));
+
+    const Vector2<T> acceleration_world = to_world(e.heading, acceleration.plan());
+    e.rate[base_x] = x[base_vx];
+    e.rate[base_y] = x[base_vy];
+    e.rate[base_theta] = omega;
+    e.rate[base_vx] = acceleration_world.x;
+    e.rate[base_vy] = acceleration_world.y;
+    // The heading's rate is (left.z pitch_rate + up.z yaw_rate) / cos(pitch)^2, differentiated.
+    const T pitch_cos = s.forward.x;
+    const T pitch_sin = T(-1.0) * s.forward.z;
+    const T roll_sin = s.left.z / pitch_cos;
+    const T roll_cos = s.left.y;
+    e.rate[base_omega] = (pitch_acceleration * roll_sin + yaw_acceleration * roll_cos + s.roll_rate * s.pitch_rate + omega * pitch_sin * s.pitch_rate) /
+                         pitch_cos;
+    e.rate[base_heave] = x[heave_rate];
+    e.rate[base_roll] = s.roll_rate;
+    e.rate[base_pitch] = s.pitch_rate;
+    e.rate[heave_rate] = acceleration.z;
+    e.rate[body_roll_rate] = roll_acceleration;
+    e.rate[body_pitch_rate] = pitch_acceleration;
+    e.rate[work_in] = work;
+    e.rate[dissipated] = loss;
+    e.rate[impulse_x] = force_world.x;
+    e.rate[impulse_y] = force_world.y;
+    return e;
+}
+
+template <class T>
+TippingVector<T> rhs(const TippingVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    return evaluate(x, u, m, p, d).rate;
+}
+
+template <class T>
+TippingEvents<T> event_indicators(const TippingVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    TippingEvents<T> g{};
+    const auto heading = math::sincos(x[base_theta]);
+    const Stance<T> s = stance(x, to_base(heading, Vector2<T>{x[base_vx], x[base_vy]}));
+    for (int i = 0; i < wheel_count; ++i) {
+        const Footing<T> f = footing(x, p, s, i);
+        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
+        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
+        g[event_floor + i] = f.depth;
+    }
+    g[event_tilt] = s.up.z - T(cos_greatest_tilt);
+    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::nose_at_height(x, p, d, heading, s), s.velocity_of(p.contact_height * s.up).plan(),
+                                                           x[base_omega], x[compression], x[compression_rate])
+                                                .depth
+                                          : T(-1.0);
+    slider_indicators(g, x, u, m, p, d, depth);
+    return g;
+}
+
+template <class T>
+void transition(TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const TippingEvents<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
+    for (int i = 0; i < wheel_count; ++i) {
+        const auto landed = math::less(T(0.0), fired[event_floor + i]);
+        const auto lifted = math::less(fired[event_floor + i], T(0.0));
+        m.on_floor[i] = math::select(landed, T(1.0), math::select(lifted, T(0.0), m.on_floor[i]));
+        // In the air the bristles straighten; without load they held nothing any more.
+        x[bristle + i] = math::select(lifted, T(0.0), x[bristle + i]);
+        x[grip + i] = math::select(lifted, T(0.0), x[grip + i]);
+    }
+    m.overturned = math::select(math::less(fired[event_tilt], T(0.0)), T(1.0), m.overturned);
+    planar_transition(x, u, m, fired, p, d);
+}
+
+template <class T> void accept_inputs(const TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {
+    const auto heading = math::sincos(x[base_theta]);
+    const Stance<T> s = stance(x, to_base(heading, Vector2<T>{x[base_vx], x[base_vy]}));
+    for (int i = 0; i < wheel_count; ++i) {
+        const T speed = footing(x, p, s, i).wheel_speed;
+        break_away(u, m, p, i, sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], speed));
+    }
+}
+
+// What is left, of all of it, before the base goes over if nothing but its weight acts from now on: 1 level and at rest, 0 at the point of no return.
+// Over the line between two wheels the base is an inverted pendulum; of its motion the part that grows, tilt + rate / d.tip_rate, decides.
+template <class T> T tip_margin(const Stance<T>& s, const Parameters<T>& p, const Derived<T>& d) {
+    const Vector3<T> mass_centre = p.com_height * s.up;
+    const Vector2<T> bound = mass_centre.plan() + (T(1.0) / d.tip_rate) * cross(s.turning, mass_centre).plan();
+    T farthest = T(-1e300);
+    for (int i = 0; i < wheel_count; ++i) { // over the line that is opposite to wheel i
+        farthest = math::max(farthest, T(-wheel_cos[i]) * bound.x - T(wheel_sin[i]) * bound.y);
+    }
+    return T(1.0) - T(2.0) * farthest / p.wheel_distance;
+}
+
+} // namespace giveway::plant
