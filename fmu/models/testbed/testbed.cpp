@@ -148,7 +148,7 @@ public:
         exchange_state_ = whole_state();
         exchanging_ = true;
     }
-    // All that the model description lists; without tipping the states after the planar ones rest at zero.
+    // All that the model description lists; without tipping nothing reads or moves those after the planar ones.
     double* states() override {
         exchange_state_ = whole_state();
         return exchange_state_.data();
@@ -266,8 +266,11 @@ private:
     double* state() { return exchanging_ ? exchange_state_.data() : integrator_.state(); }
 
     plant::TippingVector<double> whole_state() {
-        plant::TippingVector<double> whole{};
-        std::copy_n(state(), system_.state_count(), whole.begin());
+        plant::TippingVector<double> whole = exchange_state_;
+        if (!exchanging_) {
+            whole = {};
+            std::copy_n(integrator_.state(), system_.state_count(), whole.begin());
+        }
         return whole;
     }
 

@@ -103,6 +103,10 @@ SITUATIONS: dict[str, list[dict[str, float]]] = {
         {"start.vx": 0.2, "start.omega": 0.3, "bumper.kind": kind, "bumper.mount": mount, "bumper.latch_model": latch,
          "slider.target_x": 0.153046, "slider.target_y": 0.265083, "slider.run_up": 0.001}
         for kind, mount, latch in ((0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (2, 1, 1), (2, 0, 1))
+    ] + [
+        {"base.tipping": True, "start.vx": 0.2, "start.omega": 0.3, "bumper.kind": kind, "bumper.latch_model": latch,
+         "slider.run_up": 0.001, "wall.present": kind == 1}
+        for kind, latch in ((0, 0), (1, 0), (2, 1))
     ],
 }  # fmt: skip
 
@@ -354,7 +358,7 @@ def test_an_instance_for_co_simulation_has_no_modes_to_change(version: int, tmp_
 
 def test_fmi3_counts_what_it_has(make: Callable[..., Fmu]) -> None:
     fmu = make("testbed", 3)
-    for function, wanted in (("GetNumberOfContinuousStates", 28), ("GetNumberOfEventIndicators", 8)):
+    for function, wanted in (("GetNumberOfContinuousStates", 40), ("GetNumberOfEventIndicators", 13)):
         count = ctypes.c_size_t()
         assert fmu.call(function, ctypes.byref(count)) == OK
         assert count.value == wanted

@@ -18,7 +18,8 @@ from test_drivetrain import shove
 
 SIGNALS = 1e-4  # of the peak
 INSTANTS = 10e-6  # s
-IMPORTER_TOLERANCE = 1e-8
+# CVODE's norm is a mean over all states, of which the testbed has twelve more, at rest, than are moving without tipping.
+IMPORTER_TOLERANCE = 1e-8 * (28 / 40) ** 0.5
 # Ours is held tighter than what it is compared to, so that what is seen is the importer's error.
 CO_SIMULATION = {"solver.relative_tolerance": 1e-8, "solver.absolute_scale": 1e-2}
 # Set at a tick: an importer that integrates sees it there, a co-simulation at the end of the step that it acts in.
@@ -34,6 +35,7 @@ class Case:
     step: float = 5e-4
     least_events: int = 4
     moving_inputs: bool = False  # that change between their jumps
+    importer_tolerance: float = IMPORTER_TOLERANCE
 
 
 def shoved(t: float) -> dict[str, float]:
@@ -87,6 +89,7 @@ CASES = {
     "testbed, landing": Case(
         "testbed", {**SMOOTH, "rope.drop_height": 0.06, "roller.model": 1, "drivetrain.gear_stiction": 3.2}
     ),
+    # Off the middle of the side: in the middle two wheels do everything at the same instant.
     "testbed, wheels and wall": Case(
         "testbed",
         {
@@ -95,15 +98,33 @@ CASES = {
             "outline.wheels": True,
             "contact.height": 0.12,
             "rope.attached": False,
+            "slider.direction": -2.0,
             "slider.speed": 0.5,
             "slider.run_up": 0.06,
             "slider.mass": 4.0,
             "wall.present": True,
             "wall.distance": 0.01,
         },
+        importer_tolerance=1e-10,  # thrown to and fro its errors grow with every bounce: 4e-4 at 1e-8, 4e-5 so
     ),
-    "testbed, long edge": Case("testbed", {**SMOOTH, "bumper.kind": 0, "contact.nose_shape": 1}),
-    "testbed, tipping": Case("testbed", {**SMOOTH, "base.tipping": True, "contact.height": 0.5, "bumper.kind": 0}),
+    "testbed, long edge": Case(
+        "testbed",
+        {**SMOOTH, "bumper.kind": 0, "contact.nose_shape": 1, "slider.direction": -2.0, "slider.run_up": 0.06},
+    ),
+    "testbed, tipping": Case(
+        "testbed",
+        {
+            **SMOOTH,
+            "base.tipping": True,
+            "contact.height": 0.5,
+            "bumper.kind": 0,
+            "slider.direction": -2.0,
+            # In motion: at rest an angle of 0, the edge of an encoder count, is met with either sign of the importer's rounding.
+            "command.enable": False,
+            "start.vx": 0.1,
+            "start.omega": 0.2,
+        },
+    ),
 }
 
 
@@ -131,7 +152,7 @@ def exchange(case: Case, version: int, outputs: list[str]) -> np.ndarray:
     start = {name: value for name, value in case.parameters.items() if not name.startswith("solver.")}
     return fmpy.simulate_fmu(
         str(fmu_path(case.model, version)), fmi_type="ModelExchange", solver="CVode", start_values=start,
-        relative_tolerance=IMPORTER_TOLERANCE, input=signals(case) if case.inputs(0.0) else None, output=outputs,
+        relative_tolerance=case.importer_tolerance, input=signals(case) if case.inputs(0.0) else None, output=outputs,
         stop_time=case.stop, output_interval=case.step, record_events=False,
     )  # fmt: skip
 

@@ -142,7 +142,7 @@ class TippingReference:
             radial = np.array([axle[0], axle[1], 0.0]) / math.hypot(axle[0], axle[1])
             rolling = np.cross([0.0, 0.0, 1.0], radial)
             point = self.lowest(q, i)
-            # Of the rim's material there: the body's motion, and the wheel's rotation against it (positive about -axle).
+            # Of the rim's material there: the body's motion, and the wheel's against it (positive about -axle).
             rates = point_rates(q, point)
             hub = p.wheel_distance * self.axles[i] + np.array([0.0, 0.0, p.wheel_radius])
             rates[:, 6 + i] = r @ np.cross(-self.axles[i], point - hub)

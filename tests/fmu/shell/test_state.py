@@ -140,7 +140,7 @@ def test_null_pointers_are_refused(version: int, make) -> None:
     assert "null pointer" in fmu.last_message
 
 
-STATE_COUNTS = {"testbed": 28, "drivetrain": 6, "bumper": 2}
+STATE_COUNTS = {"testbed": 40, "drivetrain": 6, "bumper": 2}
 EULER_S = 1e-4
 
 
