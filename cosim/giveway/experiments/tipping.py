@@ -1,8 +1,9 @@
 """The collisions of 5.2 with a base that can tip: what an impact above the centre of mass does to torques and motion.
 
-The paper's robot was hit "above its center of mass": its torques dip right after the impact, its motion has a plateau of
-about 50 ms after detection, and its front wheel left the floor (Fig. 10). A planar robot shows none of it. The height of the
-hit is not printed; taken is the one halfway between the centre of mass and the top of the body, and others beside it.
+The paper's robot was hit "above its center of mass": its torques dip right after the impact, its motion has a plateau
+of about 50 ms after detection, and its front wheel left the floor (Fig. 10). A planar robot shows none of it. The
+height of the hit is not printed; taken is the one halfway between the centre of mass and the top of the body, and
+others beside it.
 """
 
 from __future__ import annotations
@@ -69,11 +70,13 @@ class _Run:
     def along_push(self, quantity: tuple[str, str]) -> NDArray[np.float64]:
         """A vector's component along the push that was."""
         push = [float(self[f"truth.contact_impulse_{axis}"][-1]) for axis in "xy"]
-        return (self[quantity[0]] * push[0] + self[quantity[1]] * push[1]) / math.hypot(*push)
+        size = math.hypot(*push)
+        along: NDArray[np.float64] = self[quantity[0]] * (push[0] / size) + self[quantity[1]] * (push[1] / size)
+        return along
 
     def travel_mm(self) -> NDArray[np.float64]:
-        travel = self.along_push(("truth.x", "truth.y"))
-        return 1e3 * (travel - travel[0])
+        travel = 1e3 * self.along_push(("truth.x", "truth.y"))
+        return travel - float(travel[0])
 
     def detection_ms(self) -> float | None:
         return self.result.metric("detection time").value
@@ -84,7 +87,7 @@ class _Run:
         return _longest(speed < PLATEAU_SHARE * np.maximum.accumulate(speed), self.time_ms)
 
     def dip_nm(self) -> float:
-        """By how much wheel 0's torque falls from its first peak before it is detected to be pushed: the largest such fall."""
+        """The largest fall of wheel 0's torque from a peak, before detection."""
         torque = self["truth.wheel_torque[0]"]
         until = self.detection_ms()
         torque = torque[self.time_ms <= (self.time_ms[-1] if until is None else until)]
@@ -129,19 +132,23 @@ def _reproduce(effort: Effort) -> Findings:
         _agreement_row(planar["none"], flat),
     ]
     notes = [
-        f"Heights above the floor: centre of mass {CENTRE_OF_MASS_M:g} m (robot file), contact {CONTACT_HEIGHT_M:g} m (assumed, halfway to the "
-        f"body's top at {TOP_M:g} m). Stiffness and friction of wheels and floor are assumed.",
-        "Without a bumper, by height of the contact: " + "; ".join(
-            f"{height:g} m: plateau {r.plateau_ms():.0f} ms, a wheel in the air for {r.airborne_ms():.0f} ms, detected after {_ms(r.detection_ms())}"
+        f"Heights above the floor: centre of mass {CENTRE_OF_MASS_M:g} m (robot file), contact {CONTACT_HEIGHT_M:g} m "
+        f"(assumed, halfway to the body's top at {TOP_M:g} m). Stiffness and friction of wheels and floor are assumed.",
+        "Without a bumper, by height of the contact: "
+        + "; ".join(
+            f"{height:g} m: plateau {r.plateau_ms():.0f} ms, a wheel in the air for {r.airborne_ms():.0f} ms, "
+            f"detected after {_ms(r.detection_ms())}"
             for height, r in by_height.items()
-        ) + ". A hit above the centre of mass takes load and grip from the wheels, so they feel it later.",
-    ]  # fmt: skip
+        )
+        + ". A hit above the centre of mass takes load and grip from the wheels, so they feel it later.",
+    ]
     pictures = [
         Picture(
             "wheel-torque",
             "Wheel torque and motion, with and without tipping",
-            "Torque of wheel 0 and travel of the base along the push, as the paper's Fig. 10 has them; dotted: detection. The base that tips "
-            "loses torque right after a hard impact, and its travel pauses while wheels are off the floor.",
+            "Torque of wheel 0 and travel of the base along the push, as the paper's Fig. 10 has them, and the loads "
+            "on the wheels; dotted: detection. The base that tips loses torque right after a hard impact, and its travel "
+            "pauses.",
             _picture(planar, tipping),
             (("plateau after detection, no bumper", "about 50 ms"),),
         )
@@ -158,25 +165,38 @@ def _plateau_rows(planar: _Run, tipping: _Run, by_height: dict[float, _Run]) -> 
     plateaus = {height: run.plateau_ms() for height, run in by_height.items()}
     enough = [height for height, plateau in plateaus.items() if target.met(plateau)]
     reason = (
-        f"a contact at {min(enough):g} m makes one of {plateaus[min(enough)]:.0f} ms; the paper does not print its height"
+        f"a contact at {min(enough):g} m makes one of {plateaus[min(enough)]:.0f} ms; the paper prints no height"
         if enough
-        else f"none of the heights tried ({', '.join(f'{h:g}' for h in plateaus)} m) makes more than {max(plateaus.values()):.0f} ms"
+        else f"no height from {min(plateaus):g} to {max(plateaus):g} m makes more than {max(plateaus.values()):.0f} ms"
     )
-    plateau = tipping.plateau_ms()
+    plateau, still, airborne = tipping.plateau_ms(), Target(0.0, 0.0, "none"), tipping.airborne_ms()
+    lifts = Target(minimum=1.0, text="it lifts")
+    low = "" if lifts.met(airborne) else "this contact is too low to lift one"
+    missed = "" if target.met(plateau) else reason
     return [
-        Row("plateau of the motion, no bumper", plateau, "ms", "assumed", 50.0, target, "" if target.met(plateau) else reason, 0),
-        Row("plateau of the motion, no bumper, planar", planar.plateau_ms(), "ms", "computed", None, Target(0.0, 0.0, "none"), "", 0),
-        Row("longest time a wheel is in the air, no bumper", tipping.airborne_ms(), "ms", "assumed", "front wheel lifts",
-            Target(minimum=1.0, text="it lifts"), "" if tipping.airborne_ms() > 0.0 else "this contact is too low to lift one", 0),
-        Row("dip of wheel 0's torque before detection, no bumper", tipping.dip_nm(), "N.m", "assumed", "a dip", None, "", 2),
+        Row("plateau of the motion, no bumper", plateau, "ms", "assumed", 50.0, target, missed, 0),
+        Row("plateau of the motion, no bumper, planar", planar.plateau_ms(), "ms", "computed", None, still, "", 0),
+        Row("longest time a wheel is in the air", airborne, "ms", "assumed", "front wheel lifts", lifts, low, 0),
+        Row(
+            "dip of wheel 0's torque before detection, no bumper",
+            tipping.dip_nm(),
+            "N.m",
+            "assumed",
+            "a dip",
+            None,
+            "",
+            2,
+        ),
         Row("the same, planar", planar.dip_nm(), "N.m", "computed", None, None, "", 2),
-    ]  # fmt: skip
+    ]
 
 
 def _safety_row(bumper: str, run: _Run) -> Row:
     # 0 is the point of no return; half of the way is what a design would keep.
-    return Row(f"least tip margin, {BUMPERS_IN_WORDS[bumper]} (leans {run.lean_deg():.1f} deg)", run.margin(), "1", "assumed", None,
-               Target(minimum=0.5), "" if run.margin() >= 0.5 else "a lower or softer contact, or a slower escape, would keep it", 2)  # fmt: skip
+    half, margin = Target(minimum=0.5), run.margin()
+    reason = "" if half.met(margin) else "a lower or softer contact, or a slower escape, would keep it"
+    name = f"least tip margin, {BUMPERS_IN_WORDS[bumper]} (leans {run.lean_deg():.1f} deg)"
+    return Row(name, margin, "1", "assumed", None, half, reason, 2)
 
 
 def _detection_row(bumper: str, run: _Run) -> Row:
@@ -194,7 +214,7 @@ def _detection_row(bumper: str, run: _Run) -> Row:
 
 
 def _agreement_row(planar: _Run, flat: _Run) -> Row:
-    """Both hit without a bumper, compared until the controllers, which do not tick at the same encoder counts, react."""
+    """Both hit without a bumper, compared until the controllers react, which see different encoder counts."""
     reacts = min(planar.detection_ms() or 1e3 * WINDOW_S, flat.detection_ms() or 1e3 * WINDOW_S)
     worst = 0.0
     for names in (
@@ -207,8 +227,9 @@ def _agreement_row(planar: _Run, flat: _Run) -> Row:
         b = np.stack([flat[name][before] for name in names])
         worst = max(worst, float(np.abs(a - b).max() / np.abs(a - a[:, :1]).max()))
     target = Target(maximum=10.0, text="at most 10 (the wheels' grip is 30 times as stiff as the drivetrain)")
-    return Row("largest deviation from the planar robot, wheels kept down", 100.0 * worst, "%", "computed", None, target,
-               "" if target.met(100.0 * worst) else "wheel.grip_stiffness: the deviation falls as it rises", 1)  # fmt: skip
+    reason = "" if target.met(100.0 * worst) else "wheel.grip_stiffness: the deviation falls as it rises"
+    name = "largest deviation from the planar robot, wheels kept down"
+    return Row(name, 100.0 * worst, "%", "computed", None, target, reason, 1)
 
 
 BUMPERS_IN_WORDS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic bumper"}
@@ -226,8 +247,9 @@ def _picture(planar: dict[str, _Run], tipping: dict[str, _Run]) -> Figure:
         panels = figure.subplots(3, len(planar), sharex=True, sharey="row", squeeze=False)
         for column, bumper in enumerate(planar):
             for run, colour, label in (
-                (planar[bumper], TRUTH_COLOUR, "planar"), (tipping[bumper], colours[bumper], "tipping"),
-            ):  # fmt: skip
+                (planar[bumper], TRUTH_COLOUR, "planar"),
+                (tipping[bumper], colours[bumper], "tipping"),
+            ):
                 panels[0, column].plot(run.time_ms, run["truth.wheel_torque[0]"], color=colour, label=label)
                 panels[1, column].plot(run.time_ms, run.travel_mm(), color=colour)
                 for axes in panels[:, column]:
@@ -245,9 +267,10 @@ def _picture(planar: dict[str, _Run], tipping: dict[str, _Run]) -> Figure:
                 )
             panels[0, column].set_title(BUMPERS_IN_WORDS[bumper])
             panels[2, column].set(xlabel="time since contact (ms)", xlim=(0.0, 1e3 * WINDOW_S))
-        for row, place in ((0, "outside upper right"), (2, "outside lower center")):
-            handles, labels = panels[row, 0].get_legend_handles_labels()
-            figure.legend(handles, labels, loc=place, ncols=len(labels))
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper right", ncols=2)
+        handles, labels = panels[2, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
         for row, label in enumerate(("torque of wheel 0 (N m)", "travel (mm)", "load on the wheels (N)")):
             panels[row, 0].set_ylabel(label)
     return figure
@@ -255,7 +278,7 @@ def _picture(planar: dict[str, _Run], tipping: dict[str, _Run]) -> Figure:
 
 EXPERIMENT = Experiment(
     name="tipping",
-    summary="The collisions of 5.2 above the centre of mass of a base that can tip: torque dip, plateau, tip margin (paper, Fig. 10).",
+    summary="The collisions of 5.2 with a base that can tip: torque dip, plateau, tip margin (paper, Fig. 10).",
     section="5.2",
     bumpers=tuple(BUMPERS),
     scenario=scenario,

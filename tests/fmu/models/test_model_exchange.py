@@ -18,7 +18,7 @@ from test_drivetrain import shove
 
 SIGNALS = 1e-4  # of the peak
 INSTANTS = 10e-6  # s
-# CVODE's norm is a mean over all states, of which the testbed has twelve more, at rest, than are moving without tipping.
+# CVODE's norm is a mean over all states: the testbed's twelve of tipping, at rest without it, would dilute it.
 IMPORTER_TOLERANCE = 1e-8 * (28 / 40) ** 0.5
 # Ours is held tighter than what it is compared to, so that what is seen is the importer's error.
 CO_SIMULATION = {"solver.relative_tolerance": 1e-8, "solver.absolute_scale": 1e-2}
@@ -119,7 +119,7 @@ CASES = {
             "contact.height": 0.5,
             "bumper.kind": 0,
             "slider.direction": -2.0,
-            # In motion: at rest an angle of 0, the edge of an encoder count, is met with either sign of the importer's rounding.
+            # In motion: at rest, at an angle of 0, the importer's rounding decides between two encoder counts.
             "command.enable": False,
             "start.vx": 0.1,
             "start.omega": 0.2,

@@ -34,7 +34,7 @@ HELD = replace(ROBOT, slider_present=0, gear_coulomb=500.0, gear_stiction=500.0,
 
 
 def random_case(rng: np.random.Generator) -> tuple[Parameters, np.ndarray, Inputs, np.ndarray]:
-    """All within a few degrees and a millimetre of the floor, the slider's nose on the outline, every mode on or off."""
+    """Within some degrees and millimetres of the floor, the nose on the outline, every mode on or off."""
     p = replace(
         ROBOT,
         com_height=rng.uniform(0.1, 0.6),
@@ -243,8 +243,8 @@ def rearing(plant: TippingPlant, margin: float) -> tuple[np.ndarray, np.ndarray]
 
 @pytest.mark.parametrize(("margin", "goes_over"), [(0.0, False), (-0.15, True)])
 def test_the_margin_decides_whether_it_goes_over(library: ctypes.CDLL, margin: float, goes_over: bool) -> None:
-    """The margin is that of a linear pendulum, good to a few hundredths up to 15 deg; and coming to bear on the springs of its
-    wheels, which the start does not quite hit, takes up to 8 hundredths of the motion. So 0 comes back, -0.15 does not."""
+    """The margin is that of a linear pendulum, good to a few hundredths up to 15 deg; and coming to bear on the springs
+    of its wheels, which the start does not quite hit, takes up to 8 hundredths. So 0 comes back, -0.15 does not."""
     plant = TippingPlant(library, HELD)
     x, modes = rearing(plant, margin)
     run = plant.run(x, modes, np.linspace(0.0, 2.0, 201), [(0.0, Inputs())], rtol=1e-7)
@@ -273,7 +273,7 @@ def test_a_wheel_that_lifts_forgets_its_bristles_and_one_that_lands_keeps_the_re
 
 
 def test_a_trajectory_with_lifting_wheels_against_lagrange_in_scipy(library: ctypes.CDLL) -> None:
-    """Pushed hard off the centre for 60 ms, gears held. Both integrate to 1e-9 and restart at each lift and touch-down."""
+    """Pushed hard off the centre for 60 ms, gears held. Both integrate to 1e-9, anew from each lift and touch-down."""
     p = replace(HELD, grip_stiffness=2.0e5, floor_contact_stiffness=5.0e4, push_height=0.6)
     plant, reference = TippingPlant(library, p), TippingReference(p)
     x, modes = plant.start()
@@ -317,13 +317,15 @@ def test_a_trajectory_with_lifting_wheels_against_lagrange_in_scipy(library: cty
 
 
 def test_on_stiff_wheels_with_everything_at_floor_level_it_is_the_planar_robot(library: ctypes.CDLL) -> None:
-    """Centre of mass and contact 1 mm above the floor: nothing tips. Wheels and floor 1000 times as stiff as the drivetrain, rollers
-    without inertia (which the tipping plant leaves out). What is left is the grip's compliance, k_w/k_grip = 3e-4 here, and falls with it.
+    """Centre of mass and contact 1 mm above the floor: nothing tips. Wheels and floor a thousand times as stiff as the
+    drivetrain, rollers without inertia (which the tipping plant leaves out). What is left is the grip's compliance,
+    k_w/k_grip = 3e-4, on signals that ring; it falls with it.
     """
 
     def errors(stiffness: float) -> np.ndarray:
         p = replace(
-            ROBOT, com_height=1e-3, contact_height=1e-3, roller_inertia=1e-12, run_up=0.006, target_y=0.05, grip_friction=100.0,
+            ROBOT, com_height=1e-3, contact_height=1e-3, roller_inertia=1e-12, run_up=0.006, target_y=0.05,
+            grip_friction=100.0,
             floor_contact_stiffness=stiffness, grip_stiffness=stiffness, grip_damping=2e-4 * stiffness,
         )  # fmt: skip
         times = np.linspace(0.0, 0.25, 126)

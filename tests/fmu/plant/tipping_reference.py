@@ -1,8 +1,9 @@
-"""The base that tips once more, by Lagrange's equations, to hold fmu/plant/tipping.hpp against. Not written from the C++.
+"""The base that tips once more, by Lagrange's equations, to hold fmu/plant/tipping.hpp against; not written from it.
 
-Coordinates: x, y, height of the body's point at floor level in its middle; heading, pitch, roll (turned in this order); the
-wheels' angles against the body. Kinetic energy is that of a rigid body and three spinning discs; what Lagrange's equations need
-of it (mass matrix and its derivatives) is got by complex steps, exact to rounding: no equation is worked out by hand.
+Coordinates: x, y, height of the body's point at floor level in its middle; heading, pitch, roll (turned in this order);
+the wheels' angles against the body. Kinetic energy is that of a rigid body and three spinning discs; what Lagrange's
+equations need of it (mass matrix and its derivatives) is got by complex steps, exact to rounding: no equation is worked
+out by hand.
 
 Forces enter by virtual work at the points where they act. Element laws are those of fmu/plant/README.md, shared with
 kkt_reference.py where the planar plant has them too.
@@ -107,7 +108,7 @@ class TippingReference:
     def contact(
         self, x: np.ndarray, q: np.ndarray, v: np.ndarray
     ) -> tuple[float, float, float, np.ndarray, np.ndarray]:
-        """Depth, its rate, slip, outward normal (world), and the point's velocity per unit rate of the coordinates (2 x 9)."""
+        """Depth, its rate, slip, outward normal (world), and the point's velocity per unit coordinate rate (2 x 9)."""
         p, r = self.p, self.planar
         nose_x, nose_y, ux, uy = r.nose(x)
         axis = np.array([0.0, 0.0, p.contact_height])
