@@ -147,8 +147,8 @@ def _reproduce(effort: Effort) -> Findings:
             "wheel-torque",
             "Wheel torque and motion, with and without tipping",
             "Torque of wheel 0 and travel of the base along the push, as the paper's Fig. 10 has them, and the loads "
-            "on the wheels; dotted: detection. The base that tips loses torque right after a hard impact, and its travel "
-            "pauses.",
+            "on the wheels; dotted: detection. The base that tips loses torque right after a hard impact, and its "
+            "travel pauses.",
             _picture(planar, tipping),
             (("plateau after detection, no bumper", "about 50 ms"),),
         )
