@@ -321,7 +321,9 @@ TEST(Estimator, MotorsThatTurnMoveTheBristlesToo) {
     const Eigen::Vector3d shift = wheel.inverse() * turned;
     // Elastic part; the rate filters saw three counts within one tick, so the damper has a part, too.
     const Eigen::Vector3d measured = vector(out.measured_twist);
-    const Eigen::Vector3d along = 25900.0 * axles * shift + 20.0 * axles * measured;
+    const auto &bristle = config.estimator.presliding;
+    const Eigen::Vector3d along = static_cast<double>(bristle.stiffness_n_per_m[0]) * axles * shift +
+                                  static_cast<double>(bristle.damping_newton_s_per_m) * axles * measured;
     EXPECT_VECTOR_NEAR(vector(out.wrench), axles.transpose() * along, 100.0 * tolerance * along.norm());
 }
 

@@ -37,6 +37,7 @@ struct Bristles {
         const double angle = azimuth(geometry, static_cast<std::size_t>(i));
         return {std::cos(angle), std::sin(angle), 0.0};
     }
+    [[nodiscard]] double sigma0(int i = 0) const { return config.stiffness_n_per_m[i]; }
     [[nodiscard]] double most() const {
         return static_cast<double>(friction.coulomb_torque_nm) / static_cast<double>(geometry.roller_radius_m);
     }
@@ -148,7 +149,7 @@ TEST(Presliding, WithinTheElasticPartItIsASpring) {
         Bristles b(random_geometry(random, trial));
         (void)b.move(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
         Eigen::Vector3d where = Eigen::Vector3d::Zero();
-        const double reach = 0.69 * b.most() / 25900.0;
+        const double reach = 0.69 * b.most() / b.sigma0();
         for (int k = 0; k < 500; ++k) {
             Eigen::Vector3d next = random_vector(random, 1.0);
             next.head<2>() *= random.uniform(0.0, reach) / next.head<2>().norm();
@@ -157,7 +158,7 @@ TEST(Presliding, WithinTheElasticPartItIsASpring) {
             where = next;
             for (int i = 0; i < 3; ++i) {
                 // 500 roundings of positions in torques of up to 668 Nm/rad x 1e-3 m / 0.02 m.
-                ASSERT_NEAR(force(i), 25900.0 * b.axle(i).dot(where), 500.0 * tolerance * b.most()) << k;
+                ASSERT_NEAR(force(i), b.sigma0(i) * b.axle(i).dot(where), 500.0 * tolerance * b.most()) << k;
             }
         }
     }
@@ -210,7 +211,7 @@ TEST(Presliding, AHeldPushDoesNotCreepUnderNoise) {
     // An hour at 1 kHz, at 0.6 of what the rollers bear, with the torque sensor's noise in its resolution of 14.3 mN m.
     Bristles b;
     (void)b.move(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
-    const Eigen::Vector3d held(0.6 * b.most() / 25900.0, 0.0, 0.0);
+    const Eigen::Vector3d held(0.6 * b.most() / b.sigma0(), 0.0, 0.0);
     const Eigen::Vector3d start = b.move(held, Eigen::Vector3d::Zero());
     ASSERT_NEAR(start(0), 0.6 * b.most(), 1e-3);
     const Eigen::Vector3d torque = b.torque;
@@ -241,7 +242,7 @@ TEST(Presliding, OverAGapTheDeflectionStays) {
     const Eigen::Vector3d moved = wheel_jacobian(b.geometry, 0.0).inverse() * Eigen::Vector3d(2.0 * pi / 8500.0, 0, 0);
     const Eigen::Vector3d now = b.at({5.0, -3.0, 2.0}, Eigen::Vector3d::Zero());
     for (int i = 0; i < 3; ++i) {
-        EXPECT_NEAR(now(i) - after(i), 25900.0 * b.axle(i).dot(moved), 100.0 * tolerance);
+        EXPECT_NEAR(now(i) - after(i), b.sigma0(i) * b.axle(i).dot(moved), 100.0 * tolerance);
     }
 }
 

@@ -156,6 +156,7 @@ TEST(ControllerFmu, BristlesReachTheLibrary) {
         fmu.v.estimator_presliding_stiffness[0] = 2.0e4;
         fmu.v.estimator_presliding_stiffness[1] = 3.0e4;
         fmu.v.estimator_presliding_stiffness[2] = 4.0e4;
+        fmu.v.estimator_drivetrain_stiffness = 668.0;
         fmu.v.estimator_presliding_damping = 10.0;
         fmu.v.estimator_stribeck_speed = 0.004;
         fmu.v.estimator_elastic_fraction = 0.5;
