@@ -21,16 +21,16 @@ class NewValue:
     Attributes:
         value: in the entry's unit.
         source: where it comes from.
-        confidence: high, medium or low.
         provenance: given, sourced, fitted or assumed.
-        note: what to know about it.
+        confidence: high, medium or low; None: as it was.
+        note: what to know about it; None: as it was.
     """
 
     value: float
     source: str
-    confidence: str
     provenance: str
-    note: str
+    confidence: str | None = None
+    note: str | None = None
 
 
 def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
@@ -48,7 +48,9 @@ def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
         assert isinstance(table, AbstractTable)
         table["value"] = finite(name, new.value)
         for key in ("source", "confidence", "provenance", "note"):
-            table[key] = getattr(new, key)
+            words = getattr(new, key)
+            if words is not None:
+                table[key] = words
     text = tomlkit.dumps(document)
     _check(path, text, changes)
     return text

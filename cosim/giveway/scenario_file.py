@@ -40,12 +40,14 @@ _PLAN_KEYS = {
     "straight": (*_POSE, "speed", "direction", "acceleration"),
     "circle": ("diameter", "speed", "centre", "start", "heading", "turning", "acceleration"),
 }
-_COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope")
+_COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
 # Parameters that a key of the file sets; [testbed] must not set them once more.
 _SET_BY = {
     "bumper.kind": "bumper",
     "electronics.seed": "seed",
+    "base.tipping": "collision.height",
+    "contact.height": "collision.height",
     "rope.attached": "collision.rope",
     "slider.present": "collision",
     "slider.mass": "collision.mass",
@@ -230,7 +232,17 @@ def _collision(section: _Section, bare: Scenario) -> dict[str, Value]:
         time_s = None if rope and "time" not in section.values else section.number("time", MEETING_S)
         direction = section.angle("direction") if "direction" in section.values else None
         approach = Approach(point, section.number("speed"), direction, time_s, rope)
-        return {"slider.mass": mass} | meet(approach, testbed, bare.plan, _tare_s(bare))
+        met = {"slider.mass": mass} | meet(approach, testbed, bare.plan, _tare_s(bare))
+    return met | _height(section)
+
+
+def _height(section: _Section) -> dict[str, Value]:
+    """A height above the floor matters to a base that can tip."""
+    if "height" not in section.values:
+        return {}
+    with _renamed("collision", **{"contact.height": "height"}):
+        height = table("testbed").check("contact.height", section.number("height"))
+    return {"base.tipping": True, "contact.height": height}
 
 
 def _tare_s(scenario: Scenario) -> float:

@@ -124,7 +124,7 @@ def test_wrong_input_is_told(cli: Cli, tmp_path: Path) -> None:
 def test_an_entry_without_a_value_is_refused(committed: Fit, tmp_path: Path) -> None:
     robot = tmp_path / "robot.toml"
     robot.write_text(ROBOT.read_text(encoding="utf-8").replace("[servo.kd]\nvalue = ", "[servo.kd]\nnumber = "))
-    with pytest.raises(FileError, match=r"servo\.kd: value = \.\.\. stands there 0 times"):
+    with pytest.raises(FileError, match=r"servo\.kd is missing"):
         robot_text(robot, committed, "robot.fit.json")
 
 

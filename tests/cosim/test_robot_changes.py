@@ -11,7 +11,7 @@ from giveway.errors import FileError
 from giveway.robot import read_robot
 from giveway.robot_changes import NewValue, changed_robot
 
-NEW = NewValue(0.25, "a test", "medium", "fitted", "a note")
+NEW = NewValue(0.25, "a test", "fitted", "medium", "a note")
 
 
 def test_only_the_entry_changes(tmp_path: Path) -> None:

@@ -32,7 +32,7 @@ PINNED = {"detector.leak_motion": 3.0, "roller.presliding_stiffness": 25900.0, "
 
 @pytest.fixture(scope="module")
 def robot_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    changes = {name: NewValue(value, "this test", "high", "assumed", "") for name, value in PINNED.items()}
+    changes = {name: NewValue(value, "this test", "assumed") for name, value in PINNED.items()}
     path = tmp_path_factory.mktemp("robot") / "trikey.toml"
     path.write_text(changed_robot(native.robot(), changes))
     return path

@@ -73,6 +73,13 @@ def test_a_file_becomes_a_scenario(tmp_path: Path) -> None:
     assert found["slider.direction"] == pytest.approx(math.radians(-120.0), abs=1e-6)  # corners to micrometres
 
 
+def test_a_height_lets_the_base_tip(tmp_path: Path) -> None:
+    assert "base.tipping" not in read_scenario(written(tmp_path, GOOD)).testbed
+    found = read_scenario(written(tmp_path, GOOD.replace("mass = 12.0", "mass = 12.0\nheight = 0.45"))).testbed
+    assert found["base.tipping"] is True
+    assert found["contact.height"] == 0.45
+
+
 def test_without_a_collision_there_is_no_slider(tmp_path: Path) -> None:
     scenario = read_scenario(written(tmp_path, "schema_version = 1\nduration = 1"))
     assert scenario.name == "case"
@@ -122,6 +129,8 @@ WRONG: dict[str, tuple[str, str, int, tuple[str, ...]]] = {
     "syntax": ("mass = 12.0", "mass = = 12.0", 7, ("Invalid value",)),
     "end": ("\n]\n", "\n", 18, ("not TOML",)),
     "twice": ("speed = 0.4", "mass = 1.0", 8, ("overwrite",)),
+    "height": ("mass = 12.0", "height = -0.1", 7, ("collision.height: -0.1", "0")),
+    "tips twice": ("slider.friction = 2.0", "base.tipping = true", 14, ("testbed.base.tipping", "collision.height")),
     "no version": ("schema_version = 1\n", "", 1, ("schema_version: nothing", "needed")),
     "other version": ("schema_version = 1", "schema_version = 2", 1, ("schema_version: 2", "allowed: 1")),
     "no duration": ("duration = 2.0\n", "", 1, ("duration: nothing",)),

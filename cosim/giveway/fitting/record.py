@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +12,7 @@ from giveway.errors import FileError
 from giveway.fitting.parameters import FREE, to_unit
 from giveway.fitting.quantities import QUANTITIES
 from giveway.fitting.search import SEEDS, Fit
+from giveway.robot_changes import NewValue, changed_robot
 
 __all__ = ["PARAMETER_HEADER", "TARGET_HEADER", "parameter_rows", "read_record", "record", "robot_text", "target_rows"]
 
@@ -132,22 +131,6 @@ def read_record(path: Path) -> dict[str, Any]:
 
 def robot_text(path: Path, fit: Fit, record_name: str) -> str:
     """The robot file ``path`` with the fitted values, their provenance and source; all else stays as it is written."""
-    text = path.read_text(encoding="utf-8")
     source = f"giveway fit, to the results of Kim, Llado, Sentis, Auton Robot 40:325 (2016); residuals in {record_name}"
-    for name, value in fit.values.items():
-        text = _with(path, text, name, (("value", f"{value!r}"), ("source", f'"{source}"'), ("provenance", '"fitted"')))
-    return text
-
-
-def _with(path: Path, text: str, entry: str, changes: Sequence[tuple[str, str]]) -> str:
-    start = text.find(f"[{entry}]\n")
-    if start < 0:
-        raise FileError(path, f"{entry} is missing", "every fitted value needs its entry")
-    end = text.find("\n[", start)
-    end = len(text) if end < 0 else end
-    body = text[start:end]
-    for key, value in changes:
-        body, count = re.subn(rf"^{key} = .*$", f"{key} = {value}".replace("\\", r"\\"), body, flags=re.MULTILINE)
-        if count != 1:
-            raise FileError(path, f"{entry}: {key} = ... stands there {count} times", "once")
-    return text[:start] + body + text[end:]
+    changes = {name: NewValue(float(value), source, "fitted") for name, value in fit.values.items()}
+    return changed_robot(path, changes)

@@ -116,7 +116,7 @@ EXPORT void tipping_initial_state(void* handle, const double* motion, const doub
     const auto* probe = static_cast<const Probe*>(handle);
     plant::TippingVector<double> state = {};
     Modes modes = {};
-    plant::initial_state({motion[0], motion[1], motion[2], motion[3], motion[4], motion[5], motion[6]}, inputs_from(u), probe->p, probe->d, state, modes);
+    plant::initial_state({motion[0], motion[1], motion[2], motion[3], motion[4], motion[5], motion[6], {}}, inputs_from(u), probe->p, probe->d, state, modes);
     std::copy(state.begin(), state.end(), x);
     modes_to(modes, m);
 }
