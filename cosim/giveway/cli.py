@@ -290,7 +290,7 @@ def calibrate(
     out: Annotated[Path, typer.Option("--out", metavar="NEW.toml", help="The new robot file; NEW.png lies beside it.")],
 ) -> None:
     """Fit the roller friction to logs of wheel angles and torques; write a new robot file and a residual plot."""
-    from giveway.calibrate import calibrate_robot, table_rows
+    from giveway.calibration.command import calibrate_robot, table_rows
 
     calibration, written = calibrate_robot(logs, robot, out)
     title = f"Roller friction (28) from {', '.join(log.name for log in calibration.logs)}"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from giveway import native
-from giveway.motion_log import MotionLog
+from giveway.calibration.motion_log import MotionLog
 from giveway.robot import read_robot
 
 _ROBOT = read_robot(native.robot())

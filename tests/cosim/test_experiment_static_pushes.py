@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from giveway import batch
 from giveway.experiments import get
-from giveway.push_groups import PRINTED, group_values, percentile_of
-from giveway.push_placements import CONE_RAD, Placement, default_outline, paper_placements, random_placements
-from giveway.push_robots import pushed_robot
-from giveway.push_trials import Readings, Trial
 from giveway.reproduction import Effort, Findings, Row
 from giveway.scenario import Scenario
+from giveway.static_pushes.groups import PRINTED, group_values, percentile_of
+from giveway.static_pushes.placements import CONE_RAD, Placement, default_outline, paper_placements, random_placements
+from giveway.static_pushes.robots import pushed_robot
+from giveway.static_pushes.trials import Readings, Trial
 
 
 @pytest.fixture(scope="module")

@@ -12,13 +12,13 @@ import pytest
 from arc_logs import ALPHA, B_R, R_W, STEP_S, Swing, arc_log, csv_lines, sine
 from cosim_helpers import Cli, folder_content
 from giveway import native
+from giveway.calibration.motion_log import MotionLog
+from giveway.calibration.roller_fit import RestZone, fit, half_widths, prepare
+from giveway.calibration.roller_friction import Calibration, UnidentifiableError, calibrate
+from giveway.calibration.torque_model import TorqueModel
 from giveway.errors import GivewayError
-from giveway.motion_log import MotionLog
 from giveway.robot import Robot, read_robot
 from giveway.robot_changes import NewValue, changed_robot
-from giveway.roller_calibration import Calibration, UnidentifiableError, calibrate
-from giveway.roller_fit import RestZone, fit, half_widths, prepare
-from giveway.torque_model import TorqueModel
 from PIL import Image
 
 GOOD = arc_log((1.0, 0.0, 0.0), sine(1.5, 0.1), 30.0)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from arc_logs import world_torques
 from giveway import native
+from giveway.calibration.torque_model import TorqueModel
 from giveway.robot import read_robot
-from giveway.torque_model import TorqueModel
 
 STEP_S = 1e-3
 

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from giveway.motion_log import MotionLog
+    from giveway.calibration.motion_log import MotionLog
+    from giveway.calibration.roller_friction import Calibration, FittedLog
     from giveway.robot import Robot
-    from giveway.roller_calibration import Calibration, FittedLog
 
 SWING_RAD = 1.5
 FREQUENCY_HZ = 0.1
@@ -115,7 +115,7 @@ def log_of(name: str, table: xarray.Dataset, run: int, robot: Robot) -> MotionLo
     """What the robot's own computer would have written down in ``run`` of a batch that recorded `RECORDED`."""
     import numpy as np
 
-    from giveway.motion_log import MotionLog, behind_drivetrain, counts_to_rad
+    from giveway.calibration.motion_log import MotionLog, behind_drivetrain, counts_to_rad
 
     columns = [table[column].values[run].astype(np.float64) for column in RECORDED]
     torque, counts = np.stack(columns[:3], axis=1), np.stack(columns[3:], axis=1)
@@ -128,8 +128,8 @@ def reproduce(effort: Effort) -> Findings:
     import numpy as np
 
     from giveway import batch, native
+    from giveway.calibration.roller_friction import calibrate
     from giveway.robot import read_robot
-    from giveway.roller_calibration import calibrate
 
     robot = read_robot(native.robot())
     seeds = range(1, effort.pick(6, 1) + 1)
@@ -263,7 +263,7 @@ def _pictures(found: Calibration) -> list[Picture]:
 
 
 def _notes(found: Calibration, robot: Robot) -> list[str]:
-    from giveway.roller_fit import RestZone
+    from giveway.calibration.roller_fit import RestZone
 
     zone = RestZone.of(robot)
     bend = 1e3 * float(robot.value("roller.radius")) / float(robot.value("roller.tanh_slope"))

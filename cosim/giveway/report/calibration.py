@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from giveway.roller_calibration import Calibration, FittedLog
+    from giveway.calibration.roller_friction import Calibration, FittedLog
 
 __all__ = ["WHEEL_COLOURS", "residual_figure", "torque_figure", "write_residuals"]
 

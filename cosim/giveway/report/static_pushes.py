@@ -9,17 +9,17 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.style import context
 
-from giveway.push_groups import GROUP, PAPER_FORCE_N, PRINTED, group_values, percentile_of
-from giveway.push_placements import default_outline
-from giveway.push_trials import WEIGHT_N, Readings
 from giveway.report.style import STYLE, TRUTH_COLOUR
 from giveway.reproduction import Picture
+from giveway.static_pushes.groups import GROUP, PAPER_FORCE_N, PRINTED, group_values, percentile_of
+from giveway.static_pushes.placements import default_outline
+from giveway.static_pushes.trials import WEIGHT_N, Readings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from giveway.push_study import Study
+    from giveway.static_pushes.study import Study
 
 __all__ = ["pictures"]
 

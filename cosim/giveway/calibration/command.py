@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from giveway.calibration.motion_log import MotionLog, read_log
+from giveway.calibration.roller_friction import Calibration, Estimate
+from giveway.calibration.roller_friction import calibrate as calibrate_rollers
 from giveway.errors import GivewayError
 from giveway.files import check_file, replace_file
-from giveway.motion_log import MotionLog, read_log
 from giveway.robot import read_robot
 from giveway.robot_changes import NewValue, changed_robot
-from giveway.roller_calibration import Calibration, Estimate
-from giveway.roller_calibration import calibrate as calibrate_rollers
 
 __all__ = ["calibrate_robot", "table_rows"]
 

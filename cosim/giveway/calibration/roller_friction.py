@@ -31,8 +31,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.errors import GivewayError, one_line
-from giveway.roller_fit import (
+from giveway.calibration.roller_fit import (
     LONGEST_STEP_S,
     SMOOTHING_S,
     Fit,
@@ -43,12 +42,13 @@ from giveway.roller_fit import (
     half_widths,
     prepare,
 )
-from giveway.torque_model import TorqueModel
+from giveway.calibration.torque_model import TorqueModel
+from giveway.errors import GivewayError, one_line
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.motion_log import MotionLog
+    from giveway.calibration.motion_log import MotionLog
     from giveway.robot import Robot
 
 __all__ = ["Calibration", "Estimate", "FittedLog", "UnidentifiableError", "calibrate"]

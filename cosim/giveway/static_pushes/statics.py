@@ -1,6 +1,6 @@
 """Groups of four pushes in the static model alone: quick enough to ask which parameter would have to be what.
 
-No dynamics, noise, slipping or outline: magnitudes and directions only. `push_trials` runs the real thing.
+No dynamics, noise, slipping or outline: magnitudes and directions only. `trials` runs the real thing.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.presliding import Base, felt_wrench, static_torques
-from giveway.push_groups import GROUP, PAPER_FORCE_N
-from giveway.push_placements import random_placements
-from giveway.push_trials import WEIGHT_N, WHEELS
+from giveway.static_pushes.groups import GROUP, PAPER_FORCE_N
+from giveway.static_pushes.placements import random_placements
+from giveway.static_pushes.trials import WEIGHT_N, WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,8 +10,8 @@ import numpy as np
 
 from giveway.errors import GivewayError
 from giveway.presliding import Base
-from giveway.push_placements import Placement, default_outline, middles, paper_placements, random_placements
-from giveway.push_trials import WEIGHT_N, WHEELS, Trial
+from giveway.static_pushes.placements import Placement, default_outline, middles, paper_placements, random_placements
+from giveway.static_pushes.trials import WEIGHT_N, WHEELS, Trial
 from giveway.variables import table
 
 if TYPE_CHECKING:

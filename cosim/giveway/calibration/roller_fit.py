@@ -1,6 +1,6 @@
 """The numerical part of the roller calibration: smoothed samples, the zone near rest, the robust fit and its spread.
 
-`giveway.roller_calibration` says what is done and why, and refuses what these functions cannot use.
+`giveway.calibration.roller_friction` says what is done and why, and refuses what these functions cannot use.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.torque_model import WHEELS, TorqueModel
+from giveway.calibration.torque_model import WHEELS, TorqueModel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.motion_log import MotionLog
+    from giveway.calibration.motion_log import MotionLog
     from giveway.robot import Robot
 
 __all__ = [

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.presliding import Calibration, calibrate
-from giveway.push_groups import GROUP
-from giveway.push_robots import PushedRobot, pushed_robot, roller_loads
-from giveway.push_trials import WHEELS, Readings, Trial, run_trials
+from giveway.static_pushes.groups import GROUP
+from giveway.static_pushes.robots import PushedRobot, pushed_robot, roller_loads
+from giveway.static_pushes.trials import WHEELS, Readings, Trial, run_trials
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

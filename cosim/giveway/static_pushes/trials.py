@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.presliding import KnownPush
-    from giveway.push_placements import Placement
+    from giveway.static_pushes.placements import Placement
     from giveway.variables import Value
 
 __all__ = ["Readings", "SteadyPush", "Trial", "run_trials"]

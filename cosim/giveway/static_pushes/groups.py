@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.push_trials import Readings
+    from giveway.static_pushes.trials import Readings
 
 __all__ = ["GROUP", "PRINTED", "Printed", "group_values", "percentile_of"]
 
