@@ -425,7 +425,7 @@ def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str
 
     terminal = Console(highlight=False)
     # A pipe has no width to fit into: every row keeps its line there.
-    console = terminal if terminal.is_terminal else Console(highlight=False, width=200)
+    console = terminal if terminal.is_terminal else Console(highlight=False, width=1000)
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for index, name in enumerate(header):
         table.add_column(name, no_wrap=index == 0, overflow="fold")
