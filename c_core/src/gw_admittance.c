@@ -8,7 +8,7 @@
 #define DISPLACEMENT_MAX ((gw_real_t)100.0)
 #define ESCAPE_MAX ((gw_real_t)1.1e5)
 
-static gw_vector_t within(gw_vector_t vector, gw_real_t limit)
+static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
 {
     const gw_vector_t result = {gw_clamp(vector.x, -limit, limit), gw_clamp(vector.y, -limit, limit)};
     return result;
@@ -85,17 +85,17 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
     } else if (!admittance->initialised) {
         status = GW_STATUS_NOT_INITIALISED;
     } else if (!(gw_in_range(direction.x, -one, one) && gw_in_range(direction.y, -one, one) &&
-                 (gw_length(direction) <= one) && gw_in_range(velocity_mps.x, -SPEED_MAX, SPEED_MAX) &&
+                 (gw_length(limit_components(direction, one)) <= one) && gw_in_range(velocity_mps.x, -SPEED_MAX, SPEED_MAX) &&
                  gw_in_range(velocity_mps.y, -SPEED_MAX, SPEED_MAX))) {
         status = GW_STATUS_INPUT_INVALID;
     } else {
         const gw_real_t distance_m =
             admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
-        admittance->goal_m.x = distance_m * direction.x;
-        admittance->goal_m.y = distance_m * direction.y;
+        admittance->goal_m.x = distance_m * gw_clamp(direction.x, -one, one);
+        admittance->goal_m.y = distance_m * gw_clamp(direction.y, -one, one);
         admittance->moved_x_m = gw_sum_of(GW_ZERO);
         admittance->moved_y_m = gw_sum_of(GW_ZERO);
-        admittance->velocity_mps = velocity_mps;
+        admittance->velocity_mps = limit_components(velocity_mps, SPEED_MAX);
     }
     return status;
 }
@@ -205,10 +205,10 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
             if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
                 *output = step_frozen(admittance);
             } else {
-                *output = step_live(admittance, force_n);
+                *output = step_live(admittance, limit_components(force_n, GW_WRENCH_MAX));
             }
-            output->velocity_mps = within(output->velocity_mps, SPEED_MAX);
-            output->displacement_m = within(output->displacement_m, DISPLACEMENT_MAX);
+            output->velocity_mps = limit_components(output->velocity_mps, SPEED_MAX);
+            output->displacement_m = limit_components(output->displacement_m, DISPLACEMENT_MAX);
             if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
                 admittance->moved_x_m =
                     gw_sum_limit(gw_sum_add(admittance->moved_x_m, output->displacement_m.x), ESCAPE_MAX);

@@ -144,13 +144,15 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
                      gw_in_range(sigma.torque_nm, GW_ZERO, GW_WRENCH_MAX))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
-            const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};
+            const gw_wrench_t valid = gw_wrench_limited(wrench);
+            const gw_vector_t force = {valid.force_x_n, valid.force_y_n};
             const gw_real_t force_n = gw_length(force);
             if (force_n >= contact->config.minimum_force_n) {
                 const gw_vector_t direction = {gw_fraction(force.x, force_n), gw_fraction(force.y, force_n)};
-                const gw_real_t arm_m = gw_clamp(wrench.torque_nm / force_n, -LEVER_ARM_MAX, LEVER_ARM_MAX);
+                const gw_real_t arm_m = gw_clamp(valid.torque_nm / force_n, -LEVER_ARM_MAX, LEVER_ARM_MAX);
                 /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
-                const gw_vector_t spread = {sigma.torque_nm / force_n, (arm_m * sigma.force_n) / force_n};
+                const gw_vector_t spread = {gw_clamp(sigma.torque_nm, GW_ZERO, GW_WRENCH_MAX) / force_n,
+                                            (arm_m * gw_clamp(sigma.force_n, GW_ZERO, GW_WRENCH_MAX)) / force_n};
                 estimate->valid = true;
                 estimate->force_n = force_n;
                 estimate->direction_rad = gw_atan2(force.y, force.x);

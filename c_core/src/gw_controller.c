@@ -204,6 +204,7 @@ typedef struct {
     gw_wheels_t torque_nm;
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
+    gw_plan_t plan; /* limited to what a valid one may be */
     bool sensors_good;
     bool plan_valid;
 } tick_t;
@@ -366,21 +367,21 @@ static void give_way(gw_controller_t *controller, const tick_t *now)
 }
 
 /* Moves the reference by one tick, as the mode says. */
-static void move_reference(gw_controller_t *controller, const gw_controller_input_t *input, const tick_t *now)
+static void move_reference(gw_controller_t *controller, const tick_t *now)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool on_the_path = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REJOINING);
     if (on_the_path && now->plan_valid && (!controller->on_plan)) {
         /* Without a tare the robot may already be moving along its plan. */
         const bool moving = (controller->config.estimator.tare_ticks == 0U) && controller->config.drives_enabled;
-        gw_reference_place(&controller->reference, &input->plan, moving);
+        gw_reference_place(&controller->reference, &now->plan, moving);
         controller->on_plan = true;
     } else if ((mode == GW_MODE_FAULT) || (!controller->config.drives_enabled)) {
         gw_reference_freeze(&controller->reference);
     } else if ((mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED)) {
         give_way(controller, now);
     } else if (on_the_path && now->plan_valid) {
-        gw_reference_follow(&controller->reference, &input->plan, mode == GW_MODE_REJOINING);
+        gw_reference_follow(&controller->reference, &now->plan, mode == GW_MODE_REJOINING);
     } else {
         gw_reference_brake(&controller->reference);
     }
@@ -426,7 +427,7 @@ static void report(const gw_controller_t *controller, const tick_t *now, gw_cont
     output->tick = controller->tick;
 }
 
-static void nothing_known(tick_t *now)
+static void blank_tick(tick_t *now)
 {
     static const tick_t nothing = {
         {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
@@ -440,6 +441,9 @@ static void nothing_known(tick_t *now)
          GW_REGIME_CREEPING,
          false},
         {false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U},
+        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
         false,
         false,
     };
@@ -454,8 +458,9 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     gw_status_t tare_status;
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
-    nothing_known(&now);
+    blank_tick(&now);
     now.plan_valid = gw_plan_is_valid(&input->plan);
+    now.plan = gw_plan_limited(&input->plan);
     if (status == GW_STATUS_OK) {
         status = estimate(controller, input, &now);
     }
@@ -487,12 +492,12 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     events.quiet = slow && (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
     events.on_path =
         now.plan_valid && slow &&
-        (gw_reference_distance(&controller->reference, &input->plan) <
+        (gw_reference_distance(&controller->reference, &now.plan) <
          controller->config.supervisor.rejoin_distance_m) &&
-        (gw_reference_angle(&controller->reference, &input->plan) < controller->config.supervisor.rejoin_angle_rad);
+        (gw_reference_angle(&controller->reference, &now.plan) < controller->config.supervisor.rejoin_angle_rad);
     (void)gw_supervisor_step(&controller->supervisor, &events);
     enter_mode(controller, before, &now);
-    move_reference(controller, input, &now);
+    move_reference(controller, &now);
     command_wheels(controller, input, &now, output);
     report(controller, &now, output);
     controller->tick = (controller->tick + 1U) & GW_TICK_MASK;

@@ -157,24 +157,28 @@ gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t 
             status = GW_STATUS_INPUT_INVALID;
             output->active = detector->active;
         } else {
+            gw_detector_input_t valid = *input;
+            valid.wrench = gw_wrench_limited(input->wrench);
+            valid.mean = gw_wrench_limited(input->mean);
+            valid.window_mean = gw_wrench_limited(input->window_mean);
             if (detector->active) {
                 if (detector->ticks_since_trip < detector->config.blanking_ticks) {
                     detector->ticks_since_trip++;
                 }
-                detector->active = !may_release(detector, input);
+                detector->active = !may_release(detector, &valid);
             }
-            if (detector->active || (!input->enabled)) {
+            if (detector->active || (!valid.enabled)) {
                 gw_detector_clear(detector);
             } else if (detector->config.kind == GW_DETECTOR_IMPULSE) {
-                output->tripped = integrate(detector, input, output);
+                output->tripped = integrate(detector, &valid, output);
             } else {
                 gw_real_t threshold_n = detector->config.force_threshold_n;
-                if (input->regime == GW_REGIME_CREEPING) {
+                if (valid.regime == GW_REGIME_CREEPING) {
                     threshold_n = gw_max(threshold_n, detector->config.leak_creep_n);
                 }
-                output->statistic = force_length(input->window_mean);
-                output->mean_wrench = input->mean;
-                output->samples = input->mean_samples;
+                output->statistic = force_length(valid.window_mean);
+                output->mean_wrench = valid.mean;
+                output->samples = valid.mean_samples;
                 output->tripped = (output->statistic > threshold_n);
             }
             if (output->tripped) {

@@ -4,8 +4,6 @@
 
 static const gw_wheels_t no_torque = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
 static const gw_twist_t no_twist = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
-static const gw_acceleration_t no_acceleration = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
-static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
 
 void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
 {
@@ -115,11 +113,14 @@ void gw_estimator_start_tare(gw_estimator_t *estimator)
 /* The zero of a tare: its mean torque, less what deflected bristles have a part in. */
 static gw_wheels_t zero_of(gw_estimator_t *estimator, const gw_wheels_t *mean_nm)
 {
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from another */
     gw_wheels_t zero_nm = *mean_nm;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
         const gw_wheels_t elastic_nm = gw_presliding_elastic_torques(&estimator->presliding, &estimator->kinematics);
-        const gw_wheels_t held_nm = gw_kinematics_torques_of_wrench(
-            &estimator->kinematics, gw_kinematics_wrench_of_rollers(&estimator->kinematics, &elastic_nm));
+        const gw_wrench_t held = gw_kinematics_wrench_of_rollers(&estimator->kinematics, &elastic_nm);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+        const gw_wheels_t held_nm = gw_kinematics_torques_of_wrench(&estimator->kinematics, held);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             zero_nm.wheel[i] = mean_nm->wheel[i] - held_nm.wheel[i];
         }
@@ -156,23 +157,41 @@ gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t co
 #define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
 #define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
 
-static bool within(gw_real_t value, gw_real_t limit)
+static bool plausible(gw_real_t value, gw_real_t limit)
 {
     return gw_in_range(value, -limit, limit);
 }
 
 static bool input_is_valid(const gw_estimator_input_t *input)
 {
-    bool valid = within(input->planned_twist.vx_mps, PLANNED_SPEED_MAX) &&
-                 within(input->planned_twist.vy_mps, PLANNED_SPEED_MAX) &&
-                 within(input->planned_twist.omega_radps, PLANNED_SPEED_MAX) &&
-                 within(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX) &&
-                 within(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX) &&
-                 within(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX);
+    bool valid = plausible(input->planned_twist.vx_mps, PLANNED_SPEED_MAX) &&
+                 plausible(input->planned_twist.vy_mps, PLANNED_SPEED_MAX) &&
+                 plausible(input->planned_twist.omega_radps, PLANNED_SPEED_MAX) &&
+                 plausible(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX) &&
+                 plausible(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX) &&
+                 plausible(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        valid = valid && within(input->torque_nm.wheel[i], GW_TORQUE_MAX);
+        valid = valid && plausible(input->torque_nm.wheel[i], GW_TORQUE_MAX);
     }
     return valid;
+}
+
+/* The same for a valid input: what follows is bounded by it. */
+static gw_estimator_input_t limited_input(const gw_estimator_input_t *input)
+{
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from another */
+    gw_estimator_input_t result = *input;
+    result.torque_nm = gw_torques_limited(&input->torque_nm);
+    result.planned_twist.vx_mps = gw_clamp(input->planned_twist.vx_mps, -PLANNED_SPEED_MAX, PLANNED_SPEED_MAX);
+    result.planned_twist.vy_mps = gw_clamp(input->planned_twist.vy_mps, -PLANNED_SPEED_MAX, PLANNED_SPEED_MAX);
+    result.planned_twist.omega_radps = gw_clamp(input->planned_twist.omega_radps, -PLANNED_SPEED_MAX, PLANNED_SPEED_MAX);
+    result.planned_acceleration.ax_mps2 =
+        gw_clamp(input->planned_acceleration.ax_mps2, -PLANNED_ACCELERATION_MAX, PLANNED_ACCELERATION_MAX);
+    result.planned_acceleration.ay_mps2 =
+        gw_clamp(input->planned_acceleration.ay_mps2, -PLANNED_ACCELERATION_MAX, PLANNED_ACCELERATION_MAX);
+    result.planned_acceleration.alpha_radps2 =
+        gw_clamp(input->planned_acceleration.alpha_radps2, -PLANNED_ACCELERATION_MAX, PLANNED_ACCELERATION_MAX);
+    return result;
 }
 
 /* The faster of the base and of the wheels' circle. */
@@ -215,6 +234,7 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *in
 static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                                      gw_twist_t measured_twist, gw_acceleration_t measured_acceleration)
 {
+    static const gw_acceleration_t no_acceleration = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
     const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
     /* At planned rest the tare is all there is to plan. */
     gw_twist_t twist = estimator->rest ? no_twist : input->planned_twist;
@@ -231,6 +251,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
     }
     gw_wheels_t nominal;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
         const gw_wheels_t friction_nm =
             gw_presliding_step(&estimator->presliding, &estimator->kinematics, &estimator->rate_constants,
                                input->encoder_count, &input->torque_nm, measured_twist);
@@ -247,6 +268,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
 
 static void nothing_known(gw_estimator_output_t *output)
 {
+    static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
     output->wrench = no_wrench;
     output->mean = no_wrench;
     output->window_mean = no_wrench;
@@ -270,19 +292,22 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         status = GW_STATUS_INPUT_INVALID;
         gw_estimator_restart(estimator);
     } else {
-        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, input->planned_twist);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+        const gw_estimator_input_t valid = limited_input(input);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, valid.planned_twist);
         gw_wheels_t rates = no_torque;
         gw_wheels_t derivatives = no_torque;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             /* Without it a robot that already moves would seem to be thrown into motion. */
             gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
-            gw_rate_filter_step(&estimator->rate[i], &estimator->rate_constants, input->encoder_count[i],
-                                input->torque_nm.wheel[i]);
+            gw_rate_filter_step(&estimator->rate[i], &estimator->rate_constants, valid.encoder_count[i],
+                                valid.torque_nm.wheel[i]);
             rates.wheel[i] = estimator->rate[i].rate_radps;
             derivatives.wheel[i] = estimator->rate[i].derivative_radps2;
         }
-        const gw_real_t speed_mps = planned_speed(estimator, input);
-        output->zero_changed = judge_rest(estimator, input, speed_mps);
+        const gw_real_t speed_mps = planned_speed(estimator, &valid);
+        output->zero_changed = judge_rest(estimator, &valid, speed_mps);
         if (output->zero_changed) {
             gw_moving_average_reset(&estimator->average);
         }
@@ -295,9 +320,9 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         }
         output->measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
         output->nominal_nm =
-            nominal_with_zero(estimator, input, output->measured_twist,
+            nominal_with_zero(estimator, &valid, output->measured_twist,
                               gw_kinematics_acceleration(&estimator->kinematics, &rates, &derivatives));
-        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &input->torque_nm);
+        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &valid.torque_nm);
         output->sigma = estimator->sigma;
         status = gw_moving_average_add(&estimator->average, output->wrench);
         if (status == GW_STATUS_OK) {

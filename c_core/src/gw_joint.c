@@ -36,8 +36,10 @@ void gw_joint_step(gw_joint_t *joint, const gw_kinematics_t *kinematics, gw_pose
                    gw_twist_t twist, gw_joint_command_t *command)
 {
     const gw_real_t mean_yaw_rad = theta_rad - (GW_HALF * displacement.theta_rad);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_wheels_t turned =
         wheels_of(kinematics, displacement.x_m, displacement.y_m, displacement.theta_rad, mean_yaw_rad);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_wheels_t speed = wheels_of(kinematics, twist.vx_mps, twist.vy_mps, twist.omega_radps, theta_rad);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         joint->angle_rad[i] = gw_sum_add_angle(joint->angle_rad[i], turned.wheel[i]);

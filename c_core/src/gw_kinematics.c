@@ -6,13 +6,6 @@
 #define ONE_THIRD ((gw_real_t)0.3333333333333333333333)
 #define HALF_SQRT_3 ((gw_real_t)0.8660254037844386467637)
 
-/* cos and sin of 0, 120 and 240 degrees, better than computed ones. */
-static const gw_vector_t slot_direction[GW_WHEEL_COUNT] = {
-    {(gw_real_t)1.0, (gw_real_t)0.0},
-    {(gw_real_t)-0.5, HALF_SQRT_3},
-    {(gw_real_t)-0.5, -HALF_SQRT_3},
-};
-
 void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
 {
     uint32_t slots_seen = 0U;
@@ -35,6 +28,12 @@ void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_erro
 
 gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config)
 {
+    /* cos and sin of 0, 120 and 240 degrees, better than computed ones. */
+    static const gw_vector_t slot_direction[GW_WHEEL_COUNT] = {
+        {(gw_real_t)1.0, (gw_real_t)0.0},
+        {(gw_real_t)-0.5, HALF_SQRT_3},
+        {(gw_real_t)-0.5, -HALF_SQRT_3},
+    };
     gw_status_t status = GW_STATUS_OK;
     if ((kinematics == NULL) || (config == NULL)) {
         status = GW_STATUS_NULL_POINTER;
@@ -117,7 +116,9 @@ gw_matrix_t gw_kinematics_wheel_jacobian_inverse(const gw_kinematics_t *kinemati
 gw_constraint_matrix_t gw_kinematics_constraint_jacobian(const gw_kinematics_t *kinematics, gw_real_t theta_rad)
 {
     gw_constraint_matrix_t constraint;
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_matrix_t wheel = gw_kinematics_wheel_jacobian(kinematics, theta_rad);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_matrix_t roller = gw_kinematics_roller_jacobian(kinematics, theta_rad);
     for (uint32_t row = 0U; row < 6U; row++) {
         for (uint32_t column = 0U; column < 9U; column++) {

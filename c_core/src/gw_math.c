@@ -54,88 +54,6 @@ typedef struct {
     gw_real_t root;
 } power_of_four_t;
 
-static const power_of_four_t powers_of_four[SQRT_SCALINGS] = {
-#if (GW_REAL_DOUBLE == 1)
-    {(gw_real_t)1.3407807929942597e+154, (gw_real_t)7.458340731200207e-155, (gw_real_t)1.157920892373162e+77}, /* 2^512 */
-    {(gw_real_t)1.157920892373162e+77, (gw_real_t)8.636168555094445e-78, (gw_real_t)3.402823669209385e+38}, /* 2^256 */
-    {(gw_real_t)3.402823669209385e+38, (gw_real_t)2.938735877055719e-39, (gw_real_t)1.8446744073709552e+19}, /* 2^128 */
-#endif
-    {(gw_real_t)1.8446744073709552e+19, (gw_real_t)5.421010862427522e-20, (gw_real_t)4294967296.0}, /* 2^64 */
-    {(gw_real_t)4294967296.0, (gw_real_t)2.3283064365386963e-10, (gw_real_t)65536.0}, /* 2^32 */
-    {(gw_real_t)65536.0, (gw_real_t)1.52587890625e-05, (gw_real_t)256.0}, /* 2^16 */
-    {(gw_real_t)256.0, (gw_real_t)0.00390625, (gw_real_t)16.0}, /* 2^8 */
-    {(gw_real_t)16.0, (gw_real_t)0.0625, (gw_real_t)4.0}, /* 2^4 */
-    {(gw_real_t)4.0, (gw_real_t)0.25, (gw_real_t)2.0}, /* 2^2 */
-};
-
-/* Taylor coefficients, lowest power first: of (e^r - 1 - r)/r^2, (sin r - r)/r^3, (cos r - 1)/r^2, (atan z - z)/z^3. */
-static const gw_real_t exp_series[EXP_TERMS] = {
-    (gw_real_t)(1.0 / 2.0),
-    (gw_real_t)(1.0 / 6.0),
-    (gw_real_t)(1.0 / 24.0),
-    (gw_real_t)(1.0 / 120.0),
-    (gw_real_t)(1.0 / 720.0),
-    (gw_real_t)(1.0 / 5040.0),
-    (gw_real_t)(1.0 / 40320.0),
-#if (GW_REAL_DOUBLE == 1)
-    (gw_real_t)(1.0 / 362880.0),
-    (gw_real_t)(1.0 / 3628800.0),
-    (gw_real_t)(1.0 / 39916800.0),
-    (gw_real_t)(1.0 / 479001600.0),
-    (gw_real_t)(1.0 / 6227020800.0),
-    (gw_real_t)(1.0 / 87178291200.0),
-#endif
-};
-
-static const gw_real_t sin_series[SIN_TERMS] = {
-    (gw_real_t)(-1.0 / 6.0),
-    (gw_real_t)(1.0 / 120.0),
-    (gw_real_t)(-1.0 / 5040.0),
-    (gw_real_t)(1.0 / 362880.0),
-    (gw_real_t)(-1.0 / 39916800.0),
-#if (GW_REAL_DOUBLE == 1)
-    (gw_real_t)(1.0 / 6227020800.0),
-    (gw_real_t)(-1.0 / 1307674368000.0),
-    (gw_real_t)(1.0 / 355687428096000.0),
-#endif
-};
-
-static const gw_real_t cos_series[SIN_TERMS] = {
-    (gw_real_t)(-1.0 / 2.0),
-    (gw_real_t)(1.0 / 24.0),
-    (gw_real_t)(-1.0 / 720.0),
-    (gw_real_t)(1.0 / 40320.0),
-    (gw_real_t)(-1.0 / 3628800.0),
-#if (GW_REAL_DOUBLE == 1)
-    (gw_real_t)(1.0 / 479001600.0),
-    (gw_real_t)(-1.0 / 87178291200.0),
-    (gw_real_t)(1.0 / 20922789888000.0),
-#endif
-};
-
-static const gw_real_t atan_series[ATAN_TERMS] = {
-    (gw_real_t)(-1.0 / 3.0),
-    (gw_real_t)(1.0 / 5.0),
-    (gw_real_t)(-1.0 / 7.0),
-    (gw_real_t)(1.0 / 9.0),
-#if (GW_REAL_DOUBLE == 1)
-    (gw_real_t)(-1.0 / 11.0),
-    (gw_real_t)(1.0 / 13.0),
-    (gw_real_t)(-1.0 / 15.0),
-    (gw_real_t)(1.0 / 17.0),
-    (gw_real_t)(-1.0 / 19.0),
-#endif
-};
-
-/* atan(k/4). */
-static const gw_real_t atan_quarters[5] = {
-    (gw_real_t)0.0,
-    (gw_real_t)0.2449786631268641541721,
-    (gw_real_t)0.4636476090008061162143,
-    (gw_real_t)0.6435011087932843868028,
-    (gw_real_t)0.7853981633974483096157,
-};
-
 bool gw_is_finite(gw_real_t x)
 {
     return (x >= -GW_REAL_MAX) && (x <= GW_REAL_MAX);
@@ -203,6 +121,25 @@ static gw_real_t exact_residual(gw_real_t x, gw_real_t root)
 
 gw_real_t gw_sqrt(gw_real_t x)
 {
+    static const power_of_four_t powers_of_four[SQRT_SCALINGS] = {
+#if (GW_REAL_DOUBLE == 1)
+        /* 2^512 */
+        {(gw_real_t)1.3407807929942597e+154, (gw_real_t)7.458340731200207e-155,
+         (gw_real_t)1.157920892373162e+77},
+        /* 2^256 */
+        {(gw_real_t)1.157920892373162e+77, (gw_real_t)8.636168555094445e-78,
+         (gw_real_t)3.402823669209385e+38},
+        /* 2^128 */
+        {(gw_real_t)3.402823669209385e+38, (gw_real_t)2.938735877055719e-39,
+         (gw_real_t)1.8446744073709552e+19},
+#endif
+        {(gw_real_t)1.8446744073709552e+19, (gw_real_t)5.421010862427522e-20, (gw_real_t)4294967296.0}, /* 2^64 */
+        {(gw_real_t)4294967296.0, (gw_real_t)2.3283064365386963e-10, (gw_real_t)65536.0}, /* 2^32 */
+        {(gw_real_t)65536.0, (gw_real_t)1.52587890625e-05, (gw_real_t)256.0}, /* 2^16 */
+        {(gw_real_t)256.0, (gw_real_t)0.00390625, (gw_real_t)16.0}, /* 2^8 */
+        {(gw_real_t)16.0, (gw_real_t)0.0625, (gw_real_t)4.0}, /* 2^4 */
+        {(gw_real_t)4.0, (gw_real_t)0.25, (gw_real_t)2.0}, /* 2^2 */
+    };
     gw_real_t result = GW_ZERO;
     if (x > GW_ZERO) {
         /* x = reduced * scale^2 with reduced in [1, 4). Factors are powers of 4, so nothing is rounded. */
@@ -269,6 +206,24 @@ typedef struct {
 
 static reduced_exp_t reduce_exp(gw_real_t x)
 {
+    /* Taylor coefficients of (e^r - 1 - r)/r^2, lowest power first. */
+    static const gw_real_t exp_series[EXP_TERMS] = {
+        (gw_real_t)(1.0 / 2.0),
+        (gw_real_t)(1.0 / 6.0),
+        (gw_real_t)(1.0 / 24.0),
+        (gw_real_t)(1.0 / 120.0),
+        (gw_real_t)(1.0 / 720.0),
+        (gw_real_t)(1.0 / 5040.0),
+        (gw_real_t)(1.0 / 40320.0),
+#if (GW_REAL_DOUBLE == 1)
+        (gw_real_t)(1.0 / 362880.0),
+        (gw_real_t)(1.0 / 3628800.0),
+        (gw_real_t)(1.0 / 39916800.0),
+        (gw_real_t)(1.0 / 479001600.0),
+        (gw_real_t)(1.0 / 6227020800.0),
+        (gw_real_t)(1.0 / 87178291200.0),
+#endif
+    };
     reduced_exp_t reduced;
     reduced.exponent = nearest_integer(x * LOG2_E);
     const gw_real_t k = (gw_real_t)reduced.exponent;
@@ -330,6 +285,31 @@ static gw_real_t less_quarter_turns(gw_real_t angle_rad, int32_t quarter_turns)
 
 gw_rotation_t gw_sincos(gw_real_t angle_rad)
 {
+    /* Taylor coefficients of (sin r - r)/r^3 and (cos r - 1)/r^2, lowest power first. */
+    static const gw_real_t sin_series[SIN_TERMS] = {
+        (gw_real_t)(-1.0 / 6.0),
+        (gw_real_t)(1.0 / 120.0),
+        (gw_real_t)(-1.0 / 5040.0),
+        (gw_real_t)(1.0 / 362880.0),
+        (gw_real_t)(-1.0 / 39916800.0),
+#if (GW_REAL_DOUBLE == 1)
+        (gw_real_t)(1.0 / 6227020800.0),
+        (gw_real_t)(-1.0 / 1307674368000.0),
+        (gw_real_t)(1.0 / 355687428096000.0),
+#endif
+    };
+    static const gw_real_t cos_series[SIN_TERMS] = {
+        (gw_real_t)(-1.0 / 2.0),
+        (gw_real_t)(1.0 / 24.0),
+        (gw_real_t)(-1.0 / 720.0),
+        (gw_real_t)(1.0 / 40320.0),
+        (gw_real_t)(-1.0 / 3628800.0),
+#if (GW_REAL_DOUBLE == 1)
+        (gw_real_t)(1.0 / 479001600.0),
+        (gw_real_t)(-1.0 / 87178291200.0),
+        (gw_real_t)(1.0 / 20922789888000.0),
+#endif
+    };
     gw_rotation_t result = {GW_ZERO, GW_ONE};
     if (gw_in_range(angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX)) {
         const int32_t quarter_turns = nearest_integer(angle_rad * TWO_OVER_PI);
@@ -358,6 +338,28 @@ gw_rotation_t gw_sincos(gw_real_t angle_rad)
 /* atan of x in [0, 1]: atan(c) + atan((x - c)/(1 + x c)) with c the nearest quarter. */
 static gw_real_t atan_of_fraction(gw_real_t x)
 {
+    /* Taylor coefficients of (atan z - z)/z^3, lowest power first. */
+    static const gw_real_t atan_series[ATAN_TERMS] = {
+        (gw_real_t)(-1.0 / 3.0),
+        (gw_real_t)(1.0 / 5.0),
+        (gw_real_t)(-1.0 / 7.0),
+        (gw_real_t)(1.0 / 9.0),
+#if (GW_REAL_DOUBLE == 1)
+        (gw_real_t)(-1.0 / 11.0),
+        (gw_real_t)(1.0 / 13.0),
+        (gw_real_t)(-1.0 / 15.0),
+        (gw_real_t)(1.0 / 17.0),
+        (gw_real_t)(-1.0 / 19.0),
+#endif
+    };
+    /* atan(k/4). */
+    static const gw_real_t atan_quarters[5] = {
+        (gw_real_t)0.0,
+        (gw_real_t)0.2449786631268641541721,
+        (gw_real_t)0.4636476090008061162143,
+        (gw_real_t)0.6435011087932843868028,
+        (gw_real_t)0.7853981633974483096157,
+    };
     const int32_t quarter = nearest_integer(x * (gw_real_t)4.0);
     const gw_real_t c = (gw_real_t)quarter * (gw_real_t)0.25;
     const gw_real_t z = (x - c) / (GW_ONE + (x * c));

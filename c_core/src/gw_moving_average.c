@@ -8,22 +8,22 @@ static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t
 /* Bound of a sum of valid wrenches, with room for its rounding. */
 #define SUM_MAX ((gw_real_t)1.1e12)
 
-static gw_real_t limited(gw_real_t sum)
+static gw_real_t limited_sum(gw_real_t sum)
 {
     return gw_clamp(sum, -SUM_MAX, SUM_MAX);
 }
 
 static gw_wrench_t plus(gw_wrench_t a, gw_wrench_t b)
 {
-    const gw_wrench_t sum = {limited(a.force_x_n + b.force_x_n), limited(a.force_y_n + b.force_y_n),
-                             limited(a.torque_nm + b.torque_nm)};
+    const gw_wrench_t sum = {limited_sum(a.force_x_n + b.force_x_n), limited_sum(a.force_y_n + b.force_y_n),
+                             limited_sum(a.torque_nm + b.torque_nm)};
     return sum;
 }
 
 static gw_wrench_t minus(gw_wrench_t a, gw_wrench_t b)
 {
-    const gw_wrench_t difference = {limited(a.force_x_n - b.force_x_n), limited(a.force_y_n - b.force_y_n),
-                                    limited(a.torque_nm - b.torque_nm)};
+    const gw_wrench_t difference = {limited_sum(a.force_x_n - b.force_x_n), limited_sum(a.force_y_n - b.force_y_n),
+                                    limited_sum(a.torque_nm - b.torque_nm)};
     return difference;
 }
 
@@ -72,9 +72,10 @@ gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t samp
         } else {
             average->window_sum = minus(average->window_sum, average->sample[average->index]);
         }
-        average->sample[average->index] = sample;
-        average->window_sum = plus(average->window_sum, sample);
-        average->fresh_sum = plus(average->fresh_sum, sample);
+        const gw_wrench_t valid = gw_wrench_limited(sample);
+        average->sample[average->index] = valid;
+        average->window_sum = plus(average->window_sum, valid);
+        average->fresh_sum = plus(average->fresh_sum, valid);
         average->index++;
         if (average->index >= average->window) {
             average->index = 0U;

@@ -59,7 +59,9 @@ bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
 gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics, gw_twist_t twist,
                                gw_acceleration_t acceleration)
 {
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_wheels_t roller_rates = gw_kinematics_roller_rates(kinematics, twist);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_wheels_t friction_nm = gw_friction_torques(&nominal->friction, &roller_rates);
     return gw_nominal_torques_with_friction(nominal, kinematics, twist, acceleration, &friction_nm);
 }

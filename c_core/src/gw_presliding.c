@@ -163,6 +163,7 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
                                gw_twist_t twist)
 {
     gw_wheels_t torques;
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_wheels_t turned_rad = turned(presliding, rate_constants, encoder_count, torque_nm);
     const gw_twist_t moved = gw_kinematics_twist(kinematics, &turned_rad);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {

@@ -88,6 +88,23 @@ bool gw_plan_is_valid(const gw_plan_t *plan)
            within(plan->acceleration.alpha_radps2, ACCELERATION_MAX);
 }
 
+static gw_real_t limited(gw_real_t value, gw_real_t limit)
+{
+    return gw_clamp(value, -limit, limit);
+}
+
+gw_plan_t gw_plan_limited(const gw_plan_t *plan)
+{
+    const gw_plan_t result = {
+        {limited(plan->pose.x_m, POSITION_MAX), limited(plan->pose.y_m, POSITION_MAX),
+         limited(plan->pose.theta_rad, GW_ANGLE_MAX)},
+        {limited(plan->twist.vx_mps, SPEED_MAX), limited(plan->twist.vy_mps, SPEED_MAX),
+         limited(plan->twist.omega_radps, YAW_RATE_MAX)},
+        {limited(plan->acceleration.ax_mps2, ACCELERATION_MAX), limited(plan->acceleration.ay_mps2, ACCELERATION_MAX),
+         limited(plan->acceleration.alpha_radps2, ACCELERATION_MAX)}};
+    return result;
+}
+
 static void stand(gw_reference_t *reference)
 {
     reference->twist.vx_mps = GW_ZERO;
@@ -127,8 +144,8 @@ static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, const
     const gw_vector_t change = {wanted_mps.x - reference->twist.vx_mps, wanted_mps.y - reference->twist.vy_mps};
     const gw_vector_t allowed = gw_limit_length(change, most);
     const gw_real_t half_s = GW_HALF * reference->period_s;
-    const gw_vector_t velocity = {gw_clamp(reference->twist.vx_mps + allowed.x, -SPEED_MAX, SPEED_MAX),
-                                  gw_clamp(reference->twist.vy_mps + allowed.y, -SPEED_MAX, SPEED_MAX)};
+    const gw_vector_t velocity = {limited(reference->twist.vx_mps + allowed.x, SPEED_MAX),
+                                  limited(reference->twist.vy_mps + allowed.y, SPEED_MAX)};
     if ((planned != NULL) && (gw_length(change) <= most)) {
         reference->acceleration.ax_mps2 = planned->ax_mps2;
         reference->acceleration.ay_mps2 = planned->ay_mps2;
@@ -147,7 +164,7 @@ static void move_yaw(gw_reference_t *reference, gw_real_t wanted_radps, const gw
     const gw_real_t most = reference->config.yaw_acceleration_limit_radps2 * reference->period_s;
     const gw_real_t change = wanted_radps - reference->twist.omega_radps;
     const gw_real_t allowed = gw_clamp(change, -most, most);
-    const gw_real_t omega = gw_clamp(reference->twist.omega_radps + allowed, -YAW_RATE_MAX, YAW_RATE_MAX);
+    const gw_real_t omega = limited(reference->twist.omega_radps + allowed, YAW_RATE_MAX);
     if ((planned != NULL) && (gw_abs(change) <= most)) {
         reference->acceleration.alpha_radps2 = planned->alpha_radps2;
     } else {

@@ -60,6 +60,8 @@ bool gw_reference_invariant_holds(const gw_reference_t *reference);
 /* True if every number is finite, positions within 1e4 m, angles within 1e4 rad, speeds within 100 m/s and 1000 rad/s,
  * accelerations within 1e4. */
 bool gw_plan_is_valid(const gw_plan_t *plan);
+/* The plan with every value kept within those ranges: the same for a valid one. Pointer not NULL. */
+gw_plan_t gw_plan_limited(const gw_plan_t *plan);
 /* Puts the reference on the plan without motion of the wheels. plan valid. moving: with the plan's velocity, within the
  * limits; else at rest. */
 void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving);

@@ -23,6 +23,10 @@ typedef struct {
 
 /* True if no component is NaN or beyond GW_WRENCH_MAX. */
 bool gw_wrench_is_valid(gw_wrench_t wrench);
+/* The wrench with every component kept within GW_WRENCH_MAX: the same for a valid one. */
+gw_wrench_t gw_wrench_limited(gw_wrench_t wrench);
+/* Likewise every torque within GW_TORQUE_MAX. */
+gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm);
 /* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
 gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
                                const gw_wheels_t *sensed_nm);
