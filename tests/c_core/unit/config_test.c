@@ -1,0 +1,283 @@
+#include "unit.h"
+
+/* Every field of the one table of limits, where it is kept, and what it counts in. */
+typedef struct {
+    gw_controller_config_t controller;
+    gw_servo_config_t servo;
+} robot_t;
+
+typedef struct {
+    gw_config_field_t field;
+    size_t offset;
+    bool is_count;
+} place_t;
+
+#define REAL_FIELD(field, member) {(field), offsetof(robot_t, member), false}
+#define COUNT_FIELD(field, member) {(field), offsetof(robot_t, member), true}
+
+static const place_t places[] = {
+    REAL_FIELD(GW_FIELD_CONTROLLER_PERIOD, controller.period_s),
+    REAL_FIELD(GW_FIELD_GEOMETRY_WHEEL_RADIUS, controller.geometry.wheel_radius_m),
+    REAL_FIELD(GW_FIELD_GEOMETRY_ROLLER_RADIUS, controller.geometry.roller_radius_m),
+    REAL_FIELD(GW_FIELD_GEOMETRY_WHEEL_DISTANCE, controller.geometry.wheel_distance_m),
+    REAL_FIELD(GW_FIELD_GEOMETRY_AZIMUTH, controller.geometry.azimuth_rad),
+    REAL_FIELD(GW_FIELD_BASE_MASS, controller.base.mass_kg),
+    REAL_FIELD(GW_FIELD_BASE_YAW_INERTIA, controller.base.yaw_inertia_kgm2),
+    REAL_FIELD(GW_FIELD_BASE_WHEEL_INERTIA, controller.base.wheel_inertia_kgm2),
+    REAL_FIELD(GW_FIELD_BASE_ROLLER_INERTIA, controller.base.roller_inertia_kgm2),
+    REAL_FIELD(GW_FIELD_FRICTION_COULOMB_TORQUE, controller.friction.coulomb_torque_nm),
+    REAL_FIELD(GW_FIELD_FRICTION_TANH_SLOPE, controller.friction.tanh_slope_s_per_rad),
+    REAL_FIELD(GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, controller.sensor_check.torque_limit_nm),
+    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, controller.sensor_check.stale_ticks_max),
+    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, controller.sensor_check.encoder_jump_counts),
+    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, controller.sensor_check.recover_ticks),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, controller.estimator.velocity_source),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, controller.estimator.acceleration_source),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_TORQUE_NOISE, controller.estimator.torque_noise_nm),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_RATE_CUTOFF, controller.estimator.rate_cutoff_radps),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, controller.estimator.drivetrain_stiffness_nm_per_rad),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_ENCODER_COUNTS, controller.estimator.encoder_counts),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, controller.estimator.average_window),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_REST_SPEED, controller.estimator.rest_speed_mps),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_CREEP_SPEED, controller.estimator.creep_speed_mps),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_REST_TICKS, controller.estimator.rest_ticks),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_TARE_TICKS, controller.estimator.tare_ticks),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_RETARE_TICKS, controller.estimator.retare_ticks),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_TARE_VARIATION, controller.estimator.tare_variation_nm),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_FRICTION_MODEL, controller.estimator.friction_model),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, controller.estimator.presliding.stiffness_n_per_m[1]),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, controller.estimator.presliding.damping_newton_s_per_m),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_STRIBECK_SPEED, controller.estimator.presliding.stribeck_speed_mps),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, controller.estimator.presliding.elastic_fraction),
+    REAL_FIELD(GW_FIELD_CONTACT_MINIMUM_FORCE, controller.contact.minimum_force_n),
+    COUNT_FIELD(GW_FIELD_OUTLINE_COUNT, controller.contact.vertex_count),
+    COUNT_FIELD(GW_FIELD_DETECTOR_KIND, controller.detector.kind),
+    REAL_FIELD(GW_FIELD_DETECTOR_FORCE_THRESHOLD, controller.detector.force_threshold_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, controller.detector.impulse_threshold_newton_s),
+    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_REST, controller.detector.leak_rest_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_CREEP, controller.detector.leak_creep_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_MOTION, controller.detector.leak_motion_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_RELEASE_FORCE, controller.detector.release_force_n),
+    COUNT_FIELD(GW_FIELD_DETECTOR_BLANKING_TICKS, controller.detector.blanking_ticks),
+    COUNT_FIELD(GW_FIELD_ADMITTANCE_KIND, controller.admittance.kind),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_MASS, controller.admittance.mass_kg),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_DAMPING, controller.admittance.damping_newton_s_per_m),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, controller.admittance.escape_impulse_newton_s),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_SPEED_LIMIT, controller.admittance.speed_limit_mps),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, controller.admittance.acceleration_limit_mps2),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_FINISH_SPEED, controller.admittance.finish_speed_mps),
+    REAL_FIELD(GW_FIELD_REFERENCE_FOLLOW_GAIN, controller.reference.follow_gain_per_s),
+    REAL_FIELD(GW_FIELD_REFERENCE_SPEED_LIMIT, controller.reference.speed_limit_mps),
+    REAL_FIELD(GW_FIELD_REFERENCE_ACCELERATION_LIMIT, controller.reference.acceleration_limit_mps2),
+    REAL_FIELD(GW_FIELD_REFERENCE_YAW_RATE_LIMIT, controller.reference.yaw_rate_limit_radps),
+    REAL_FIELD(GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, controller.reference.yaw_acceleration_limit_radps2),
+    REAL_FIELD(GW_FIELD_REFERENCE_REJOIN_SPEED, controller.reference.rejoin_speed_mps),
+    REAL_FIELD(GW_FIELD_REFERENCE_FINISH_SPEED, controller.reference.finish_speed_mps),
+    REAL_FIELD(GW_FIELD_SUPERVISOR_SETTLED_SPEED, controller.supervisor.settled_speed_mps),
+    COUNT_FIELD(GW_FIELD_SUPERVISOR_SETTLED_TICKS, controller.supervisor.settled_ticks),
+    COUNT_FIELD(GW_FIELD_SUPERVISOR_AFTER_SETTLED, controller.supervisor.after_settled),
+    REAL_FIELD(GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, controller.supervisor.rejoin_distance_m),
+    REAL_FIELD(GW_FIELD_SUPERVISOR_REJOIN_ANGLE, controller.supervisor.rejoin_angle_rad),
+    REAL_FIELD(GW_FIELD_SERVO_PERIOD, servo.period_s),
+    REAL_FIELD(GW_FIELD_SERVO_KP, servo.kp_nm_per_rad),
+    REAL_FIELD(GW_FIELD_SERVO_KD, servo.kd_nms_per_rad),
+    REAL_FIELD(GW_FIELD_SERVO_TORQUE_LIMIT, servo.torque_limit_nm),
+    REAL_FIELD(GW_FIELD_SERVO_TORQUE_RATE_LIMIT, servo.torque_rate_limit_nm_per_s),
+    COUNT_FIELD(GW_FIELD_SERVO_ENCODER_COUNTS, servo.encoder_counts),
+    REAL_FIELD(GW_FIELD_SERVO_DERIVATIVE_CUTOFF, servo.derivative_cutoff_hz),
+    COUNT_FIELD(GW_FIELD_SERVO_STALE_TICKS_MAX, servo.stale_ticks_max),
+};
+
+static const gw_servo_config_t servo = {R(0.0005), R(100.0), R(2.0), R(10.0), R(0.0), 1000U, R(100.0), 4U};
+
+/* The paper's robot, with an outline of 3 to 16 corners of one convex polygon. */
+static robot_t robot(void)
+{
+    robot_t made;
+    gw_controller_config_trikey(&made.controller);
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+        const gw_rotation_t at = gw_sincos(R(0.39) * (gw_real_t)i);
+        made.controller.contact.vertex_m[i].x = R(0.4) * at.cosine;
+        made.controller.contact.vertex_m[i].y = R(0.4) * at.sine;
+    }
+    made.servo = servo;
+    return made;
+}
+
+static gw_config_error_t refused(const robot_t *made)
+{
+    gw_config_error_t error;
+    (void)gw_controller_config_check(&made->controller, &error);
+    gw_servo_config_check(&made->servo, &error);
+    return error;
+}
+
+static robot_t with_real(const place_t *place, gw_real_t value)
+{
+    robot_t made = robot();
+    *(gw_real_t *)(void *)((uint8_t *)&made + place->offset) = value;
+    return made;
+}
+
+static robot_t with_count(const place_t *place, uint32_t value)
+{
+    robot_t made = robot();
+    *(uint32_t *)(void *)((uint8_t *)&made + place->offset) = value;
+    return made;
+}
+
+static void check_real(const place_t *place)
+{
+    const gw_config_limit_t *const limit = gw_config_limit(place->field);
+    const gw_real_t accepted[] = {limit->minimum, unit_above(limit->minimum), unit_below(limit->maximum),
+                                  limit->maximum};
+    const gw_real_t outside[] = {unit_below(limit->minimum), unit_above(limit->maximum), unit_nan(),
+                                 unit_infinity(), -unit_infinity()};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(accepted); i++) {
+        const robot_t made = with_real(place, accepted[i]);
+        CHECK_STATUS(refused(&made).field, GW_FIELD_NONE);
+    }
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(outside); i++) {
+        const robot_t made = with_real(place, outside[i]);
+        const gw_config_error_t error = refused(&made);
+        CHECK_STATUS(error.field, place->field);
+        CHECK((error.minimum == limit->minimum) && (error.maximum == limit->maximum));
+        CHECK((error.value == outside[i]) || (!gw_is_finite(outside[i])));
+    }
+}
+
+static void check_count(const place_t *place)
+{
+    const gw_config_limit_t *const limit = gw_config_limit(place->field);
+    const uint32_t minimum = (uint32_t)limit->minimum;
+    const uint32_t maximum = (uint32_t)limit->maximum;
+    const uint32_t accepted[] = {minimum, minimum + 1U, maximum - 1U, maximum};
+    const uint32_t outside[] = {maximum + 1U, minimum - 1U, 0xFFFFFFFFU}; /* 0 - 1 wraps: refused as well */
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(accepted); i++) {
+        const robot_t made = with_count(place, accepted[i]);
+        CHECK_STATUS(refused(&made).field, GW_FIELD_NONE);
+    }
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(outside); i++) {
+        const robot_t made = with_count(place, outside[i]);
+        const gw_config_error_t error = refused(&made);
+        CHECK_STATUS(error.field, place->field);
+        CHECK(error.value == (gw_real_t)outside[i]);
+    }
+}
+
+static void every_bound_is_met_at_both_neighbours(void)
+{
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(places); i++) {
+        unit_row((uint32_t)places[i].field);
+        if (places[i].is_count) {
+            check_count(&places[i]);
+        } else {
+            check_real(&places[i]);
+        }
+    }
+}
+
+/* The arrays have tests of their own below; the convexity of the outline has its in contact_test.c. */
+static void no_field_is_forgotten(void)
+{
+    const gw_config_field_t elsewhere[] = {GW_FIELD_GEOMETRY_WHEEL_SLOT, GW_FIELD_OUTLINE_X, GW_FIELD_OUTLINE_Y,
+                                           GW_FIELD_OUTLINE_CONVEX};
+    for (uint32_t field = 1U; field < (uint32_t)GW_FIELD_COUNT; field++) {
+        uint32_t found = 0U;
+        for (uint32_t i = 0U; i < UNIT_COUNT_OF(places); i++) {
+            found += ((uint32_t)places[i].field == field) ? 1U : 0U;
+        }
+        for (uint32_t i = 0U; i < UNIT_COUNT_OF(elsewhere); i++) {
+            found += ((uint32_t)elsewhere[i] == field) ? 1U : 0U;
+        }
+        unit_row(field);
+        CHECK(found == 1U);
+    }
+}
+
+/* A triangle stays convex when one corner moves out as far as it may. */
+static void corners_of_the_outline_meet_their_bounds(void)
+{
+    const struct {
+        uint32_t vertex;
+        bool is_x;
+        gw_real_t value;
+        gw_config_field_t field;
+    } rows[] = {
+        {0U, true, R(10.0), GW_FIELD_NONE},
+        {0U, true, unit_below(R(10.0)), GW_FIELD_NONE},
+        {0U, true, unit_above(R(10.0)), GW_FIELD_OUTLINE_X},
+        {0U, true, unit_nan(), GW_FIELD_OUTLINE_X},
+        {1U, true, R(-10.0), GW_FIELD_NONE},
+        {1U, true, unit_above(R(-10.0)), GW_FIELD_NONE},
+        {1U, true, unit_below(R(-10.0)), GW_FIELD_OUTLINE_X},
+        {1U, false, R(10.0), GW_FIELD_NONE},
+        {1U, false, unit_below(R(10.0)), GW_FIELD_NONE},
+        {1U, false, unit_above(R(10.0)), GW_FIELD_OUTLINE_Y},
+        {2U, false, R(-10.0), GW_FIELD_NONE},
+        {2U, false, unit_above(R(-10.0)), GW_FIELD_NONE},
+        {2U, false, unit_below(R(-10.0)), GW_FIELD_OUTLINE_Y},
+        {2U, false, unit_nan(), GW_FIELD_OUTLINE_Y},
+        {3U, true, unit_nan(), GW_FIELD_NONE}, /* beyond the count: ignored */
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        robot_t made = robot();
+        const gw_vector_t triangle[3] = {{R(0.4), R(0.0)}, {R(-0.2), R(0.3)}, {R(-0.2), R(-0.3)}};
+        gw_config_error_t error;
+        made.controller.contact.vertex_count = 3U;
+        for (uint32_t k = 0U; k < 3U; k++) {
+            made.controller.contact.vertex_m[k] = triangle[k];
+        }
+        if (rows[i].is_x) {
+            made.controller.contact.vertex_m[rows[i].vertex].x = rows[i].value;
+        } else {
+            made.controller.contact.vertex_m[rows[i].vertex].y = rows[i].value;
+        }
+        unit_row(i);
+        error = refused(&made);
+        CHECK_STATUS(error.field, rows[i].field);
+        CHECK((error.field == GW_FIELD_NONE) || (error.index == rows[i].vertex));
+    }
+}
+
+static void wheel_slots_meet_their_bounds(void)
+{
+    const uint32_t outside[] = {3U, 0xFFFFFFFFU};
+    for (uint32_t wheel = 0U; wheel < GW_WHEEL_COUNT; wheel++) {
+        for (uint32_t i = 0U; i < UNIT_COUNT_OF(outside); i++) {
+            robot_t made = robot();
+            made.controller.geometry.wheel_slot[wheel] = outside[i];
+            unit_row((10U * wheel) + i);
+            CHECK_STATUS(refused(&made).field, GW_FIELD_GEOMETRY_WHEEL_SLOT);
+            CHECK(refused(&made).index == wheel);
+        }
+    }
+}
+
+static void the_first_bad_field_is_the_one_that_is_named(void)
+{
+    robot_t made = robot();
+    made.controller.base.mass_kg = R(-1.0);
+    made.controller.detector.kind = 9U;
+    CHECK_STATUS(refused(&made).field, GW_FIELD_BASE_MASS);
+    CHECK_STATUS(gw_controller_config_check(&made.controller, &(gw_config_error_t){GW_FIELD_NONE, 0U, GW_ZERO,
+                                                                                   GW_ZERO, GW_ZERO}),
+                 GW_STATUS_CONFIG_INVALID);
+}
+
+static void what_is_no_field_has_the_row_of_none(void)
+{
+    const uint32_t beyond = (uint32_t)GW_FIELD_COUNT;
+    CHECK(gw_config_limit((gw_config_field_t)beyond) == gw_config_limit(GW_FIELD_NONE));
+    CHECK(gw_config_limit(GW_FIELD_NONE)->name[0] == 'n');
+}
+
+void suite_config(void)
+{
+    unit_run("every_bound_is_met_at_both_neighbours", every_bound_is_met_at_both_neighbours);
+    unit_run("no_field_is_forgotten", no_field_is_forgotten);
+    unit_run("corners_of_the_outline_meet_their_bounds", corners_of_the_outline_meet_their_bounds);
+    unit_run("wheel_slots_meet_their_bounds", wheel_slots_meet_their_bounds);
+    unit_run("the_first_bad_field_is_the_one_that_is_named", the_first_bad_field_is_the_one_that_is_named);
+    unit_run("what_is_no_field_has_the_row_of_none", what_is_no_field_has_the_row_of_none);
+}

@@ -1,0 +1,310 @@
+#include "rig.h"
+
+static void bad_arguments_are_refused(void)
+{
+    gw_config_error_t error;
+    rig_set_up();
+    CHECK_STATUS(gw_controller_init(NULL, &rig_config, &error), GW_STATUS_NULL_POINTER);
+    CHECK_STATUS(gw_controller_init(&rig_controller, NULL, &error), GW_STATUS_NULL_POINTER);
+    CHECK_STATUS(gw_controller_step(&rig_controller, &rig_input, &rig_output), GW_STATUS_NOT_INITIALISED);
+    CHECK((!rig_output.enable) && (rig_output.mode == GW_MODE_FAULT) && (rig_output.detection_tick == -1));
+    CHECK_STATUS(gw_controller_init(&rig_controller, &rig_config, NULL), GW_STATUS_OK);
+    CHECK_STATUS(gw_controller_step(&rig_controller, &rig_input, NULL), GW_STATUS_NULL_POINTER);
+    CHECK_STATUS(gw_controller_step(&rig_controller, NULL, &rig_output), GW_STATUS_NULL_POINTER);
+    CHECK_STATUS(gw_controller_step(NULL, &rig_input, &rig_output), GW_STATUS_NULL_POINTER);
+    CHECK((!rig_output.enable) && (rig_output.command.speed_radps[0] == GW_ZERO));
+    rig_config.base.mass_kg = unit_nan();
+    CHECK_STATUS(gw_controller_init(&rig_controller, &rig_config, &error), GW_STATUS_CONFIG_INVALID);
+    CHECK_STATUS(error.field, GW_FIELD_BASE_MASS);
+    CHECK(!gw_controller_invariant_holds(&rig_controller));
+}
+
+/* The first tick places the wheels where they are; then the tare; then the plan. */
+static void it_tares_and_then_follows_its_plan(void)
+{
+    rig_set_up();
+    rig_input.sensor.encoder_count[1] = 4250; /* half a turn: -pi */
+    rig_config.estimator.encoder_counts = 8500U;
+    rig_begin();
+    rig_tick(GW_STATUS_OK);
+    CHECK((rig_output.mode == GW_MODE_TARING) && rig_output.enable && (rig_output.tick == 0U));
+    CHECK_NEAR(gw_abs(rig_output.command.angle_rad[1]), GW_PI, ROUNDING);
+    rig_ticks(2U);
+    CHECK(rig_output.mode == GW_MODE_TARING);
+    rig_tick(GW_STATUS_OK);
+    CHECK((rig_output.mode == GW_MODE_TRACKING) && (rig_output.path_ticks == 1U));
+    for (uint32_t i = 1U; i <= 1000U; i++) {
+        const gw_real_t speed = R(0.0001) * (gw_real_t)i;
+        rig_input.plan.pose.x_m = R(0.00000005) * (gw_real_t)i * (gw_real_t)i;
+        rig_input.plan.twist.vx_mps = speed;
+        rig_input.plan.acceleration.ax_mps2 = R(0.1);
+        rig_push(GW_ZERO);
+        rig_tick(GW_STATUS_OK);
+    }
+    CHECK(rig_output.mode == GW_MODE_TRACKING);
+    CHECK(rig_output.path_ticks == 1001U);
+    CHECK_NEAR(rig_output.reference_pose.x_m, R(0.05), R(0.00001));
+    CHECK_NEAR(rig_output.reference_twist.vx_mps, R(0.1), R(0.0001));
+}
+
+/* Without a tare the robot may be moving along its plan already; with one it cannot be. */
+static void without_a_tare_it_starts_at_the_plan_s_speed(void)
+{
+    rig_set_up();
+    rig_config.estimator.tare_ticks = 0U;
+    rig_input.plan.twist.vx_mps = R(0.2);
+    rig_begin();
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_TRACKING);
+    CHECK(rig_output.reference_twist.vx_mps == R(0.2));
+}
+
+/* 20 N from rest: hit, gives way along the push, settles, goes back and tracks again. */
+static void it_gives_way_to_a_push_and_comes_back(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    CHECK((rig_output.detection_count == 1U) && rig_output.detection_active);
+    CHECK(rig_output.detection_tick == (int32_t)rig_output.tick);
+    CHECK_NEAR(rig_output.detection_wrench.force_x_n, R(20.0), R(20.0) * ROUNDING);
+    CHECK(rig_output.detection_contact.valid);
+    CHECK_NEAR(rig_output.detection_contact.direction_rad, GW_ZERO, R(10.0) * ROUNDING);
+    CHECK_NEAR(rig_output.contact.force_n, R(20.0), R(20.0) * ROUNDING);
+    while ((rig_output.mode == GW_MODE_REACTING) && (rig_output.tick < 20000U)) {
+        rig_push(GW_ZERO);
+        rig_tick(GW_STATUS_OK);
+        CHECK(rig_output.reference_twist.vx_mps >= GW_ZERO); /* never towards the push */
+    }
+    CHECK(rig_output.mode == GW_MODE_SETTLED);
+    CHECK_NEAR(rig_output.reference_pose.x_m,
+               rig_config.admittance.escape_impulse_newton_s / rig_config.admittance.damping_newton_s_per_m, R(0.001));
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_REJOINING);
+    rig_until(GW_MODE_TRACKING, 20000U);
+    CHECK(gw_abs(rig_output.reference_pose.x_m) < R(0.0003));
+    CHECK(rig_output.detection_count == 1U);
+}
+
+static void a_second_push_on_the_way_is_a_hit_too(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    rig_push(GW_ZERO);
+    rig_ticks(400U);
+    CHECK(rig_output.mode == GW_MODE_REACTING);
+    rig_push(R(-200.0));
+    rig_ticks(20U);
+    CHECK((rig_output.mode == GW_MODE_REACTING) && (rig_output.detection_count == 2U));
+}
+
+static void settled_can_mean_to_stay(void)
+{
+    rig_set_up();
+    rig_config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    rig_push(GW_ZERO);
+    rig_until(GW_MODE_SETTLED, 20000U);
+    rig_ticks(500U);
+    CHECK(rig_output.mode == GW_MODE_SETTLED);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 100U);
+    CHECK(rig_output.detection_count == 2U);
+}
+
+/* The force of each tick moves the robot, less what the detector forgives; at rest again it does not. */
+static void live_force_yields_while_it_is_pushed(void)
+{
+    rig_set_up();
+    rig_config.admittance.kind = GW_ADMITTANCE_LIVE_FORCE;
+    rig_config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    /* Just hit: the push counts although the robot creeps and 40 N are forgiven then. */
+    rig_ticks(3U);
+    CHECK(rig_output.reference_twist.vx_mps > GW_ZERO);
+    const gw_real_t early = rig_output.reference_twist.vx_mps;
+    rig_push(R(100.0));
+    rig_ticks(300U);
+    CHECK(rig_output.reference_twist.vx_mps > early);
+    rig_push(GW_ZERO);
+    rig_until(GW_MODE_SETTLED, 20000U);
+    rig_push(R(1.5)); /* too weak for a hit: what is felt at rest does not move it */
+    rig_ticks(5U);
+    CHECK(rig_output.mode == GW_MODE_SETTLED);
+    CHECK(gw_abs(rig_output.reference_twist.vx_mps) < rig_config.supervisor.settled_speed_mps);
+}
+
+/* The reference brakes within its limits, and afterwards the path is rejoined. */
+static void a_stop_request_stops_it(void)
+{
+    rig_set_up();
+    rig_config.estimator.tare_ticks = 0U;
+    rig_input.plan.twist.vx_mps = R(0.2);
+    rig_begin();
+    rig_tick(GW_STATUS_OK);
+    rig_input.stop_request = true;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_STOPPED);
+    CHECK((rig_output.reference_twist.vx_mps > GW_ZERO) && rig_output.enable);
+    rig_ticks(200U);
+    CHECK_NEAR(rig_output.reference_twist.vx_mps, GW_ZERO, ROUNDING);
+    rig_input.stop_request = false;
+    rig_input.plan.twist.vx_mps = GW_ZERO;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_REJOINING);
+}
+
+/* An escape that was interrupted is abandoned: nobody knows whether the way is still free. */
+static void a_stopped_escape_is_not_resumed(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    rig_push(GW_ZERO);
+    rig_ticks(100U);
+    rig_input.stop_request = true;
+    rig_ticks(300U);
+    const gw_real_t stopped_at = rig_output.reference_pose.x_m;
+    rig_input.stop_request = false;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_REACTING);
+    rig_until(GW_MODE_SETTLED, 2000U);
+    CHECK_NEAR(rig_output.reference_pose.x_m, stopped_at, R(0.001));
+}
+
+/* Asked for by a rising edge; granted at planned rest, in TRACKING and in SETTLED. */
+static void a_tare_is_granted_to_a_robot_that_stands(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_input.tare_request = true;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_TARING);
+    rig_until(GW_MODE_TRACKING, 10U); /* no new edge, no new tare */
+    rig_ticks(10U);
+    CHECK(rig_output.mode == GW_MODE_TRACKING);
+    rig_input.tare_request = false;
+    rig_input.plan.twist.vx_mps = R(0.2);
+    for (uint32_t i = 0U; i < 50U; i++) {
+        rig_input.plan.pose.x_m += R(0.0002);
+        rig_tick(GW_STATUS_OK);
+    }
+    rig_input.tare_request = true;
+    rig_input.plan.pose.x_m += R(0.0002);
+    rig_tick(GW_STATUS_TARE_REFUSED);
+    CHECK(rig_output.mode == GW_MODE_TRACKING);
+}
+
+static void a_tare_is_granted_in_settled_and_refused_in_between(void)
+{
+    rig_set_up();
+    rig_config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
+    rig_config.supervisor.settled_ticks = 200U;
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    rig_push(GW_ZERO);
+    rig_ticks(50U);
+    while ((!rig_controller.estimator.rest) && (rig_output.tick < 20000U)) {
+        rig_tick(GW_STATUS_OK);
+    }
+    CHECK(rig_output.mode == GW_MODE_REACTING);
+    rig_input.tare_request = true;
+    rig_tick(GW_STATUS_TARE_REFUSED); /* at rest, but a reaction is not over yet */
+    rig_input.tare_request = false;
+    rig_until(GW_MODE_SETTLED, 20000U);
+    rig_input.tare_request = true;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_TARING);
+    rig_until(GW_MODE_SETTLED, 20U);
+}
+
+static void a_push_while_taring_spoils_the_tare(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_tick(GW_STATUS_OK);
+    rig_push(R(30.0));
+    rig_tick(GW_STATUS_TARE_REFUSED);
+    CHECK(rig_output.mode == GW_MODE_TARING);
+    /* A stop request does not count as a sample. */
+    rig_input.stop_request = true;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_STOPPED);
+    rig_input.stop_request = false;
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_TARING);
+    rig_until(GW_MODE_TRACKING, 10U);
+}
+
+/* It only watches: the drives are never enabled, the command is where the wheels are, hits are still reported. */
+static void without_drives_it_only_watches(void)
+{
+    rig_set_up();
+    rig_config.drives_enabled = false;
+    rig_config.estimator.tare_ticks = 0U;
+    rig_input.plan.twist.vx_mps = R(0.2);
+    rig_begin();
+    rig_tick(GW_STATUS_OK);
+    CHECK((!rig_output.enable) && (rig_output.mode == GW_MODE_TRACKING));
+    CHECK(rig_output.reference_twist.vx_mps == GW_ZERO);
+    rig_input.sensor.encoder_count[0] = 100;
+    rig_tick(GW_STATUS_OK);
+    CHECK_NEAR(rig_output.command.angle_rad[0], R(100.0) * rig_controller.estimator.rate_constants.rad_per_count,
+               ROUNDING);
+    rig_push(R(300.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    CHECK((rig_output.detection_count == 1U) && (!rig_output.enable));
+    CHECK((rig_output.reference_twist.vx_mps == GW_ZERO) && (rig_output.command.speed_radps[0] == GW_ZERO));
+}
+
+static void counters_start_anew_after_24_days(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_controller.tick = GW_TICK_MASK;
+    rig_controller.supervisor.path_ticks = GW_TICK_MASK;
+    rig_controller.detection_count = GW_TICK_MASK;
+    rig_push(R(200.0));
+    rig_tick(GW_STATUS_OK);
+    CHECK((rig_output.tick == GW_TICK_MASK) && (rig_output.path_ticks == 0U));
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.tick == 0U);
+    rig_until(GW_MODE_REACTING, 20U);
+    CHECK(rig_output.detection_count == 0U);
+}
+
+void suite_controller(void)
+{
+    unit_run("bad_arguments_are_refused", bad_arguments_are_refused);
+    unit_run("it_tares_and_then_follows_its_plan", it_tares_and_then_follows_its_plan);
+    unit_run("without_a_tare_it_starts_at_the_plan_s_speed", without_a_tare_it_starts_at_the_plan_s_speed);
+    unit_run("it_gives_way_to_a_push_and_comes_back", it_gives_way_to_a_push_and_comes_back);
+    unit_run("a_second_push_on_the_way_is_a_hit_too", a_second_push_on_the_way_is_a_hit_too);
+    unit_run("settled_can_mean_to_stay", settled_can_mean_to_stay);
+    unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
+    unit_run("a_stop_request_stops_it", a_stop_request_stops_it);
+    unit_run("a_stopped_escape_is_not_resumed", a_stopped_escape_is_not_resumed);
+    unit_run("a_tare_is_granted_to_a_robot_that_stands", a_tare_is_granted_to_a_robot_that_stands);
+    unit_run("a_tare_is_granted_in_settled_and_refused_in_between",
+             a_tare_is_granted_in_settled_and_refused_in_between);
+    unit_run("a_push_while_taring_spoils_the_tare", a_push_while_taring_spoils_the_tare);
+    unit_run("without_drives_it_only_watches", without_drives_it_only_watches);
+    unit_run("counters_start_anew_after_24_days", counters_start_anew_after_24_days);
+}

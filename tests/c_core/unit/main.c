@@ -1,0 +1,29 @@
+/* All unit tests of c_core in one program, for the PC and for the target. */
+#include "unit.h"
+
+int main(void)
+{
+    suite_math();
+    suite_sum();
+    suite_config();
+    suite_kinematics();
+    suite_friction();
+    suite_nominal();
+    suite_rate_filter();
+    suite_presliding();
+    suite_wrench();
+    suite_tare();
+    suite_moving_average();
+    suite_sensor_check();
+    suite_contact();
+    suite_detector();
+    suite_estimator();
+    suite_admittance();
+    suite_reference();
+    suite_joint();
+    suite_supervisor();
+    suite_servo();
+    suite_controller();
+    suite_controller_faults();
+    return unit_close() ? 0 : 1;
+}
