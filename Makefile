@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test bench fit fmus build lint lock clean
+.PHONY: help demo reproduce test verify bench fit fmus build lint lock clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -24,6 +24,9 @@ reproduce: build ## every experiment of the paper: table, table.json and report 
 test: build lint ## every test
 	$(BIN)/ctest --test-dir build --output-on-failure -j $(JOBS)
 	$(BIN)/pytest
+
+verify: build build/verify/tools-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
+	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
 
 bench: build ## how fast a co-simulated second runs
 	$(BIN)/giveway bench
@@ -44,10 +47,12 @@ lint: .venv/packages-installed ## ruff and mypy
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 
-lock: requirements.in ## new requirements.lock (needs uv)
-	uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate --no-header --upgrade \
-	    --no-emit-index-url --no-emit-find-links --quiet requirements.in --output-file requirements.lock
-	@sed -i '1i # Made by `make lock` from requirements.in; do not edit.' requirements.lock
+lock: requirements.in verify/requirements.in ## new requirements.lock files (needs uv)
+	@for name in requirements verify/requirements; do \
+	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate --no-header --upgrade \
+	        --no-emit-index-url --no-emit-find-links --quiet $$name.in --output-file $$name.lock && \
+	    sed -i "1i # Made by \`make lock\` from $$name.in; do not edit." $$name.lock || exit 1; \
+	done
 
 clean: ## remove everything that was built or installed here
 	rm -rf .venv build out cosim/giveway/native
@@ -63,8 +68,15 @@ build/CMakeCache.txt: .venv/packages-installed
 	    --config-settings editable.mode=inplace --editable .
 	@touch $@
 
-.venv/packages-installed: requirements.lock cmake/system_packages.sh
+.venv/packages-installed: requirements.lock cmake/system_packages.sh cmake/packages.sh
 	PYTHON="$(PYTHON)" bash cmake/system_packages.sh
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --require-hashes -r requirements.lock
+	@touch $@
+
+build/verify/tools-installed: verify/requirements.lock verify/system_packages.sh cmake/packages.sh
+	bash verify/system_packages.sh
+	@mkdir -p $(@D)
+	$(PYTHON) -m venv build/verify/tools
+	build/verify/tools/bin/pip install --quiet --require-hashes -r verify/requirements.lock
 	@touch $@

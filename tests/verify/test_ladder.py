@@ -1,0 +1,106 @@
+"""The ladder of `make verify`: what its rungs say is written down, and nothing red passes for green."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from verify import ladder
+from verify.context import Context, Tool
+from verify.rung import Figure, Rung, RungFailed, all_rungs, planted
+from verify.sources import core_hash
+
+PYTHON = Tool("python3")
+
+
+def tree(folder: Path) -> Path:
+    (folder / "c_core" / "src").mkdir(parents=True)
+    (folder / "c_core" / "include").mkdir()
+    (folder / "c_core" / "src" / "a.c").write_text("int a;\n")
+    return folder
+
+
+def context(folder: Path) -> Context:
+    return Context(folder, folder, str(Path(sys.executable).parent) + ":/usr/bin:/bin")
+
+
+def climb(folder: Path, **rungs: Rung) -> list[ladder.Outcome]:
+    return ladder.climb(folder, rungs, context(folder).path)
+
+
+def good(_: Context) -> Figure:
+    return Figure("3 of 3", {"found": 3})
+
+
+def bad(_: Context) -> Figure:
+    raise RungFailed("it is red\nbecause")
+
+
+def broken(_: Context) -> Figure:
+    raise KeyError("a mistake in the rung")
+
+
+def test_every_rung_file_is_found_with_its_tools() -> None:
+    rungs = all_rungs()
+    assert "misra" in rungs
+    assert all(rung.tools and rung.summary for rung in rungs.values())
+
+
+def test_green_rungs_are_written_with_the_hash_of_the_sources(tmp_path: Path) -> None:
+    root = tree(tmp_path)
+    outcomes = climb(root, first=Rung("", (PYTHON,), good), second=Rung("", (PYTHON,), good))
+    sources = core_hash(root)
+    summary = json.loads(ladder.write_summary(root, outcomes, sources).read_text())
+    assert [rung["name"] for rung in summary["rungs"]] == ["first", "second"]
+    assert all(rung["passed"] and rung["tools"]["python3"].startswith("Python 3") for rung in summary["rungs"])
+    document = json.loads(ladder.verified(root, outcomes, sources).read_text())
+    assert document["sources_sha256"] == sources
+    assert document["rungs"]["second"] == {"figure": "3 of 3", "values": {"found": 3}}
+
+
+@pytest.mark.parametrize(("check", "evidence"), [(bad, "it is red"), (broken, "a mistake in the rung")])
+def test_a_red_rung_is_reported_and_does_not_hide_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], check: object, evidence: str
+) -> None:
+    outcomes = climb(tree(tmp_path), red=Rung("", (), check), green=Rung("", (), good))  # type: ignore[arg-type]
+    assert [outcome.figure is None for outcome in outcomes] == [True, False]
+    printed = capsys.readouterr().out
+    assert evidence in printed
+    assert "FAILED red" in printed
+    assert "3 of 3" in printed
+
+
+def test_a_missing_tool_is_a_failure(tmp_path: Path) -> None:
+    (outcome,) = climb(tree(tmp_path), lacking=Rung("", (Tool("no-such-prover", package="frama-c"),), good))
+    assert outcome.figure is None
+    assert "missing tool: no-such-prover (package frama-c)" in outcome.evidence
+
+
+def test_sources_that_changed_meanwhile_are_not_verified(tmp_path: Path) -> None:
+    root = tree(tmp_path)
+    before = core_hash(root)
+    (root / "c_core" / "src" / "a.c").write_text("int b;\n")
+    with pytest.raises(RungFailed, match="changed while"):
+        ladder.verified(root, [], before)
+    assert not (root / "c_core" / "VERIFIED.json").exists()
+
+
+def test_a_planted_fault_has_to_be_seen_for_its_own_reason() -> None:
+    with planted("seen", shows="because"):
+        raise RungFailed("red, because")
+    with pytest.raises(RungFailed, match="went unseen"), planted("overlooked", shows="x"):
+        pass
+    with pytest.raises(RungFailed, match="for another reason"), planted("other", shows="goto"):
+        raise RungFailed("missing tool")
+
+
+def test_tools_run_within_limits_of_memory_and_time(tmp_path: Path) -> None:
+    here = context(tmp_path)
+    with pytest.raises(RungFailed, match="MemoryError"):
+        here.run(sys.executable, "-c", "bytearray(2 * 2**30)", memory_gib=1.0)
+    with pytest.raises(RungFailed, match="not finished after"):
+        here.run("sleep", "60", timeout_s=0.2)
+    with pytest.raises(RungFailed, match="exit code 3"):
+        here.run("bash", "-c", "exit 3")
+    assert here.run("bash", "-c", "exit 3", expect=3).returncode == 3

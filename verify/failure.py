@@ -1,0 +1,13 @@
+"""How a rung fails."""
+
+from __future__ import annotations
+
+__all__ = ["RungFailed"]
+
+
+class RungFailed(Exception):
+    """The evidence: what was found, where, and what would have been right."""
+
+    def __init__(self, evidence: str) -> None:
+        super().__init__(evidence)
+        self.evidence = evidence

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# The tools of `make verify`. Each rung names the ones it calls; a tool that is missing is a failure there.
+set -euo pipefail
+# shellcheck source=cmake/packages.sh
+source "$(dirname "$0")/../cmake/packages.sh"
+
+has() { # has COMMAND: it can be called
+    command -v "$1"
+}
+
+need clang-19 has clang-19
+need llvm-19 has llvm-cov-19
+need frama-c-base has frama-c
+need gcc-arm-none-eabi has arm-none-eabi-gcc
+need libnewlib-arm-none-eabi test -e /usr/lib/arm-none-eabi/newlib/libc.a
+need qemu-system-arm has qemu-system-arm
+need qemu-user has qemu-aarch64
+need gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
+need wine64 test -x /usr/lib/wine/wine64
+install_missing
