@@ -1,0 +1,49 @@
+/* Prints one line per module: its name, the real type, and the digest of everything it put out. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "modules.h"
+
+typedef struct {
+    const char *name;
+    digest_t (*drive)(void);
+} module_t;
+
+static const module_t modules[] = {
+    {"math", drive_math},
+    {"vectors", drive_vectors},
+    {"kinematics", drive_kinematics},
+    {"friction", drive_friction},
+    {"nominal", drive_nominal},
+    {"wrench", drive_wrench},
+    {"sum", drive_sum},
+    {"tare", drive_tare},
+    {"moving_average", drive_moving_average},
+    {"rate_filter", drive_rate_filter},
+    {"config", drive_config},
+    {"sensor_check", drive_sensor_check},
+    {"contact", drive_contact},
+    {"detector", drive_detector},
+    {"supervisor", drive_supervisor},
+    {"estimator", drive_estimator},
+    {"admittance", drive_admittance},
+    {"reference", drive_reference},
+    {"joint", drive_joint},
+    {"servo", drive_servo},
+    {"controller.trikey", drive_controller_trikey},
+    {"controller.measuring", drive_controller_measuring},
+    {"controller.watching", drive_controller_watching},
+    {"controller.recorded", drive_controller_recorded},
+    {"controller.reached", drive_controller_reached},
+};
+
+int main(void)
+{
+    for (uint32_t i = 0U; i < (sizeof modules / sizeof modules[0]); i++) {
+        const digest_t digest = modules[i].drive();
+        (void)printf("%-21s %-6s %08" PRIx32 "%08" PRIx32 "\n", modules[i].name,
+                     (GW_REAL_DOUBLE == 1) ? "double" : "float", (uint32_t)(digest.value >> 32U),
+                     (uint32_t)digest.value);
+    }
+    return 0;
+}

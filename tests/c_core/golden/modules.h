@@ -1,0 +1,34 @@
+/* One function per module: drives it with a fixed sequence of inputs and returns the digest of all it put out. */
+#ifndef MODULES_H
+#define MODULES_H
+
+#include "digest_types.h"
+
+digest_t drive_math(void);
+digest_t drive_vectors(void);
+digest_t drive_kinematics(void);
+digest_t drive_friction(void);
+digest_t drive_nominal(void);
+digest_t drive_wrench(void);
+digest_t drive_sum(void);
+digest_t drive_tare(void);
+digest_t drive_moving_average(void);
+digest_t drive_rate_filter(void);
+digest_t drive_config(void);
+digest_t drive_sensor_check(void);
+digest_t drive_contact(void);
+digest_t drive_detector(void);
+digest_t drive_supervisor(void);
+digest_t drive_estimator(void);
+digest_t drive_admittance(void);
+digest_t drive_reference(void);
+digest_t drive_joint(void);
+digest_t drive_servo(void);
+digest_t drive_controller_trikey(void);
+digest_t drive_controller_measuring(void);
+digest_t drive_controller_watching(void);
+digest_t drive_controller_recorded(void);
+/* Which modes (upper word) and statuses (lower word) the drives above met, as sets of bits. */
+digest_t drive_controller_reached(void);
+
+#endif
