@@ -16,5 +16,11 @@ need libnewlib-arm-none-eabi test -e /usr/lib/arm-none-eabi/newlib/libc.a
 need qemu-system-arm has qemu-system-arm
 need qemu-user has qemu-aarch64
 need gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
+for machine in i686:i386 aarch64:arm64 riscv64:riscv64 arm:armhf s390x:s390x; do
+    triplet=${machine%%:*}-linux-gnu
+    [ "$triplet" = arm-linux-gnu ] && triplet=arm-linux-gnueabihf
+    need "gcc-$triplet" has "$triplet-gcc"
+    need "libc6-dev-${machine##*:}-cross" test -e "/usr/$triplet/include/stdint.h"
+done
 need wine64 test -x /usr/lib/wine/wine64
 install_missing

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from verify.context import Context, Finished, Tool
 
-__all__ = ["CLANG", "CORTEX_M", "HOST", "TARGETS", "WARNINGS", "WIN64", "Target", "core_sources"]
+__all__ = ["CLANG", "CORTEX_M", "CROSS", "HOST", "HOST_CLANG", "TARGETS", "WARNINGS", "WIN64", "Target", "core_sources"]
 
 GCC = Tool("gcc", package="g++")
 CLANG = Tool("clang-19")
@@ -17,6 +17,8 @@ ARM_GCC = Tool("arm-none-eabi-gcc", package="gcc-arm-none-eabi")
 QEMU_ARM = Tool("qemu-system-arm")
 MINGW = Tool("x86_64-w64-mingw32-gcc", package="gcc-mingw-w64-x86-64")
 WINE = Tool("/usr/lib/wine/wine64", package="wine64")
+
+QEMU_USER = {name: Tool(f"qemu-{name}", package="qemu-user") for name in ("i386", "aarch64", "riscv64", "arm", "s390x")}
 
 STANDARD = ("-std=c99", "-ffp-contract=off")
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
@@ -94,7 +96,13 @@ def _cortex_m(name: str, board: str, *flags: str) -> Target:
     )
 
 
+def _linux(name: str, triplet: str, emulator: str, *flags: str) -> Target:
+    compiler = Tool(f"{triplet}-gcc", package=f"gcc-{triplet}")
+    return Target(name, compiler, ("-static", *flags), QEMU_USER[emulator])
+
+
 HOST = Target("x86-64", GCC)
+HOST_CLANG = Target("x86-64 clang", CLANG)
 WIN64 = Target("win64", MINGW, ("-static",), WINE, suffix=".exe")
 CORTEX_M = (
     _cortex_m("cortex-m3", "mps2-an385", "-mcpu=cortex-m3", "-mfloat-abi=soft"),
@@ -104,3 +112,14 @@ CORTEX_M = (
 )
 
 TARGETS = {target.name: target for target in (HOST, WIN64, *CORTEX_M)}
+
+# Where only the bits are compared.
+CROSS = (
+    _linux("i686", "i686-linux-gnu", "i386", "-msse2", "-mfpmath=sse"),
+    _linux("aarch64", "aarch64-linux-gnu", "aarch64"),
+    _linux("riscv64", "riscv64-linux-gnu", "riscv64"),
+    _linux("armhf", "arm-linux-gnueabihf", "arm"),
+    # Big-endian. There -std=c99 alone makes gcc compute float in double, which gw_types.h refuses.
+    _linux("s390x", "s390x-linux-gnu", "s390x", "-fexcess-precision=fast"),
+    _cortex_m("cortex-m55", "mps3-an547", "-mcpu=cortex-m55", "-mfloat-abi=hard"),
+)

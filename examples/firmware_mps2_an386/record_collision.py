@@ -1,4 +1,4 @@
-"""Records the sensors of the paper's experiment 5.2 (rigid slider) as recorded_collision.inc, which the firmware replays.
+"""Records the sensors of the paper's experiment 5.2, rigid slider, in recorded_collision.inc for the firmware.
 
 From the top of the repository, after `make build`: .venv/bin/python examples/firmware_mps2_an386/record_collision.py
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-
 from giveway import native
 from giveway.experiments.motionless import scenario
 from giveway.files import write_text

@@ -18,7 +18,7 @@
 
 #define INSTRUCTIONS_PER_TICK 40U
 #define REPETITIONS INSTRUCTIONS_PER_TICK
-#define SCRIPT_TICKS 1500U
+#define SEARCH_TICKS 1500U
 #define SERVO_TICKS 20000U
 
 static gw_controller_t controller;
@@ -111,7 +111,7 @@ static uint32_t worst_found_by_search(void)
         (void)gw_controller_init(&controller, &config, NULL);
         gw_controller_safe_output(&output);
         script_begin(&script, &config, 100U + variant, false);
-        for (uint32_t tick = 0U; tick < SCRIPT_TICKS; tick++) {
+        for (uint32_t tick = 0U; tick < SEARCH_TICKS; tick++) {
             most = measured_step(script_next(&script, &output), most);
         }
     }

@@ -6,7 +6,7 @@
 #define MOVE_TICKS 500U
 #define LONGEST_FAULT 40U
 
-void script_begin(script_t *script, const gw_controller_config_t *config, uint32_t seed, bool finite_plans)
+void script_begin(script_t *script, const gw_controller_config_t *config, uint32_t seed, bool valid_plans)
 {
     static const script_t fresh = {0};
     *script = fresh;
@@ -15,7 +15,7 @@ void script_begin(script_t *script, const gw_controller_config_t *config, uint32
     (void)gw_nominal_init(&script->nominal, &config->base, &config->friction, &script->kinematics);
     script->generator = generator_begin(seed);
     script->input.sensor.counter = 0xFFFFFF00U;
-    script->finite_plans = finite_plans;
+    script->valid_plans = valid_plans;
 }
 
 /* There and back: standing, then a cubic of the path time. */
@@ -104,8 +104,8 @@ static void break_sensors(script_t *script)
 static void ask(script_t *script, const gw_controller_output_t *before)
 {
     script->input.plan = plan_at(before->path_ticks, script->config.period_s);
-    if (generator_one_in(&script->generator, 150U)) {
-        script->input.plan.pose.x_m = script->finite_plans ? (gw_real_t)2.0e4 : (GW_REAL_MAX * GW_TWO);
+    if ((!script->valid_plans) && generator_one_in(&script->generator, 150U)) {
+        script->input.plan.pose.x_m = GW_REAL_MAX * GW_TWO;
     }
     if (script->stop_ticks > 0U) {
         script->stop_ticks--;

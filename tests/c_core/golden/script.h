@@ -8,6 +8,10 @@
 #include "generator.h"
 #include "giveway/gw_controller.h"
 
+/* How long a script is played, and the seed of the one that the controller's FMU gets too. */
+#define SCRIPT_TICKS 6000U
+#define SCRIPT_TRIKEY_SEED 21U
+
 typedef struct {
     gw_controller_config_t config;
     gw_kinematics_t kinematics;
@@ -21,10 +25,10 @@ typedef struct {
     uint32_t fault;
     uint32_t stop_ticks;
     uint32_t tick;
-    bool finite_plans; /* the FMU accepts no others */
+    bool valid_plans; /* the FMU accepts no others */
 } script_t;
 
-void script_begin(script_t *script, const gw_controller_config_t *config, uint32_t seed, bool finite_plans);
+void script_begin(script_t *script, const gw_controller_config_t *config, uint32_t seed, bool valid_plans);
 /* The next input, after this output of the tick before. */
 const gw_controller_input_t *script_next(script_t *script, const gw_controller_output_t *before);
 
