@@ -205,6 +205,8 @@ typedef struct {
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
     gw_plan_t plan; /* limited to what a valid one may be */
+    gw_rotation_t yaw;             /* of the reference before it moves */
+    gw_real_t reference_speed_mps; /* likewise */
     bool sensors_good;
     bool plan_valid;
 } tick_t;
@@ -237,7 +239,7 @@ static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples
 static gw_status_t estimate(gw_controller_t *controller, const gw_controller_input_t *input, tick_t *now)
 {
     gw_estimator_input_t estimator_input;
-    const gw_rotation_t yaw = reference_rotation(controller);
+    const gw_rotation_t yaw = now->yaw;
     const gw_twist_t twist = controller->reference.twist;
     const gw_acceleration_t acceleration = controller->reference.acceleration;
     const gw_vector_t world_velocity = {twist.vx_mps, twist.vy_mps};
@@ -273,7 +275,7 @@ static void detect(gw_controller_t *controller, tick_t *now)
     detector_input.regime = now->estimate.regime;
     detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
                              (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING);
-    detector_input.reaction_over = reference_speed(controller) < controller->config.supervisor.settled_speed_mps;
+    detector_input.reaction_over = now->reference_speed_mps < controller->config.supervisor.settled_speed_mps;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &now->detection);
     if (now->detection.tripped) {
@@ -301,12 +303,12 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 }
 
 /* The direction of the hit in the world frame, as a unit vector. */
-static gw_vector_t hit_direction(const gw_controller_t *controller, const tick_t *now)
+static gw_vector_t hit_direction(const tick_t *now)
 {
     const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
     const gw_real_t length = gw_length(force);
     const gw_vector_t unit = {gw_fraction(force.x, length), gw_fraction(force.y, length)};
-    return gw_rotate(reference_rotation(controller), unit);
+    return gw_rotate(now->yaw, unit);
 }
 
 /* What changes once, when a mode begins. */
@@ -315,7 +317,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && now->detection.tripped) {
-        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller, now));
+        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(now));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
             /* Resumed: nobody knows whether the way is still free, so the escape is not. */
@@ -352,7 +354,7 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
         felt.x = base.x * gw_fraction(left, length);
         felt.y = base.y * gw_fraction(left, length);
     }
-    return gw_rotate(reference_rotation(controller), felt);
+    return gw_rotate(now->yaw, felt);
 }
 
 static void give_way(gw_controller_t *controller, const tick_t *now)
@@ -429,25 +431,21 @@ static void report(const gw_controller_t *controller, const tick_t *now, gw_cont
 
 static void blank_tick(tick_t *now)
 {
-    static const tick_t nothing = {
-        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
-        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         0U,
-         {(gw_real_t)0.0, (gw_real_t)0.0},
-         {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
-         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         GW_REGIME_CREEPING,
-         false},
-        {false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U},
-        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-         {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
-        false,
-        false,
-    };
-    *now = nothing;
+    static const gw_wheels_t blank_torque = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
+    static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      0U,
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0},
+                                                      {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      GW_REGIME_CREEPING,
+                                                      false};
+    static const gw_detector_output_t no_detection = {
+        false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
+    now->torque_nm = blank_torque;
+    now->estimate = no_estimate;
+    now->detection = no_detection;
 }
 
 static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
@@ -458,7 +456,8 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     gw_status_t tare_status;
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
-    blank_tick(&now);
+    now.yaw = reference_rotation(controller);
+    now.reference_speed_mps = reference_speed(controller);
     now.plan_valid = gw_plan_is_valid(&input->plan);
     now.plan = gw_plan_limited(&input->plan);
     if (status == GW_STATUS_OK) {
@@ -470,6 +469,8 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
         if (!now.plan_valid) {
             status = GW_STATUS_PLAN_INVALID;
         }
+    } else {
+        blank_tick(&now);
     }
     tare_status = judge_tare_request(controller, input->tare_request, &now, &events.tare_accepted);
     events.sensors_good = now.sensors_good;
@@ -488,7 +489,7 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
         status = tare_status;
     }
     const gw_vector_t force = {now.estimate.mean.force_x_n, now.estimate.mean.force_y_n};
-    const bool slow = reference_speed(controller) < controller->config.supervisor.settled_speed_mps;
+    const bool slow = now.reference_speed_mps < controller->config.supervisor.settled_speed_mps;
     events.quiet = slow && (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
     events.on_path =
         now.plan_valid && slow &&
@@ -511,11 +512,12 @@ gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_
     if (output == NULL) {
         status = GW_STATUS_NULL_POINTER;
     } else {
-        gw_controller_safe_output(output);
         if ((controller == NULL) || (input == NULL)) {
             status = GW_STATUS_NULL_POINTER;
+            gw_controller_safe_output(output);
         } else if (!controller->initialised) {
             status = GW_STATUS_NOT_INITIALISED;
+            gw_controller_safe_output(output);
         } else {
             status = step(controller, input, output);
         }

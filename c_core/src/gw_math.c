@@ -15,7 +15,6 @@
 #define EXP_HIGHEST ((gw_real_t)709.0)
 #define EXPM1_LOWEST ((gw_real_t)-40.0) /* e^x is below half an ulp of 1 */
 #define TANH_SATURATED ((gw_real_t)20.0)
-#define EXPONENT_BITS 10U
 #define SQRT_SCALINGS 9U
 #define SQRT_LIFT ((gw_real_t)4.149515568880993e180) /* 2^600 */
 #define SQRT_LIFT_ROOT ((gw_real_t)4.909093465297727e-91) /* 2^-300 */
@@ -35,7 +34,6 @@
 #define EXP_HIGHEST ((gw_real_t)88.0)
 #define EXPM1_LOWEST ((gw_real_t)-20.0)
 #define TANH_SATURATED ((gw_real_t)10.0)
-#define EXPONENT_BITS 7U
 #define SQRT_SCALINGS 6U
 #define SQRT_LIFT ((gw_real_t)7.922816251426434e28)       /* 2^96 */
 #define SQRT_LIFT_ROOT ((gw_real_t)3.552713678800501e-15) /* 2^-48 */
@@ -46,43 +44,6 @@
 
 #define LOG2_E ((gw_real_t)1.44269504088896340736)
 #define TWO_OVER_PI ((gw_real_t)0.6366197723675813430755)
-
-/* Powers of 4 with their inverses and roots: exact in either type. */
-typedef struct {
-    gw_real_t power;
-    gw_real_t inverse;
-    gw_real_t root;
-} power_of_four_t;
-
-bool gw_is_finite(gw_real_t x)
-{
-    return (x >= -GW_REAL_MAX) && (x <= GW_REAL_MAX);
-}
-
-bool gw_in_range(gw_real_t x, gw_real_t low, gw_real_t high)
-{
-    return (x >= low) && (x <= high);
-}
-
-gw_real_t gw_abs(gw_real_t x)
-{
-    return (x < GW_ZERO) ? -x : x;
-}
-
-gw_real_t gw_min(gw_real_t a, gw_real_t b)
-{
-    return (a < b) ? a : b;
-}
-
-gw_real_t gw_max(gw_real_t a, gw_real_t b)
-{
-    return (a > b) ? a : b;
-}
-
-gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
-{
-    return gw_min(gw_max(x, low), high);
-}
 
 gw_real_t gw_fraction(gw_real_t part, gw_real_t whole)
 {
@@ -108,6 +69,22 @@ static int32_t nearest_integer(gw_real_t x)
     return (int32_t)shifted;
 }
 
+#if defined(__arm__) && defined(__ARM_FP) && ((__ARM_FP & 4) != 0) && (GW_REAL_DOUBLE == 0)
+/* Correctly rounded by one instruction: the same bits as below in a tenth of the time. For x > 0. */
+static gw_real_t root_of(gw_real_t x)
+{
+    gw_real_t root;
+    __asm("vsqrt.f32 %0, %1" : "=t"(root) : "t"(gw_min(x, GW_REAL_MAX)));
+    return root;
+}
+#else
+/* Powers of 4 with their inverses and roots: exact in either type. */
+typedef struct {
+    gw_real_t power;
+    gw_real_t inverse;
+    gw_real_t root;
+} power_of_four_t;
+
 /* x - root * root without rounding error (Dekker's product), for root in [1, 2). */
 static gw_real_t exact_residual(gw_real_t x, gw_real_t root)
 {
@@ -119,7 +96,8 @@ static gw_real_t exact_residual(gw_real_t x, gw_real_t root)
     return (x - square) - square_error;
 }
 
-gw_real_t gw_sqrt(gw_real_t x)
+/* For x > 0. */
+static gw_real_t root_of(gw_real_t x)
 {
     static const power_of_four_t powers_of_four[SQRT_SCALINGS] = {
 #if (GW_REAL_DOUBLE == 1)
@@ -140,35 +118,37 @@ gw_real_t gw_sqrt(gw_real_t x)
         {(gw_real_t)16.0, (gw_real_t)0.0625, (gw_real_t)4.0}, /* 2^4 */
         {(gw_real_t)4.0, (gw_real_t)0.25, (gw_real_t)2.0}, /* 2^2 */
     };
-    gw_real_t result = GW_ZERO;
-    if (x > GW_ZERO) {
-        /* x = reduced * scale^2 with reduced in [1, 4). Factors are powers of 4, so nothing is rounded. */
-        gw_real_t reduced = gw_min(x, GW_REAL_MAX);
-        gw_real_t scale = GW_ONE;
-        for (uint32_t i = 0U; i < 2U; i++) { /* the smallest subnormal number needs both */
-            if (reduced < GW_ONE) {
-                reduced *= SQRT_LIFT;
-                scale *= SQRT_LIFT_ROOT;
-            }
+    /* x = reduced * scale^2 with reduced in [1, 4). Factors are powers of 4, so nothing is rounded. */
+    gw_real_t reduced = gw_min(x, GW_REAL_MAX);
+    gw_real_t scale = GW_ONE;
+    for (uint32_t i = 0U; i < 2U; i++) { /* the smallest subnormal number needs both */
+        if (reduced < GW_ONE) {
+            reduced *= SQRT_LIFT;
+            scale *= SQRT_LIFT_ROOT;
         }
-        for (uint32_t i = 0U; i < SQRT_SCALINGS; i++) {
-            if (reduced >= powers_of_four[i].power) {
-                reduced *= powers_of_four[i].inverse;
-                scale *= powers_of_four[i].root;
-            }
-        }
-        /* Within 4 %, then Newton's steps square the error. */
-        gw_real_t root = (gw_real_t)(17.0 / 24.0) + (reduced * (gw_real_t)(1.0 / 3.0));
-        for (uint32_t i = 0U; i < SQRT_NEWTON_STEPS; i++) {
-            root = GW_HALF * (root + (reduced / root));
-        }
-        /* The exact residual makes the last rounding the correct one. */
-        root += GW_HALF * (exact_residual(reduced, root) / root);
-        /* It decides a tie wrongly just below 4, where the root is just below 2. */
-        root = gw_min(root, BELOW_TWO);
-        result = root * scale;
     }
-    return result;
+    for (uint32_t i = 0U; i < SQRT_SCALINGS; i++) {
+        if (reduced >= powers_of_four[i].power) {
+            reduced *= powers_of_four[i].inverse;
+            scale *= powers_of_four[i].root;
+        }
+    }
+    /* Within 4 %, then Newton's steps square the error. */
+    gw_real_t root = (gw_real_t)(17.0 / 24.0) + (reduced * (gw_real_t)(1.0 / 3.0));
+    for (uint32_t i = 0U; i < SQRT_NEWTON_STEPS; i++) {
+        root = GW_HALF * (root + (reduced / root));
+    }
+    /* The exact residual makes the last rounding the correct one. */
+    root += GW_HALF * (exact_residual(reduced, root) / root);
+    /* It decides a tie wrongly just below 4, where the root is just below 2. */
+    root = gw_min(root, BELOW_TWO);
+    return root * scale;
+}
+#endif
+
+gw_real_t gw_sqrt(gw_real_t x)
+{
+    return (x > GW_ZERO) ? root_of(x) : GW_ZERO;
 }
 
 /* y * 2^exponent for results that are normal numbers. */
@@ -176,13 +156,12 @@ static gw_real_t scale_by_power_of_two(gw_real_t y, int32_t exponent)
 {
     gw_real_t result = y;
     gw_real_t factor = (exponent < 0) ? GW_HALF : GW_TWO;
-    uint32_t remaining = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
-    for (uint32_t i = 0U; i < EXPONENT_BITS; i++) {
+    const uint32_t size = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
+    for (uint32_t remaining = size; remaining != 0U; remaining >>= 1U) {
         if ((remaining & 1U) != 0U) {
             result *= factor;
         }
-        remaining >>= 1U;
-        if (remaining != 0U) {
+        if (remaining > 1U) {
             factor *= factor;
         }
     }

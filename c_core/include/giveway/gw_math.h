@@ -20,17 +20,43 @@ extern "C" {
 /* Largest magnitude that gw_sincos and gw_wrap_angle take. */
 #define GW_ANGLE_MAX ((gw_real_t)1.0e4)
 
+/* The one-liners are inline: called, they would be a quarter of a step's instructions. */
+
 /* True unless x is NaN or infinite. */
-bool gw_is_finite(gw_real_t x);
+static inline bool gw_is_finite(gw_real_t x)
+{
+    return (x >= -GW_REAL_MAX) && (x <= GW_REAL_MAX);
+}
+
 /* True if low <= x <= high; false for NaN. */
-bool gw_in_range(gw_real_t x, gw_real_t low, gw_real_t high);
+static inline bool gw_in_range(gw_real_t x, gw_real_t low, gw_real_t high)
+{
+    return (x >= low) && (x <= high);
+}
+
 /* |x|; NaN stays NaN. */
-gw_real_t gw_abs(gw_real_t x);
+static inline gw_real_t gw_abs(gw_real_t x)
+{
+    return (x < GW_ZERO) ? -x : x;
+}
+
 /* The smaller and the larger argument; b if a is NaN. */
-gw_real_t gw_min(gw_real_t a, gw_real_t b);
-gw_real_t gw_max(gw_real_t a, gw_real_t b);
+static inline gw_real_t gw_min(gw_real_t a, gw_real_t b)
+{
+    return (a < b) ? a : b;
+}
+
+static inline gw_real_t gw_max(gw_real_t a, gw_real_t b)
+{
+    return (a > b) ? a : b;
+}
+
 /* x limited to [low, high], low <= high; low if x is NaN. */
-gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high);
+static inline gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
+{
+    return gw_min(gw_max(x, low), high);
+}
+
 /* part / whole limited to [-1, 1], for the share of a whole that rounding must not exceed; 0 unless whole > 0. */
 gw_real_t gw_fraction(gw_real_t part, gw_real_t whole);
 /* Square root, correctly rounded; 0 for negative x and NaN; infinity stays GW_REAL_MAX's root at most. */
