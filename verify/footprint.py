@@ -1,0 +1,213 @@
+"""What c_core costs on a microcontroller: flash, RAM, stack, instructions; and the table of it in c_core/README.md.
+
+`.venv/bin/python -m verify.footprint` prints the table.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from verify.context import Context, Tool
+from verify.golden import EXAMPLE
+from verify.rung import RungFailed
+from verify.targets import TARGETS, Target, core_sources
+
+__all__ = ["MACHINES", "OBJDUMP", "SIZE", "TARGET", "Footprint", "check_table", "measure", "table", "worst_stack"]
+
+SIZE = Tool("arm-none-eabi-size", package="binutils-arm-none-eabi")
+OBJDUMP = Tool("arm-none-eabi-objdump", package="binutils-arm-none-eabi")
+MACHINES = tuple(TARGETS[name] for name in ("cortex-m3", "cortex-m4f", "cortex-m7"))
+ENTRIES = ("gw_controller_init", "gw_controller_step", "gw_servo_init", "gw_servo_step")
+SOURCES = "tests/c_core/footprint"
+# A firmware's usual flags: each function in a section of its own, so that the linker drops what nobody calls.
+FLAGS = ("-O2", "-ffunction-sections", "-fdata-sections")
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """Bytes and instructions; steps are the longest ones over the recorded collision and found by search."""
+
+    flash: int
+    controller_ram: int  # without the window of the filter
+    window_ram: int
+    servo_ram: int
+    stack: int
+    step_recorded: int
+    step_searched: int
+    servo_step: int
+
+
+# For Cortex-M4F, set before anything was measured.
+TARGET = Footprint(
+    flash=12288,
+    controller_ram=1536,
+    window_ram=12288,
+    servo_ram=1536,
+    stack=512,
+    step_recorded=3000,
+    step_searched=3000,
+    servo_step=300,
+)
+ROWS = {
+    "flash": "Flash, bytes: init and step of controller and servo",
+    "controller_ram": "RAM of the controller, bytes, without the window",
+    "window_ram": "RAM of the filter window, bytes",
+    "servo_ram": "RAM of a servo, bytes",
+    "stack": "Worst stack, bytes",
+    "step_recorded": "Longest step over a recorded collision, instructions",
+    "step_searched": "Longest step found by search, instructions",
+    "servo_step": "Longest servo step, instructions",
+}
+
+
+def measure(context: Context, target: Target) -> Footprint:
+    """Everything, at -O2 in float."""
+    linked = _link(context, target)
+    return Footprint(flash=_flash(context, linked), stack=_stack(context, linked), **_run(context, target))
+
+
+def _link(context: Context, target: Target) -> Path:
+    """A program that is nothing but c_core and its four entries; gcc's .su files beside it."""
+    bare = replace(target, flags=tuple(flag for flag in target.flags if "specs" not in flag), support=())
+    source = context.root / SOURCES / "linked.c"
+    link = ("-nostartfiles", "-Wl,--gc-sections,-e,firmware", "-fstack-usage")
+    return bare.build(
+        context, [*core_sources(context.core), source], context.work / f"{target.name}.elf", *FLAGS, *link
+    )
+
+
+def _flash(context: Context, linked: Path) -> int:
+    """Code and constants, and the initial values of data."""
+    answer = context.run(context.which(SIZE), linked)
+    text, data, *_ = answer.stdout.splitlines()[1].split()
+    return int(text) + int(data)
+
+
+def _run(context: Context, target: Target) -> dict[str, int]:
+    assert target.emulator is not None
+    counting = replace(target, emulator_arguments=("-icount", "shift=0", *target.emulator_arguments))
+    golden = context.root / "tests/c_core/golden"
+    example = context.root / EXAMPLE
+    sources = [
+        *core_sources(context.core),
+        context.root / SOURCES / "measure.c",
+        golden / "script.c",
+        golden / "generator.c",
+        example / "recorded_collision.c",
+    ]
+    includes = (f"-I{golden}", f"-I{example}")
+    program = counting.build(context, sources, context.work / f"{target.name}_measure", *FLAGS, *includes)
+    answer = counting.run(context, program, timeout_s=600.0)
+    return {name: int(value) for name, value in (line.split() for line in answer.stdout.splitlines())}
+
+
+CALL = re.compile(r"\b(?:bl|b|b\.w|b\.n|bl\.w|beq\.w|bne\.w|blx)\s+[0-9a-f]+ <([^+>]+)>")
+HEAD = re.compile(r"^[0-9a-f]+ <([^>]+)>:$")
+REGISTERS = re.compile(r"\b(push|stmdb\s+sp!,|vpush)\s*\{([^}]*)\}")
+LOWER = re.compile(r"\bsub(?:w|\.w)?\s+sp,\s*(?:sp,\s*)?#(\d+)|\[sp, #-(\d+)\]!")
+
+
+def _stack(context: Context, linked: Path) -> int:
+    usage: dict[str, int] = {}
+    for file in linked.parent.glob(f"{linked.name}-*.su"):
+        for line in file.read_text().splitlines():
+            place, size, kind = line.split("\t")
+            if kind != "static":
+                raise RungFailed(f"the stack of {place} is {kind}")
+            usage[place.rsplit(":", 1)[1]] = int(size)
+    listing = context.run(context.which(OBJDUMP), "-d", "--no-show-raw-insn", linked).stdout
+    return max(worst_stack(listing, usage, entry) for entry in ENTRIES)
+
+
+def worst_stack(listing: str, usage: dict[str, int], entry: str) -> int:
+    """Bytes of the deepest chain of calls from ``entry``; `RungFailed` on recursion and on calls through pointers.
+
+    ``usage``: what the compiler says of its functions; those of its libraries are read off their instructions.
+    """
+    frames: dict[str, int] = {}
+    calls: dict[str, set[str]] = {}
+    name = ""
+    for line in listing.splitlines():
+        if head := HEAD.match(line):
+            name = head[1]
+            frames[name] = usage.get(name, 0)
+            calls[name] = set()
+            continue
+        if not name:
+            continue
+        if call := CALL.search(line):
+            calls[name].add(call[1])
+        elif re.search(r"\bblx?\s+(r\d|ip)", line):
+            raise RungFailed(f"{name} calls through a pointer: {line.strip()}")
+        if name not in usage:
+            frames[name] += _pushed(line)
+    return _deepest(entry, frames, calls, ())
+
+
+def _pushed(line: str) -> int:
+    total = 0
+    if match := REGISTERS.search(line):
+        width = 8 if match[1] == "vpush" and "d" in match[2] else 4
+        for part in match[2].split(","):
+            first, _, last = part.strip().partition("-")
+            count = int(last[1:]) - int(first[1:]) + 1 if last else 1
+            total += width * count
+    if match := LOWER.search(line):
+        total += int(match[1] or match[2])
+    return total
+
+
+def _deepest(name: str, frames: dict[str, int], calls: dict[str, set[str]], path: Sequence[str]) -> int:
+    if name in path:
+        raise RungFailed(f"recursion: {' -> '.join([*path, name])}")
+    below = [_deepest(callee, frames, calls, (*path, name)) for callee in calls[name] if callee != name]
+    return frames[name] + max(below, default=0)
+
+
+def table(measured: dict[str, Footprint]) -> str:
+    """The table of c_core/README.md."""
+    names = [name.replace("cortex-m", "Cortex-M").replace("4f", "4F") for name in measured]
+    lines = [f"| | {' | '.join(names)} | target, M4F |", f"|---|{'---:|' * (len(names) + 1)}"]
+    for field, text in ROWS.items():
+        values = [f"{getattr(footprint, field):,}" for footprint in measured.values()]
+        lines.append(f"| {text} | {' | '.join(values)} | {getattr(TARGET, field):,} |")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def check_table(root: Path, measured: dict[str, Footprint]) -> None:
+    """`RungFailed` unless c_core/README.md shows the measured numbers of these machines."""
+    readme = (root / "c_core" / "README.md").read_text(encoding="utf-8")
+    shown = [_cells(line) for line in readme.splitlines() if line.startswith("| ")]
+    (heading, *rows) = [_cells(line) for line in table(measured).splitlines() if not line.startswith("|---")]
+    columns = next((cells for cells in shown if cells[-1:] == heading[-1:]), None)
+    if columns is None:
+        raise RungFailed("c_core/README.md has no table of the footprint")
+    wrong = []
+    for row in rows:
+        line = next((cells for cells in shown if cells[0] == row[0]), None)
+        for name, value in zip(heading[1:], row[1:], strict=True):
+            found = line[columns.index(name)] if line else "nothing"
+            if found != value:
+                wrong.append(f"{row[0]}, {name}: measured {value}, c_core/README.md says {found}")
+    if wrong:
+        raise RungFailed("\n".join([*wrong, "python -m verify.footprint prints the table anew"]))
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+def _print() -> None:
+    root = Path(__file__).parents[1]
+    with tempfile.TemporaryDirectory() as folder:
+        context = Context(root, Path(folder), os.environ["PATH"])
+        print(table({target.name: measure(context, target) for target in MACHINES}), end="")
+
+
+if __name__ == "__main__":
+    _print()

@@ -1,0 +1,37 @@
+"""Flash, RAM, stack and instructions on Cortex-M are those of c_core/README.md, and no function calls itself."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+
+from verify import footprint
+from verify.context import Context
+from verify.rung import Figure, Rung, planted
+
+RECURSION = "00000000 <gw_a>:\n   0:\tpush\t{r4, lr}\n   2:\tbl\t8 <gw_b>\n\n00000008 <gw_b>:\n   8:\tbl\t0 <gw_a>\n"
+POINTER = "00000000 <gw_a>:\n   0:\tblx\tr3\n"
+
+
+def check(context: Context) -> Figure:
+    measured = {target.name: footprint.measure(context, target) for target in footprint.MACHINES}
+    footprint.check_table(context.root, measured)
+    with planted("recursion", shows="recursion: gw_a -> gw_b -> gw_a"):
+        footprint.worst_stack(RECURSION, {}, "gw_a")
+    with planted("a call through a pointer", shows="through a pointer"):
+        footprint.worst_stack(POINTER, {}, "gw_a")
+    m4f = measured["cortex-m4f"]
+    with planted("one instruction more", shows=f"measured {m4f.step_recorded + 1:,}"):
+        footprint.check_table(context.root, {"cortex-m4f": replace(m4f, step_recorded=m4f.step_recorded + 1)})
+    values = {f"{name} {field}": value for name, cost in measured.items() for field, value in asdict(cost).items()}
+    return Figure(
+        f"Cortex-M4F: flash {m4f.flash} B, RAM {m4f.controller_ram} B + window, stack {m4f.stack} B, "
+        f"step {m4f.step_searched} instructions, servo {m4f.servo_step}",
+        values,
+    )
+
+
+RUNG = Rung(
+    "flash, RAM, stack and instructions as the README says",
+    tuple(dict.fromkeys([footprint.SIZE, footprint.OBJDUMP, *[t for m in footprint.MACHINES for t in m.tools]])),
+    check,
+)
