@@ -22,4 +22,8 @@ need libgtest-dev compiles gtest/gtest.h
 need libeigen3-dev compiles Eigen/Core
 need python3 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))'
 need python3-venv "$python" -c 'import ensurepip, venv'
+# Cortex-M: c_core's bits, its cost and the firmware example are tested there.
+need gcc-arm-none-eabi arm-none-eabi-gcc --version
+need libnewlib-arm-none-eabi test -e /usr/lib/arm-none-eabi/newlib/libc.a
+need qemu-system-arm qemu-system-arm --version
 install_missing

@@ -8,12 +8,10 @@ has() { # has COMMAND: it can be called
     command -v "$1"
 }
 
+# What the build itself needs (cmake/system_packages.sh) is already there.
 need clang-19 has clang-19
 need llvm-19 has llvm-cov-19
 need frama-c-base has frama-c
-need gcc-arm-none-eabi has arm-none-eabi-gcc
-need libnewlib-arm-none-eabi test -e /usr/lib/arm-none-eabi/newlib/libc.a
-need qemu-system-arm has qemu-system-arm
 need qemu-user has qemu-aarch64
 need gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
 for machine in i686:i386 aarch64:arm64 riscv64:riscv64 arm:armhf s390x:s390x; do
