@@ -9,7 +9,19 @@ from pathlib import Path
 
 from verify.context import Context, Finished, Tool
 
-__all__ = ["CLANG", "CORTEX_M", "CROSS", "GCC", "HOST", "HOST_CLANG", "TARGETS", "WARNINGS", "WIN64", "Target", "core_sources"]
+__all__ = [
+    "CLANG",
+    "CORTEX_M",
+    "CROSS",
+    "GCC",
+    "HOST",
+    "HOST_CLANG",
+    "TARGETS",
+    "WARNINGS",
+    "WIN64",
+    "Target",
+    "core_sources",
+]
 
 GCC = Tool("gcc", package="g++")
 CLANG = Tool("clang-19")
