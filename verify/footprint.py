@@ -165,7 +165,7 @@ def _pushed(line: str) -> int:
 def _deepest(name: str, frames: dict[str, int], calls: dict[str, set[str]], path: Sequence[str]) -> int:
     if name in path:
         raise RungFailed(f"recursion: {' -> '.join([*path, name])}")
-    below = [_deepest(callee, frames, calls, (*path, name)) for callee in calls[name] if callee != name]
+    below = [_deepest(callee, frames, calls, (*path, name)) for callee in sorted(calls[name]) if callee != name]
     return frames[name] + max(below, default=0)
 
 
