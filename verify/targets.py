@@ -47,6 +47,9 @@ class Target:
     emulator_arguments: tuple[str, ...] = ()
     suffix: str = ""  # of a program's name
     support: tuple[str, ...] = ()  # sources and linker script that a program needs, below the repository's root
+    # False: double is software there, and gcc 12's for Arm rounds some differences wrongly, such as
+    # 1 - 0x1.2f84f34dfab73p-33; tests/c_core/test_golden_bits.py tells when that is mended.
+    double_rounds: bool = True
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -97,7 +100,7 @@ def core_sources(core: Path) -> list[Path]:
     return sorted((core / "src").glob("*.c"))
 
 
-def _cortex_m(name: str, board: str, *flags: str) -> Target:
+def _cortex_m(name: str, board: str, *flags: str, double_rounds: bool = False) -> Target:
     return Target(
         name,
         ARM_GCC,
@@ -105,6 +108,7 @@ def _cortex_m(name: str, board: str, *flags: str) -> Target:
         QEMU_ARM,
         ("-M", board, "-nographic", "-semihosting-config", "enable=on,target=native", "-kernel"),
         support=("verify/target/startup.c", "verify/target/mps2.ld"),
+        double_rounds=double_rounds,
     )
 
 
@@ -120,7 +124,7 @@ CORTEX_M = (
     _cortex_m("cortex-m3", "mps2-an385", "-mcpu=cortex-m3", "-mfloat-abi=soft"),
     _cortex_m("cortex-m4", "mps2-an386", "-mcpu=cortex-m4", "-mfloat-abi=soft"),
     _cortex_m("cortex-m4f", "mps2-an386", "-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"),
-    _cortex_m("cortex-m7", "mps2-an500", "-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard"),
+    _cortex_m("cortex-m7", "mps2-an500", "-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", double_rounds=True),
 )
 
 TARGETS = {target.name: target for target in (HOST, WIN64, *CORTEX_M)}
@@ -133,5 +137,5 @@ CROSS = (
     _linux("armhf", "arm-linux-gnueabihf", "arm"),
     # Big-endian. There -std=c99 alone makes gcc compute float in double, which gw_types.h refuses.
     _linux("s390x", "s390x-linux-gnu", "s390x", "-fexcess-precision=fast"),
-    _cortex_m("cortex-m55", "mps3-an547", "-mcpu=cortex-m55", "-mfloat-abi=hard"),
+    _cortex_m("cortex-m55", "mps3-an547", "-mcpu=cortex-m55", "-mfloat-abi=hard", double_rounds=True),
 )

@@ -82,6 +82,18 @@ digest_t drive_controller_watching(void)
     return play(&config, 23U, false);
 }
 
+/* The estimator that follows the rollers' bristles. */
+digest_t drive_controller_bristles(void)
+{
+    gw_controller_config_t config;
+    gw_controller_config_trikey(&config);
+    config.estimator.friction_model = GW_FRICTION_BRISTLE;
+    config.estimator.velocity_source = GW_SOURCE_MEASURED;
+    config.estimator.acceleration_source = GW_SOURCE_MEASURED;
+    config.estimator.rate_cutoff_radps = (gw_real_t)300.0;
+    return play(&config, 24U, true);
+}
+
 digest_t drive_controller_recorded(void)
 {
     static gw_controller_t controller;

@@ -20,6 +20,7 @@ static const module_t modules[] = {
     {"tare", drive_tare},
     {"moving_average", drive_moving_average},
     {"rate_filter", drive_rate_filter},
+    {"presliding", drive_presliding},
     {"config", drive_config},
     {"sensor_check", drive_sensor_check},
     {"contact", drive_contact},
@@ -33,6 +34,7 @@ static const module_t modules[] = {
     {"controller.trikey", drive_controller_trikey},
     {"controller.measuring", drive_controller_measuring},
     {"controller.watching", drive_controller_watching},
+    {"controller.bristles", drive_controller_bristles},
     {"controller.recorded", drive_controller_recorded},
     {"controller.reached", drive_controller_reached},
 };

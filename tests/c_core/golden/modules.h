@@ -14,6 +14,7 @@ digest_t drive_sum(void);
 digest_t drive_tare(void);
 digest_t drive_moving_average(void);
 digest_t drive_rate_filter(void);
+digest_t drive_presliding(void);
 digest_t drive_config(void);
 digest_t drive_sensor_check(void);
 digest_t drive_contact(void);
@@ -27,6 +28,7 @@ digest_t drive_servo(void);
 digest_t drive_controller_trikey(void);
 digest_t drive_controller_measuring(void);
 digest_t drive_controller_watching(void);
+digest_t drive_controller_bristles(void);
 digest_t drive_controller_recorded(void);
 /* Which modes (upper word) and statuses (lower word) the drives above met, as sets of bits. */
 digest_t drive_controller_reached(void);
