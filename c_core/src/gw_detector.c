@@ -130,6 +130,7 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
         output->mean_wrench.force_x_n = gw_fraction(sum.x, length) * mean_n;
         output->mean_wrench.force_y_n = gw_fraction(sum.y, length) * mean_n;
         output->mean_wrench.torque_nm = (moment / gw_max(length, IMPULSE_MIN)) * mean_n;
+        output->mean_wrench = gw_wrench_limited(output->mean_wrench);
         output->samples = detector->samples;
         output->statistic = left;
         trips = (left > detector->config.impulse_threshold_newton_s);

@@ -154,7 +154,7 @@ static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t beara
     if (!gw_in_range(after_m.value, low_m, high_m)) {
         after_m = gw_sum_of(gw_clamp(after_m.value, low_m, high_m));
     }
-    presliding->deflection_m[wheel] = after_m;
+    presliding->deflection_m[wheel] = gw_sum_limit(after_m, most_m);
 }
 
 gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_t *kinematics,
@@ -173,7 +173,7 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
         const gw_real_t bearable_n = bearable_at(presliding, kinematics, speed_mps);
         const gw_real_t rate_mps = speed_mps * deflecting_share(presliding, i, bearable_n, speed_mps);
         if (gw_in_range(way_m, -WAY_MAX_M, WAY_MAX_M)) {
-            deflect(presliding, i, bearable_n, way_m);
+            deflect(presliding, i, bearable_n, gw_clamp(way_m, -WAY_MAX_M, WAY_MAX_M));
         }
         const gw_real_t force_n = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) +
                                   (presliding->config.damping_newton_s_per_m * rate_mps);

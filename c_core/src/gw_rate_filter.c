@@ -48,7 +48,7 @@ void gw_rate_filter_restart(gw_rate_filter_t *filter)
 void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
 {
     if ((!filter->started) && gw_in_range(rate_radps, -RATE_MAX, RATE_MAX)) {
-        filter->rate_radps = rate_radps;
+        filter->rate_radps = gw_clamp(rate_radps, -RATE_MAX, RATE_MAX);
     }
 }
 

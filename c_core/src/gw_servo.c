@@ -104,7 +104,7 @@ static void take_reference(gw_servo_t *servo, const gw_servo_input_t *input)
         if (gw_in_range(input->angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX) &&
             gw_in_range(input->speed_radps, -REFERENCE_SPEED_MAX, REFERENCE_SPEED_MAX)) {
             servo->desired_rad = gw_sum_of(gw_wrap_angle(input->angle_rad));
-            servo->desired_speed_radps = input->speed_radps;
+            servo->desired_speed_radps = gw_clamp(input->speed_radps, -REFERENCE_SPEED_MAX, REFERENCE_SPEED_MAX);
             servo->reference_status = GW_STATUS_OK;
         } else {
             servo->desired_speed_radps = GW_ZERO;
