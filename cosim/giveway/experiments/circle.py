@@ -380,8 +380,8 @@ NOTES = (
     "The paper's estimator takes the planned acceleration for the real one. When a push ends, servo and drivetrains "
     "spring back, and in the escape the robot lags its reference: it takes both for pushes. Where one roller hardly "
     "turns, tanh (28) knows nothing of what it holds, up to 21 N for seconds, which it takes for a push, too.",
-    "What the full estimator still invents around oblique pushes comes on the way back along a direction in which one "
-    "roller hardly turns: its slow creep is where the bristle model is weakest.",
+    "What the full estimator still invents around oblique pushes was not looked into one by one; the slow creep of a "
+    "roller that hardly turns is where the bristle model is weakest.",
 )
 
 
