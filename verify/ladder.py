@@ -6,7 +6,7 @@ import json
 import shutil
 import time
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -103,21 +103,28 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str) -> Path:
     return path
 
 
-def verified(root: Path, outcomes: list[Outcome], sources: str) -> Path:
-    """c_core/VERIFIED.json: the sources that climbed every rung, with the figures. `make test` holds it current."""
+def verified(root: Path, outcomes: list[Outcome], sources: str, order: Sequence[str]) -> Path:
+    """c_core/VERIFIED.json: the sources that climbed every rung, with the figures. `make test` holds it current.
+
+    What other rungs found about the very same sources stays, so that a new rung can be climbed alone. ``order``: the
+    names of all rungs.
+    """
     if core_hash(root) != sources:
         raise RungFailed("c_core changed while it was being verified: run `make verify` again")
     path = root / "c_core" / "VERIFIED.json"
-    rungs = {
+    before = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    if before.get("sources_sha256") != sources:
+        before = {"rungs": {}, "tools": {}}
+    rungs = before["rungs"] | {
         outcome.name: {"figure": outcome.figure.text, "values": dict(outcome.figure.values)}
         for outcome in outcomes
         if outcome.figure is not None
     }
-    tools = {name: version for outcome in outcomes for name, version in outcome.versions.items()}
+    tools = before["tools"] | {name: version for outcome in outcomes for name, version in outcome.versions.items()}
     document = {
         "schema_version": SCHEMA_VERSION,
         "sources_sha256": sources,
-        "rungs": rungs,
+        "rungs": {name: rungs[name] for name in order if name in rungs},
         "tools": dict(sorted(tools.items())),
     }
     write_text(path, _json(document))

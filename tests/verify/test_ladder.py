@@ -54,7 +54,7 @@ def test_green_rungs_are_written_with_the_hash_of_the_sources(tmp_path: Path) ->
     summary = json.loads(ladder.write_summary(root, outcomes, sources).read_text())
     assert [rung["name"] for rung in summary["rungs"]] == ["first", "second"]
     assert all(rung["passed"] and rung["tools"]["python3"].startswith("Python 3") for rung in summary["rungs"])
-    document = json.loads(ladder.verified(root, outcomes, sources).read_text())
+    document = json.loads(ladder.verified(root, outcomes, sources, ["first", "second"]).read_text())
     assert document["sources_sha256"] == sources
     assert document["rungs"]["second"] == {"figure": "3 of 3", "values": {"found": 3}}
 
@@ -82,8 +82,22 @@ def test_sources_that_changed_meanwhile_are_not_verified(tmp_path: Path) -> None
     before = core_hash(root)
     (root / "c_core" / "src" / "a.c").write_text("int b;\n")
     with pytest.raises(RungFailed, match="changed while"):
-        ladder.verified(root, [], before)
+        ladder.verified(root, [], before, [])
     assert not (root / "c_core" / "VERIFIED.json").exists()
+
+
+def test_a_rung_climbed_alone_joins_the_others_of_the_same_sources(tmp_path: Path) -> None:
+    root = tree(tmp_path)
+    order = ["early", "late"]
+
+    def rungs(name: str) -> list[str]:
+        outcomes = climb(root, **{name: Rung("", (PYTHON,), good)})
+        return list(json.loads(ladder.verified(root, outcomes, core_hash(root), order).read_text())["rungs"])
+
+    assert rungs("late") == ["late"]
+    assert rungs("early") == order
+    (root / "c_core" / "src" / "a.c").write_text("int b;\n")
+    assert rungs("early") == ["early"]  # what was found about other sources counts for nothing
 
 
 def test_a_planted_fault_has_to_be_seen_for_its_own_reason() -> None:
