@@ -240,7 +240,7 @@ def _height(section: _Section) -> dict[str, Value]:
     """A height above the floor matters to a base that can tip."""
     if "height" not in section.values:
         return {}
-    with _renamed("collision", **{"contact.height": "height"}):
+    with _renamed("collision", **{"testbed.contact.height": "height"}):
         height = table("testbed").check("contact.height", section.number("height"))
     return {"base.tipping": True, "contact.height": height}
 
