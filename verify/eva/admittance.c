@@ -1,0 +1,46 @@
+#include "parts.h"
+
+static gw_admittance_t admittance;
+static gw_admittance_config_t config;
+
+static gw_vector_t any_vector(void)
+{
+    const gw_vector_t vector = {any_real(), any_real()};
+    return vector;
+}
+
+static void part_init(void)
+{
+    draw_admittance_config(&config);
+    const gw_real_t period_s = draw_setting(GW_FIELD_CONTROLLER_PERIOD);
+    demand_count((uint32_t)gw_admittance_init(&admittance, &config, period_s), 0U, 0U);
+    hold_admittance(&admittance);
+}
+
+static void part_step(void)
+{
+    gw_admittance_output_t output;
+    draw_admittance(&admittance);
+    if (any_flag()) {
+        (void)gw_admittance_start(&admittance, any_vector(), any_vector());
+    } else {
+        (void)gw_admittance_step(&admittance, any_vector(), &output);
+        hold_vector(&output.velocity_mps, (gw_real_t)100.0);
+        hold_vector(&output.displacement_m, (gw_real_t)100.0);
+    }
+    hold_admittance(&admittance);
+    (void)gw_admittance_invariant_holds(&admittance);
+}
+
+static void part_refusals(void)
+{
+    gw_admittance_output_t output;
+    draw_admittance_config(&config);
+    (void)gw_admittance_init(any_flag() ? &admittance : NULL, any_flag() ? &config : NULL,
+                             draw_refused(GW_FIELD_CONTROLLER_PERIOD));
+    admittance.initialised = false;
+    (void)gw_admittance_start(any_flag() ? &admittance : NULL, any_vector(), any_vector());
+    (void)gw_admittance_step(any_flag() ? &admittance : NULL, any_vector(), any_flag() ? &output : NULL);
+    disturb_admittance(&admittance);
+    (void)gw_admittance_invariant_holds(any_flag() ? &admittance : NULL);
+}

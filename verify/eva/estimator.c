@@ -1,0 +1,75 @@
+#include "parts.h"
+
+static gw_estimator_t estimator;
+static gw_estimator_config_t config;
+static gw_geometry_config_t geometry;
+static gw_inertia_config_t inertia;
+static gw_friction_config_t friction;
+
+static void draw_configs(void)
+{
+    draw_estimator_config(&config);
+    draw_geometry_config(&geometry);
+    draw_inertia_config(&inertia);
+    draw_friction_config(&friction);
+    geometry.wheel_slot[0] = 1U; /* the slots: any in kinematics.c */
+    geometry.wheel_slot[1] = 2U;
+    geometry.wheel_slot[2] = 0U;
+}
+
+static void part_init(void)
+{
+    draw_configs();
+    demand_count((uint32_t)gw_estimator_init(&estimator, &config, &geometry, &inertia, &friction,
+                                             draw_setting(GW_FIELD_CONTROLLER_PERIOD)),
+                 0U, 0U);
+    hold_estimator(&estimator);
+}
+
+static void part_step(void)
+{
+    const gw_estimator_input_t input = {{{any_real(), any_real(), any_real()}},
+                                        {any_int, any_int, any_int},
+                                        {any_real(), any_real(), any_real()},
+                                        {any_real(), any_real(), any_real()}};
+    gw_estimator_output_t output;
+    gw_wheels_t torque_nm;
+    draw_estimator(&estimator);
+    draw_wheels(&torque_nm, GW_TORQUE_MAX);
+    const uint32_t kind = draw_count(0U, 3U);
+    if (kind == 0U) {
+        (void)gw_estimator_step(&estimator, &input, &output);
+        hold_wrench(&output.mean, (gw_real_t)1.1e12);
+        hold_wrench(&output.window_mean, (gw_real_t)1.1e12);
+    } else if (kind == 1U) {
+        (void)gw_estimator_tare(&estimator, &torque_nm);
+    } else if (kind == 2U) {
+        gw_estimator_start_tare(&estimator);
+    } else {
+        gw_estimator_restart(&estimator);
+    }
+    demand_real(gw_estimator_encoder_angle(&estimator, any_int), -PI_ROUNDED, PI_ROUNDED);
+    hold_estimator(&estimator);
+    (void)gw_estimator_invariant_holds(&estimator);
+}
+
+static void part_refusals(void)
+{
+    const gw_estimator_input_t input = {{{any_real(), any_real(), any_real()}},
+                                        {any_int, any_int, any_int},
+                                        {any_real(), any_real(), any_real()},
+                                        {any_real(), any_real(), any_real()}};
+    gw_estimator_output_t output;
+    draw_configs();
+    if (any_flag()) {
+        config.torque_noise_nm = draw_refused(GW_FIELD_ESTIMATOR_TORQUE_NOISE);
+    } else {
+        geometry.azimuth_rad = draw_refused(GW_FIELD_GEOMETRY_AZIMUTH);
+    }
+    (void)gw_estimator_init(any_flag() ? &estimator : NULL, any_flag() ? &config : NULL, &geometry, &inertia, &friction,
+                            (gw_real_t)0.001);
+    estimator.initialised = false;
+    (void)gw_estimator_step(&estimator, &input, &output);
+    disturb_estimator(&estimator);
+    (void)gw_estimator_invariant_holds(any_flag() ? &estimator : NULL);
+}
