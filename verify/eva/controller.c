@@ -1,0 +1,86 @@
+#include "parts.h"
+
+static gw_controller_t controller;
+static gw_controller_config_t config;
+
+static gw_controller_input_t any_input(void)
+{
+    const gw_controller_input_t input = {
+        {{any_real(), any_real(), any_real()}, {any_int, any_int, any_int}, any_count, any_flag()},
+        {{any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}},
+        any_flag(),
+        any_flag()};
+    return input;
+}
+
+static void part_init(void)
+{
+    static const gw_moving_average_t empty;
+    gw_config_error_t error;
+    draw_controller_config(&config);
+    config.geometry.wheel_slot[0] = 1U; /* the slots: any in kinematics.c */
+    config.geometry.wheel_slot[1] = 2U;
+    config.geometry.wheel_slot[2] = 0U;
+    disturb_controller(&controller);
+    controller.estimator.average = empty; /* 1024 samples at once, so that Eva need not follow the loop over them */
+    /* Whether an outline is convex and a gain fits the period: the same answer twice, which Eva cannot know. What a
+     * successful init makes of these two is proved in contact.c and reference.c. */
+    draw_contact(&controller.contact);
+    draw_reference(&controller.reference);
+    if (gw_controller_init(&controller, &config, any_flag() ? &error : NULL) == GW_STATUS_OK) {
+        controller.contact.initialised = true;
+        controller.reference.initialised = true;
+        hold_controller(&controller);
+    }
+}
+
+static void hold_output(gw_controller_output_t *output)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        demand_real(output->command.angle_rad[i], -PI_ROUNDED, PI_ROUNDED);
+        demand_real(output->command.speed_radps[i], (gw_real_t)-1.2e6, (gw_real_t)1.2e6);
+    }
+    hold_wrench(&output->estimate, (gw_real_t)1.1e12);
+    hold_contact_estimate(&output->contact);
+    demand_real(output->detection_statistic, GW_ZERO, (gw_real_t)1.8447e19);
+    demand_count(output->detection_count, 0U, GW_TICK_MASK);
+    demand_integer(output->detection_tick, -1, INT32_MAX);
+    hold_wrench(&output->detection_wrench, GW_WRENCH_MAX);
+    hold_contact_estimate(&output->detection_contact);
+    demand_real(output->reference_pose.x_m, (gw_real_t)-1.0e5, (gw_real_t)1.0e5);
+    demand_real(output->reference_pose.y_m, (gw_real_t)-1.0e5, (gw_real_t)1.0e5);
+    demand_real(output->reference_pose.theta_rad, -PI_ROUNDED, PI_ROUNDED);
+    hold_twist(&output->reference_twist);
+    demand_count((uint32_t)output->mode, 0U, (uint32_t)GW_MODE_FAULT);
+    demand_count(output->path_ticks, 0U, GW_TICK_MASK);
+    demand_count(output->tick, 0U, GW_TICK_MASK);
+}
+
+static void part_step(void)
+{
+    gw_controller_output_t output;
+    const gw_controller_input_t input = any_input();
+    draw_controller(&controller);
+    (void)gw_controller_step(&controller, &input, &output);
+    hold_controller(&controller);
+    hold_output(&output);
+    (void)gw_controller_invariant_holds(&controller);
+}
+
+static void part_refusals(void)
+{
+    gw_controller_output_t output;
+    const gw_controller_input_t input = any_input();
+    draw_controller_config(&config);
+    config.period_s = draw_refused(GW_FIELD_CONTROLLER_PERIOD);
+    (void)gw_controller_init(any_flag() ? &controller : NULL, any_flag() ? &config : NULL, NULL);
+    controller.initialised = false;
+    (void)gw_controller_step(any_flag() ? &controller : NULL, any_flag() ? &input : NULL, any_flag() ? &output : NULL);
+    draw_controller(&controller);
+    controller.initialised = any_flag();
+    controller.config.period_s = draw_real((gw_real_t)0.0001, GW_ONE);
+    controller.detection_count = any_count;
+    controller.detection_tick = any_int;
+    controller.tick = any_count;
+    (void)gw_controller_invariant_holds(any_flag() ? &controller : NULL);
+}

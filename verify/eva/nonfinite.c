@@ -1,0 +1,42 @@
+/* Infinite torques are never called good, and sensor_check keeps its invariant (NaN: esbmc/sensor_check.c; Eva takes any
+ * comparison with it for undecided). And what finite numbers do not reach: every invariant of numbers that are none. */
+#include "parts.h"
+
+static void part_init(void)
+{
+}
+
+static void part_step(void)
+{
+    static gw_sensor_check_t check;
+    const gw_real_t infinite[2] = {1.0F / 0.0F, -1.0F / 0.0F};
+    for (uint32_t kind = 0U; kind < 2U; kind++) {
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            gw_sensor_sample_t sample = {
+                {any_real(), any_real(), any_real()}, {any_int, any_int, any_int}, any_count, any_flag()};
+            sample.torque_nm[i] = infinite[kind];
+            draw_sensor_check(&check);
+            const gw_status_t status = gw_sensor_check_step(&check, &sample);
+            demand_count((uint32_t)status, (uint32_t)GW_STATUS_SENSOR_MISSING, (uint32_t)GW_STATUS_SENSOR_RECOVERING);
+            hold_sensor_check(&check);
+        }
+    }
+}
+
+static void part_refusals(void)
+{
+    static gw_controller_t controller;
+    disturb_controller(&controller);
+    controller.contact.config.vertex_count = GW_OUTLINE_VERTEX_MAX; /* as in contact.c */
+    controller.config.contact.vertex_count = GW_OUTLINE_VERTEX_MAX;
+    controller.estimator.kinematics.wheel_radius_m = any_float;
+    controller.estimator.kinematics.roller_radius_m = any_float;
+    controller.estimator.kinematics.wheel_distance_m = any_float;
+    (void)gw_controller_invariant_holds(&controller);
+    (void)gw_estimator_invariant_holds(&controller.estimator);
+    (void)gw_kinematics_invariant_holds(&controller.estimator.kinematics);
+    (void)gw_moving_average_invariant_holds(&controller.estimator.average);
+    (void)gw_sum_invariant_holds(controller.reference.x_m);
+    (void)gw_reference_invariant_holds(&controller.reference);
+    (void)gw_admittance_invariant_holds(&controller.admittance);
+}

@@ -1,0 +1,79 @@
+/* Values from a fuzzer's bytes; zero when they are used up. */
+#ifndef FUZZ_BYTES_H
+#define FUZZ_BYTES_H
+
+#include "giveway/giveway.h"
+#include "giveway/gw_math.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEMAND(condition)                                                                                              \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            (void)fprintf(stderr, "broken: %s (%s:%d)\n", #condition, __FILE__, __LINE__);                             \
+            abort();                                                                                                   \
+        }                                                                                                              \
+    } while (0)
+
+typedef struct {
+    const uint8_t *data;
+    size_t left;
+} bytes_t;
+
+static inline uint32_t take_count(bytes_t *bytes)
+{
+    uint32_t value = 0U;
+    const size_t size = (bytes->left < sizeof(value)) ? bytes->left : sizeof(value);
+    if (size > 0U) {
+        (void)memcpy(&value, bytes->data, size);
+        bytes->data += size;
+        bytes->left -= size;
+    }
+    return value;
+}
+
+static inline int32_t take_integer(bytes_t *bytes)
+{
+    const uint32_t bits = take_count(bytes);
+    int32_t value;
+    (void)memcpy(&value, &bits, sizeof(value));
+    return value;
+}
+
+static inline bool take_flag(bytes_t *bytes)
+{
+    return (take_count(bytes) & 1U) != 0U;
+}
+
+/* Any bits: NaN, infinities, subnormals. */
+static inline gw_real_t take_real(bytes_t *bytes)
+{
+    const uint32_t bits = take_count(bytes);
+    float value;
+    (void)memcpy(&value, &bits, sizeof(value));
+    return (gw_real_t)value;
+}
+
+/* A setting: mostly within its range, both ends included, now and then any bits. */
+static inline gw_real_t take_setting(bytes_t *bytes, gw_config_field_t field)
+{
+    const gw_config_limit_t *const limit = gw_config_limit(field);
+    const uint32_t bits = take_count(bytes);
+    gw_real_t value = limit->minimum + ((limit->maximum - limit->minimum) * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF));
+    if ((bits & 0xFFU) == 0xFFU) {
+        value = take_real(bytes);
+    }
+    return value;
+}
+
+static inline uint32_t take_count_setting(bytes_t *bytes, gw_config_field_t field)
+{
+    const gw_config_limit_t *const limit = gw_config_limit(field);
+    const uint32_t bits = take_count(bytes);
+    const uint32_t span = ((uint32_t)limit->maximum - (uint32_t)limit->minimum) + 1U;
+    return ((bits & 0xFFU) == 0xFFU) ? bits : ((uint32_t)limit->minimum + ((bits >> 8U) % span));
+}
+
+#endif

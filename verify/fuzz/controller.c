@@ -1,0 +1,130 @@
+/* Settings of the paper's robot replaced one by one, then any inputs: samples, plans, requests. */
+#include "bytes.h"
+
+#define REPLACE(place, field) ((place) = take_setting(&bytes, (field)))
+#define REPLACE_COUNT(place, field) ((place) = take_count_setting(&bytes, (field)))
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static gw_controller_config_t take_config(bytes_t *from)
+{
+    bytes_t bytes = *from;
+    gw_controller_config_t config;
+    gw_controller_config_trikey(&config);
+    const uint32_t replaced = take_count(&bytes);
+    if ((replaced & 1U) != 0U) {
+        REPLACE(config.period_s, GW_FIELD_CONTROLLER_PERIOD);
+        REPLACE(config.geometry.wheel_radius_m, GW_FIELD_GEOMETRY_WHEEL_RADIUS);
+        REPLACE(config.geometry.roller_radius_m, GW_FIELD_GEOMETRY_ROLLER_RADIUS);
+        REPLACE(config.geometry.wheel_distance_m, GW_FIELD_GEOMETRY_WHEEL_DISTANCE);
+        REPLACE(config.geometry.azimuth_rad, GW_FIELD_GEOMETRY_AZIMUTH);
+    }
+    if ((replaced & 2U) != 0U) {
+        REPLACE(config.base.mass_kg, GW_FIELD_BASE_MASS);
+        REPLACE(config.base.wheel_inertia_kgm2, GW_FIELD_BASE_WHEEL_INERTIA);
+        REPLACE(config.friction.coulomb_torque_nm, GW_FIELD_FRICTION_COULOMB_TORQUE);
+        REPLACE(config.friction.tanh_slope_s_per_rad, GW_FIELD_FRICTION_TANH_SLOPE);
+    }
+    if ((replaced & 4U) != 0U) {
+        REPLACE(config.sensor_check.torque_limit_nm, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT);
+        REPLACE_COUNT(config.sensor_check.stale_ticks_max, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX);
+        REPLACE_COUNT(config.sensor_check.encoder_jump_counts, GW_FIELD_SENSOR_CHECK_ENCODER_JUMP);
+    }
+    config.sensor_check.recover_ticks = 1U + (replaced >> 28U);
+    config.estimator.tare_ticks = (replaced >> 24U) & 3U;
+    config.estimator.rest_ticks = 1U + ((replaced >> 20U) & 15U);
+    config.estimator.retare_ticks = 1U + ((replaced >> 18U) & 3U);
+    config.supervisor.settled_ticks = 1U + ((replaced >> 14U) & 15U);
+    config.detector.blanking_ticks = (replaced >> 12U) & 3U;
+    config.estimator.friction_model = (replaced >> 11U) & 1U;
+    config.admittance.kind = (replaced >> 10U) & 1U;
+    config.detector.kind = (replaced >> 9U) & 1U;
+    if ((replaced & 8U) != 0U) {
+        REPLACE_COUNT(config.estimator.velocity_source, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE);
+        REPLACE_COUNT(config.estimator.acceleration_source, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE);
+        REPLACE(config.estimator.rate_cutoff_radps, GW_FIELD_ESTIMATOR_RATE_CUTOFF);
+        REPLACE_COUNT(config.estimator.average_window, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW);
+        REPLACE(config.estimator.tare_variation_nm, GW_FIELD_ESTIMATOR_TARE_VARIATION);
+        REPLACE(config.estimator.presliding.stiffness_n_per_m[0], GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS);
+        REPLACE(config.estimator.presliding.elastic_fraction, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION);
+    }
+    if ((replaced & 16U) != 0U) {
+        REPLACE(config.admittance.mass_kg, GW_FIELD_ADMITTANCE_MASS);
+        REPLACE(config.admittance.damping_newton_s_per_m, GW_FIELD_ADMITTANCE_DAMPING);
+        REPLACE(config.admittance.escape_impulse_newton_s, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE);
+        REPLACE(config.admittance.speed_limit_mps, GW_FIELD_ADMITTANCE_SPEED_LIMIT);
+        REPLACE(config.admittance.acceleration_limit_mps2, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT);
+    }
+    if ((replaced & 32U) != 0U) {
+        REPLACE_COUNT(config.contact.vertex_count, GW_FIELD_OUTLINE_COUNT);
+        for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+            REPLACE(config.contact.vertex_m[i].x, GW_FIELD_OUTLINE_X);
+            REPLACE(config.contact.vertex_m[i].y, GW_FIELD_OUTLINE_Y);
+        }
+    }
+    config.drives_enabled = (replaced & 64U) == 0U;
+    *from = bytes;
+    return config;
+}
+
+/* Small whole torques and counts for the most part, so that sensors are good for a while; now and then any bits. */
+static gw_real_t take_value(bytes_t *bytes, gw_real_t scale)
+{
+    const uint32_t bits = take_count(bytes);
+    gw_real_t value = scale * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF);
+    if ((bits & 0x7FU) == 0x7FU) {
+        value = take_real(bytes);
+    }
+    return ((bits & 0x80U) != 0U) ? -value : value;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static gw_controller_t controller;
+    bytes_t bytes = {data, size};
+    const gw_controller_config_t config = take_config(&bytes);
+    gw_config_error_t error;
+    if (gw_controller_init(&controller, &config, &error) != GW_STATUS_OK) {
+        DEMAND(error.field != GW_FIELD_NONE);
+        return 0;
+    }
+    DEMAND(gw_controller_invariant_holds(&controller));
+    uint32_t counter = 0U;
+    int32_t count = 0;
+    while (bytes.left > 0U) {
+        gw_controller_input_t input;
+        gw_controller_output_t output;
+        const uint32_t requests = take_count(&bytes);
+        counter += ((requests & 1U) != 0U) ? 0U : 1U;
+        count = (int32_t)((uint32_t)count + ((requests >> 8U) & 63U));
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            input.sensor.torque_nm[i] = take_value(&bytes, (gw_real_t)10.0);
+            input.sensor.encoder_count[i] = ((requests & 2U) != 0U) ? take_integer(&bytes) : count;
+        }
+        input.sensor.counter = counter;
+        input.sensor.present = (requests & 12U) != 12U;
+        input.plan.pose.x_m = take_value(&bytes, GW_ONE);
+        input.plan.pose.y_m = take_value(&bytes, GW_ONE);
+        input.plan.pose.theta_rad = take_value(&bytes, GW_ONE);
+        input.plan.twist.vx_mps = take_value(&bytes, GW_ONE);
+        input.plan.twist.vy_mps = take_value(&bytes, GW_ONE);
+        input.plan.twist.omega_radps = take_value(&bytes, GW_ONE);
+        input.plan.acceleration.ax_mps2 = take_value(&bytes, GW_ONE);
+        input.plan.acceleration.ay_mps2 = GW_ZERO;
+        input.plan.acceleration.alpha_radps2 = GW_ZERO;
+        input.stop_request = (requests & 0x70U) == 0x70U;
+        input.tare_request = (requests & 0x80U) != 0U;
+        const gw_status_t status = gw_controller_step(&controller, &input, &output);
+        const bool bad = (status >= GW_STATUS_SENSOR_MISSING) && (status <= GW_STATUS_SENSOR_RECOVERING);
+        DEMAND(gw_controller_invariant_holds(&controller));
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            DEMAND(gw_in_range(output.command.angle_rad[i], -GW_PI, GW_PI));
+            DEMAND(gw_is_finite(output.command.speed_radps[i]));
+            DEMAND((!bad) || (output.command.speed_radps[i] == GW_ZERO));
+        }
+        DEMAND(gw_wrench_is_valid(output.estimate) && gw_wrench_is_valid(output.detection_wrench));
+        DEMAND(gw_is_finite(output.contact.lever_arm_sigma_m) && gw_is_finite(output.detection_statistic));
+        DEMAND(gw_is_finite(output.reference_pose.x_m) && gw_is_finite(output.reference_pose.y_m));
+    }
+    return 0;
+}

@@ -1,0 +1,57 @@
+"""The bounds that the proofs use of gw_math hold for every float there is, and no finite one overflows inside."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from verify.context import Context
+from verify.rung import Figure, Rung, RungFailed, planted
+from verify.targets import CLANG, STANDARD, WARNINGS
+
+FUNCTIONS = ("sqrt", "exp", "circle", "tanh", "atan2")
+
+
+def check(context: Context) -> Figure:
+    program = _build(context, context.core, context.work / "contracts")
+    arguments = sum(_checked(context, program, name) for name in FUNCTIONS)
+    core = context.work / "planted"
+    shutil.copytree(context.core, core)
+    source = core / "src" / "gw_math.c"
+    healthy = "root = gw_min(root, BELOW_TWO);"
+    text = source.read_text()
+    if text.count(healthy) != 1:
+        raise RungFailed(f"not once in gw_math.c: {healthy}")
+    source.write_text(text.replace(healthy, "root = (root < GW_ONE) ? GW_ZERO : root;"))
+    with planted("roots just above a power of four", shows=r"sqrt: broken"):
+        _checked(context, _build(context, core, context.work / "contracts_planted"), "sqrt")
+    return Figure(
+        f"{len(FUNCTIONS)} contracts hold on {arguments:,} floats; 1 planted fault seen",
+        {"contracts": len(FUNCTIONS), "arguments": arguments, "planted_faults": 1},
+    )
+
+
+def _build(context: Context, core: Path, program: Path) -> Path:
+    context.run(
+        context.which(CLANG),
+        *STANDARD,
+        *WARNINGS,
+        "-O3",
+        "-frounding-math",  # the flags are looked at
+        f"-I{core / 'include'}",
+        context.root / "verify" / "exhaustive" / "contracts.c",
+        core / "src" / "gw_math.c",
+        "-lm",
+        "-o",
+        program,
+    )
+    return program
+
+
+def _checked(context: Context, program: Path, name: str) -> int:
+    """How many floats it was checked on; `RungFailed` if one breaks a bound."""
+    answer = context.run(program, name)
+    return int(answer.stdout.split()[0])
+
+
+RUNG = Rung("bounds of gw_math on every float", (CLANG,), check)

