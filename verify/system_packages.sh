@@ -12,6 +12,8 @@ has() { # has COMMAND: it can be called
 need clang-19 has clang-19
 need llvm-19 has llvm-cov-19
 need frama-c-base has frama-c
+need libclang-rt-19-dev test -e /usr/lib/llvm-19/lib/clang/19/lib/linux/libclang_rt.fuzzer-x86_64.a
+need valgrind has valgrind
 need qemu-user has qemu-aarch64
 need gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
 for machine in i686:i386 aarch64:arm64 riscv64:riscv64 arm:armhf s390x:s390x; do

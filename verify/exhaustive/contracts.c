@@ -42,12 +42,11 @@ static bool good_tanh(gw_real_t x)
     return unit(gw_tanh(x));
 }
 
-/* gw_atan2 depends on signs, on which argument is larger, and on the smaller over the larger: a float in [0, 1]. */
+/* gw_atan2 changes sign with its first argument, and else depends on the sign of the second, on which argument is larger, and on the smaller over the larger: a float in [0, 1]. */
 static bool good_atan2(gw_real_t x)
 {
     bool good = true;
-    const gw_real_t angles[] = {gw_atan2(x, 1.0F),  gw_atan2(1.0F, x),  gw_atan2(x, -1.0F),
-                                gw_atan2(1.0F, -x), gw_atan2(-x, 1.0F), gw_atan2(-x, -1.0F)};
+    const gw_real_t angles[] = {gw_atan2(x, 1.0F), gw_atan2(1.0F, x), gw_atan2(x, -1.0F), gw_atan2(1.0F, -x)};
     for (size_t i = 0U; i < (sizeof(angles) / sizeof(angles[0])); i++) {
         good = good && (angles[i] >= -TURN_HALF) && (angles[i] <= TURN_HALF);
     }

@@ -1,5 +1,5 @@
-"""Frama-C Eva: from any valid configuration and any state within the invariant, with any finite input, nothing overflows,
-divides by zero, leaves an array or reads what was not written, and the state is within the invariant again."""
+"""Frama-C Eva: from any valid configuration and any state within the invariant, with any finite input, nothing
+overflows, divides by zero, leaves an array or reads what was not written, and the state is within the invariant again."""
 
 from __future__ import annotations
 
@@ -51,14 +51,16 @@ DRIVERS = {
         "gw_controller_init:0,next_undisturbed:full",
     ),
     "bad_sensors": Driver(
-        Mutant("gw_supervisor.c", "if (!events->sensors_good) {", "if ((!events->sensors_good) && events->stop_request) {"),
+        Mutant(
+            "gw_supervisor.c", "if (!events->sensors_good) {", "if ((!events->sensors_good) && events->stop_request) {"
+        ),
         "gw_sensor_check_step:full,step:full,gw_controller_step:full",
         states=2000,
     ),
-    "estimator": Driver(
-        Mutant("gw_estimator.c", "result.torque_nm = gw_torques_limited(&input->torque_nm);", "")
+    "estimator": Driver(Mutant("gw_estimator.c", "result.torque_nm = gw_torques_limited(&input->torque_nm);", "")),
+    "filters": Driver(
+        Mutant("gw_rate_filter.c", "gw_clamp(derivative, -DERIVATIVE_MAX, DERIVATIVE_MAX)", "derivative")
     ),
-    "filters": Driver(Mutant("gw_rate_filter.c", "gw_clamp(derivative, -DERIVATIVE_MAX, DERIVATIVE_MAX)", "derivative")),
     "kinematics": Driver(
         Mutant("gw_kinematics.c", "GW_ONE / config->wheel_radius_m", "GW_ONE / (config->wheel_radius_m - GW_HALF)")
     ),
@@ -70,9 +72,7 @@ DRIVERS = {
         ),
         "gw_contact_init:0",
     ),
-    "detector": Driver(
-        Mutant("gw_detector.c", "output->mean_wrench = gw_wrench_limited(output->mean_wrench);", "")
-    ),
+    "detector": Driver(Mutant("gw_detector.c", "output->mean_wrench = gw_wrench_limited(output->mean_wrench);", "")),
     "admittance": Driver(
         Mutant("gw_admittance.c", "output->velocity_mps = within(output->velocity_mps, SPEED_MAX);", "")
     ),

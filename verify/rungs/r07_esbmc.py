@@ -1,4 +1,4 @@
-"""ESBMC: for any bits whatever, NaN and the infinities included, guards guard, invariants hold and bad sensors lead to FAULT."""
+"""ESBMC: for any bits, NaN and the infinities included, guards guard, invariants hold, bad sensors lead to FAULT."""
 
 from __future__ import annotations
 
