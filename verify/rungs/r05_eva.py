@@ -1,5 +1,5 @@
 """Frama-C Eva: from any valid configuration and any state within the invariant, with any finite input, nothing
-overflows, divides by zero, leaves an array or reads what was not written, and the state is within the invariant again."""
+overflows, divides by zero, leaves an array or reads what was never written, and the invariant holds again."""
 
 from __future__ import annotations
 
@@ -52,7 +52,9 @@ DRIVERS = {
     ),
     "bad_sensors": Driver(
         Mutant(
-            "gw_supervisor.c", "if (!events->sensors_good) {", "if ((!events->sensors_good) && events->stop_request) {"
+            "gw_supervisor.c",
+            "if (!events->sensors_good) {\n                next = GW_MODE_FAULT;",
+            "if (!events->sensors_good) {\n                next = GW_MODE_STOPPED;",
         ),
         "gw_sensor_check_step:full,step:full,gw_controller_step:full",
         states=2000,

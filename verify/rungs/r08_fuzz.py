@@ -1,4 +1,4 @@
-"""A minute of fuzzing per harness, with configurations and input sequences: no sanitizer speaks, no invariant breaks."""
+"""A minute of fuzzing per harness, configurations and input sequences: no sanitizer speaks, no invariant breaks."""
 
 from __future__ import annotations
 
