@@ -76,7 +76,7 @@ DRIVERS = {
     ),
     "detector": Driver(Mutant("gw_detector.c", "output->mean_wrench = gw_wrench_limited(output->mean_wrench);", "")),
     "admittance": Driver(
-        Mutant("gw_admittance.c", "output->velocity_mps = within(output->velocity_mps, SPEED_MAX);", "")
+        Mutant("gw_admittance.c", "output->velocity_mps = limit_components(output->velocity_mps, SPEED_MAX);", "")
     ),
     "reference": Driver(
         Mutant(
