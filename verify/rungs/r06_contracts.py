@@ -22,8 +22,8 @@ def check(context: Context) -> Figure:
     text = source.read_text()
     if text.count(healthy) != 1:
         raise RungFailed(f"not once in gw_math.c: {healthy}")
-    source.write_text(text.replace(healthy, "root = (root < GW_ONE) ? GW_ZERO : root;"))
-    with planted("roots just above a power of four", shows=r"sqrt: broken"):
+    source.write_text(text.replace(healthy, "root = GW_HALF * gw_min(root, BELOW_TWO);"))
+    with planted("roots of half the size", shows=r"sqrt: broken"):
         _checked(context, _build(context, core, context.work / "contracts_planted"), "sqrt")
     return Figure(
         f"{len(FUNCTIONS)} contracts hold on {arguments:,} floats; 1 planted fault seen",
