@@ -106,8 +106,8 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str) -> Path:
 def verified(root: Path, outcomes: list[Outcome], sources: str, order: Sequence[str]) -> Path:
     """c_core/VERIFIED.json: the sources that climbed every rung, with the figures. `make test` holds it current.
 
-    What other rungs found about the very same sources stays, so that a new rung can be climbed alone. ``order``: the
-    names of all rungs.
+    What other rungs found about the very same sources stays, so that a new rung can be climbed alone; one that failed
+    goes. ``order``: the names of all rungs.
     """
     if core_hash(root) != sources:
         raise RungFailed("c_core changed while it was being verified: run `make verify` again")
@@ -115,7 +115,8 @@ def verified(root: Path, outcomes: list[Outcome], sources: str, order: Sequence[
     before = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     if before.get("sources_sha256") != sources:
         before = {"rungs": {}, "tools": {}}
-    rungs = before["rungs"] | {
+    failed = {outcome.name for outcome in outcomes if outcome.figure is None}
+    rungs = {name: found for name, found in before["rungs"].items() if name not in failed} | {
         outcome.name: {"figure": outcome.figure.text, "values": dict(outcome.figure.values)}
         for outcome in outcomes
         if outcome.figure is not None

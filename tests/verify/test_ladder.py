@@ -96,6 +96,8 @@ def test_a_rung_climbed_alone_joins_the_others_of_the_same_sources(tmp_path: Pat
 
     assert rungs("late") == ["late"]
     assert rungs("early") == order
+    outcomes = climb(root, late=Rung("", (), bad))
+    assert list(json.loads(ladder.verified(root, outcomes, core_hash(root), order).read_text())["rungs"]) == ["early"]
     (root / "c_core" / "src" / "a.c").write_text("int b;\n")
     assert rungs("early") == ["early"]  # what was found about other sources counts for nothing
 

@@ -23,6 +23,7 @@ ONLY_CALLED_BY_THOSE = {
     "nearest_integer",
     "polynomial",
     "reduce_exp",
+    "root_of",
     "scale_by_power_of_two",
 }
 OWN = re.compile(r"(draw|hold|disturb|demand|any|part|lowest|highest|step_sums|main)(_\w+)?(_\d+)?")
@@ -166,12 +167,17 @@ def _defined(log: str) -> Iterator[str]:
         raise RungFailed(f"no list of functions:\n{log}")
     for name in re.findall(r"(\w+) \((?:\d+ calls?|address taken)", listed[1]):
         if not OWN.fullmatch(name):
-            yield name
+            yield _everywhere(name)
+
+
+def _everywhere(name: str) -> str:
+    """An inline function of a header, which Eva numbers anew for every file that includes it."""
+    return re.sub(r"_\d+$", "", name)
 
 
 def _shares(log: str) -> Iterator[tuple[str, float]]:
     for name, reached, statements in re.findall(r"^ +(\w+): (\d+) stmts out of (\d+)", log, re.MULTILINE):
-        yield name, int(reached) / int(statements)
+        yield _everywhere(name), int(reached) / int(statements)
 
 
 def _check_mutant(context: Context, name: str, driver: Driver) -> None:
