@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from giveway.errors import FileError
 
-__all__ = ["check_file", "check_output", "replace_file", "replace_folder", "write_text"]
+__all__ = ["check_file", "check_output", "read_json", "replace_file", "replace_folder", "write_text"]
 
 MARKERS = ("manifest.json", "summary.json", "drivetrain.json", "table.json")
+
+
+def read_json(path: Path, schema_version: int, hint: str) -> dict[str, Any]:
+    """The object in a JSON file of this schema version; FileError says what is wrong, ``hint`` what to give instead."""
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise FileError(path, "no such file", hint) from None
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise FileError(path, f"cannot be read: {error}") from None
+    found = document.get("schema_version") if isinstance(document, dict) else None
+    if found != schema_version:
+        raise FileError(path, f"schema_version is {found}", f"this version reads {schema_version}")
+    assert isinstance(document, dict)
+    return document
 
 
 def check_output(folder: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from giveway.errors import FileError
-from giveway.files import replace_folder, write_text
+from giveway.files import read_json, replace_folder, write_text
 from giveway.metrics import Metric
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["Result", "load"]
 
 SCHEMA_VERSION = 1
+HINT = "give a folder that `giveway run --out` wrote"
 TRACES_FILE = "traces.parquet"
 MANIFEST_FILE = "manifest.json"
 METRICS_FILE = "metrics.json"
@@ -83,8 +84,9 @@ def load(folder: Path | str) -> Result:
     import xarray
 
     folder = Path(folder)
-    manifest = _read_json(folder / MANIFEST_FILE)
-    metrics = tuple(Metric(**entry) for entry in _read_json(folder / METRICS_FILE)["metrics"])
+    manifest = read_json(folder / MANIFEST_FILE, SCHEMA_VERSION, HINT)
+    entries = read_json(folder / METRICS_FILE, SCHEMA_VERSION, HINT)["metrics"]
+    metrics = tuple(Metric(**entry) for entry in entries)
     path = folder / TRACES_FILE
     try:
         data = pyarrow.parquet.read_table(path)
@@ -96,20 +98,6 @@ def load(folder: Path | str) -> Result:
         variables[field.name] = ("time", column.to_numpy(), attributes)
     time = variables.pop("time")
     return Result(xarray.Dataset(variables, coords={"time": time}), metrics, manifest)
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise FileError(path, "no such file", "give a folder that `giveway run --out` wrote") from None
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
-    found = document.get("schema_version") if isinstance(document, dict) else None
-    if found != SCHEMA_VERSION:
-        raise FileError(path, f"schema_version is {found}", f"this version reads {SCHEMA_VERSION}")
-    assert isinstance(document, dict)
-    return document
 
 
 def _text_attributes(attributes: dict[Any, Any]) -> dict[str, str]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from giveway.errors import FileError
+from giveway.files import read_json
 from giveway.fitting.parameters import FREE, to_unit
 from giveway.fitting.quantities import QUANTITIES
 from giveway.fitting.search import SEEDS, Fit
@@ -116,17 +115,7 @@ def _short(value: float) -> float:
 
 def read_record(path: Path) -> dict[str, Any]:
     """What `record` made and a file keeps."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise FileError(path, "no such file", "give a record that `giveway fit` wrote") from None
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
-    version = found.get("schema_version") if isinstance(found, dict) else None
-    if version != SCHEMA_VERSION:
-        raise FileError(path, f"schema_version is {version}", f"this version reads {SCHEMA_VERSION}")
-    assert isinstance(found, dict)
-    return found
+    return read_json(path, SCHEMA_VERSION, "give a record that `giveway fit` wrote")
 
 
 def robot_text(path: Path, fit: Fit, record_name: str) -> str:
