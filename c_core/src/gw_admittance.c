@@ -10,7 +10,7 @@
 
 static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
 {
-    const gw_vector_t result = {gw_clamp(vector.x, -limit, limit), gw_clamp(vector.y, -limit, limit)};
+    const gw_vector_t result = {gw_limited(vector.x, limit), gw_limited(vector.y, limit)};
     return result;
 }
 
@@ -67,11 +67,11 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
         gw_admittance_config_check(&admittance->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
                 gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
-                gw_in_range(admittance->goal_m.x, -ESCAPE_MAX, ESCAPE_MAX) &&
-                gw_in_range(admittance->goal_m.y, -ESCAPE_MAX, ESCAPE_MAX) &&
+                gw_within(admittance->goal_m.x, ESCAPE_MAX) &&
+                gw_within(admittance->goal_m.y, ESCAPE_MAX) &&
                 gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
-                gw_in_range(admittance->velocity_mps.x, -SPEED_MAX, SPEED_MAX) &&
-                gw_in_range(admittance->velocity_mps.y, -SPEED_MAX, SPEED_MAX);
+                gw_within(admittance->velocity_mps.x, SPEED_MAX) &&
+                gw_within(admittance->velocity_mps.y, SPEED_MAX);
     }
     return holds;
 }
@@ -84,15 +84,15 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
         status = GW_STATUS_NULL_POINTER;
     } else if (!admittance->initialised) {
         status = GW_STATUS_NOT_INITIALISED;
-    } else if (!(gw_in_range(direction.x, -one, one) && gw_in_range(direction.y, -one, one) &&
-                 (gw_length(limit_components(direction, one)) <= one) && gw_in_range(velocity_mps.x, -SPEED_MAX, SPEED_MAX) &&
-                 gw_in_range(velocity_mps.y, -SPEED_MAX, SPEED_MAX))) {
+    } else if (!(gw_within(direction.x, one) && gw_within(direction.y, one) &&
+                 (gw_length(limit_components(direction, one)) <= one) && gw_within(velocity_mps.x, SPEED_MAX) &&
+                 gw_within(velocity_mps.y, SPEED_MAX))) {
         status = GW_STATUS_INPUT_INVALID;
     } else {
         const gw_real_t distance_m =
             admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
-        admittance->goal_m.x = distance_m * gw_clamp(direction.x, -one, one);
-        admittance->goal_m.y = distance_m * gw_clamp(direction.y, -one, one);
+        admittance->goal_m.x = distance_m * gw_limited(direction.x, one);
+        admittance->goal_m.y = distance_m * gw_limited(direction.y, one);
         admittance->moved_x_m = gw_sum_of(GW_ZERO);
         admittance->moved_y_m = gw_sum_of(GW_ZERO);
         admittance->velocity_mps = limit_components(velocity_mps, SPEED_MAX);
@@ -198,8 +198,8 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
             status = GW_STATUS_NULL_POINTER;
         } else if (!admittance->initialised) {
             status = GW_STATUS_NOT_INITIALISED;
-        } else if (!(gw_in_range(force_n.x, -GW_WRENCH_MAX, GW_WRENCH_MAX) &&
-                     gw_in_range(force_n.y, -GW_WRENCH_MAX, GW_WRENCH_MAX))) {
+        } else if (!(gw_within(force_n.x, GW_WRENCH_MAX) &&
+                     gw_within(force_n.y, GW_WRENCH_MAX))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
             if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {

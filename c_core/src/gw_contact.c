@@ -10,6 +10,11 @@ static gw_real_t cross(gw_vector_t a, gw_vector_t b)
     return (a.x * b.y) - (a.y * b.x);
 }
 
+static gw_real_t along(gw_vector_t a, gw_vector_t direction)
+{
+    return (a.x * direction.x) + (a.y * direction.y);
+}
+
 static gw_vector_t from_to(gw_vector_t a, gw_vector_t b)
 {
     const gw_vector_t difference = {b.x - a.x, b.y - a.y};
@@ -85,34 +90,42 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
                         gw_contact_estimate_t *estimate)
 {
     gw_real_t nearest_m = GW_REAL_MAX;
-    gw_real_t nearest_along_m = GW_ZERO;
-    gw_vector_t previous = config->vertex_m[config->vertex_count - 1U];
-    gw_real_t previous_side_m = cross(previous, direction) - offset_m;
-    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
-        if (i < config->vertex_count) {
-            const gw_vector_t vertex = config->vertex_m[i];
-            const gw_real_t side_m = cross(vertex, direction) - offset_m;
-            const gw_real_t along_m = (vertex.x * direction.x) + (vertex.y * direction.y);
-            /* Going counter-clockwise, the side grows exactly on the edges that the direction enters. */
-            if ((previous_side_m <= GW_ZERO) && (side_m > GW_ZERO)) {
-                const gw_real_t fraction = gw_fraction(-previous_side_m, side_m - previous_side_m);
-                const gw_vector_t edge = from_to(previous, vertex);
-                estimate->point_m.x = previous.x + (fraction * edge.x);
-                estimate->point_m.y = previous.y + (fraction * edge.y);
-                estimate->on_outline = true;
-            }
-            if (!estimate->on_outline) {
-                const gw_real_t distance_m = gw_abs(side_m);
-                /* On a tie (an edge parallel to the line) the end that the force meets first. */
-                if ((distance_m < nearest_m) || ((distance_m == nearest_m) && (along_m < nearest_along_m))) {
-                    nearest_m = distance_m;
-                    nearest_along_m = along_m;
-                    estimate->point_m = vertex;
-                }
-            }
-            previous = vertex;
-            previous_side_m = side_m;
+    const gw_vector_t *nearest = &config->vertex_m[0];
+    const gw_vector_t *previous = &config->vertex_m[config->vertex_count - 1U];
+    gw_real_t previous_side_m = cross(*previous, direction) - offset_m;
+    const gw_vector_t *edge_start = previous;
+    const gw_vector_t *edge_end = previous;
+    gw_real_t start_side_m = GW_ZERO;
+    gw_real_t end_side_m = GW_ZERO;
+    for (uint32_t i = 0U; (i < GW_OUTLINE_VERTEX_MAX) && (i < config->vertex_count); i++) {
+        const gw_vector_t *const vertex = &config->vertex_m[i];
+        const gw_real_t side_m = cross(*vertex, direction) - offset_m;
+        const gw_real_t distance_m = gw_abs(side_m);
+        /* Going counter-clockwise, the side grows exactly on the edges that the direction enters. */
+        if ((side_m > GW_ZERO) && (previous_side_m <= GW_ZERO)) {
+            edge_start = previous;
+            edge_end = vertex;
+            start_side_m = previous_side_m;
+            end_side_m = side_m;
+            estimate->on_outline = true;
         }
+        /* On a tie (an edge parallel to the line) the end that the force meets first. */
+        if (distance_m <= nearest_m) {
+            if ((distance_m < nearest_m) || (along(*vertex, direction) < along(*nearest, direction))) {
+                nearest_m = distance_m;
+                nearest = vertex;
+            }
+        }
+        previous = vertex;
+        previous_side_m = side_m;
+    }
+    if (estimate->on_outline) {
+        const gw_real_t fraction = gw_fraction(-start_side_m, end_side_m - start_side_m);
+        const gw_vector_t edge = from_to(*edge_start, *edge_end);
+        estimate->point_m.x = edge_start->x + (fraction * edge.x);
+        estimate->point_m.y = edge_start->y + (fraction * edge.y);
+    } else {
+        estimate->point_m = *nearest;
     }
 }
 
@@ -149,7 +162,7 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
             const gw_real_t force_n = gw_length(force);
             if (force_n >= contact->config.minimum_force_n) {
                 const gw_vector_t direction = {gw_fraction(force.x, force_n), gw_fraction(force.y, force_n)};
-                const gw_real_t arm_m = gw_clamp(valid.torque_nm / force_n, -LEVER_ARM_MAX, LEVER_ARM_MAX);
+                const gw_real_t arm_m = gw_limited(valid.torque_nm / force_n, LEVER_ARM_MAX);
                 /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
                 const gw_vector_t spread = {gw_clamp(sigma.torque_nm, GW_ZERO, GW_WRENCH_MAX) / force_n,
                                             (arm_m * gw_clamp(sigma.force_n, GW_ZERO, GW_WRENCH_MAX)) / force_n};

@@ -204,7 +204,7 @@ typedef struct {
     gw_wheels_t torque_nm;
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
-    gw_plan_t plan; /* limited to what a valid one may be */
+    gw_plan_t plan; /* if it is valid */
     gw_rotation_t yaw;             /* of the reference before it moves */
     gw_real_t reference_speed_mps; /* likewise */
     bool sensors_good;
@@ -459,7 +459,9 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     now.yaw = reference_rotation(controller);
     now.reference_speed_mps = reference_speed(controller);
     now.plan_valid = gw_plan_is_valid(&input->plan);
-    now.plan = gw_plan_limited(&input->plan);
+    if (now.plan_valid) {
+        now.plan = gw_plan_limited(&input->plan);
+    }
     if (status == GW_STATUS_OK) {
         status = estimate(controller, input, &now);
     }

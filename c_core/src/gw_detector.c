@@ -53,9 +53,9 @@ bool gw_detector_invariant_holds(const gw_detector_t *detector)
         gw_config_check_begin(&error);
         gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, detector->period_s);
         gw_detector_config_check(&detector->config, &error);
-        holds = (error.field == GW_FIELD_NONE) && gw_in_range(detector->impulse_x_newton_s, -IMPULSE_MAX, IMPULSE_MAX) &&
-                gw_in_range(detector->impulse_y_newton_s, -IMPULSE_MAX, IMPULSE_MAX) &&
-                gw_in_range(detector->impulse_moment_nms, -IMPULSE_MAX, IMPULSE_MAX) &&
+        holds = (error.field == GW_FIELD_NONE) && gw_within(detector->impulse_x_newton_s, IMPULSE_MAX) &&
+                gw_within(detector->impulse_y_newton_s, IMPULSE_MAX) &&
+                gw_within(detector->impulse_moment_nms, IMPULSE_MAX) &&
                 (detector->ticks_since_trip <= detector->config.blanking_ticks);
     }
     return holds;
@@ -113,14 +113,14 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
     const gw_vector_t sum = {detector->impulse_x_newton_s + (input->wrench.force_x_n * detector->period_s),
                              detector->impulse_y_newton_s + (input->wrench.force_y_n * detector->period_s)};
     const gw_real_t moment =
-        gw_clamp(detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s), -IMPULSE_MAX, IMPULSE_MAX);
+        gw_limited(detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s), IMPULSE_MAX);
     const gw_real_t length = gw_length(sum);
     const gw_real_t left = length - (leak_n * detector->period_s);
     bool trips = false;
     if (left > GW_ZERO) {
         const gw_real_t shrink = gw_fraction(left, length);
-        detector->impulse_x_newton_s = gw_clamp(sum.x * shrink, -IMPULSE_MAX, IMPULSE_MAX);
-        detector->impulse_y_newton_s = gw_clamp(sum.y * shrink, -IMPULSE_MAX, IMPULSE_MAX);
+        detector->impulse_x_newton_s = gw_limited(sum.x * shrink, IMPULSE_MAX);
+        detector->impulse_y_newton_s = gw_limited(sum.y * shrink, IMPULSE_MAX);
         detector->impulse_moment_nms = moment * shrink;
         if (detector->samples < GW_TICK_MASK) {
             detector->samples++;

@@ -157,23 +157,15 @@ gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t co
 #define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
 #define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
 
-static bool plausible(gw_real_t value, gw_real_t limit)
-{
-    return gw_in_range(value, -limit, limit);
-}
-
 static bool input_is_valid(const gw_estimator_input_t *input)
 {
-    bool valid = plausible(input->planned_twist.vx_mps, PLANNED_SPEED_MAX) &&
-                 plausible(input->planned_twist.vy_mps, PLANNED_SPEED_MAX) &&
-                 plausible(input->planned_twist.omega_radps, PLANNED_SPEED_MAX) &&
-                 plausible(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX) &&
-                 plausible(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX) &&
-                 plausible(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX);
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        valid = valid && plausible(input->torque_nm.wheel[i], GW_TORQUE_MAX);
-    }
-    return valid;
+    return gw_within(input->planned_twist.vx_mps, PLANNED_SPEED_MAX) &&
+           gw_within(input->planned_twist.vy_mps, PLANNED_SPEED_MAX) &&
+           gw_within(input->planned_twist.omega_radps, PLANNED_SPEED_MAX) &&
+           gw_within(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX) &&
+           gw_within(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX) &&
+           gw_within(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX) &&
+           gw_torques_are_valid(&input->torque_nm);
 }
 
 /* The same for a valid input: what follows is bounded by it. */
@@ -182,15 +174,13 @@ static gw_estimator_input_t limited_input(const gw_estimator_input_t *input)
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from another */
     gw_estimator_input_t result = *input;
     result.torque_nm = gw_torques_limited(&input->torque_nm);
-    result.planned_twist.vx_mps = gw_clamp(input->planned_twist.vx_mps, -PLANNED_SPEED_MAX, PLANNED_SPEED_MAX);
-    result.planned_twist.vy_mps = gw_clamp(input->planned_twist.vy_mps, -PLANNED_SPEED_MAX, PLANNED_SPEED_MAX);
-    result.planned_twist.omega_radps = gw_clamp(input->planned_twist.omega_radps, -PLANNED_SPEED_MAX, PLANNED_SPEED_MAX);
-    result.planned_acceleration.ax_mps2 =
-        gw_clamp(input->planned_acceleration.ax_mps2, -PLANNED_ACCELERATION_MAX, PLANNED_ACCELERATION_MAX);
-    result.planned_acceleration.ay_mps2 =
-        gw_clamp(input->planned_acceleration.ay_mps2, -PLANNED_ACCELERATION_MAX, PLANNED_ACCELERATION_MAX);
+    result.planned_twist.vx_mps = gw_limited(input->planned_twist.vx_mps, PLANNED_SPEED_MAX);
+    result.planned_twist.vy_mps = gw_limited(input->planned_twist.vy_mps, PLANNED_SPEED_MAX);
+    result.planned_twist.omega_radps = gw_limited(input->planned_twist.omega_radps, PLANNED_SPEED_MAX);
+    result.planned_acceleration.ax_mps2 = gw_limited(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX);
+    result.planned_acceleration.ay_mps2 = gw_limited(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX);
     result.planned_acceleration.alpha_radps2 =
-        gw_clamp(input->planned_acceleration.alpha_radps2, -PLANNED_ACCELERATION_MAX, PLANNED_ACCELERATION_MAX);
+        gw_limited(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX);
     return result;
 }
 

@@ -62,7 +62,7 @@ bool gw_joint_invariant_holds(const gw_joint_t *joint)
     if (holds) {
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             const gw_real_t angle_rad = joint->angle_rad[i].value;
-            holds = holds && gw_sum_invariant_holds(joint->angle_rad[i]) && gw_in_range(angle_rad, -GW_PI, GW_PI);
+            holds = holds && gw_sum_invariant_holds(joint->angle_rad[i]) && gw_within(angle_rad, GW_PI);
         }
     }
     return holds;

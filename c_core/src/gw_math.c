@@ -1,11 +1,8 @@
 #include "giveway/gw_math.h"
 
-/* Series lengths and range limits for the real type. Cody-Waite parts: the leading ones have so few bits that their
+/* Range limits for the real type. Cody-Waite parts: the leading ones have so few bits that their
  * product with the quotient (13 bits for angles, 11 for exponents) is exact. */
 #if (GW_REAL_DOUBLE == 1)
-#define EXP_TERMS 13U  /* truncation (ln 2/2)^13/14! of expm1: 1e-17 */
-#define SIN_TERMS 8U   /* (pi/4)^18/19!: 1e-19 */
-#define ATAN_TERMS 9U  /* (1/8)^20/21: 4e-20 */
 #define LN2_HIGH ((gw_real_t)0.6931471805592082)
 #define LN2_LOW ((gw_real_t)7.371002565167799e-13)
 #define HALF_PI_HIGH ((gw_real_t)1.5707963267923333)
@@ -22,9 +19,6 @@
 #define BELOW_TWO (GW_TWO - DBL_EPSILON)
 #define SPLITTER ((gw_real_t)134217729.0) /* 2^27 + 1 */
 #else
-#define EXP_TERMS 7U
-#define SIN_TERMS 5U
-#define ATAN_TERMS 4U
 #define LN2_HIGH ((gw_real_t)0.693115234375)
 #define LN2_LOW ((gw_real_t)3.1946184945309415e-05)
 #define HALF_PI_HIGH ((gw_real_t)1.5703125)
@@ -42,22 +36,23 @@
 #define SPLITTER ((gw_real_t)4097.0) /* 2^12 + 1 */
 #endif
 
+#define ALMOST_PI ((gw_real_t)3.0)
 #define LOG2_E ((gw_real_t)1.44269504088896340736)
 #define TWO_OVER_PI ((gw_real_t)0.6366197723675813430755)
 
 gw_real_t gw_fraction(gw_real_t part, gw_real_t whole)
 {
     gw_real_t fraction = GW_ZERO;
-    if (whole > GW_ZERO) {
-        if (part >= whole) {
-            fraction = GW_ONE;
-        } else if (part <= -whole) {
-            fraction = -GW_ONE;
-        } else if (gw_abs(part) < whole) {
-            fraction = part / whole;
-        } else {
-            /* NaN: 0 */
-        }
+    if ((part < whole) && (part > -whole)) {
+        fraction = part / whole;
+    } else if (!(whole > GW_ZERO)) {
+        /* nothing to have a part of */
+    } else if (part >= whole) {
+        fraction = GW_ONE;
+    } else if (part <= -whole) {
+        fraction = -GW_ONE;
+    } else {
+        /* NaN: 0 */
     }
     return fraction;
 }
@@ -69,15 +64,7 @@ static int32_t nearest_integer(gw_real_t x)
     return (int32_t)shifted;
 }
 
-#if defined(__arm__) && defined(__ARM_FP) && ((__ARM_FP & 4) != 0) && (GW_REAL_DOUBLE == 0)
-/* Correctly rounded by one instruction: the same bits as below in a tenth of the time. For x > 0. */
-static gw_real_t root_of(gw_real_t x)
-{
-    gw_real_t root;
-    __asm("vsqrt.f32 %0, %1" : "=t"(root) : "t"(gw_min(x, GW_REAL_MAX)));
-    return root;
-}
-#else
+#if (GW_ARM_FLOAT == 0)
 /* Powers of 4 with their inverses and roots: exact in either type. */
 typedef struct {
     gw_real_t power;
@@ -144,36 +131,53 @@ static gw_real_t root_of(gw_real_t x)
     root = gw_min(root, BELOW_TWO);
     return root * scale;
 }
-#endif
 
 gw_real_t gw_sqrt(gw_real_t x)
 {
     return (x > GW_ZERO) ? root_of(x) : GW_ZERO;
 }
+#endif
 
-/* y * 2^exponent for results that are normal numbers. */
+/* y * 2^exponent for results that are normal numbers. Factors are powers of 2, so nothing is rounded. */
 static gw_real_t scale_by_power_of_two(gw_real_t y, int32_t exponent)
 {
     gw_real_t result = y;
-    gw_real_t factor = (exponent < 0) ? GW_HALF : GW_TWO;
-    const uint32_t size = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
-    for (uint32_t remaining = size; remaining != 0U; remaining >>= 1U) {
-        if ((remaining & 1U) != 0U) {
-            result *= factor;
-        }
-        if (remaining > 1U) {
-            factor *= factor;
-        }
+    uint32_t left = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
+    while (left > 0U) {
+        const uint32_t now = (left < 31U) ? left : 31U;
+        const gw_real_t factor = (gw_real_t)((uint32_t)1U << now);
+        result = (exponent < 0) ? (result / factor) : (result * factor);
+        left -= now;
     }
     return result;
 }
 
-static gw_real_t polynomial(const gw_real_t *coefficients, uint32_t count, gw_real_t x)
+/* A step of Horner's scheme. The series are written out: as loops they would take twice the instructions. */
+static inline gw_real_t on(gw_real_t value, gw_real_t x, gw_real_t coefficient)
 {
-    gw_real_t value = coefficients[count - 1U];
-    for (uint32_t i = 1U; i < count; i++) {
-        value = (value * x) + coefficients[(count - 1U) - i];
-    }
+    return (value * x) + coefficient;
+}
+
+/* Taylor series of (e^r - 1 - r)/r^2; in double up to (ln 2/2)^13/14!, 1e-17. */
+static inline gw_real_t exp_series(gw_real_t r)
+{
+#if (GW_REAL_DOUBLE == 1)
+    gw_real_t value = (gw_real_t)(1.0 / 87178291200.0);
+    value = on(value, r, (gw_real_t)(1.0 / 6227020800.0));
+    value = on(value, r, (gw_real_t)(1.0 / 479001600.0));
+    value = on(value, r, (gw_real_t)(1.0 / 39916800.0));
+    value = on(value, r, (gw_real_t)(1.0 / 3628800.0));
+    value = on(value, r, (gw_real_t)(1.0 / 362880.0));
+    value = on(value, r, (gw_real_t)(1.0 / 40320.0));
+#else
+    gw_real_t value = (gw_real_t)(1.0 / 40320.0);
+#endif
+    value = on(value, r, (gw_real_t)(1.0 / 5040.0));
+    value = on(value, r, (gw_real_t)(1.0 / 720.0));
+    value = on(value, r, (gw_real_t)(1.0 / 120.0));
+    value = on(value, r, (gw_real_t)(1.0 / 24.0));
+    value = on(value, r, (gw_real_t)(1.0 / 6.0));
+    value = on(value, r, (gw_real_t)(1.0 / 2.0));
     return value;
 }
 
@@ -185,29 +189,11 @@ typedef struct {
 
 static reduced_exp_t reduce_exp(gw_real_t x)
 {
-    /* Taylor coefficients of (e^r - 1 - r)/r^2, lowest power first. */
-    static const gw_real_t exp_series[EXP_TERMS] = {
-        (gw_real_t)(1.0 / 2.0),
-        (gw_real_t)(1.0 / 6.0),
-        (gw_real_t)(1.0 / 24.0),
-        (gw_real_t)(1.0 / 120.0),
-        (gw_real_t)(1.0 / 720.0),
-        (gw_real_t)(1.0 / 5040.0),
-        (gw_real_t)(1.0 / 40320.0),
-#if (GW_REAL_DOUBLE == 1)
-        (gw_real_t)(1.0 / 362880.0),
-        (gw_real_t)(1.0 / 3628800.0),
-        (gw_real_t)(1.0 / 39916800.0),
-        (gw_real_t)(1.0 / 479001600.0),
-        (gw_real_t)(1.0 / 6227020800.0),
-        (gw_real_t)(1.0 / 87178291200.0),
-#endif
-    };
     reduced_exp_t reduced;
     reduced.exponent = nearest_integer(x * LOG2_E);
     const gw_real_t k = (gw_real_t)reduced.exponent;
     const gw_real_t r = (x - (k * LN2_HIGH)) - (k * LN2_LOW);
-    reduced.remainder_expm1 = r + ((r * r) * polynomial(exp_series, EXP_TERMS, r));
+    reduced.remainder_expm1 = r + ((r * r) * exp_series(r));
     return reduced;
 }
 
@@ -262,40 +248,51 @@ static gw_real_t less_quarter_turns(gw_real_t angle_rad, int32_t quarter_turns)
     return ((angle_rad - (n * HALF_PI_HIGH)) - (n * HALF_PI_MIDDLE)) - (n * HALF_PI_LOW);
 }
 
+/* Taylor series of (sin r - r)/r^3 in r^2; in double up to (pi/4)^18/19!, 1e-19. */
+static inline gw_real_t sin_series(gw_real_t square)
+{
+#if (GW_REAL_DOUBLE == 1)
+    gw_real_t value = (gw_real_t)(1.0 / 355687428096000.0);
+    value = on(value, square, (gw_real_t)(-1.0 / 1307674368000.0));
+    value = on(value, square, (gw_real_t)(1.0 / 6227020800.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 39916800.0));
+#else
+    gw_real_t value = (gw_real_t)(-1.0 / 39916800.0);
+#endif
+    value = on(value, square, (gw_real_t)(1.0 / 362880.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 5040.0));
+    value = on(value, square, (gw_real_t)(1.0 / 120.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 6.0));
+    return value;
+}
+
+/* Taylor series of (cos r - 1)/r^2 in r^2. */
+static inline gw_real_t cos_series(gw_real_t square)
+{
+#if (GW_REAL_DOUBLE == 1)
+    gw_real_t value = (gw_real_t)(1.0 / 20922789888000.0);
+    value = on(value, square, (gw_real_t)(-1.0 / 87178291200.0));
+    value = on(value, square, (gw_real_t)(1.0 / 479001600.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 3628800.0));
+#else
+    gw_real_t value = (gw_real_t)(-1.0 / 3628800.0);
+#endif
+    value = on(value, square, (gw_real_t)(1.0 / 40320.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 720.0));
+    value = on(value, square, (gw_real_t)(1.0 / 24.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 2.0));
+    return value;
+}
+
 gw_rotation_t gw_sincos(gw_real_t angle_rad)
 {
-    /* Taylor coefficients of (sin r - r)/r^3 and (cos r - 1)/r^2, lowest power first. */
-    static const gw_real_t sin_series[SIN_TERMS] = {
-        (gw_real_t)(-1.0 / 6.0),
-        (gw_real_t)(1.0 / 120.0),
-        (gw_real_t)(-1.0 / 5040.0),
-        (gw_real_t)(1.0 / 362880.0),
-        (gw_real_t)(-1.0 / 39916800.0),
-#if (GW_REAL_DOUBLE == 1)
-        (gw_real_t)(1.0 / 6227020800.0),
-        (gw_real_t)(-1.0 / 1307674368000.0),
-        (gw_real_t)(1.0 / 355687428096000.0),
-#endif
-    };
-    static const gw_real_t cos_series[SIN_TERMS] = {
-        (gw_real_t)(-1.0 / 2.0),
-        (gw_real_t)(1.0 / 24.0),
-        (gw_real_t)(-1.0 / 720.0),
-        (gw_real_t)(1.0 / 40320.0),
-        (gw_real_t)(-1.0 / 3628800.0),
-#if (GW_REAL_DOUBLE == 1)
-        (gw_real_t)(1.0 / 479001600.0),
-        (gw_real_t)(-1.0 / 87178291200.0),
-        (gw_real_t)(1.0 / 20922789888000.0),
-#endif
-    };
     gw_rotation_t result = {GW_ZERO, GW_ONE};
-    if (gw_in_range(angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX)) {
+    if (gw_within(angle_rad, GW_ANGLE_MAX)) {
         const int32_t quarter_turns = nearest_integer(angle_rad * TWO_OVER_PI);
         const gw_real_t r = less_quarter_turns(angle_rad, quarter_turns);
         const gw_real_t square = r * r;
-        const gw_real_t sine = r + ((r * square) * polynomial(sin_series, SIN_TERMS, square));
-        const gw_real_t cosine = GW_ONE + (square * polynomial(cos_series, SIN_TERMS, square));
+        const gw_real_t sine = r + ((r * square) * sin_series(square));
+        const gw_real_t cosine = GW_ONE + (square * cos_series(square));
         const uint32_t quadrant = (uint32_t)quarter_turns & 3U; /* two's complement keeps the residue */
         if (quadrant == 0U) {
             result.sine = sine;
@@ -314,23 +311,28 @@ gw_rotation_t gw_sincos(gw_real_t angle_rad)
     return result;
 }
 
+/* Taylor series of (atan z - z)/z^3 in z^2; in double up to (1/8)^20/21, 4e-20. */
+static inline gw_real_t atan_series(gw_real_t square)
+{
+#if (GW_REAL_DOUBLE == 1)
+    gw_real_t value = (gw_real_t)(-1.0 / 19.0);
+    value = on(value, square, (gw_real_t)(1.0 / 17.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 15.0));
+    value = on(value, square, (gw_real_t)(1.0 / 13.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 11.0));
+    value = on(value, square, (gw_real_t)(1.0 / 9.0));
+#else
+    gw_real_t value = (gw_real_t)(1.0 / 9.0);
+#endif
+    value = on(value, square, (gw_real_t)(-1.0 / 7.0));
+    value = on(value, square, (gw_real_t)(1.0 / 5.0));
+    value = on(value, square, (gw_real_t)(-1.0 / 3.0));
+    return value;
+}
+
 /* atan of x in [0, 1]: atan(c) + atan((x - c)/(1 + x c)) with c the nearest quarter. */
 static gw_real_t atan_of_fraction(gw_real_t x)
 {
-    /* Taylor coefficients of (atan z - z)/z^3, lowest power first. */
-    static const gw_real_t atan_series[ATAN_TERMS] = {
-        (gw_real_t)(-1.0 / 3.0),
-        (gw_real_t)(1.0 / 5.0),
-        (gw_real_t)(-1.0 / 7.0),
-        (gw_real_t)(1.0 / 9.0),
-#if (GW_REAL_DOUBLE == 1)
-        (gw_real_t)(-1.0 / 11.0),
-        (gw_real_t)(1.0 / 13.0),
-        (gw_real_t)(-1.0 / 15.0),
-        (gw_real_t)(1.0 / 17.0),
-        (gw_real_t)(-1.0 / 19.0),
-#endif
-    };
     /* atan(k/4). */
     static const gw_real_t atan_quarters[5] = {
         (gw_real_t)0.0,
@@ -343,7 +345,7 @@ static gw_real_t atan_of_fraction(gw_real_t x)
     const gw_real_t c = (gw_real_t)quarter * (gw_real_t)0.25;
     const gw_real_t z = (x - c) / (GW_ONE + (x * c));
     const gw_real_t square = z * z;
-    return atan_quarters[quarter] + (z + ((z * square) * polynomial(atan_series, ATAN_TERMS, square)));
+    return atan_quarters[quarter] + (z + ((z * square) * atan_series(square)));
 }
 
 gw_real_t gw_atan2(gw_real_t y, gw_real_t x)
@@ -370,7 +372,9 @@ gw_real_t gw_atan2(gw_real_t y, gw_real_t x)
 gw_real_t gw_wrap_angle(gw_real_t angle_rad)
 {
     gw_real_t wrapped = GW_ZERO;
-    if (gw_in_range(angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX)) {
+    if (gw_within(angle_rad, ALMOST_PI)) {
+        wrapped = angle_rad; /* no whole turn to take off */
+    } else if (gw_within(angle_rad, GW_ANGLE_MAX)) {
         const int32_t turns = nearest_integer(angle_rad * (TWO_OVER_PI * (gw_real_t)0.25));
         wrapped = less_quarter_turns(angle_rad, 4 * turns);
         /* Rounding may leave it a little outside; these differences are exact. */
@@ -396,27 +400,6 @@ int32_t gw_count_difference(int32_t later, int32_t earlier)
         result = -1 - (int32_t)below;
     }
     return result;
-}
-
-gw_vector_t gw_rotate(gw_rotation_t rotation, gw_vector_t vector)
-{
-    gw_vector_t result;
-    result.x = (rotation.cosine * vector.x) - (rotation.sine * vector.y);
-    result.y = (rotation.sine * vector.x) + (rotation.cosine * vector.y);
-    return result;
-}
-
-gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vector)
-{
-    gw_vector_t result;
-    result.x = (rotation.cosine * vector.x) + (rotation.sine * vector.y);
-    result.y = (rotation.cosine * vector.y) - (rotation.sine * vector.x);
-    return result;
-}
-
-gw_real_t gw_length(gw_vector_t vector)
-{
-    return gw_sqrt((vector.x * vector.x) + (vector.y * vector.y));
 }
 
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)

@@ -10,7 +10,7 @@ static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t
 
 static gw_real_t limited_sum(gw_real_t sum)
 {
-    return gw_clamp(sum, -SUM_MAX, SUM_MAX);
+    return gw_limited(sum, SUM_MAX);
 }
 
 static gw_wrench_t plus(gw_wrench_t a, gw_wrench_t b)

@@ -66,7 +66,7 @@ bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
             const gw_real_t most_m = deflection_of(presliding, i, presliding->bearable_n);
             holds = holds && gw_in_range(presliding->deflection_m[i].value, -most_m, most_m) &&
                     gw_sum_invariant_holds(presliding->deflection_m[i]) &&
-                    gw_in_range(presliding->last_torque_nm.wheel[i], -GW_TORQUE_MAX, GW_TORQUE_MAX);
+                    gw_within(presliding->last_torque_nm.wheel[i], GW_TORQUE_MAX);
         }
     }
     return holds;
@@ -172,8 +172,8 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
         const gw_real_t way_m = (n.x * moved.vx_mps) + (n.y * moved.vy_mps);
         const gw_real_t bearable_n = bearable_at(presliding, kinematics, speed_mps);
         const gw_real_t rate_mps = speed_mps * deflecting_share(presliding, i, bearable_n, speed_mps);
-        if (gw_in_range(way_m, -WAY_MAX_M, WAY_MAX_M)) {
-            deflect(presliding, i, bearable_n, gw_clamp(way_m, -WAY_MAX_M, WAY_MAX_M));
+        if (gw_within(way_m, WAY_MAX_M)) {
+            deflect(presliding, i, bearable_n, gw_limited(way_m, WAY_MAX_M));
         }
         const gw_real_t force_n = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) +
                                   (presliding->config.damping_newton_s_per_m * rate_mps);

@@ -47,8 +47,8 @@ void gw_rate_filter_restart(gw_rate_filter_t *filter)
 
 void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
 {
-    if ((!filter->started) && gw_in_range(rate_radps, -RATE_MAX, RATE_MAX)) {
-        filter->rate_radps = gw_clamp(rate_radps, -RATE_MAX, RATE_MAX);
+    if ((!filter->started) && gw_within(rate_radps, RATE_MAX)) {
+        filter->rate_radps = gw_limited(rate_radps, RATE_MAX);
     }
 }
 
@@ -71,8 +71,8 @@ void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constant
             constants->decay *
             (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
         filter->rate_radps =
-            gw_clamp(input + (constants->decay * (error + (constants->period_s * mixed))), -RATE_MAX, RATE_MAX);
-        filter->derivative_radps2 = gw_clamp(derivative, -DERIVATIVE_MAX, DERIVATIVE_MAX);
+            gw_limited(input + (constants->decay * (error + (constants->period_s * mixed))), RATE_MAX);
+        filter->derivative_radps2 = gw_limited(derivative, DERIVATIVE_MAX);
     }
     filter->last_count = count;
     filter->last_torque_nm = torque_nm;
@@ -81,7 +81,7 @@ void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constant
 
 bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
 {
-    return (filter != NULL) && gw_in_range(filter->last_torque_nm, -GW_TORQUE_MAX, GW_TORQUE_MAX) &&
-           gw_in_range(filter->rate_radps, -RATE_MAX, RATE_MAX) &&
-           gw_in_range(filter->derivative_radps2, -DERIVATIVE_MAX, DERIVATIVE_MAX);
+    return (filter != NULL) && gw_within(filter->last_torque_nm, GW_TORQUE_MAX) &&
+           gw_within(filter->rate_radps, RATE_MAX) &&
+           gw_within(filter->derivative_radps2, DERIVATIVE_MAX);
 }

@@ -2,20 +2,13 @@
 
 #include "giveway/gw_math.h"
 
-#define POSITION_MAX ((gw_real_t)1.0e4)
 #define SPEED_MAX ((gw_real_t)100.0)
 #define YAW_RATE_MAX ((gw_real_t)1000.0)
 /* A reference that walked this far from the origin stops there. */
 #define REFERENCE_MAX ((gw_real_t)1.0e5)
-#define ACCELERATION_MAX ((gw_real_t)1.0e4)
 /* Correction speeds, m/s and rad/s, up to which the reference counts as being on the plan. */
 #define CORRECTION_FREE ((gw_real_t)0.001)
 #define YAW_CORRECTION_FREE ((gw_real_t)0.005)
-
-static bool within(gw_real_t value, gw_real_t limit)
-{
-    return gw_in_range(value, -limit, limit);
-}
 
 void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error)
 {
@@ -70,39 +63,12 @@ bool gw_reference_invariant_holds(const gw_reference_t *reference)
         gw_reference_config_check(&reference->config, reference->period_s, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_sum_invariant_holds(reference->x_m) &&
                 gw_sum_invariant_holds(reference->y_m) && gw_sum_invariant_holds(reference->theta_rad) &&
-                within(reference->theta_rad.value, GW_PI) && within(reference->twist.vx_mps, SPEED_MAX) &&
-                within(reference->twist.vy_mps, SPEED_MAX) && within(reference->twist.omega_radps, YAW_RATE_MAX) &&
+                gw_within(reference->theta_rad.value, GW_PI) && gw_within(reference->twist.vx_mps, SPEED_MAX) &&
+                gw_within(reference->twist.vy_mps, SPEED_MAX) && gw_within(reference->twist.omega_radps, YAW_RATE_MAX) &&
                 gw_is_finite(reference->acceleration.ax_mps2) && gw_is_finite(reference->acceleration.ay_mps2) &&
                 gw_is_finite(reference->acceleration.alpha_radps2);
     }
     return holds;
-}
-
-bool gw_plan_is_valid(const gw_plan_t *plan)
-{
-    return within(plan->pose.x_m, POSITION_MAX) && within(plan->pose.y_m, POSITION_MAX) &&
-           within(plan->pose.theta_rad, GW_ANGLE_MAX) && within(plan->twist.vx_mps, SPEED_MAX) &&
-           within(plan->twist.vy_mps, SPEED_MAX) && within(plan->twist.omega_radps, YAW_RATE_MAX) &&
-           within(plan->acceleration.ax_mps2, ACCELERATION_MAX) &&
-           within(plan->acceleration.ay_mps2, ACCELERATION_MAX) &&
-           within(plan->acceleration.alpha_radps2, ACCELERATION_MAX);
-}
-
-static gw_real_t limited(gw_real_t value, gw_real_t limit)
-{
-    return gw_clamp(value, -limit, limit);
-}
-
-gw_plan_t gw_plan_limited(const gw_plan_t *plan)
-{
-    const gw_plan_t result = {
-        {limited(plan->pose.x_m, POSITION_MAX), limited(plan->pose.y_m, POSITION_MAX),
-         limited(plan->pose.theta_rad, GW_ANGLE_MAX)},
-        {limited(plan->twist.vx_mps, SPEED_MAX), limited(plan->twist.vy_mps, SPEED_MAX),
-         limited(plan->twist.omega_radps, YAW_RATE_MAX)},
-        {limited(plan->acceleration.ax_mps2, ACCELERATION_MAX), limited(plan->acceleration.ay_mps2, ACCELERATION_MAX),
-         limited(plan->acceleration.alpha_radps2, ACCELERATION_MAX)}};
-    return result;
 }
 
 static void stand(gw_reference_t *reference)
@@ -144,8 +110,8 @@ static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, const
     const gw_vector_t change = {wanted_mps.x - reference->twist.vx_mps, wanted_mps.y - reference->twist.vy_mps};
     const gw_vector_t allowed = gw_limit_length(change, most);
     const gw_real_t half_s = GW_HALF * reference->period_s;
-    const gw_vector_t velocity = {limited(reference->twist.vx_mps + allowed.x, SPEED_MAX),
-                                  limited(reference->twist.vy_mps + allowed.y, SPEED_MAX)};
+    const gw_vector_t velocity = {gw_limited(reference->twist.vx_mps + allowed.x, SPEED_MAX),
+                                  gw_limited(reference->twist.vy_mps + allowed.y, SPEED_MAX)};
     if ((planned != NULL) && (gw_length(change) <= most)) {
         reference->acceleration.ax_mps2 = planned->ax_mps2;
         reference->acceleration.ay_mps2 = planned->ay_mps2;
@@ -164,7 +130,7 @@ static void move_yaw(gw_reference_t *reference, gw_real_t wanted_radps, const gw
     const gw_real_t most = reference->config.yaw_acceleration_limit_radps2 * reference->period_s;
     const gw_real_t change = wanted_radps - reference->twist.omega_radps;
     const gw_real_t allowed = gw_clamp(change, -most, most);
-    const gw_real_t omega = limited(reference->twist.omega_radps + allowed, YAW_RATE_MAX);
+    const gw_real_t omega = gw_limited(reference->twist.omega_radps + allowed, YAW_RATE_MAX);
     if ((planned != NULL) && (gw_abs(change) <= most)) {
         reference->acceleration.alpha_radps2 = planned->alpha_radps2;
     } else {

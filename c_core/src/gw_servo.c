@@ -62,8 +62,8 @@ bool gw_servo_invariant_holds(const gw_servo_t *servo)
         gw_config_check_begin(&error);
         gw_servo_config_check(&servo->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_sum_invariant_holds(servo->desired_rad) &&
-                gw_in_range(servo->desired_rad.value, -GW_PI, GW_PI) && gw_in_range(servo->desired_speed_radps, -REFERENCE_SPEED_MAX, REFERENCE_SPEED_MAX) &&
-                gw_in_range(servo->speed_radps, -SPEED_MAX, SPEED_MAX) && (servo->position_count >= 0) &&
+                gw_within(servo->desired_rad.value, GW_PI) && gw_within(servo->desired_speed_radps, REFERENCE_SPEED_MAX) &&
+                gw_within(servo->speed_radps, SPEED_MAX) && (servo->position_count >= 0) &&
                 (servo->position_count < (int32_t)servo->config.encoder_counts) &&
                 gw_in_range(servo->filter_gain, GW_ZERO, GW_ONE) &&
                 gw_in_range(servo->torque_nm, -servo->config.torque_limit_nm, servo->config.torque_limit_nm);
@@ -84,8 +84,7 @@ static void measure(gw_servo_t *servo, int32_t count)
     if (servo->started) {
         const int32_t moved = gw_count_difference(count, servo->last_count);
         const gw_real_t raw_radps = (gw_real_t)moved * servo->count_rate;
-        servo->speed_radps = gw_clamp(
-            servo->speed_radps + (servo->filter_gain * (raw_radps - servo->speed_radps)), -SPEED_MAX, SPEED_MAX);
+        servo->speed_radps = gw_limited(servo->speed_radps + (servo->filter_gain * (raw_radps - servo->speed_radps)), SPEED_MAX);
         servo->position_count =
             modulo_turn(servo->position_count + modulo_turn(moved, servo->config.encoder_counts),
                         servo->config.encoder_counts);
@@ -101,10 +100,10 @@ static void take_reference(gw_servo_t *servo, const gw_servo_input_t *input)
 {
     if (input->reference_is_new) {
         servo->reference_age = 0U;
-        if (gw_in_range(input->angle_rad, -GW_ANGLE_MAX, GW_ANGLE_MAX) &&
-            gw_in_range(input->speed_radps, -REFERENCE_SPEED_MAX, REFERENCE_SPEED_MAX)) {
+        if (gw_within(input->angle_rad, GW_ANGLE_MAX) &&
+            gw_within(input->speed_radps, REFERENCE_SPEED_MAX)) {
             servo->desired_rad = gw_sum_of(gw_wrap_angle(input->angle_rad));
-            servo->desired_speed_radps = gw_clamp(input->speed_radps, -REFERENCE_SPEED_MAX, REFERENCE_SPEED_MAX);
+            servo->desired_speed_radps = gw_limited(input->speed_radps, REFERENCE_SPEED_MAX);
             servo->reference_status = GW_STATUS_OK;
         } else {
             servo->desired_speed_radps = GW_ZERO;

@@ -10,6 +10,7 @@
 #define GW_REFERENCE_H
 
 #include "giveway/gw_config.h"
+#include "giveway/gw_math.h"
 #include "giveway/gw_sum.h"
 #include "giveway/gw_types.h"
 
@@ -40,6 +41,12 @@ typedef struct {
     gw_acceleration_t acceleration;
 } gw_plan_t;
 
+/* Bounds of a valid plan: m, m/s, rad/s, and m/s^2 or rad/s^2. */
+#define GW_PLAN_POSITION_MAX ((gw_real_t)1.0e4)
+#define GW_PLAN_SPEED_MAX ((gw_real_t)100.0)
+#define GW_PLAN_YAW_RATE_MAX ((gw_real_t)1000.0)
+#define GW_PLAN_ACCELERATION_MAX ((gw_real_t)1.0e4)
+
 typedef struct {
     gw_reference_config_t config;
     gw_real_t period_s;
@@ -59,9 +66,29 @@ gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_conf
 bool gw_reference_invariant_holds(const gw_reference_t *reference);
 /* True if every number is finite, positions within 1e4 m, angles within 1e4 rad, speeds within 100 m/s and 1000 rad/s,
  * accelerations within 1e4. */
-bool gw_plan_is_valid(const gw_plan_t *plan);
+static inline bool gw_plan_is_valid(const gw_plan_t *plan)
+{
+    return gw_within(plan->pose.x_m, GW_PLAN_POSITION_MAX) && gw_within(plan->pose.y_m, GW_PLAN_POSITION_MAX) &&
+           gw_within(plan->pose.theta_rad, GW_ANGLE_MAX) && gw_within(plan->twist.vx_mps, GW_PLAN_SPEED_MAX) &&
+           gw_within(plan->twist.vy_mps, GW_PLAN_SPEED_MAX) && gw_within(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX) &&
+           gw_within(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX) &&
+           gw_within(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX) &&
+           gw_within(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX);
+}
+
 /* The plan with every value kept within those ranges: the same for a valid one. Pointer not NULL. */
-gw_plan_t gw_plan_limited(const gw_plan_t *plan);
+static inline gw_plan_t gw_plan_limited(const gw_plan_t *plan)
+{
+    const gw_plan_t result = {
+        {gw_limited(plan->pose.x_m, GW_PLAN_POSITION_MAX), gw_limited(plan->pose.y_m, GW_PLAN_POSITION_MAX),
+         gw_limited(plan->pose.theta_rad, GW_ANGLE_MAX)},
+        {gw_limited(plan->twist.vx_mps, GW_PLAN_SPEED_MAX), gw_limited(plan->twist.vy_mps, GW_PLAN_SPEED_MAX),
+         gw_limited(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX)},
+        {gw_limited(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX), gw_limited(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX),
+         gw_limited(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX)}};
+    return result;
+}
+
 /* Puts the reference on the plan without motion of the wheels. plan valid. moving: with the plan's velocity, within the
  * limits; else at rest. */
 void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving);

@@ -5,6 +5,7 @@
 #ifndef GW_SUM_H
 #define GW_SUM_H
 
+#include "giveway/gw_math.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -17,16 +18,42 @@ typedef struct {
     gw_real_t excess;
 } gw_sum_t;
 
+/* The excess is at most half a unit in the last place of the value; this bounds it for values up to 1e10 in float, and
+ * does so whatever the sum was before. */
+#define GW_SUM_EXCESS_MAX ((gw_real_t)1024.0)
+
 /* The sum with this value and no rounding error. */
-gw_sum_t gw_sum_of(gw_real_t value);
+static inline gw_sum_t gw_sum_of(gw_real_t value)
+{
+    const gw_sum_t sum = {value, GW_ZERO};
+    return sum;
+}
+
 /* sum + increment; both finite. */
-gw_sum_t gw_sum_add(gw_sum_t sum, gw_real_t increment);
+static inline gw_sum_t gw_sum_add(gw_sum_t sum, gw_real_t increment)
+{
+    gw_sum_t result;
+    const gw_real_t corrected = increment - sum.excess;
+    result.value = sum.value + corrected;
+    result.excess = gw_limited((result.value - sum.value) - corrected, GW_SUM_EXCESS_MAX);
+    return result;
+}
+
 /* For angles: sum + increment modulo one turn, its value in [-pi, pi). |increment| <= GW_ANGLE_MAX. */
 gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad);
-/* The sum, its value kept within [-limit, limit]. */
-gw_sum_t gw_sum_limit(gw_sum_t sum, gw_real_t limit);
+/* The sum, its value kept within [-limit, limit]; limit > 0. */
+static inline gw_sum_t gw_sum_limit(gw_sum_t sum, gw_real_t limit)
+{
+    const gw_sum_t limited = {gw_limited(sum.value, limit), sum.excess};
+    return limited;
+}
+
 /* minuend - sum, with the sum's full precision. */
-gw_real_t gw_sum_subtract_from(gw_real_t minuend, gw_sum_t sum);
+static inline gw_real_t gw_sum_subtract_from(gw_real_t minuend, gw_sum_t sum)
+{
+    return (minuend - sum.value) + sum.excess;
+}
+
 bool gw_sum_invariant_holds(gw_sum_t sum);
 
 #ifdef __cplusplus

@@ -3,6 +3,7 @@
 #define GW_WRENCH_H
 
 #include "giveway/gw_kinematics.h"
+#include "giveway/gw_math.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -22,11 +23,36 @@ typedef struct {
 #define GW_TORQUE_MAX ((gw_real_t)1.0e6)
 
 /* True if no component is NaN or beyond GW_WRENCH_MAX. */
-bool gw_wrench_is_valid(gw_wrench_t wrench);
+static inline bool gw_wrench_is_valid(gw_wrench_t wrench)
+{
+    return gw_within(wrench.force_x_n, GW_WRENCH_MAX) && gw_within(wrench.force_y_n, GW_WRENCH_MAX) &&
+           gw_within(wrench.torque_nm, GW_WRENCH_MAX);
+}
+
 /* The wrench with every component kept within GW_WRENCH_MAX: the same for a valid one. */
-gw_wrench_t gw_wrench_limited(gw_wrench_t wrench);
-/* Likewise every torque within GW_TORQUE_MAX. */
-gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm);
+static inline gw_wrench_t gw_wrench_limited(gw_wrench_t wrench)
+{
+    const gw_wrench_t limited = {gw_limited(wrench.force_x_n, GW_WRENCH_MAX),
+                                 gw_limited(wrench.force_y_n, GW_WRENCH_MAX),
+                                 gw_limited(wrench.torque_nm, GW_WRENCH_MAX)};
+    return limited;
+}
+
+/* Likewise for torques and GW_TORQUE_MAX. */
+static inline bool gw_torques_are_valid(const gw_wheels_t *torque_nm)
+{
+    return gw_within(torque_nm->wheel[0], GW_TORQUE_MAX) && gw_within(torque_nm->wheel[1], GW_TORQUE_MAX) &&
+           gw_within(torque_nm->wheel[2], GW_TORQUE_MAX);
+}
+
+static inline gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm)
+{
+    const gw_wheels_t limited = {{gw_limited(torque_nm->wheel[0], GW_TORQUE_MAX),
+                                  gw_limited(torque_nm->wheel[1], GW_TORQUE_MAX),
+                                  gw_limited(torque_nm->wheel[2], GW_TORQUE_MAX)}};
+    return limited;
+}
+
 /* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
 gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
                                const gw_wheels_t *sensed_nm);
