@@ -10,6 +10,12 @@ static gw_real_t cross(gw_vector_t a, gw_vector_t b)
     return (a.x * b.y) - (a.y * b.x);
 }
 
+/* How far a point lies to the right of the line p x u = offset that runs along u. */
+static gw_real_t side_of(gw_vector_t point, gw_vector_t direction, gw_real_t offset_m)
+{
+    return cross(point, direction) - offset_m;
+}
+
 static gw_real_t along(gw_vector_t a, gw_vector_t direction)
 {
     return (a.x * direction.x) + (a.y * direction.y);
@@ -89,43 +95,44 @@ bool gw_contact_invariant_holds(const gw_contact_t *contact)
 static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction, gw_real_t offset_m,
                         gw_contact_estimate_t *estimate)
 {
+    const uint32_t count = config->vertex_count;
     gw_real_t nearest_m = GW_REAL_MAX;
-    const gw_vector_t *nearest = &config->vertex_m[0];
-    const gw_vector_t *previous = &config->vertex_m[config->vertex_count - 1U];
-    gw_real_t previous_side_m = cross(*previous, direction) - offset_m;
-    const gw_vector_t *edge_start = previous;
-    const gw_vector_t *edge_end = previous;
-    gw_real_t start_side_m = GW_ZERO;
-    gw_real_t end_side_m = GW_ZERO;
-    for (uint32_t i = 0U; (i < GW_OUTLINE_VERTEX_MAX) && (i < config->vertex_count); i++) {
-        const gw_vector_t *const vertex = &config->vertex_m[i];
-        const gw_real_t side_m = cross(*vertex, direction) - offset_m;
-        const gw_real_t distance_m = gw_abs(side_m);
+    uint32_t nearest = 0U;
+    uint32_t entry = 0U;
+    bool outside = side_of(config->vertex_m[count - 1U], direction, offset_m) <= GW_ZERO;
+    for (uint32_t i = 0U; i < count; i++) {
+        const gw_vector_t vertex = config->vertex_m[i];
+        const gw_real_t side_m = side_of(vertex, direction, offset_m);
+        const gw_real_t distance_m = gw_magnitude(side_m);
         /* Going counter-clockwise, the side grows exactly on the edges that the direction enters. */
-        if ((side_m > GW_ZERO) && (previous_side_m <= GW_ZERO)) {
-            edge_start = previous;
-            edge_end = vertex;
-            start_side_m = previous_side_m;
-            end_side_m = side_m;
-            estimate->on_outline = true;
+        if (side_m > GW_ZERO) {
+            if (outside) {
+                entry = i;
+                estimate->on_outline = true;
+            }
+            outside = false;
+        } else {
+            outside = true;
         }
         /* On a tie (an edge parallel to the line) the end that the force meets first. */
         if (distance_m <= nearest_m) {
-            if ((distance_m < nearest_m) || (along(*vertex, direction) < along(*nearest, direction))) {
+            if ((distance_m < nearest_m) || (along(vertex, direction) < along(config->vertex_m[nearest], direction))) {
                 nearest_m = distance_m;
-                nearest = vertex;
+                nearest = i;
             }
         }
-        previous = vertex;
-        previous_side_m = side_m;
     }
     if (estimate->on_outline) {
+        const gw_vector_t start = config->vertex_m[((entry > 0U) ? entry : count) - 1U];
+        const gw_vector_t end = config->vertex_m[entry];
+        const gw_real_t start_side_m = side_of(start, direction, offset_m);
+        const gw_real_t end_side_m = side_of(end, direction, offset_m);
         const gw_real_t fraction = gw_fraction(-start_side_m, end_side_m - start_side_m);
-        const gw_vector_t edge = from_to(*edge_start, *edge_end);
-        estimate->point_m.x = edge_start->x + (fraction * edge.x);
-        estimate->point_m.y = edge_start->y + (fraction * edge.y);
+        const gw_vector_t edge = from_to(start, end);
+        estimate->point_m.x = start.x + (fraction * edge.x);
+        estimate->point_m.y = start.y + (fraction * edge.y);
     } else {
-        estimate->point_m = *nearest;
+        estimate->point_m = config->vertex_m[nearest];
     }
 }
 
@@ -153,8 +160,8 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
             status = GW_STATUS_NULL_POINTER;
         } else if (!contact->initialised) {
             status = GW_STATUS_NOT_INITIALISED;
-        } else if (!(gw_wrench_is_valid(wrench) && gw_in_range(sigma.force_n, GW_ZERO, GW_WRENCH_MAX) &&
-                     gw_in_range(sigma.torque_nm, GW_ZERO, GW_WRENCH_MAX))) {
+        } else if (!(gw_wrench_is_valid(wrench) && gw_within(sigma.force_n, GW_WRENCH_MAX) && (sigma.force_n >= GW_ZERO) &&
+                     gw_within(sigma.torque_nm, GW_WRENCH_MAX) && (sigma.torque_nm >= GW_ZERO))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
             const gw_wrench_t valid = gw_wrench_limited(wrench);
@@ -164,8 +171,8 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
                 const gw_vector_t direction = {gw_fraction(force.x, force_n), gw_fraction(force.y, force_n)};
                 const gw_real_t arm_m = gw_limited(valid.torque_nm / force_n, LEVER_ARM_MAX);
                 /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
-                const gw_vector_t spread = {gw_clamp(sigma.torque_nm, GW_ZERO, GW_WRENCH_MAX) / force_n,
-                                            (arm_m * gw_clamp(sigma.force_n, GW_ZERO, GW_WRENCH_MAX)) / force_n};
+                const gw_vector_t spread = {gw_limited(sigma.torque_nm, GW_WRENCH_MAX) / force_n,
+                                            (arm_m * gw_limited(sigma.force_n, GW_WRENCH_MAX)) / force_n};
                 estimate->valid = true;
                 estimate->force_n = force_n;
                 estimate->direction_rad = gw_atan2(force.y, force.x);

@@ -66,7 +66,7 @@ static gw_status_t torque_status(const gw_sensor_check_t *check, const gw_sensor
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         if (!gw_is_finite(sample->torque_nm[i])) {
             status = GW_STATUS_SENSOR_NONFINITE;
-        } else if ((status == GW_STATUS_OK) && (gw_abs(sample->torque_nm[i]) >= check->config.torque_limit_nm)) {
+        } else if ((status == GW_STATUS_OK) && (gw_magnitude(sample->torque_nm[i]) >= check->config.torque_limit_nm)) {
             status = GW_STATUS_SENSOR_SATURATED;
         } else {
             /* this torque is good */

@@ -75,11 +75,21 @@ static inline gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
 #define GW_ARM_FLOAT 0
 #endif
 
+/* |x| where it is only compared: the sign of a zero depends on the machine. */
+static inline gw_real_t gw_magnitude(gw_real_t x)
+{
+#if (GW_ARM_FLOAT == 1)
+    return __builtin_fabsf(x);
+#else
+    return gw_abs(x);
+#endif
+}
+
 /* True if -limit <= x <= limit; false for NaN. limit > 0 here and below. */
 static inline bool gw_within(gw_real_t x, gw_real_t limit)
 {
 #if (GW_ARM_FLOAT == 1)
-    return __builtin_fabsf(x) <= limit;
+    return gw_magnitude(x) <= limit;
 #else
     return (x >= -limit) && (x <= limit);
 #endif
@@ -89,7 +99,7 @@ static inline bool gw_within(gw_real_t x, gw_real_t limit)
 static inline gw_real_t gw_limited(gw_real_t x, gw_real_t limit)
 {
 #if (GW_ARM_FLOAT == 1)
-    return (__builtin_fabsf(x) <= limit) ? x : ((x > limit) ? limit : -limit);
+    return (gw_magnitude(x) <= limit) ? x : ((x > limit) ? limit : -limit);
 #else
     return (x >= -limit) ? ((x <= limit) ? x : limit) : -limit;
 #endif
