@@ -76,19 +76,6 @@ void gw_detector_reset(gw_detector_t *detector)
     detector->active = false;
 }
 
-gw_real_t gw_detector_leak(const gw_detector_t *detector, gw_regime_t regime)
-{
-    gw_real_t leak_n = detector->config.leak_creep_n;
-    if (regime == GW_REGIME_REST) {
-        leak_n = detector->config.leak_rest_n;
-    } else if (regime == GW_REGIME_MOTION) {
-        leak_n = detector->config.leak_motion_n;
-    } else {
-        /* creeping */
-    }
-    return leak_n;
-}
-
 static gw_real_t force_length(gw_wrench_t wrench)
 {
     const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};

@@ -169,31 +169,31 @@ static bool input_is_valid(const gw_estimator_input_t *input)
 }
 
 /* The same for a valid input: what follows is bounded by it. */
-static gw_estimator_input_t limited_input(const gw_estimator_input_t *input)
+static gw_twist_t limited_twist(gw_twist_t twist)
 {
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from another */
-    gw_estimator_input_t result = *input;
-    result.torque_nm = gw_torques_limited(&input->torque_nm);
-    result.planned_twist.vx_mps = gw_limited(input->planned_twist.vx_mps, PLANNED_SPEED_MAX);
-    result.planned_twist.vy_mps = gw_limited(input->planned_twist.vy_mps, PLANNED_SPEED_MAX);
-    result.planned_twist.omega_radps = gw_limited(input->planned_twist.omega_radps, PLANNED_SPEED_MAX);
-    result.planned_acceleration.ax_mps2 = gw_limited(input->planned_acceleration.ax_mps2, PLANNED_ACCELERATION_MAX);
-    result.planned_acceleration.ay_mps2 = gw_limited(input->planned_acceleration.ay_mps2, PLANNED_ACCELERATION_MAX);
-    result.planned_acceleration.alpha_radps2 =
-        gw_limited(input->planned_acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX);
-    return result;
+    const gw_twist_t limited = {gw_limited(twist.vx_mps, PLANNED_SPEED_MAX), gw_limited(twist.vy_mps, PLANNED_SPEED_MAX),
+                                gw_limited(twist.omega_radps, PLANNED_SPEED_MAX)};
+    return limited;
+}
+
+static gw_acceleration_t limited_acceleration(gw_acceleration_t acceleration)
+{
+    const gw_acceleration_t limited = {gw_limited(acceleration.ax_mps2, PLANNED_ACCELERATION_MAX),
+                                       gw_limited(acceleration.ay_mps2, PLANNED_ACCELERATION_MAX),
+                                       gw_limited(acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX)};
+    return limited;
 }
 
 /* The faster of the base and of the wheels' circle. */
-static gw_real_t planned_speed(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
+static gw_real_t faster_of(const gw_estimator_t *estimator, gw_twist_t twist)
 {
-    const gw_vector_t velocity = {input->planned_twist.vx_mps, input->planned_twist.vy_mps};
-    const gw_real_t rim = gw_abs(input->planned_twist.omega_radps) * estimator->kinematics.wheel_distance_m;
+    const gw_vector_t velocity = {twist.vx_mps, twist.vy_mps};
+    const gw_real_t rim = gw_abs(twist.omega_radps) * estimator->kinematics.wheel_distance_m;
     return gw_max(gw_length(velocity), rim);
 }
 
 /* Rest or not, and the tare after a stop. Returns true if that changed. */
-static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *input, gw_real_t speed_mps)
+static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, gw_real_t speed_mps)
 {
     const bool was_at_rest = estimator->rest;
     if (speed_mps > estimator->config.rest_speed_mps) {
@@ -209,7 +209,7 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *in
             ((estimator->slow_ticks + estimator->config.retare_ticks) > estimator->config.rest_ticks)) {
             gw_wheels_t mean_nm = no_torque;
             const gw_tare_progress_t progress =
-                gw_tare_add(&estimator->stop_tare, &input->torque_nm, estimator->config.retare_ticks,
+                gw_tare_add(&estimator->stop_tare, torque_nm, estimator->config.retare_ticks,
                             estimator->config.tare_variation_nm, &mean_nm);
             if (progress == GW_TARE_DONE) {
                 estimator->rest_zero_nm = zero_of(estimator, &mean_nm);
@@ -220,40 +220,86 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_estimator_input_t *in
     return estimator->rest != was_at_rest;
 }
 
+/* What a tick knows of the motion, along the base's axes. */
+typedef struct {
+    gw_twist_t planned_twist;
+    gw_acceleration_t planned_acceleration;
+    gw_twist_t measured_twist;
+    gw_wheels_t rates;
+    gw_wheels_t derivatives;
+} motion_t;
+
+/* The acceleration of the model; at planned rest the tare is all there is to plan. */
+static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, const motion_t *motion)
+{
+    gw_acceleration_t acceleration = {GW_ZERO, GW_ZERO, GW_ZERO};
+    if (estimator->config.acceleration_source == GW_SOURCE_MEASURED) {
+        acceleration = gw_kinematics_acceleration(&estimator->kinematics, &motion->rates, &motion->derivatives);
+    } else if ((estimator->config.acceleration_source == GW_SOURCE_PLANNED) && (!estimator->rest)) {
+        acceleration = motion->planned_acceleration;
+    } else {
+        /* none */
+    }
+    return acceleration;
+}
+
 /* T|0 from the present zero and the model. */
 static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
-                                     gw_twist_t measured_twist, gw_acceleration_t measured_acceleration)
+                                     const gw_wheels_t *torque_nm, const motion_t *motion)
 {
-    static const gw_acceleration_t no_acceleration = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
     const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
-    /* At planned rest the tare is all there is to plan. */
-    gw_twist_t twist = estimator->rest ? no_twist : input->planned_twist;
-    gw_acceleration_t acceleration = estimator->rest ? no_acceleration : input->planned_acceleration;
+    gw_twist_t twist = no_twist;
     if (estimator->config.velocity_source == GW_SOURCE_MEASURED) {
-        twist = measured_twist;
-    }
-    if (estimator->config.acceleration_source == GW_SOURCE_MEASURED) {
-        acceleration = measured_acceleration;
-    } else if (estimator->config.acceleration_source == GW_SOURCE_ZERO) {
-        acceleration = no_acceleration;
+        twist = motion->measured_twist;
+    } else if (!estimator->rest) {
+        twist = motion->planned_twist;
     } else {
-        /* planned */
+        /* planned rest */
     }
-    gw_wheels_t nominal;
+    gw_wheels_t friction_nm;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
-        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-        const gw_wheels_t friction_nm =
-            gw_presliding_step(&estimator->presliding, &estimator->kinematics, &estimator->rate_constants,
-                               input->encoder_count, &input->torque_nm, measured_twist);
-        nominal = gw_nominal_torques_with_friction(&estimator->nominal, &estimator->kinematics, twist, acceleration,
-                                                   &friction_nm);
+        friction_nm = gw_presliding_step(&estimator->presliding, &estimator->kinematics, &estimator->rate_constants,
+                                         input->encoder_count, torque_nm, motion->measured_twist);
     } else {
-        nominal = gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist, acceleration);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+        const gw_wheels_t roller_rates = gw_kinematics_roller_rates(&estimator->kinematics, twist);
+        friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        nominal.wheel[i] += zero->wheel[i];
-    }
+    gw_wheels_t nominal = gw_nominal_torques_with_friction(&estimator->nominal, &estimator->kinematics, twist,
+                                                           chosen_acceleration(estimator, motion), &friction_nm);
+    nominal.wheel[0] += zero->wheel[0];
+    nominal.wheel[1] += zero->wheel[1];
+    nominal.wheel[2] += zero->wheel[2];
     return nominal;
+}
+
+/* Rates of the wheels and their derivatives, after this sample. */
+static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *input, const gw_wheels_t *torque_nm,
+                         motion_t *motion)
+{
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+    const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, motion->planned_twist);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        gw_rate_filter_t *const filter = &estimator->rate[i];
+        /* Without it a robot that already moves would seem to be thrown into motion. */
+        gw_rate_filter_presume(filter, planned_rates.wheel[i]);
+        gw_rate_filter_step(filter, &estimator->rate_constants, input->encoder_count[i], torque_nm->wheel[i]);
+        motion->rates.wheel[i] = filter->rate_radps;
+        motion->derivatives.wheel[i] = filter->derivative_radps2;
+    }
+}
+
+static gw_regime_t regime_of(const gw_estimator_t *estimator, gw_real_t speed_mps)
+{
+    gw_regime_t regime = GW_REGIME_MOTION;
+    if (estimator->rest) {
+        regime = GW_REGIME_REST;
+    } else if (speed_mps <= estimator->config.creep_speed_mps) {
+        regime = GW_REGIME_CREEPING;
+    } else {
+        /* in motion */
+    }
+    return regime;
 }
 
 static void nothing_known(gw_estimator_output_t *output)
@@ -275,44 +321,30 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
                               gw_estimator_output_t *output)
 {
     gw_status_t status = GW_STATUS_OK;
-    nothing_known(output);
     if (!estimator->initialised) {
         status = GW_STATUS_NOT_INITIALISED;
+        nothing_known(output);
     } else if (!input_is_valid(input)) {
         status = GW_STATUS_INPUT_INVALID;
+        nothing_known(output);
         gw_estimator_restart(estimator);
     } else {
+        motion_t motion;
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-        const gw_estimator_input_t valid = limited_input(input);
-        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, valid.planned_twist);
-        gw_wheels_t rates = no_torque;
-        gw_wheels_t derivatives = no_torque;
-        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            /* Without it a robot that already moves would seem to be thrown into motion. */
-            gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
-            gw_rate_filter_step(&estimator->rate[i], &estimator->rate_constants, valid.encoder_count[i],
-                                valid.torque_nm.wheel[i]);
-            rates.wheel[i] = estimator->rate[i].rate_radps;
-            derivatives.wheel[i] = estimator->rate[i].derivative_radps2;
-        }
-        const gw_real_t speed_mps = planned_speed(estimator, &valid);
-        output->zero_changed = judge_rest(estimator, &valid, speed_mps);
+        const gw_wheels_t torque_nm = gw_torques_limited(&input->torque_nm);
+        motion.planned_twist = limited_twist(input->planned_twist);
+        motion.planned_acceleration = limited_acceleration(input->planned_acceleration);
+        filter_rates(estimator, input, &torque_nm, &motion);
+        motion.measured_twist = gw_kinematics_twist(&estimator->kinematics, &motion.rates);
+        const gw_real_t speed_mps = faster_of(estimator, motion.planned_twist);
+        output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         if (output->zero_changed) {
             gw_moving_average_reset(&estimator->average);
         }
-        if (estimator->rest) {
-            output->regime = GW_REGIME_REST;
-        } else if (speed_mps <= estimator->config.creep_speed_mps) {
-            output->regime = GW_REGIME_CREEPING;
-        } else {
-            output->regime = GW_REGIME_MOTION;
-        }
-        output->measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
-        output->nominal_nm =
-            nominal_with_zero(estimator, &valid, output->measured_twist,
-                              gw_kinematics_acceleration(&estimator->kinematics, &rates, &derivatives));
-        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &valid.torque_nm);
+        output->regime = regime_of(estimator, speed_mps);
+        output->measured_twist = motion.measured_twist;
+        output->nominal_nm = nominal_with_zero(estimator, input, &torque_nm, &motion);
+        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &torque_nm);
         output->sigma = estimator->sigma;
         status = gw_moving_average_add(&estimator->average, output->wrench);
         if (status == GW_STATUS_OK) {

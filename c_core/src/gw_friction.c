@@ -8,12 +8,3 @@ void gw_friction_config_check(const gw_friction_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_FRICTION_TANH_SLOPE, 0U, config->tanh_slope_s_per_rad);
 }
 
-gw_wheels_t gw_friction_torques(const gw_friction_config_t *config, const gw_wheels_t *roller_rates_radps)
-{
-    gw_wheels_t torques;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        torques.wheel[i] =
-            config->coulomb_torque_nm * gw_tanh(config->tanh_slope_s_per_rad * roller_rates_radps->wheel[i]);
-    }
-    return torques;
-}

@@ -18,11 +18,6 @@ void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad)
     joint->placed = true;
 }
 
-bool gw_joint_is_placed(const gw_joint_t *joint)
-{
-    return joint->placed;
-}
-
 static gw_wheels_t wheels_of(const gw_kinematics_t *kinematics, gw_real_t x, gw_real_t y, gw_real_t theta,
                              gw_real_t yaw_rad)
 {

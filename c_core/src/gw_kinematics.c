@@ -2,8 +2,6 @@
 
 #include "giveway/gw_math.h"
 
-#define TWO_THIRDS ((gw_real_t)0.6666666666666666666667)
-#define ONE_THIRD ((gw_real_t)0.3333333333333333333333)
 #define HALF_SQRT_3 ((gw_real_t)0.8660254037844386467637)
 
 void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
@@ -102,8 +100,8 @@ gw_matrix_t gw_kinematics_wheel_jacobian_inverse(const gw_kinematics_t *kinemati
 {
     gw_matrix_t inverse;
     const gw_rotation_t yaw = gw_sincos(theta_rad);
-    const gw_real_t linear = TWO_THIRDS * kinematics->wheel_radius_m;
-    const gw_real_t angular = (ONE_THIRD * kinematics->wheel_radius_m) / kinematics->wheel_distance_m;
+    const gw_real_t linear = GW_TWO_THIRDS * kinematics->wheel_radius_m;
+    const gw_real_t angular = (GW_ONE_THIRD * kinematics->wheel_radius_m) / kinematics->wheel_distance_m;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const gw_vector_t n = gw_rotate(yaw, kinematics->radial[i]);
         inverse.m[0][i] = -n.y * linear;
@@ -146,67 +144,6 @@ gw_matrix_t gw_kinematics_external_jacobian(gw_vector_t point_m)
     return jacobian;
 }
 
-/* Speed of the wheel centre along the rolling direction, from planar and yaw parts. */
-static gw_real_t along_rolling(gw_vector_t n, gw_real_t x, gw_real_t y, gw_real_t rim)
-{
-    return ((n.x * y) - (n.y * x)) + rim;
-}
-
-static gw_real_t along_radial(gw_vector_t n, gw_real_t x, gw_real_t y)
-{
-    return (n.x * x) + (n.y * y);
-}
-
-gw_wheels_t gw_kinematics_wheel_rates(const gw_kinematics_t *kinematics, gw_twist_t twist)
-{
-    gw_wheels_t rates;
-    const gw_real_t rim = kinematics->wheel_distance_m * twist.omega_radps;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        rates.wheel[i] = along_rolling(kinematics->radial[i], twist.vx_mps, twist.vy_mps, rim) *
-                         kinematics->per_wheel_radius;
-    }
-    return rates;
-}
-
-gw_twist_t gw_kinematics_twist(const gw_kinematics_t *kinematics, const gw_wheels_t *wheel_rates)
-{
-    gw_vector_t planar = {GW_ZERO, GW_ZERO};
-    gw_real_t sum = GW_ZERO;
-    gw_twist_t twist;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        planar.x -= kinematics->radial[i].y * wheel_rates->wheel[i];
-        planar.y += kinematics->radial[i].x * wheel_rates->wheel[i];
-        sum += wheel_rates->wheel[i];
-    }
-    twist.vx_mps = (TWO_THIRDS * kinematics->wheel_radius_m) * planar.x;
-    twist.vy_mps = (TWO_THIRDS * kinematics->wheel_radius_m) * planar.y;
-    twist.omega_radps = ((ONE_THIRD * kinematics->wheel_radius_m) * sum) / kinematics->wheel_distance_m;
-    return twist;
-}
-
-gw_wheels_t gw_kinematics_roller_rates(const gw_kinematics_t *kinematics, gw_twist_t twist)
-{
-    gw_wheels_t rates;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        rates.wheel[i] =
-            along_radial(kinematics->radial[i], twist.vx_mps, twist.vy_mps) * kinematics->per_roller_radius;
-    }
-    return rates;
-}
-
-gw_acceleration_t gw_kinematics_acceleration(const gw_kinematics_t *kinematics, const gw_wheels_t *wheel_rates,
-                                             const gw_wheels_t *wheel_accelerations)
-{
-    gw_acceleration_t acceleration;
-    const gw_twist_t twist = gw_kinematics_twist(kinematics, wheel_rates);
-    const gw_twist_t relative = gw_kinematics_twist(kinematics, wheel_accelerations);
-    /* The base's axes turn: the second term is what the derivative of J_w^-1 adds in (29). */
-    acceleration.ax_mps2 = relative.vx_mps - (twist.omega_radps * twist.vy_mps);
-    acceleration.ay_mps2 = relative.vy_mps + (twist.omega_radps * twist.vx_mps);
-    acceleration.alpha_radps2 = relative.omega_radps;
-    return acceleration;
-}
-
 gw_wheels_t gw_kinematics_wheel_accelerations(const gw_kinematics_t *kinematics, gw_twist_t twist,
                                               gw_acceleration_t acceleration)
 {
@@ -214,8 +151,8 @@ gw_wheels_t gw_kinematics_wheel_accelerations(const gw_kinematics_t *kinematics,
     const gw_real_t rim = kinematics->wheel_distance_m * acceleration.alpha_radps2;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const gw_vector_t n = kinematics->radial[i];
-        const gw_real_t turning = twist.omega_radps * along_radial(n, twist.vx_mps, twist.vy_mps);
-        result.wheel[i] = (along_rolling(n, acceleration.ax_mps2, acceleration.ay_mps2, rim) - turning) *
+        const gw_real_t turning = twist.omega_radps * gw_along_radial(n, twist.vx_mps, twist.vy_mps);
+        result.wheel[i] = ((gw_along_rolling(n, acceleration.ax_mps2, acceleration.ay_mps2) + rim) - turning) *
                           kinematics->per_wheel_radius;
     }
     return result;
@@ -227,46 +164,11 @@ gw_wheels_t gw_kinematics_roller_accelerations(const gw_kinematics_t *kinematics
     gw_wheels_t result;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const gw_vector_t n = kinematics->radial[i];
-        const gw_real_t turning = twist.omega_radps * along_rolling(n, twist.vx_mps, twist.vy_mps, GW_ZERO);
-        result.wheel[i] = (along_radial(n, acceleration.ax_mps2, acceleration.ay_mps2) + turning) *
+        const gw_real_t turning = twist.omega_radps * (gw_along_rolling(n, twist.vx_mps, twist.vy_mps) + GW_ZERO);
+        result.wheel[i] = (gw_along_radial(n, acceleration.ax_mps2, acceleration.ay_mps2) + turning) *
                           kinematics->per_roller_radius;
     }
     return result;
-}
-
-gw_wrench_t gw_kinematics_wrench_of_torques(const gw_kinematics_t *kinematics, const gw_wheels_t *torque_nm)
-{
-    gw_wrench_t wrench = {GW_ZERO, GW_ZERO, GW_ZERO};
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        const gw_real_t traction_n = torque_nm->wheel[i] * kinematics->per_wheel_radius;
-        wrench.force_x_n -= kinematics->radial[i].y * traction_n;
-        wrench.force_y_n += kinematics->radial[i].x * traction_n;
-        wrench.torque_nm += kinematics->wheel_distance_m * traction_n;
-    }
-    return wrench;
-}
-
-gw_wheels_t gw_kinematics_torques_of_wrench(const gw_kinematics_t *kinematics, gw_wrench_t wrench)
-{
-    gw_wheels_t torques;
-    const gw_real_t shared = (ONE_THIRD * wrench.torque_nm) / kinematics->wheel_distance_m;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        const gw_real_t traction_n =
-            TWO_THIRDS * along_rolling(kinematics->radial[i], wrench.force_x_n, wrench.force_y_n, GW_ZERO);
-        torques.wheel[i] = kinematics->wheel_radius_m * (traction_n + shared);
-    }
-    return torques;
-}
-
-gw_wrench_t gw_kinematics_wrench_of_rollers(const gw_kinematics_t *kinematics, const gw_wheels_t *torque_nm)
-{
-    gw_wrench_t wrench = {GW_ZERO, GW_ZERO, GW_ZERO};
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        const gw_real_t force_n = torque_nm->wheel[i] * kinematics->per_roller_radius;
-        wrench.force_x_n += kinematics->radial[i].x * force_n;
-        wrench.force_y_n += kinematics->radial[i].y * force_n;
-    }
-    return wrench;
 }
 
 gw_wrench_t gw_kinematics_wrench_at_centre(gw_vector_t point_m, gw_wrench_t at_point)

@@ -187,7 +187,7 @@ typedef struct {
     gw_real_t remainder_expm1; /* e^remainder - 1 */
 } reduced_exp_t;
 
-static reduced_exp_t reduce_exp(gw_real_t x)
+static inline reduced_exp_t reduce_exp(gw_real_t x)
 {
     reduced_exp_t reduced;
     reduced.exponent = nearest_integer(x * LOG2_E);
@@ -386,20 +386,6 @@ gw_real_t gw_wrap_angle(gw_real_t angle_rad)
         }
     }
     return wrapped;
-}
-
-int32_t gw_count_difference(int32_t later, int32_t earlier)
-{
-    const uint32_t difference = (uint32_t)later - (uint32_t)earlier; /* modulo 2^32 by definition */
-    int32_t result;
-    /* A plain cast of the upper half would be implementation-defined. */
-    if (difference <= 0x7FFFFFFFU) {
-        result = (int32_t)difference;
-    } else {
-        const uint32_t below = 0xFFFFFFFFU - difference;
-        result = -1 - (int32_t)below;
-    }
-    return result;
 }
 
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)

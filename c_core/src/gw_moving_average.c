@@ -27,12 +27,6 @@ static gw_wrench_t minus(gw_wrench_t a, gw_wrench_t b)
     return difference;
 }
 
-static gw_wrench_t divided(gw_wrench_t a, gw_real_t divisor)
-{
-    const gw_wrench_t quotient = {a.force_x_n / divisor, a.force_y_n / divisor, a.torque_nm / divisor};
-    return quotient;
-}
-
 gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -84,25 +78,6 @@ gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t samp
         }
     }
     return status;
-}
-
-gw_wrench_t gw_moving_average_mean(const gw_moving_average_t *average)
-{
-    gw_wrench_t mean = no_wrench;
-    if (average->count > 0U) {
-        mean = divided(average->window_sum, (gw_real_t)average->count);
-    }
-    return mean;
-}
-
-gw_wrench_t gw_moving_average_window_mean(const gw_moving_average_t *average)
-{
-    return divided(average->window_sum, (gw_real_t)average->window);
-}
-
-uint32_t gw_moving_average_count(const gw_moving_average_t *average)
-{
-    return average->count;
 }
 
 bool gw_moving_average_invariant_holds(const gw_moving_average_t *average)

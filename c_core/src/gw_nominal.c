@@ -56,24 +56,3 @@ bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
     return holds;
 }
 
-gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics, gw_twist_t twist,
-                               gw_acceleration_t acceleration)
-{
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t roller_rates = gw_kinematics_roller_rates(kinematics, twist);
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t friction_nm = gw_friction_torques(&nominal->friction, &roller_rates);
-    return gw_nominal_torques_with_friction(nominal, kinematics, twist, acceleration, &friction_nm);
-}
-
-gw_wheels_t gw_nominal_torques_with_friction(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics,
-                                             gw_twist_t twist, gw_acceleration_t acceleration,
-                                             const gw_wheels_t *friction_nm)
-{
-    gw_wrench_t wrench = gw_kinematics_wrench_of_rollers(kinematics, friction_nm);
-    const gw_real_t turning = nominal->rolling_mass_kg * twist.omega_radps;
-    wrench.force_x_n += (nominal->total_mass_kg * acceleration.ax_mps2) + (turning * twist.vy_mps);
-    wrench.force_y_n += (nominal->total_mass_kg * acceleration.ay_mps2) - (turning * twist.vx_mps);
-    wrench.torque_nm += nominal->total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
-    return gw_kinematics_torques_of_wrench(kinematics, wrench);
-}

@@ -4,10 +4,6 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
 
-/* No wheel turns or accelerates faster; whatever the counts do, the filter's state stays a number. */
-#define RATE_MAX ((gw_real_t)1.0e6)
-#define DERIVATIVE_MAX ((gw_real_t)1.0e10)
-
 gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
                                      uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad)
 {
@@ -45,43 +41,9 @@ void gw_rate_filter_restart(gw_rate_filter_t *filter)
     filter->started = false;
 }
 
-void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
-{
-    if ((!filter->started) && gw_within(rate_radps, RATE_MAX)) {
-        filter->rate_radps = gw_limited(rate_radps, RATE_MAX);
-    }
-}
-
-gw_real_t gw_rate_filter_turned(const gw_rate_filter_constants_t *constants, int32_t counts, gw_real_t torque_change_nm)
-{
-    return ((gw_real_t)counts * constants->rad_per_count) - (torque_change_nm * constants->compliance_rad_per_nm);
-}
-
-void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constants_t *constants, int32_t count,
-                         gw_real_t torque_nm)
-{
-    if (filter->started) {
-        const gw_real_t turned_rad = gw_rate_filter_turned(constants, gw_count_difference(count, filter->last_count),
-                                                           torque_nm - filter->last_torque_nm);
-        const gw_real_t input = turned_rad / constants->period_s;
-        /* Exact step of y'' = w^2 (u - y) - 2 w y' with u held. */
-        const gw_real_t error = filter->rate_radps - input;
-        const gw_real_t mixed = filter->derivative_radps2 + (constants->cutoff_radps * error);
-        const gw_real_t derivative =
-            constants->decay *
-            (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
-        filter->rate_radps =
-            gw_limited(input + (constants->decay * (error + (constants->period_s * mixed))), RATE_MAX);
-        filter->derivative_radps2 = gw_limited(derivative, DERIVATIVE_MAX);
-    }
-    filter->last_count = count;
-    filter->last_torque_nm = torque_nm;
-    filter->started = true;
-}
-
 bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
 {
     return (filter != NULL) && gw_within(filter->last_torque_nm, GW_TORQUE_MAX) &&
-           gw_within(filter->rate_radps, RATE_MAX) &&
-           gw_within(filter->derivative_radps2, DERIVATIVE_MAX);
+           gw_within(filter->rate_radps, GW_RATE_MAX) &&
+           gw_within(filter->derivative_radps2, GW_RATE_DERIVATIVE_MAX);
 }

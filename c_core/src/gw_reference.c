@@ -219,20 +219,3 @@ void gw_reference_freeze(gw_reference_t *reference)
     stand(reference);
 }
 
-gw_pose_t gw_reference_pose(const gw_reference_t *reference)
-{
-    const gw_pose_t pose = {reference->x_m.value, reference->y_m.value, reference->theta_rad.value};
-    return pose;
-}
-
-gw_real_t gw_reference_distance(const gw_reference_t *reference, const gw_plan_t *plan)
-{
-    const gw_vector_t error = {gw_sum_subtract_from(plan->pose.x_m, reference->x_m),
-                               gw_sum_subtract_from(plan->pose.y_m, reference->y_m)};
-    return gw_length(error);
-}
-
-gw_real_t gw_reference_angle(const gw_reference_t *reference, const gw_plan_t *plan)
-{
-    return gw_abs(gw_wrap_angle(gw_sum_subtract_from(plan->pose.theta_rad, reference->theta_rad)));
-}

@@ -5,16 +5,6 @@
 #define SQRT_3_HALVES ((gw_real_t)1.224744871391589049099)
 #define SQRT_3 ((gw_real_t)1.732050807568877293527)
 
-gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
-                               const gw_wheels_t *sensed_nm)
-{
-    gw_wheels_t missing;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        missing.wheel[i] = nominal_nm->wheel[i] - sensed_nm->wheel[i];
-    }
-    return gw_kinematics_wrench_of_torques(kinematics, &missing);
-}
-
 gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm)
 {
     gw_wrench_sigma_t sigma;

@@ -60,7 +60,7 @@ DRIVERS = {
         "gw_sensor_check_step:full,step:full,gw_controller_step:full",
         states=2000,
     ),
-    "estimator": Driver(Mutant("gw_estimator.c", "result.torque_nm = gw_torques_limited(&input->torque_nm);", "")),
+    "estimator": Driver(Mutant("gw_estimator.c", "torque_nm = gw_torques_limited(&input->torque_nm);", "torque_nm = input->torque_nm;")),
     "filters": Driver(
         Mutant("gw_rate_filter.c", "gw_clamp(derivative, -DERIVATIVE_MAX, DERIVATIVE_MAX)", "derivative")
     ),

@@ -76,7 +76,6 @@ typedef struct {
 typedef struct {
     gw_controller_config_t config;
     gw_sensor_check_t sensor_check;
-    gw_estimator_t estimator;
     gw_contact_t contact;
     gw_detector_t detector;
     gw_admittance_t admittance;
@@ -91,6 +90,7 @@ typedef struct {
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */
     bool initialised;
+    gw_estimator_t estimator;
 } gw_controller_t;
 
 /* The paper's robot and mode: planned acceleration, impulse detector, frozen impulse. Pointer not NULL. */

@@ -92,7 +92,19 @@ void gw_detector_clear(gw_detector_t *detector);
 /* Empties the integral and arms the detector. Pointer not NULL. */
 void gw_detector_reset(gw_detector_t *detector);
 /* F0, N. */
-gw_real_t gw_detector_leak(const gw_detector_t *detector, gw_regime_t regime);
+static inline gw_real_t gw_detector_leak(const gw_detector_t *detector, gw_regime_t regime)
+{
+    gw_real_t leak_n = detector->config.leak_creep_n;
+    if (regime == GW_REGIME_REST) {
+        leak_n = detector->config.leak_rest_n;
+    } else if (regime == GW_REGIME_MOTION) {
+        leak_n = detector->config.leak_motion_n;
+    } else {
+        /* creeping */
+    }
+    return leak_n;
+}
+
 /* One tick. A wrench that is not gw_wrench_is_valid: GW_STATUS_INPUT_INVALID, no trip, state unchanged. */
 gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output);
 

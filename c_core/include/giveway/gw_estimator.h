@@ -77,7 +77,6 @@ typedef struct {
     gw_rate_filter_constants_t rate_constants;
     gw_rate_filter_t rate[GW_WHEEL_COUNT];
     gw_presliding_t presliding;
-    gw_moving_average_t average;
     gw_tare_t run_tare;
     gw_tare_t stop_tare;
     gw_wheels_t run_zero_nm;
@@ -86,6 +85,7 @@ typedef struct {
     uint32_t slow_ticks;     /* ticks of standing, saturating */
     bool rest;
     bool initialised;
+    gw_moving_average_t average;
 } gw_estimator_t;
 
 typedef struct {

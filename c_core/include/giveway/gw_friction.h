@@ -3,6 +3,7 @@
 #define GW_FRICTION_H
 
 #include "giveway/gw_config.h"
+#include "giveway/gw_math.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -18,7 +19,14 @@ typedef struct {
 
 void gw_friction_config_check(const gw_friction_config_t *config, gw_config_error_t *error);
 /* B_r tanh(alpha rate) per roller, N m. config is checked, rates are finite; pointers not NULL. */
-gw_wheels_t gw_friction_torques(const gw_friction_config_t *config, const gw_wheels_t *roller_rates_radps);
+static inline gw_wheels_t gw_friction_torques(const gw_friction_config_t *config, const gw_wheels_t *roller_rates_radps)
+{
+    const gw_real_t slope = config->tanh_slope_s_per_rad;
+    const gw_wheels_t torques = {{config->coulomb_torque_nm * gw_tanh(slope * roller_rates_radps->wheel[0]),
+                                  config->coulomb_torque_nm * gw_tanh(slope * roller_rates_radps->wheel[1]),
+                                  config->coulomb_torque_nm * gw_tanh(slope * roller_rates_radps->wheel[2])}};
+    return torques;
+}
 
 #ifdef __cplusplus
 }

@@ -28,7 +28,11 @@ typedef struct {
 void gw_joint_init(gw_joint_t *joint);
 /* Starts from these wheel angles, rad. */
 void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad);
-bool gw_joint_is_placed(const gw_joint_t *joint);
+static inline bool gw_joint_is_placed(const gw_joint_t *joint)
+{
+    return joint->placed;
+}
+
 /* One tick: the base moves by displacement (m, m, rad) to yaw theta and then has this twist, all in the world frame and
  * finite. The displacement is mapped at the mean yaw, the twist at the final one. */
 void gw_joint_step(gw_joint_t *joint, const gw_kinematics_t *kinematics, gw_pose_t displacement, gw_real_t theta_rad,

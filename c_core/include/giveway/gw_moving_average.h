@@ -8,6 +8,7 @@
 #ifndef GW_MOVING_AVERAGE_H
 #define GW_MOVING_AVERAGE_H
 
+#include "giveway/gw_math.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -18,12 +19,12 @@ extern "C" {
 #define GW_MOVING_AVERAGE_CAPACITY 1024U
 
 typedef struct {
-    gw_wrench_t sample[GW_MOVING_AVERAGE_CAPACITY];
     gw_wrench_t window_sum;
     gw_wrench_t fresh_sum;
     uint32_t window;
     uint32_t index;
     uint32_t count;
+    gw_wrench_t sample[GW_MOVING_AVERAGE_CAPACITY]; /* last: what lies behind it takes longer to address */
 } gw_moving_average_t;
 
 /* window: samples, [1, 1024]. */
@@ -31,11 +32,33 @@ gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window
 void gw_moving_average_reset(gw_moving_average_t *average);
 /* Adds one sample; not gw_wrench_is_valid: refused with GW_STATUS_INPUT_INVALID. */
 gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t sample);
+static inline gw_wrench_t gw_wrench_divided(gw_wrench_t a, gw_real_t divisor)
+{
+    const gw_wrench_t quotient = {a.force_x_n / divisor, a.force_y_n / divisor, a.torque_nm / divisor};
+    return quotient;
+}
+
 /* Mean of the samples held (fewer than the window after a reset); zero if there are none. Pointers not NULL. */
-gw_wrench_t gw_moving_average_mean(const gw_moving_average_t *average);
+static inline gw_wrench_t gw_moving_average_mean(const gw_moving_average_t *average)
+{
+    gw_wrench_t mean = {GW_ZERO, GW_ZERO, GW_ZERO};
+    if (average->count > 0U) {
+        mean = gw_wrench_divided(average->window_sum, (gw_real_t)average->count);
+    }
+    return mean;
+}
+
 /* Mean over the whole window, with zeros for samples that have not come yet. */
-gw_wrench_t gw_moving_average_window_mean(const gw_moving_average_t *average);
-uint32_t gw_moving_average_count(const gw_moving_average_t *average);
+static inline gw_wrench_t gw_moving_average_window_mean(const gw_moving_average_t *average)
+{
+    return gw_wrench_divided(average->window_sum, (gw_real_t)average->window);
+}
+
+static inline uint32_t gw_moving_average_count(const gw_moving_average_t *average)
+{
+    return average->count;
+}
+
 bool gw_moving_average_invariant_holds(const gw_moving_average_t *average);
 
 #ifdef __cplusplus

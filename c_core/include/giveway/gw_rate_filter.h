@@ -9,11 +9,16 @@
 #ifndef GW_RATE_FILTER_H
 #define GW_RATE_FILTER_H
 
+#include "giveway/gw_math.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* No wheel turns or accelerates faster; whatever the counts do, the filter's state stays a number. */
+#define GW_RATE_MAX ((gw_real_t)1.0e6)
+#define GW_RATE_DERIVATIVE_MAX ((gw_real_t)1.0e10)
 
 /* Constants shared by the three wheels. */
 typedef struct {
@@ -39,13 +44,43 @@ gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_r
 /* Forgets the past: the next sample starts the filter at rate zero. Pointer not NULL. */
 void gw_rate_filter_restart(gw_rate_filter_t *filter);
 /* The next sample starts a filter that has not started at this rate, unless that is more than 1e6 rad/s. */
-void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps);
+static inline void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
+{
+    if ((!filter->started) && gw_within(rate_radps, GW_RATE_MAX)) {
+        filter->rate_radps = gw_limited(rate_radps, GW_RATE_MAX);
+    }
+}
+
 /* How far a wheel turned, rad: its motor side by so many counts, less the twist torque/k of the drivetrain. */
-gw_real_t gw_rate_filter_turned(const gw_rate_filter_constants_t *constants, int32_t counts,
-                                gw_real_t torque_change_nm);
+static inline gw_real_t gw_rate_filter_turned(const gw_rate_filter_constants_t *constants, int32_t counts,
+                                              gw_real_t torque_change_nm)
+{
+    return ((gw_real_t)counts * constants->rad_per_count) - (torque_change_nm * constants->compliance_rad_per_nm);
+}
+
 /* One tick. |torque| <= GW_TORQUE_MAX. */
-void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constants_t *constants, int32_t count,
-                         gw_real_t torque_nm);
+static inline void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_filter_constants_t *constants,
+                                       int32_t count, gw_real_t torque_nm)
+{
+    if (filter->started) {
+        const gw_real_t turned_rad = gw_rate_filter_turned(constants, gw_count_difference(count, filter->last_count),
+                                                           torque_nm - filter->last_torque_nm);
+        const gw_real_t input = turned_rad / constants->period_s;
+        /* Exact step of y'' = w^2 (u - y) - 2 w y' with u held. */
+        const gw_real_t error = filter->rate_radps - input;
+        const gw_real_t mixed = filter->derivative_radps2 + (constants->cutoff_radps * error);
+        const gw_real_t derivative =
+            constants->decay *
+            (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
+        filter->rate_radps =
+            gw_limited(input + (constants->decay * (error + (constants->period_s * mixed))), GW_RATE_MAX);
+        filter->derivative_radps2 = gw_limited(derivative, GW_RATE_DERIVATIVE_MAX);
+    }
+    filter->last_count = count;
+    filter->last_torque_nm = torque_nm;
+    filter->started = true;
+}
+
 bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter);
 
 #ifdef __cplusplus

@@ -100,10 +100,25 @@ void gw_reference_escape(gw_reference_t *reference, gw_vector_t displacement_m, 
 void gw_reference_brake(gw_reference_t *reference);
 /* Stops at once. */
 void gw_reference_freeze(gw_reference_t *reference);
-gw_pose_t gw_reference_pose(const gw_reference_t *reference);
+static inline gw_pose_t gw_reference_pose(const gw_reference_t *reference)
+{
+    const gw_pose_t pose = {reference->x_m.value, reference->y_m.value, reference->theta_rad.value};
+    return pose;
+}
+
 /* Distance and angle (unsigned) from the plan's pose. */
-gw_real_t gw_reference_distance(const gw_reference_t *reference, const gw_plan_t *plan);
-gw_real_t gw_reference_angle(const gw_reference_t *reference, const gw_plan_t *plan);
+static inline gw_real_t gw_reference_distance(const gw_reference_t *reference, const gw_plan_t *plan)
+{
+    const gw_vector_t error = {gw_sum_subtract_from(plan->pose.x_m, reference->x_m),
+                               gw_sum_subtract_from(plan->pose.y_m, reference->y_m)};
+    return gw_length(error);
+}
+
+static inline gw_real_t gw_reference_angle(const gw_reference_t *reference, const gw_plan_t *plan)
+{
+    return gw_abs(gw_wrap_angle(gw_sum_subtract_from(plan->pose.theta_rad, reference->theta_rad)));
+}
+
 
 #ifdef __cplusplus
 }

@@ -54,8 +54,16 @@ static inline gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm)
 }
 
 /* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
-gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
-                               const gw_wheels_t *sensed_nm);
+static inline gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
+                               const gw_wheels_t *sensed_nm)
+{
+    gw_wheels_t missing;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        missing.wheel[i] = nominal_nm->wheel[i] - sensed_nm->wheel[i];
+    }
+    return gw_kinematics_wrench_of_torques(kinematics, &missing);
+}
+
 /* sigma_F = sigma_tau sqrt(1.5)/r_w per axis, sigma_M = sqrt(3) R sigma_tau/r_w, for independent equal noise. */
 gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm);
 
