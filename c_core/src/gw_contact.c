@@ -168,7 +168,7 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
             const gw_vector_t force = {valid.force_x_n, valid.force_y_n};
             const gw_real_t force_n = gw_length(force);
             if (force_n >= contact->config.minimum_force_n) {
-                const gw_vector_t direction = {gw_fraction(force.x, force_n), gw_fraction(force.y, force_n)};
+                const gw_vector_t direction = gw_unit(force, force_n);
                 const gw_real_t arm_m = gw_limited(valid.torque_nm / force_n, LEVER_ARM_MAX);
                 /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
                 const gw_vector_t spread = {gw_limited(sigma.torque_nm, GW_WRENCH_MAX) / force_n,

@@ -306,9 +306,7 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 static gw_vector_t hit_direction(const tick_t *now)
 {
     const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
-    const gw_real_t length = gw_length(force);
-    const gw_vector_t unit = {gw_fraction(force.x, length), gw_fraction(force.y, length)};
-    return gw_rotate(now->yaw, unit);
+    return gw_rotate(now->yaw, gw_unit(force, gw_length(force)));
 }
 
 /* What changes once, when a mode begins. */
@@ -351,8 +349,9 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
     const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
-        felt.x = base.x * gw_fraction(left, length);
-        felt.y = base.y * gw_fraction(left, length);
+        const gw_real_t share = gw_fraction(left, length);
+        felt.x = base.x * share;
+        felt.y = base.y * share;
     }
     return gw_rotate(now->yaw, felt);
 }

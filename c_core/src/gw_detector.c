@@ -114,8 +114,9 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
         }
         /* What leaked away is part of the mean force. */
         const gw_real_t mean_n = (left / ((gw_real_t)detector->samples * detector->period_s)) + leak_n;
-        output->mean_wrench.force_x_n = gw_fraction(sum.x, length) * mean_n;
-        output->mean_wrench.force_y_n = gw_fraction(sum.y, length) * mean_n;
+        const gw_vector_t direction = gw_unit(sum, length);
+        output->mean_wrench.force_x_n = direction.x * mean_n;
+        output->mean_wrench.force_y_n = direction.y * mean_n;
         output->mean_wrench.torque_nm = (moment / gw_max(length, IMPULSE_MIN)) * mean_n;
         output->mean_wrench = gw_wrench_limited(output->mean_wrench);
         output->samples = detector->samples;

@@ -388,6 +388,12 @@ gw_real_t gw_wrap_angle(gw_real_t angle_rad)
     return wrapped;
 }
 
+gw_vector_t gw_unit(gw_vector_t vector, gw_real_t length)
+{
+    const gw_vector_t unit = {gw_fraction(vector.x, length), gw_fraction(vector.y, length)};
+    return unit;
+}
+
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
 {
     gw_vector_t result = vector;

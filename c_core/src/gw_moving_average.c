@@ -20,10 +20,10 @@ static gw_wrench_t plus(gw_wrench_t a, gw_wrench_t b)
     return sum;
 }
 
+/* Not limited: a sample is added at once. */
 static gw_wrench_t minus(gw_wrench_t a, gw_wrench_t b)
 {
-    const gw_wrench_t difference = {limited_sum(a.force_x_n - b.force_x_n), limited_sum(a.force_y_n - b.force_y_n),
-                                    limited_sum(a.torque_nm - b.torque_nm)};
+    const gw_wrench_t difference = {a.force_x_n - b.force_x_n, a.force_y_n - b.force_y_n, a.torque_nm - b.torque_nm};
     return difference;
 }
 

@@ -12,7 +12,7 @@ public:
         : config(chosen), offset_(offset) {
         gw_config_error_t error{};
         EXPECT_EQ(gw_controller_init(controller.get(), &config, &error), GW_STATUS_OK)
-            << gw_config_limit(error.field)->name;
+            << gw_config_name(error.field);
         input.sensor.present = true;
         gw_controller_safe_output(&output);
     }

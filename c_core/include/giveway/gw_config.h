@@ -1,4 +1,4 @@
-/* One table of every configuration field: its name, and the inclusive range that init checks.
+/* Every configuration field: its name, and the inclusive range that init checks.
  *
  * The names are those of the FMU's parameters. gw_config_limit gives the row of a field; tests walk the same table.
  */
@@ -92,7 +92,6 @@ typedef enum {
 
 /* One row of the table. minimum and maximum are inclusive, in the unit that the field's comment gives. */
 typedef struct {
-    const char *name;
     gw_real_t minimum;
     gw_real_t maximum;
 } gw_config_limit_t;
@@ -111,6 +110,9 @@ typedef struct {
 
 /* The row of a field; the row "none" for GW_FIELD_NONE and anything that is no field. Never NULL. */
 const gw_config_limit_t *gw_config_limit(gw_config_field_t field);
+/* Its name, "none" likewise. The names take 2.3 kB of flash, which a linker that drops unused sections gives back to
+ * who does not call this. */
+const char *gw_config_name(gw_config_field_t field);
 
 /* error->field = GW_FIELD_NONE: start of a check. error is not NULL here and below. */
 void gw_config_check_begin(gw_config_error_t *error);

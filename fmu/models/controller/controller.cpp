@@ -72,7 +72,7 @@ public:
 
 private:
     static void explain(const gw_config_error_t &error, Message &message) {
-        const char *name = gw_config_limit(error.field)->name;
+        const char *name = gw_config_name(error.field);
         const auto value = static_cast<double>(error.value);
         switch (error.field) {
         case GW_FIELD_OUTLINE_CONVEX:

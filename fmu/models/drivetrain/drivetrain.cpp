@@ -83,7 +83,7 @@ public:
         const auto refused = servo_.start({v_.servo_kp, v_.servo_kd, v_.drivetrain_torque_limit, v_.servo_derivative_cutoff,
                                            v_.servo_encoder_counts, v_.servo_delay});
         if (refused.field != GW_FIELD_NONE) {
-            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_limit(refused.field)->name,
+            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_name(refused.field),
                           static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
             return Status::error;
         }

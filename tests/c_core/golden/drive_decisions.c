@@ -14,7 +14,7 @@ digest_t drive_config(void)
     for (uint32_t row = 0U; row <= (uint32_t)GW_FIELD_COUNT; row++) {
         const gw_config_field_t field = (gw_config_field_t)row;
         const gw_config_limit_t *const limit = gw_config_limit(field);
-        digest_text(&digest, limit->name);
+        digest_text(&digest, gw_config_name(field));
         digest_real(&digest, limit->minimum);
         digest_real(&digest, limit->maximum);
         for (uint32_t i = 0U; i < 16U; i++) {

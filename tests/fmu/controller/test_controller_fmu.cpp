@@ -52,7 +52,7 @@ TEST(ControllerFmu, BoundsAreThoseOfTheLibrary) {
     for (int row = 1; row < GW_FIELD_COUNT; ++row) {
         const auto field = static_cast<gw_config_field_t>(row);
         const gw_config_limit_t *limit = gw_config_limit(field);
-        const std::string name = limit->name;
+        const std::string name = gw_config_name(field);
         if (field == GW_FIELD_OUTLINE_CONVEX || name.starts_with("servo.")) {
             continue; // a rule on the whole outline; the servo is in the testbed
         }
