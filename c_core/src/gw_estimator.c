@@ -265,6 +265,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         const gw_wheels_t roller_rates = gw_kinematics_roller_rates(&estimator->kinematics, twist);
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     gw_wheels_t nominal = gw_nominal_torques_with_friction(&estimator->nominal, &estimator->kinematics, twist,
                                                            chosen_acceleration(estimator, motion), &friction_nm);
     nominal.wheel[0] += zero->wheel[0];

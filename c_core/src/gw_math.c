@@ -145,7 +145,8 @@ static gw_real_t scale_by_power_of_two(gw_real_t y, int32_t exponent)
     uint32_t left = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
     while (left > 0U) {
         const uint32_t now = (left < 31U) ? left : 31U;
-        const gw_real_t factor = (gw_real_t)((uint32_t)1U << now);
+        const uint32_t power = (uint32_t)1U << now;
+        const gw_real_t factor = (gw_real_t)power;
         result = (exponent < 0) ? (result / factor) : (result * factor);
         left -= now;
     }
@@ -384,6 +385,8 @@ gw_real_t gw_wrap_angle(gw_real_t angle_rad)
         if (wrapped < -GW_PI) {
             wrapped += GW_TWO * GW_PI;
         }
+    } else {
+        /* not an angle: 0 */
     }
     return wrapped;
 }

@@ -126,9 +126,13 @@ static void what_is_not_finite_is_refused(void)
     const gw_wrench_t bad = {unit_nan(), R(0.0), R(0.0)};
     const gw_wrench_sigma_t force = {R(-1.0), R(0.0)};
     const gw_wrench_sigma_t torque = {R(0.0), unit_nan()};
+    const gw_wrench_sigma_t far_force = {unit_nan(), R(0.0)};
+    const gw_wrench_sigma_t negative_torque = {R(0.0), R(-1.0)};
     CHECK(!located(bad, NO_SIGMA, GW_STATUS_INPUT_INVALID).valid);
     CHECK(!located(push, force, GW_STATUS_INPUT_INVALID).valid);
     CHECK(!located(push, torque, GW_STATUS_INPUT_INVALID).valid);
+    CHECK(!located(push, far_force, GW_STATUS_INPUT_INVALID).valid);
+    CHECK(!located(push, negative_torque, GW_STATUS_INPUT_INVALID).valid);
 }
 
 static void the_invariant_sees_every_member(void)
