@@ -16,6 +16,7 @@ __all__ = [
     "GCC",
     "HOST",
     "HOST_CLANG",
+    "PORTABLE",
     "TARGETS",
     "WARNINGS",
     "WIN64",
@@ -33,6 +34,8 @@ WINE = Tool("/usr/lib/wine/wine64", package="wine64")
 QEMU_USER = {name: Tool(f"qemu-{name}", package="qemu-user") for name in ("i386", "aarch64", "riscv64", "arm", "s390x")}
 
 STANDARD = ("-std=c99", "-ffp-contract=off")
+# The square root that any processor computes, not the one instruction of some.
+PORTABLE = "-DGW_HARDWARE_SQRT=0"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
 
 

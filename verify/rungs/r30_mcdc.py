@@ -10,7 +10,7 @@ from typing import Any
 
 from verify.context import Context, Tool
 from verify.rung import Figure, Rung, RungFailed, planted
-from verify.targets import CLANG, STANDARD, WARNINGS, core_sources
+from verify.targets import CLANG, PORTABLE, STANDARD, WARNINGS, core_sources
 
 PROFDATA = Tool("llvm-profdata-19", package="llvm-19")
 COV = Tool("llvm-cov-19", package="llvm-19")
@@ -60,6 +60,7 @@ def _covered(context: Context, core: Path, tests: list[Path], double: int) -> di
         context.which(CLANG),
         *STANDARD,
         *WARNINGS,  # clang warns of decisions that it cannot instrument
+        PORTABLE,
         "-O0",
         "-fprofile-instr-generate",
         "-fcoverage-mapping",

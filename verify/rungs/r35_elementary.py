@@ -10,7 +10,7 @@ from pathlib import Path
 
 from verify.context import Context
 from verify.rung import Figure, Rung, RungFailed, planted
-from verify.targets import GCC, HOST
+from verify.targets import GCC, HOST, PORTABLE
 
 INFINITY_BITS = 0x7F800000
 # Parts that take about equally long, two at a time: tiny numbers are slow (their squares are subnormal), and above
@@ -52,6 +52,7 @@ def _build(context: Context, core: Path, double: int, name: str) -> Path:
         [core / "src/gw_math.c", tests / "golden/generator.c", tests / "elementary/errors.c"],
         context.work / name,
         "-O2",
+        PORTABLE,
         f"-DGW_REAL_DOUBLE={double}",
         f"-I{tests / 'golden'}",
         "-Wl,--no-as-needed,-lm",
