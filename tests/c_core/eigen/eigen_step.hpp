@@ -12,6 +12,7 @@
 
 extern "C" {
 #include "giveway/gw_controller.h"
+#include "giveway/gw_math.h"
 }
 
 namespace eigen_step {
