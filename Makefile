@@ -33,6 +33,7 @@ fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness;
 
 bench: build ## how fast a co-simulated second runs
 	$(BIN)/giveway bench
+	$(BIN)/python -m verify.step_cost
 
 fit: build ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
 	$(BIN)/giveway fit --robot robots/trikey.toml --out robots/trikey.toml

@@ -18,13 +18,17 @@ FRAMA_C = Tool("frama-c", ("-version",), package="frama-c-base")
 CONTRACTS = ("gw_sqrt", "gw_exp", "gw_expm1", "gw_tanh", "gw_sincos", "gw_atan2", "gw_wrap_angle", "gw_fraction")
 ONLY_CALLED_BY_THOSE = {
     "atan_of_fraction",
+    "atan_series",
+    "cos_series",
     "exact_residual",
+    "exp_series",
     "less_quarter_turns",
     "nearest_integer",
-    "polynomial",
+    "on",
     "reduce_exp",
     "root_of",
     "scale_by_power_of_two",
+    "sin_series",
 }
 OWN = re.compile(r"(draw|hold|disturb|demand|any|part|lowest|highest|step_sums|main)(_\w+)?(_\d+)?")
 
@@ -60,9 +64,11 @@ DRIVERS = {
         "gw_sensor_check_step:full,step:full,gw_controller_step:full",
         states=2000,
     ),
-    "estimator": Driver(Mutant("gw_estimator.c", "torque_nm = gw_torques_limited(&input->torque_nm);", "torque_nm = input->torque_nm;")),
+    "estimator": Driver(
+        Mutant("gw_estimator.c", "torque_nm = gw_torques_limited(&input->torque_nm);", "torque_nm = input->torque_nm;")
+    ),
     "filters": Driver(
-        Mutant("gw_rate_filter.c", "gw_clamp(derivative, -DERIVATIVE_MAX, DERIVATIVE_MAX)", "derivative")
+        Mutant("../include/giveway/gw_rate_filter.h", "gw_limited(derivative, GW_RATE_DERIVATIVE_MAX)", "derivative")
     ),
     "kinematics": Driver(
         Mutant("gw_kinematics.c", "GW_ONE / config->wheel_radius_m", "GW_ONE / (config->wheel_radius_m - GW_HALF)")
@@ -70,8 +76,8 @@ DRIVERS = {
     "contact": Driver(
         Mutant(
             "gw_contact.c",
-            "gw_fraction(-previous_side_m, side_m - previous_side_m)",
-            "-previous_side_m / (side_m - previous_side_m)",
+            "gw_fraction(-start_side_m, end_side_m - start_side_m)",
+            "-start_side_m / (end_side_m - start_side_m)",
         ),
         "gw_contact_init:0",
     ),

@@ -29,8 +29,9 @@ HARNESSES = {
     ),
     "plan": Harness(
         ("gw_reference", "gw_math", "gw_sum", "gw_config"),
-        "limited(plan->acceleration.alpha_radps2, ACCELERATION_MAX)",
+        "gw_limited(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX)",
         "plan->acceleration.alpha_radps2",
+        "include/giveway/gw_reference.h",
     ),
     "sensor_check": Harness(
         ("gw_sensor_check", "gw_math", "gw_config"),
@@ -42,8 +43,9 @@ HARNESSES = {
     ),
     "rate_filter": Harness(
         ("gw_rate_filter", "gw_math", "gw_config"),
-        "filter->rate_radps = gw_clamp(rate_radps, -RATE_MAX, RATE_MAX);",
+        "filter->rate_radps = gw_limited(rate_radps, GW_RATE_MAX);",
         "filter->rate_radps = rate_radps * GW_TWO;",
+        "include/giveway/gw_rate_filter.h",
     ),
     "tare": Harness(
         ("gw_tare", "gw_math", "gw_sum", "gw_wrench", "gw_kinematics", "gw_config"),
