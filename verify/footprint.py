@@ -17,7 +17,19 @@ from verify.golden import EXAMPLE
 from verify.rung import RungFailed
 from verify.targets import TARGETS, Target, core_sources
 
-__all__ = ["MACHINES", "OBJDUMP", "SIZE", "TARGET", "Footprint", "check_table", "measure", "table", "worst_stack"]
+__all__ = [
+    "MACHINES",
+    "OBJDUMP",
+    "SIZE",
+    "TARGET",
+    "Footprint",
+    "check_parts",
+    "check_table",
+    "measure",
+    "measure_parts",
+    "table",
+    "worst_stack",
+]
 
 SIZE = Tool("arm-none-eabi-size", package="binutils-arm-none-eabi")
 OBJDUMP = Tool("arm-none-eabi-objdump", package="binutils-arm-none-eabi")
@@ -65,20 +77,50 @@ ROWS = {
 }
 
 
+# What a program may call instead of all, with PART of parts.c; None: linked.c.
+PARTS = {
+    "controller and servo": None,
+    "the same, and the names of the configuration's fields": 1,
+    "estimator with its tare, detector and admittance": 2,
+    "servo": 3,
+}
+SMALL = ("-Os", *FLAGS[1:])
+
+
 def measure(context: Context, target: Target) -> Footprint:
     """Everything, at -O2 in float."""
     linked = _link(context, target)
     return Footprint(flash=_flash(context, linked), stack=_stack(context, linked), **_run(context, target))
 
 
-def _link(context: Context, target: Target) -> Path:
-    """A program that is nothing but c_core and its four entries; gcc's .su files beside it."""
+def measure_parts(context: Context, target: Target) -> dict[str, tuple[int, int]]:
+    """Flash at -O2 and at -Os of programs that call these."""
+    return {
+        name: (_flash(context, _link(context, target, part)), _flash(context, _link(context, target, part, SMALL)))
+        for name, part in PARTS.items()
+    }
+
+
+def parts_table(parts: dict[str, tuple[int, int]]) -> str:
+    """The second table of c_core/README.md."""
+    lines = ["| Flash on Cortex-M4F, bytes: a program that calls | -O2 | -Os |", "|---|---:|---:|"]
+    lines += [f"| {name} | {fast:,} | {small:,} |" for name, (fast, small) in parts.items()]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def check_parts(root: Path, parts: dict[str, tuple[int, int]]) -> None:
+    """`RungFailed` unless c_core/README.md shows this table."""
+    if parts_table(parts) not in (root / "c_core" / "README.md").read_text(encoding="utf-8"):
+        raise RungFailed(f"c_core/README.md does not show what was measured:\n{parts_table(parts)}")
+
+
+def _link(context: Context, target: Target, part: int | None = None, flags: tuple[str, ...] = FLAGS) -> Path:
+    """A program that is nothing but c_core and what it calls of it; gcc's .su files beside it."""
     bare = replace(target, flags=tuple(flag for flag in target.flags if "specs" not in flag), support=())
-    source = context.root / SOURCES / "linked.c"
-    link = ("-nostartfiles", "-Wl,--gc-sections,-e,firmware", "-fstack-usage")
-    return bare.build(
-        context, [*core_sources(context.core), source], context.work / f"{target.name}.elf", *FLAGS, *link
-    )
+    source = context.root / SOURCES / ("linked.c" if part is None else "parts.c")
+    link = ("-nostartfiles", "-Wl,--gc-sections,-e,firmware", "-fstack-usage", f"-DPART={part or 0}")
+    program = context.work / f"{target.name}{flags[0]}_{part or 0}.elf"
+    return bare.build(context, [*core_sources(context.core), source], program, *flags, *link)
 
 
 def _flash(context: Context, linked: Path) -> int:
@@ -206,7 +248,8 @@ def _print() -> None:
     root = Path(__file__).parents[1]
     with tempfile.TemporaryDirectory() as folder:
         context = Context(root, Path(folder), os.environ["PATH"])
-        print(table({target.name: measure(context, target) for target in MACHINES}), end="")
+        print(table({target.name: measure(context, target) for target in MACHINES}))
+        print(parts_table(measure_parts(context, TARGETS["cortex-m4f"])), end="")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from dataclasses import asdict, replace
 from verify import footprint
 from verify.context import Context
 from verify.rung import Figure, Rung, planted
+from verify.targets import TARGETS
 
 RECURSION = "00000000 <gw_a>:\n   0:\tpush\t{r4, lr}\n   2:\tbl\t8 <gw_b>\n\n00000008 <gw_b>:\n   8:\tbl\t0 <gw_a>\n"
 POINTER = "00000000 <gw_a>:\n   0:\tblx\tr3\n"
@@ -15,6 +16,10 @@ POINTER = "00000000 <gw_a>:\n   0:\tblx\tr3\n"
 def check(context: Context) -> Figure:
     measured = {target.name: footprint.measure(context, target) for target in footprint.MACHINES}
     footprint.check_table(context.root, measured)
+    parts = footprint.measure_parts(context, TARGETS["cortex-m4f"])
+    footprint.check_parts(context.root, parts)
+    with planted("a part that grew", shows="does not show what was measured"):
+        footprint.check_parts(context.root, {name: (fast + 4, small) for name, (fast, small) in parts.items()})
     with planted("recursion", shows="recursion: gw_a -> gw_b -> gw_a"):
         footprint.worst_stack(RECURSION, {}, "gw_a")
     with planted("a call through a pointer", shows="through a pointer"):
