@@ -211,11 +211,6 @@ typedef struct {
     bool plan_valid;
 } tick_t;
 
-static gw_rotation_t reference_rotation(const gw_controller_t *controller)
-{
-    return gw_sincos(gw_reference_pose(&controller->reference).theta_rad);
-}
-
 static gw_real_t reference_speed(const gw_controller_t *controller)
 {
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
@@ -359,7 +354,11 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
 static void give_way(gw_controller_t *controller, const tick_t *now)
 {
     gw_admittance_output_t motion;
-    const gw_status_t status = gw_admittance_step(&controller->admittance, live_force(controller, now), &motion);
+    gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse feels none */
+    if (controller->config.admittance.kind == GW_ADMITTANCE_LIVE_FORCE) {
+        force_n = live_force(controller, now);
+    }
+    const gw_status_t status = gw_admittance_step(&controller->admittance, force_n, &motion);
     if (status == GW_STATUS_OK) {
         gw_reference_escape(&controller->reference, motion.displacement_m, motion.velocity_mps);
     } else {
@@ -401,8 +400,8 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
     }
     if (gw_joint_is_placed(&controller->joint) && (controller->supervisor.mode != GW_MODE_FAULT)) {
         gw_joint_step(&controller->joint, kinematics, controller->reference.displacement,
-                      gw_reference_pose(&controller->reference).theta_rad, controller->reference.twist,
-                      &output->command);
+                      gw_reference_pose(&controller->reference).theta_rad, controller->reference.yaw,
+                      controller->reference.twist, &output->command);
     } else {
         gw_joint_hold(&controller->joint, &output->command);
     }
@@ -455,7 +454,7 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     gw_status_t tare_status;
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
-    now.yaw = reference_rotation(controller);
+    now.yaw = controller->reference.yaw;
     now.reference_speed_mps = reference_speed(controller);
     now.plan_valid = gw_plan_is_valid(&input->plan);
     if (now.plan_valid) {
@@ -491,9 +490,11 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     }
     const gw_vector_t force = {now.estimate.mean.force_x_n, now.estimate.mean.force_y_n};
     const bool slow = now.reference_speed_mps < controller->config.supervisor.settled_speed_mps;
-    events.quiet = slow && (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
+    /* Each is asked for in one mode only. */
+    events.quiet = slow && (before == GW_MODE_REACTING) &&
+                   (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
     events.on_path =
-        now.plan_valid && slow &&
+        now.plan_valid && slow && (before == GW_MODE_REJOINING) &&
         (gw_reference_distance(&controller->reference, &now.plan) <
          controller->config.supervisor.rejoin_distance_m) &&
         (gw_reference_angle(&controller->reference, &now.plan) < controller->config.supervisor.rejoin_angle_rad);

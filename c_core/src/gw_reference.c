@@ -66,7 +66,8 @@ bool gw_reference_invariant_holds(const gw_reference_t *reference)
                 gw_within(reference->theta_rad.value, GW_PI) && gw_within(reference->twist.vx_mps, SPEED_MAX) &&
                 gw_within(reference->twist.vy_mps, SPEED_MAX) && gw_within(reference->twist.omega_radps, YAW_RATE_MAX) &&
                 gw_is_finite(reference->acceleration.ax_mps2) && gw_is_finite(reference->acceleration.ay_mps2) &&
-                gw_is_finite(reference->acceleration.alpha_radps2);
+                gw_is_finite(reference->acceleration.alpha_radps2) && gw_within(reference->yaw.cosine, GW_ONE) &&
+                gw_within(reference->yaw.sine, GW_ONE);
     }
     return holds;
 }
@@ -90,6 +91,7 @@ void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool m
     reference->x_m = gw_sum_of(plan->pose.x_m);
     reference->y_m = gw_sum_of(plan->pose.y_m);
     reference->theta_rad = gw_sum_of(gw_wrap_angle(plan->pose.theta_rad));
+    reference->yaw = gw_sincos(reference->theta_rad.value);
     if (moving) {
         const gw_vector_t planned = {plan->twist.vx_mps, plan->twist.vy_mps};
         const gw_vector_t velocity = gw_limit_length(planned, reference->config.speed_limit_mps);
@@ -145,6 +147,7 @@ static void add_displacement(gw_reference_t *reference)
     reference->x_m = gw_sum_limit(gw_sum_add(reference->x_m, reference->displacement.x_m), REFERENCE_MAX);
     reference->y_m = gw_sum_limit(gw_sum_add(reference->y_m, reference->displacement.y_m), REFERENCE_MAX);
     reference->theta_rad = gw_sum_add_angle(reference->theta_rad, reference->displacement.theta_rad);
+    reference->yaw = gw_sincos(reference->theta_rad.value);
 }
 
 /* Speed towards the path when rejoining: not below the finish speed, but such that half the acceleration stops there. */

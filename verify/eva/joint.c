@@ -21,7 +21,8 @@ static void part_step(void)
         gw_joint_place(&joint, &angles);
     }
     if (any_flag()) {
-        gw_joint_step(&joint, &kinematics, reference.displacement, reference.theta_rad.value, reference.twist, &command);
+        gw_joint_step(&joint, &kinematics, reference.displacement, reference.theta_rad.value, reference.yaw,
+                      reference.twist, &command);
     } else {
         gw_joint_hold(&joint, &command);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {

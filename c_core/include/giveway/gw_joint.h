@@ -33,10 +33,10 @@ static inline bool gw_joint_is_placed(const gw_joint_t *joint)
     return joint->placed;
 }
 
-/* One tick: the base moves by displacement (m, m, rad) to yaw theta and then has this twist, all in the world frame and
- * finite. The displacement is mapped at the mean yaw, the twist at the final one. */
+/* One tick: the base moves by displacement (m, m, rad) to yaw theta, whose gw_sincos is yaw, and then has this twist,
+ * all in the world frame and finite. The displacement is mapped at the mean yaw, the twist at the final one. */
 void gw_joint_step(gw_joint_t *joint, const gw_kinematics_t *kinematics, gw_pose_t displacement, gw_real_t theta_rad,
-                   gw_twist_t twist, gw_joint_command_t *command);
+                   gw_rotation_t yaw, gw_twist_t twist, gw_joint_command_t *command);
 /* The last angles at zero speed. */
 void gw_joint_hold(const gw_joint_t *joint, gw_joint_command_t *command);
 bool gw_joint_invariant_holds(const gw_joint_t *joint);

@@ -57,6 +57,7 @@ typedef struct {
     gw_acceleration_t acceleration;
     /* What the last tick moved. */
     gw_pose_t displacement;
+    gw_rotation_t yaw; /* of theta: what follows needs it twice */
     bool initialised;
 } gw_reference_t;
 

@@ -111,7 +111,7 @@ digest_t drive_joint(void)
                 gw_joint_hold(&joint, &command);
             } else {
                 const gw_real_t theta_rad = generator_between(&generator, -GW_PI, GW_PI);
-                gw_joint_step(&joint, &kinematics, displacement, theta_rad, twist, &command);
+                gw_joint_step(&joint, &kinematics, displacement, theta_rad, gw_sincos(theta_rad), twist, &command);
             }
             digest_reals(&digest, command.angle_rad, GW_WHEEL_COUNT);
             digest_reals(&digest, command.speed_radps, GW_WHEEL_COUNT);

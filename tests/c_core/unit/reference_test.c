@@ -197,7 +197,7 @@ static void freezing_stops_at_once(void)
 
 static void the_invariant_sees_every_member(void)
 {
-    gw_reference_t bad[13];
+    gw_reference_t bad[15];
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         bad[i] = made();
     }
@@ -214,6 +214,8 @@ static void the_invariant_sees_every_member(void)
     bad[10].acceleration.ay_mps2 = unit_infinity();
     bad[11].acceleration.alpha_radps2 = unit_nan();
     bad[12].config.follow_gain_per_s = R(-1.0);
+    bad[13].yaw.cosine = unit_above(GW_ONE);
+    bad[14].yaw.sine = unit_nan();
     CHECK(!gw_reference_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);
