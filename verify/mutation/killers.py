@@ -1,0 +1,120 @@
+"""Which mutants c_core's tests see: the unit tests in C, with every invariant asserted, then the golden bits."""
+
+from __future__ import annotations
+
+import enum
+import tempfile
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from verify import golden
+from verify.context import Context, Finished
+from verify.failure import RungFailed
+from verify.mutation.mutants import Mutant
+from verify.targets import GCC, STANDARD, core_sources
+
+__all__ = ["AT_A_TIME", "Fate", "Killers"]
+
+AT_A_TIME = 2
+OPTIMISED = "-O2"  # at which an equivalent mutant gives the same object
+CPU_S = 4  # some sixty times what a program takes
+MEMORY_GIB = 1.0
+UNIT = "tests/c_core/unit"
+
+
+class Fate(enum.Enum):
+    NOT_COMPILED = "does not compile"
+    SAME_OBJECT = "same object code"
+    UNIT = "killed by the unit tests"
+    BITS = "killed by the golden bits"
+    SURVIVED = "survived"
+
+    @property
+    def counts(self) -> bool:
+        return self not in (Fate.NOT_COMPILED, Fate.SAME_OBJECT)
+
+
+@dataclass(frozen=True)
+class _Program:
+    """A killer: its own objects, and what it prints when all is well (None: anything, it says so by its exit code)."""
+
+    fate: Fate
+    objects: tuple[Path, ...]
+    expected: str | None
+
+
+class Killers:
+    """``sources``: of the unit tests, if other than the committed ones. Everything is built below ``context.work``."""
+
+    def __init__(self, context: Context, unit_sources: Sequence[Path] | None = None) -> None:
+        self.context = context
+        self.sources = core_sources(context.core)
+        self.original = {source.name: self._compiled(source, "core") for source in self.sources}
+        unit = unit_sources or sorted((context.root / UNIT).glob("*.c"))
+        example = context.root / golden.EXAMPLE
+        bits = [*sorted((context.root / golden.SOURCES).glob("*.c")), example / "digest.c"]
+        bits.append(example / "recorded_collision.c")
+        self.programs = (
+            _Program(Fate.UNIT, self._objects(unit, "unit"), None),
+            _Program(Fate.BITS, self._objects(bits, "golden", f"-I{example}"), golden.read_table(context.root, 0)),
+        )
+        seen_without = self._seen_by(list(self.original.values()), context.work / "original")
+        if seen_without is not None:
+            raise RungFailed(f"c_core without any mutant is {seen_without.value}")
+
+    def fates(self, mutants: Sequence[Mutant]) -> list[Fate]:
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
+            return list(pool.map(self.fate, mutants))
+
+    def fate(self, mutant: Mutant) -> Fate:
+        """In a folder of its own, removed afterwards; the sources are only read."""
+        with tempfile.TemporaryDirectory(dir=self.context.work) as folder:
+            return self._fate(mutant, Path(folder))
+
+    def _fate(self, mutant: Mutant, folder: Path) -> Fate:
+        mutated = folder / mutant.path.parent.name / mutant.path.name
+        mutated.parent.mkdir()
+        mutated.write_text(mutant.applied(mutant.path.read_text(encoding="utf-8")), encoding="utf-8")
+        changed: list[tuple[Path, tuple[str, ...]]]
+        if mutant.path.suffix == ".c":
+            changed = [(mutated, ())]
+        else:
+            changed = [(source, (f"-I{folder}",)) for source in self.sources]
+        objects = dict(self.original)
+        for source, flags in changed:
+            target = folder / f"{source.stem}.o"
+            if self._compile(source, target, OPTIMISED, *flags).returncode != 0:
+                return Fate.NOT_COMPILED
+            objects[source.name] = target
+        if all(objects[name].read_bytes() == original.read_bytes() for name, original in self.original.items()):
+            return Fate.SAME_OBJECT
+        return self._seen_by(list(objects.values()), folder) or Fate.SURVIVED
+
+    def _seen_by(self, core: list[Path], folder: Path) -> Fate | None:
+        """The first program that ends otherwise than it should: wrong output, a crash, or out of time or memory."""
+        folder.mkdir(exist_ok=True)
+        for program in self.programs:
+            built = folder / program.fate.name.lower()
+            self.context.run(self.context.which(GCC), *core, *program.objects, "-o", built)
+            answer = self.context.run(built, memory_gib=MEMORY_GIB, cpu_s=CPU_S, expect=None)
+            if answer.returncode != 0 or (program.expected is not None and answer.stdout != program.expected):
+                return program.fate
+        return None
+
+    def _objects(self, sources: Sequence[Path], name: str, *flags: str) -> tuple[Path, ...]:
+        return tuple(self._compiled(source, name, *flags) for source in sources)
+
+    def _compiled(self, source: Path, name: str, *flags: str) -> Path:
+        target = self.context.work / name / f"{source.stem}.o"
+        target.parent.mkdir(exist_ok=True)
+        answer = self._compile(source, target, OPTIMISED, *flags)
+        if answer.returncode != 0:
+            raise RungFailed(answer.evidence)
+        return target
+
+    def _compile(self, source: Path, target: Path, *flags: str) -> Finished:
+        """Never by way of a compiler cache: it would be filled with what nobody asks for again."""
+        words = ("-w", f"-I{self.context.core / 'include'}", "-c", source, "-o", target)
+        return self.context.run(self.context.which(GCC), *STANDARD, *flags, *words, expect=None)
