@@ -70,21 +70,18 @@ class Context:
         cwd: Path | None = None,
         timeout_s: float = 600.0,
         memory_gib: float | None = 4.0,
-        cpu_s: int | None = None,
         environment: Mapping[str, str] | None = None,
         expect: int | None = 0,
     ) -> Finished:
         """Run a program; `RungFailed` unless it exits with ``expect`` (None: with anything) in time.
 
         ``memory_gib`` limits the address space, of each process; None is for programs that reserve terabytes of it
-        and use little (AddressSanitizer, wine). ``cpu_s`` ends it, which shows in its exit code, however busy the
-        machine is.
+        and use little (AddressSanitizer, wine).
         """
         words = tuple(str(word) for word in command)
         limited = words
         if memory_gib is not None:
-            limits = f"-v {int(memory_gib * 2**20)}" + (f" -t {cpu_s}" if cpu_s is not None else "")
-            limited = ("bash", "-c", f'ulimit {limits} && exec "$@"', "bash", *words)
+            limited = ("bash", "-c", 'ulimit -v "$0" && exec "$@"', str(int(memory_gib * 2**20)), *words)
         process = subprocess.Popen(
             limited,
             cwd=cwd or self.work,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import os
 import re
 from pathlib import Path
@@ -11,17 +12,19 @@ from verify.context import Context, Tool
 from verify.failure import RungFailed
 from verify.targets import CLANG, STANDARD, WARNINGS, core_sources
 
-__all__ = ["HARNESSES", "VALGRIND", "build", "fuzz", "replay"]
+__all__ = ["HARNESSES", "TYPES", "VALGRIND", "build", "fuzz", "replay"]
 
 VALGRIND = Tool("valgrind")
-HARNESSES = ("controller", "servo")
+HARNESSES = ("controller", "configuration", "servo")
+TYPES = ("float", "double")
 ADDRESS = ("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all")
 MEMORY = ("-fsanitize=fuzzer,memory", "-fno-sanitize-recover=all")
 SEED = 1
 LONGEST_INPUT = 4096  # bytes: some 60 ticks of a controller
 
 
-def build(context: Context, core: Path, name: str, flags: tuple[str, ...], program: Path) -> Path:
+def build(context: Context, core: Path, name: str, real: str, flags: tuple[str, ...], program: Path) -> Path:
+    """A harness with c_core of the real type ``real``."""
     folder = context.root / "verify" / "fuzz"
     sources = (folder / f"{name}.c", *core_sources(core))
     include = (f"-I{core / 'include'}", f"-I{folder}")
@@ -31,6 +34,7 @@ def build(context: Context, core: Path, name: str, flags: tuple[str, ...], progr
         *WARNINGS,
         "-g",
         "-O1",
+        f"-DGW_REAL_DOUBLE={TYPES.index(real)}",
         *flags,
         *include,
         *sources,
@@ -76,16 +80,17 @@ def replay(context: Context, command: tuple[str | Path, ...], corpus: Path) -> i
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=int, default=60, help="for each harness (default: 60)")
+    parser.add_argument("--minutes", type=int, default=60, help="for each harness and real type (default: 60)")
     minutes = parser.parse_args().minutes
     root = Path(__file__).resolve().parents[1]
     work = root / "build" / "verify" / "fuzz"
     work.mkdir(parents=True, exist_ok=True)
     context = Context(root, work, os.environ["PATH"])
-    for name in HARNESSES:
-        program = build(context, context.core, name, ADDRESS, work / name)
-        runs = fuzz(context, program, work / f"{name}_corpus", 60 * minutes)
-        print(f"{name}: {runs:,} inputs, none bad; corpus: {work / f'{name}_corpus'}", flush=True)
+    for name, real in itertools.product(HARNESSES, TYPES):
+        program = build(context, context.core, name, real, ADDRESS, work / f"{name}_{real}")
+        corpus = work / f"{name}_{real}_corpus"
+        runs = fuzz(context, program, corpus, 60 * minutes)
+        print(f"{name}, {real}: {runs:,} inputs, none bad; corpus: {corpus}", flush=True)
 
 
 if __name__ == "__main__":

@@ -22,15 +22,21 @@ typedef struct {
     size_t left;
 } bytes_t;
 
-static inline uint32_t take_count(bytes_t *bytes)
+static inline void take_bytes(bytes_t *bytes, void *place, size_t wanted)
 {
-    uint32_t value = 0U;
-    const size_t size = (bytes->left < sizeof(value)) ? bytes->left : sizeof(value);
+    const size_t size = (bytes->left < wanted) ? bytes->left : wanted;
+    (void)memset(place, 0, wanted);
     if (size > 0U) {
-        (void)memcpy(&value, bytes->data, size);
+        (void)memcpy(place, bytes->data, size);
         bytes->data += size;
         bytes->left -= size;
     }
+}
+
+static inline uint32_t take_count(bytes_t *bytes)
+{
+    uint32_t value;
+    take_bytes(bytes, &value, sizeof(value));
     return value;
 }
 
@@ -50,10 +56,9 @@ static inline bool take_flag(bytes_t *bytes)
 /* Any bits: NaN, infinities, subnormals. */
 static inline gw_real_t take_real(bytes_t *bytes)
 {
-    const uint32_t bits = take_count(bytes);
-    float value;
-    (void)memcpy(&value, &bits, sizeof(value));
-    return (gw_real_t)value;
+    gw_real_t value;
+    take_bytes(bytes, &value, sizeof(value));
+    return value;
 }
 
 /* A setting: mostly within its range, both ends included, now and then any bits. */
@@ -74,6 +79,17 @@ static inline uint32_t take_count_setting(bytes_t *bytes, gw_config_field_t fiel
     const uint32_t bits = take_count(bytes);
     const uint32_t span = ((uint32_t)limit->maximum - (uint32_t)limit->minimum) + 1U;
     return ((bits & 0xFFU) == 0xFFU) ? bits : ((uint32_t)limit->minimum + ((bits >> 8U) % span));
+}
+
+/* Mostly within the scale of what is usual, so that sensors are good for a while; now and then any bits. */
+static inline gw_real_t take_value(bytes_t *bytes, gw_real_t scale)
+{
+    const uint32_t bits = take_count(bytes);
+    gw_real_t value = scale * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF);
+    if ((bits & 0x7FU) == 0x7FU) {
+        value = take_real(bytes);
+    }
+    return ((bits & 0x80U) != 0U) ? -value : value;
 }
 
 #endif

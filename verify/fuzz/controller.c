@@ -67,17 +67,6 @@ static gw_controller_config_t take_config(bytes_t *from)
     return config;
 }
 
-/* Small whole torques and counts for the most part, so that sensors are good for a while; now and then any bits. */
-static gw_real_t take_value(bytes_t *bytes, gw_real_t scale)
-{
-    const uint32_t bits = take_count(bytes);
-    gw_real_t value = scale * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF);
-    if ((bits & 0x7FU) == 0x7FU) {
-        value = take_real(bytes);
-    }
-    return ((bits & 0x80U) != 0U) ? -value : value;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static gw_controller_t controller;

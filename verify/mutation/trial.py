@@ -70,6 +70,8 @@ def judge(killers: Killers, trial: Trial) -> None:
     root = killers.context.root
     evidence = survivors.wrong(survivors.read(root), every(root), others, survived)
     if trial.score < LEAST_SCORE:
-        evidence.append(f"{trial.killed} of {trial.counted} killed: {trial.score:.1%}, at least {LEAST_SCORE:.0%} is asked")
+        evidence.append(
+            f"{trial.killed} of {trial.counted} killed: {trial.score:.1%}, at least {LEAST_SCORE:.0%} is asked"
+        )
     if evidence:
         raise RungFailed("\n".join(evidence))

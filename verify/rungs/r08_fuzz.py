@@ -1,11 +1,14 @@
-"""A minute of fuzzing per harness, configurations and input sequences: no sanitizer speaks, no invariant breaks."""
+"""A minute of fuzzing per harness and real type, configurations and input sequences: no sanitizer speaks, no invariant
+breaks."""
 
 from __future__ import annotations
 
+import itertools
 import shutil
+from pathlib import Path
 
 from verify.context import Context
-from verify.fuzzing import ADDRESS, HARNESSES, MEMORY, VALGRIND, build, fuzz, replay
+from verify.fuzzing import ADDRESS, HARNESSES, MEMORY, TYPES, VALGRIND, build, fuzz, replay
 from verify.rung import Figure, Rung, RungFailed, planted
 from verify.targets import CLANG
 
@@ -17,29 +20,47 @@ PLANTED = {
         "if (!events->sensors_good) {",
         "if ((!events->sensors_good) && (!events->stop_request)) {",
     ),
+    "configuration": ("gw_config.c", "!gw_in_range(value, minimum, maximum)", "(value < minimum) || (value > maximum)"),
     "servo": ("gw_servo.c", "gw_clamp(wanted, -limit, limit)", "gw_clamp(wanted, -limit, GW_TWO * limit)"),
 }
 
 
 def check(context: Context) -> Figure:
-    runs = 0
+    runs = sum(_fuzzed(context, name, real) for name, real in itertools.product(HARNESSES, TYPES))
     for name in HARNESSES:
-        corpus = context.work / f"{name}_corpus"
-        program = build(context, context.core, name, ADDRESS, context.work / name)
-        runs += fuzz(context, program, corpus, SECONDS)
-        replay(context, (build(context, context.core, name, MEMORY, context.work / f"{name}_memory"),), corpus)
-        plain = build(context, context.core, name, ("-fsanitize=fuzzer", "-gdwarf-4"), context.work / f"{name}_plain")
-        few = context.work / f"{name}_few"
-        few.mkdir()
-        for path in sorted(corpus.iterdir(), key=lambda path: -path.stat().st_size)[:UNDER_VALGRIND]:
-            shutil.copy(path, few)
-        replay(context, (context.which(VALGRIND), "--quiet", "--error-exitcode=9", plain), few)
         _check_planted(context, name)
     return Figure(
-        f"{runs:,} inputs in {SECONDS} s per harness with ASan and UBSan, "
+        f"{runs:,} inputs in {SECONDS} s per harness, {len(HARNESSES)} in float and in double, with ASan and UBSan, "
         f"corpora again with MSan and valgrind: none bad; {len(PLANTED)} planted faults found",
-        {"harnesses": len(HARNESSES), "seconds_per_harness": SECONDS, "planted_faults": len(PLANTED)},
+        {
+            "harnesses": len(HARNESSES),
+            "types": len(TYPES),
+            "seconds_per_harness_and_type": SECONDS,
+            "planted_faults": len(PLANTED),
+        },
     )
+
+
+def _fuzzed(context: Context, name: str, real: str) -> int:
+    """How many inputs were run."""
+
+    def built(kind: str, *flags: str) -> Path:
+        return build(context, context.core, name, real, flags, context.work / f"{name}_{real}_{kind}")
+
+    corpus = _corpus(context, name, real)
+    runs = fuzz(context, built("address", *ADDRESS), corpus, SECONDS)
+    replay(context, (built("memory", *MEMORY),), corpus)
+    few = context.work / f"{name}_{real}_few"
+    few.mkdir()
+    for path in sorted(corpus.iterdir(), key=lambda path: -path.stat().st_size)[:UNDER_VALGRIND]:
+        shutil.copy(path, few)
+    plain = built("plain", "-fsanitize=fuzzer", "-gdwarf-4")
+    replay(context, (context.which(VALGRIND), "--quiet", "--error-exitcode=9", plain), few)
+    return runs
+
+
+def _corpus(context: Context, name: str, real: str) -> Path:
+    return context.work / f"{name}_{real}_corpus"
 
 
 def _check_planted(context: Context, name: str) -> None:
@@ -52,9 +73,10 @@ def _check_planted(context: Context, name: str) -> None:
     if text.count(healthy) != 1:
         raise RungFailed(f"not once in {file}: {healthy}")
     source.write_text(text.replace(healthy, sick))
-    program = build(context, core, name, ADDRESS, context.work / f"{name}_with_fault")
+    real = TYPES[0]
+    program = build(context, core, name, real, ADDRESS, context.work / f"{name}_with_fault")
     with planted(f"{file} without {healthy}", shows="broken: "):
-        fuzz(context, program, context.work / f"{name}_corpus", SECONDS)
+        fuzz(context, program, _corpus(context, name, real), SECONDS)
 
 
 RUNG = Rung("fuzzing with sanitizers", (CLANG, VALGRIND), check)
