@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify fuzz bench fit fmus build lint lock clean
+.PHONY: help demo reproduce test verify fuzz mutate bench fit fmus build lint lock clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -28,8 +28,11 @@ test: build lint ## every test
 verify: build build/verify/tools-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
 	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
 
-fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness; `make verify` does it for a minute
+fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness and real type; `make verify` does it for a minute
 	$(BIN)/python -m verify.fuzzing
+
+mutate: build ## every mutant of c_core; `make verify` tries 500
+	$(BIN)/python -m verify.mutation
 
 bench: build ## how fast a co-simulated second runs
 	$(BIN)/giveway bench

@@ -15,7 +15,7 @@ from verify.failure import RungFailed
 from verify.mutation.mutants import Mutant
 from verify.targets import GCC, STANDARD, core_sources
 
-__all__ = ["AT_A_TIME", "Fate", "Killers"]
+__all__ = ["AT_A_TIME", "UNIT", "Fate", "Killers"]
 
 AT_A_TIME = 2
 OPTIMISED = "-O2"  # at which an equivalent mutant gives the same object
@@ -60,7 +60,7 @@ class Killers:
         bits = [*sorted((context.root / golden.SOURCES).glob("*.c")), example / "digest.c"]
         bits.append(example / "recorded_collision.c")
         self.programs = (
-            _Program(Fate.UNIT, self._objects(unit, "unit"), None),
+            _Program(Fate.UNIT, self._objects(unit, "unit", f"-I{context.root / UNIT}"), None),
             _Program(Fate.BITS, self._objects(bits, "golden", f"-I{example}"), golden.read_table(context.root, 0)),
         )
         seen_without = self._seen_by(list(self.original.values()), context.work / "original")
@@ -112,7 +112,7 @@ class Killers:
 
     def _compiled(self, source: Path, name: str, *flags: str) -> Path:
         target = self.context.work / name / f"{source.stem}.o"
-        target.parent.mkdir(exist_ok=True)
+        target.parent.mkdir(parents=True, exist_ok=True)
         answer = self._compile(source, target, OPTIMISED, *flags)
         if answer.returncode != 0:
             raise RungFailed(answer.evidence)

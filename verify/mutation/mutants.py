@@ -57,7 +57,7 @@ INTEGER = re.compile(r"(\d+)([uU]?)")
 
 @dataclass(frozen=True, order=True)
 class Key:
-    """What a mutant is known by, also after lines above it came or went. ``nth``: of the same change in the same line."""
+    """What a mutant is known by, also after lines above it came or went; ``nth`` of its likes in the same line."""
 
     file: str
     function: str
