@@ -23,8 +23,8 @@ class Harness:
     sick_file: str = ""  # of c_core; empty: the first module
     # Code that the solver cannot take, and what stands for it by its bounds (esbmc/contracts.h).
     assumed: tuple[str, str, str] | None = None  # file, code, contract
-    # Without it the servo's step exceeds no memory, and the joint's displacements of any bits may overflow to infinity: that
-    # nothing overflows which must not is eva's claim.
+    # None for the servo, whose step exceeds memory with it, and the joint, where displacements of any bits may overflow
+    # to infinity: that nothing overflows which must not is eva's claim.
     checks: tuple[str, ...] = ("--overflow-check",)
 
 
