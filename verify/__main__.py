@@ -25,9 +25,10 @@ def main() -> int:
     # Tools that are Python packages have an environment of their own.
     path = f"{ROOT / 'build/verify/tools/bin'}{os.pathsep}{os.environ['PATH']}"
     outcomes = climb(ROOT, {name: rung for name, rung in rungs.items() if not chosen or name in chosen}, path)
-    summary = write_summary(ROOT, outcomes, sources)
+    seconds = time.perf_counter() - start
+    summary = write_summary(ROOT, outcomes, sources, seconds)
     failed = sum(outcome.figure is None for outcome in outcomes)
-    print(f"\n{len(outcomes) - failed} passed, {failed} failed in {time.perf_counter() - start:.0f} s: {summary}")
+    print(f"\n{len(outcomes) - failed} passed, {failed} failed in {seconds:.0f} s: {summary}")
     try:
         print(verified(ROOT, outcomes, sources, list(rungs)))
     except RungFailed as failure:

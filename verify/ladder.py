@@ -83,8 +83,8 @@ def _version(context: Context, tool: Tool) -> str:
     return next((line.strip() for line in (answer.stdout + answer.stderr).splitlines() if line.strip()), "")
 
 
-def write_summary(root: Path, outcomes: list[Outcome], sources: str) -> Path:
-    """out/verify/summary.json: what this run found."""
+def write_summary(root: Path, outcomes: list[Outcome], sources: str, seconds: float) -> Path:
+    """out/verify/summary.json: what this run found, in ``seconds`` altogether."""
     path = root / "out" / "verify" / "summary.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     rungs = [
@@ -99,7 +99,13 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str) -> Path:
         }
         for outcome in outcomes
     ]
-    write_text(path, _json({"schema_version": SCHEMA_VERSION, "sources_sha256": sources, "rungs": rungs}))
+    document = {
+        "schema_version": SCHEMA_VERSION,
+        "sources_sha256": sources,
+        "seconds": round(seconds, 1),
+        "rungs": rungs,
+    }
+    write_text(path, _json(document))
     return path
 
 

@@ -51,7 +51,8 @@ def test_green_rungs_are_written_with_the_hash_of_the_sources(tmp_path: Path) ->
     root = tree(tmp_path)
     outcomes = climb(root, first=Rung("", (PYTHON,), good), second=Rung("", (PYTHON,), good))
     sources = core_hash(root)
-    summary = json.loads(ladder.write_summary(root, outcomes, sources).read_text())
+    summary = json.loads(ladder.write_summary(root, outcomes, sources, 12.34).read_text())
+    assert summary["seconds"] == 12.3
     assert [rung["name"] for rung in summary["rungs"]] == ["first", "second"]
     assert all(rung["passed"] and rung["tools"]["python3"].startswith("Python 3") for rung in summary["rungs"])
     document = json.loads(ladder.verified(root, outcomes, sources, ["first", "second"]).read_text())

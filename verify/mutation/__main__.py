@@ -11,9 +11,9 @@ from pathlib import Path
 
 from verify.context import Context
 from verify.failure import RungFailed
-from verify.mutation.killers import Killers
-from verify.mutation.mutants import every
-from verify.mutation.trial import judge, of_all
+from verify.mutation.killers import Fate, Killers
+from verify.mutation.mutants import Mutant, every
+from verify.mutation.trial import Trial, judge, of_all
 
 ROOT = Path(__file__).parents[2]
 
@@ -28,8 +28,13 @@ def main() -> int:
     killers = Killers(Context(ROOT, work, os.environ["PATH"]))
     mutants = [mutant for mutant in every(ROOT) if files is None or mutant.key.file in files]
     start = time.perf_counter()
-    trial = of_all(killers, mutants)
-    print(f"{trial.text}; {time.perf_counter() - start:.0f} s")
+    fates: dict[Mutant, Fate] = {}
+    for name in dict.fromkeys(mutant.key.file for mutant in mutants):
+        of_file = of_all(killers, [mutant for mutant in mutants if mutant.key.file == name])
+        print(f"{name}: {of_file.killed} of {of_file.counted} killed", flush=True)
+        fates |= of_file.fates
+    trial = Trial(fates)
+    print(f"{trial.text}; {time.perf_counter() - start:.0f} s", flush=True)
     judge(killers, trial)
     return 0
 

@@ -58,9 +58,8 @@ def of_some(killers: Killers, number: int, seed: int = SEED) -> Trial:
     return Trial(fates)
 
 
-def of_all(killers: Killers, mutants: Sequence[Mutant] | None = None) -> Trial:
-    chosen = every(killers.context.root) if mutants is None else mutants
-    return Trial(dict(zip(chosen, killers.fates(chosen), strict=True)))
+def of_all(killers: Killers, mutants: Sequence[Mutant]) -> Trial:
+    return Trial(dict(zip(mutants, killers.fates(mutants), strict=True)))
 
 
 def judge(killers: Killers, trial: Trial) -> None:
