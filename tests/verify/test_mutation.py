@@ -1,4 +1,4 @@
-"""Mutants: made alike everywhere, known again after lines moved, judged by real builds, and the list of survivors true."""
+"""Mutants: made alike everywhere, known after lines moved, judged by real builds, and the list of survivors true."""
 
 from __future__ import annotations
 

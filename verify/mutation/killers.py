@@ -1,4 +1,5 @@
-"""Which mutants c_core's tests see: the unit tests in C, with every invariant asserted, then the golden bits."""
+"""Which mutants c_core's tests see: the unit tests in C, with every invariant asserted, then the golden bits, then the
+unit tests again with traps for undefined behaviour, such as an index beyond its array."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ from verify.targets import GCC, STANDARD, core_sources
 __all__ = ["AT_A_TIME", "UNIT", "Fate", "Killers"]
 
 AT_A_TIME = 2
-OPTIMISED = "-O2"  # at which an equivalent mutant gives the same object
+OPTIMISED: tuple[str, ...] = ("-O2",)  # at which an equivalent mutant gives the same object
+TRAPPING: tuple[str, ...] = ("-O1", "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error")
 # Some sixty times what a program takes; a mutant may print without end, too.
 CPU_S = 4
 MEMORY_GIB = 1.0
@@ -32,6 +34,7 @@ class Fate(enum.Enum):
     SAME_OBJECT = "same object code"
     UNIT = "killed by the unit tests"
     BITS = "killed by the golden bits"
+    TRAPS = "killed by the unit tests with traps"
     SURVIVED = "survived"
 
     @property
@@ -46,6 +49,7 @@ class _Program:
     fate: Fate
     objects: tuple[Path, ...]
     expected: str | None
+    flags: tuple[str, ...] = OPTIMISED  # with which c_core is compiled for it
 
 
 class Killers:
@@ -54,18 +58,26 @@ class Killers:
     def __init__(self, context: Context, unit_sources: Sequence[Path] | None = None) -> None:
         self.context = context
         self.sources = core_sources(context.core)
-        self.original = {source.name: self._compiled(source, "core") for source in self.sources}
         unit = unit_sources or sorted((context.root / UNIT).glob("*.c"))
         example = context.root / golden.EXAMPLE
         bits = [*sorted((context.root / golden.SOURCES).glob("*.c")), example / "digest.c"]
         bits.append(example / "recorded_collision.c")
+        unit_objects = self._objects(unit, "unit", f"-I{context.root / UNIT}")
+        bits_objects = self._objects(bits, "golden", f"-I{example}")
         self.programs = (
-            _Program(Fate.UNIT, self._objects(unit, "unit", f"-I{context.root / UNIT}"), None),
-            _Program(Fate.BITS, self._objects(bits, "golden", f"-I{example}"), golden.read_table(context.root, 0)),
+            _Program(Fate.UNIT, unit_objects, None),
+            _Program(Fate.BITS, bits_objects, golden.read_table(context.root, 0)),
+            _Program(Fate.TRAPS, unit_objects, None, TRAPPING),
         )
-        seen_without = self._seen_by(list(self.original.values()), context.work / "original")
-        if seen_without is not None:
-            raise RungFailed(f"c_core without any mutant is {seen_without.value}")
+        self.original = {
+            flags: {source.name: self._compiled(source, f"core{flags[0]}", *flags) for source in self.sources}
+            for flags in (OPTIMISED, TRAPPING)
+        }
+        healthy = context.work / "healthy"
+        healthy.mkdir()
+        for program in self.programs:
+            if self._sees(program, list(self.original[program.flags].values()), healthy):
+                raise RungFailed(f"c_core without any mutant is {program.fate.value}")
 
     def fates(self, mutants: Sequence[Mutant]) -> list[Fate]:
         with ThreadPoolExecutor(AT_A_TIME) as pool:
@@ -85,35 +97,46 @@ class Killers:
             changed = [(mutated, ())]
         else:
             changed = [(source, (f"-I{folder}",)) for source in self.sources]
-        objects = dict(self.original)
-        for source, flags in changed:
-            target = folder / f"{source.stem}.o"
-            if self._compile(source, target, OPTIMISED, *flags).returncode != 0:
-                return Fate.NOT_COMPILED
-            objects[source.name] = target
-        if all(objects[name].read_bytes() == original.read_bytes() for name, original in self.original.items()):
+        objects = self._mutated(changed, folder, OPTIMISED)
+        if objects is None:
+            return Fate.NOT_COMPILED
+        original = self.original[OPTIMISED]
+        if all(objects[name].read_bytes() == original[name].read_bytes() for name in original):
             return Fate.SAME_OBJECT
-        return self._seen_by(list(objects.values()), folder) or Fate.SURVIVED
-
-    def _seen_by(self, core: list[Path], folder: Path) -> Fate | None:
-        """The first program that ends otherwise than it should: wrong output, a crash, or out of time or memory."""
-        folder.mkdir(exist_ok=True)
         for program in self.programs:
-            built = folder / program.fate.name.lower()
-            self.context.run(self.context.which(GCC), *core, *program.objects, "-o", built)
-            printed = built.with_suffix(".txt")
-            answer = self.context.run("bash", "-c", LIMITED, built, printed, memory_gib=MEMORY_GIB, expect=None)
-            if answer.returncode != 0 or program.expected not in (None, printed.read_text(errors="replace")):
+            if program.flags != OPTIMISED:
+                objects = self._mutated(changed, folder, program.flags)
+            if objects is None or self._sees(program, list(objects.values()), folder):
                 return program.fate
-        return None
+        return Fate.SURVIVED
+
+    def _mutated(
+        self, changed: Sequence[tuple[Path, tuple[str, ...]]], folder: Path, flags: tuple[str, ...]
+    ) -> dict[str, Path] | None:
+        """The objects of c_core, those of the changed sources compiled anew; None if one does not compile."""
+        objects = dict(self.original[flags])
+        for source, include in changed:
+            target = folder / f"{source.stem}{flags[0]}.o"
+            if self._compile(source, target, *flags, *include).returncode != 0:
+                return None
+            objects[source.name] = target
+        return objects
+
+    def _sees(self, program: _Program, core: list[Path], folder: Path) -> bool:
+        """It ends otherwise than it should: failed tests, wrong output, a crash, or out of time or memory."""
+        built = folder / program.fate.name.lower()
+        self.context.run(self.context.which(GCC), *core, *program.objects, "-o", built)
+        printed = built.with_suffix(".txt")
+        answer = self.context.run("bash", "-c", LIMITED, built, printed, memory_gib=MEMORY_GIB, expect=None)
+        return answer.returncode != 0 or program.expected not in (None, printed.read_text(errors="replace"))
 
     def _objects(self, sources: Sequence[Path], name: str, *flags: str) -> tuple[Path, ...]:
-        return tuple(self._compiled(source, name, *flags) for source in sources)
+        return tuple(self._compiled(source, name, *OPTIMISED, *flags) for source in sources)
 
     def _compiled(self, source: Path, name: str, *flags: str) -> Path:
         target = self.context.work / name / f"{source.stem}.o"
         target.parent.mkdir(parents=True, exist_ok=True)
-        answer = self._compile(source, target, OPTIMISED, *flags)
+        answer = self._compile(source, target, *flags)
         if answer.returncode != 0:
             raise RungFailed(answer.evidence)
         return target

@@ -41,7 +41,7 @@ class Trial:
     def text(self) -> str:
         return (
             f"{self.killed} of {self.counted} mutants killed ({self.score:.1%}), {self.number(Fate.UNIT)} by the unit "
-            f"tests and {self.number(Fate.BITS)} more by the golden bits; "
+            f"tests, {self.number(Fate.BITS)} more by the golden bits, {self.number(Fate.TRAPS)} by traps; "
             f"{self.number(Fate.SURVIVED)} survivors, each with a reason; not counted: "
             f"{self.number(Fate.NOT_COMPILED)} that do not compile, {self.number(Fate.SAME_OBJECT)} of the same object "
             "code"

@@ -1,5 +1,6 @@
 #include "unit.h"
 
+#define UNTOUCHED R(-9.0)
 #define NO_SIGMA ((gw_wrench_sigma_t){GW_ZERO, GW_ZERO})
 
 /* A square of 1 m about the centre. */
@@ -48,13 +49,17 @@ static void the_outline_has_to_be_convex_and_counter_clockwise(void)
          {{R(1.0), R(0.0)}, {R(-0.81), R(0.59)}, {R(0.31), R(-0.95)}, {R(0.31), R(0.95)}, {R(-0.81), R(-0.59)}},
          R(1.0)},
     };
+    const uint32_t edges[] = {0U, 0U, 1U, 0U}; /* the first that has a corner on its right or on it */
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_contact_t contact;
         gw_config_error_t error;
         unit_row(i);
         gw_config_check_begin(&error);
+        error.index = 99U;
+        error.value = UNTOUCHED;
         gw_contact_config_check(&rows[i], &error);
         CHECK(error.field == GW_FIELD_OUTLINE_CONVEX);
+        CHECK((error.index == edges[i]) && (error.value <= GW_ZERO) && (error.value != UNTOUCHED));
         CHECK_STATUS(gw_contact_init(&contact, &rows[i]), GW_STATUS_CONFIG_INVALID);
         CHECK(!gw_contact_invariant_holds(&contact));
     }
@@ -93,12 +98,41 @@ static void a_line_past_the_outline_gives_the_nearest_corner(void)
     } rows[] = {
         {{R(10.0), R(0.0), R(-6.0)}, {R(-0.5), R(0.5)}},  {{R(-10.0), R(0.0), R(6.0)}, {R(0.5), R(0.5)}},
         {{R(10.0), R(0.0), R(6.0)}, {R(-0.5), R(-0.5)}},  {{R(-10.0), R(0.0), R(-6.0)}, {R(0.5), R(-0.5)}},
+        {{R(0.0), R(10.0), R(6.0)}, {R(0.5), R(-0.5)}},   {{R(0.0), R(-10.0), R(-6.0)}, {R(0.5), R(0.5)}},
+        {{R(0.0), R(10.0), R(-6.0)}, {R(-0.5), R(-0.5)}}, {{R(0.0), R(-10.0), R(6.0)}, {R(-0.5), R(0.5)}},
         {{R(10.0), R(10.0), R(20.0)}, {R(0.5), R(-0.5)}}, {{R(10.0), R(10.0), R(-20.0)}, {R(-0.5), R(0.5)}},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         const gw_contact_estimate_t found = located(rows[i].wrench, NO_SIGMA, GW_STATUS_OK);
         unit_row(i);
         CHECK(found.valid && (!found.on_outline));
+        CHECK((found.point_m.x == rows[i].corner.x) && (found.point_m.y == rows[i].corner.y));
+    }
+}
+
+/* A line through two corners of a diamond enters at one. One that only touches a corner enters if it has the body on its
+ * right; either way the corner is the point. */
+static void a_line_through_corners_enters_or_touches(void)
+{
+    const gw_contact_config_t diamond = {
+        4U, {{R(0.5), R(0.0)}, {R(0.0), R(0.5)}, {R(-0.5), R(0.0)}, {R(0.0), R(-0.5)}}, R(1.0)};
+    const struct {
+        gw_wrench_t wrench;
+        gw_vector_t corner;
+        bool enters;
+    } rows[] = {
+        {{R(10.0), R(0.0), R(0.0)}, {R(-0.5), R(0.0)}, true},   {{R(-10.0), R(0.0), R(0.0)}, {R(0.5), R(0.0)}, true},
+        {{R(0.0), R(10.0), R(0.0)}, {R(0.0), R(-0.5)}, true},   {{R(0.0), R(-10.0), R(0.0)}, {R(0.0), R(0.5)}, true},
+        {{R(10.0), R(0.0), R(-5.0)}, {R(0.0), R(0.5)}, true},   {{R(-10.0), R(0.0), R(5.0)}, {R(0.0), R(0.5)}, false},
+        {{R(10.0), R(0.0), R(5.0)}, {R(0.0), R(-0.5)}, false},   {{R(-10.0), R(0.0), R(-5.0)}, {R(0.0), R(-0.5)}, true},
+    };
+    gw_contact_t contact;
+    CHECK_STATUS(gw_contact_init(&contact, &diamond), GW_STATUS_OK);
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_contact_estimate_t found;
+        unit_row(i);
+        CHECK_STATUS(gw_contact_locate(&contact, rows[i].wrench, NO_SIGMA, &found), GW_STATUS_OK);
+        CHECK(found.on_outline == rows[i].enters);
         CHECK((found.point_m.x == rows[i].corner.x) && (found.point_m.y == rows[i].corner.y));
     }
 }
@@ -153,6 +187,7 @@ void suite_contact(void)
              the_outline_has_to_be_convex_and_counter_clockwise);
     unit_run("a_push_is_found_where_it_enters_the_body", a_push_is_found_where_it_enters_the_body);
     unit_run("a_line_past_the_outline_gives_the_nearest_corner", a_line_past_the_outline_gives_the_nearest_corner);
+    unit_run("a_line_through_corners_enters_or_touches", a_line_through_corners_enters_or_touches);
     unit_run("the_lever_arm_comes_with_its_deviation", the_lever_arm_comes_with_its_deviation);
     unit_run("a_weak_push_is_not_located", a_weak_push_is_not_located);
     unit_run("what_is_not_finite_is_refused", what_is_not_finite_is_refused);

@@ -6,6 +6,7 @@ int main(void)
     suite_math();
     suite_sum();
     suite_config();
+    suite_init();
     suite_kinematics();
     suite_friction();
     suite_nominal();

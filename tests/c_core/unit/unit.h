@@ -58,6 +58,7 @@ void suite_controller_faults(void);
 void suite_detector(void);
 void suite_estimator(void);
 void suite_friction(void);
+void suite_init(void);
 void suite_joint(void);
 void suite_kinematics(void);
 void suite_math(void);
