@@ -188,7 +188,7 @@ static void rare_states_keep_the_limits(void)
 static void the_invariant_sees_every_member(void)
 {
     const gw_admittance_t good = made(GW_ADMITTANCE_FROZEN_IMPULSE);
-    gw_admittance_t bad[11];
+    gw_admittance_t bad[13];
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         bad[i] = good;
     }
@@ -203,6 +203,8 @@ static void the_invariant_sees_every_member(void)
     bad[8].moved_y_m.excess = unit_nan();
     bad[9].velocity_mps.x = unit_above(R(100.0));
     bad[10].velocity_mps.y = unit_nan();
+    bad[11].config.mass_kg = GW_ZERO;
+    bad[12].decay = unit_above(GW_ONE);
     CHECK(!gw_admittance_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);

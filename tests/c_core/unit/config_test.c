@@ -272,9 +272,74 @@ static void the_first_bad_field_is_the_one_that_is_named(void)
     made.controller.base.mass_kg = R(-1.0);
     made.controller.detector.kind = 9U;
     CHECK_STATUS(refused(&made).field, GW_FIELD_BASE_MASS);
+    made.controller.period_s = GW_ZERO;
+    CHECK_STATUS(refused(&made).field, GW_FIELD_CONTROLLER_PERIOD);
     CHECK_STATUS(gw_controller_config_check(&made.controller, &(gw_config_error_t){GW_FIELD_NONE, 0U, GW_ZERO,
                                                                                    GW_ZERO, GW_ZERO}),
                  GW_STATUS_CONFIG_INVALID);
+}
+
+/* What no robot file says: the choices of the paper's configuration. */
+static void the_paper_s_settings_are_these(void)
+{
+    const struct {
+        gw_config_field_t field;
+        gw_real_t value;
+    } rows[] = {
+        {GW_FIELD_CONTROLLER_PERIOD, R(0.001)},
+        {GW_FIELD_GEOMETRY_AZIMUTH, R(0.0)},
+        {GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, R(3.0)},
+        {GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, R(200.0)},
+        {GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, R(10.0)},
+        {GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, R(0.0)},
+        {GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, R(0.0)},
+        {GW_FIELD_ESTIMATOR_RATE_CUTOFF, R(200.0)},
+        {GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, R(20.0)},
+        {GW_FIELD_ESTIMATOR_REST_SPEED, R(0.002)},
+        {GW_FIELD_ESTIMATOR_CREEP_SPEED, R(0.03)},
+        {GW_FIELD_ESTIMATOR_REST_TICKS, R(300.0)},
+        {GW_FIELD_ESTIMATOR_TARE_TICKS, R(100.0)},
+        {GW_FIELD_ESTIMATOR_RETARE_TICKS, R(100.0)},
+        {GW_FIELD_ESTIMATOR_TARE_VARIATION, R(0.5)},
+        {GW_FIELD_ESTIMATOR_FRICTION_MODEL, R(0.0)},
+        {GW_FIELD_CONTACT_MINIMUM_FORCE, R(1.0)},
+        {GW_FIELD_OUTLINE_COUNT, R(3.0)},
+        {GW_FIELD_DETECTOR_KIND, R(1.0)},
+        {GW_FIELD_DETECTOR_FORCE_THRESHOLD, R(10.0)},
+        {GW_FIELD_DETECTOR_LEAK_CREEP, R(42.0)},
+        {GW_FIELD_DETECTOR_RELEASE_FORCE, R(6.0)},
+        {GW_FIELD_DETECTOR_BLANKING_TICKS, R(300.0)},
+        {GW_FIELD_ADMITTANCE_KIND, R(0.0)},
+        {GW_FIELD_ADMITTANCE_FINISH_SPEED, R(0.01)},
+        {GW_FIELD_REFERENCE_FOLLOW_GAIN, R(2.0)},
+        {GW_FIELD_REFERENCE_ACCELERATION_LIMIT, R(1.5)},
+        {GW_FIELD_REFERENCE_YAW_RATE_LIMIT, R(1.5)},
+        {GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, R(6.0)},
+        {GW_FIELD_REFERENCE_REJOIN_SPEED, R(0.1)},
+        {GW_FIELD_REFERENCE_FINISH_SPEED, R(0.01)},
+        {GW_FIELD_SUPERVISOR_SETTLED_SPEED, R(0.005)},
+        {GW_FIELD_SUPERVISOR_SETTLED_TICKS, R(500.0)},
+        {GW_FIELD_SUPERVISOR_AFTER_SETTLED, R(1.0)},
+        {GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, R(0.0002)},
+        {GW_FIELD_SUPERVISOR_REJOIN_ANGLE, R(0.0005)},
+    };
+    robot_t made = robot();
+    gw_controller_config_trikey(&made.controller);
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        for (uint32_t k = 0U; k < UNIT_COUNT_OF(places); k++) {
+            const void *const found = (const uint8_t *)&made + places[k].offset;
+            if (places[k].field == rows[i].field) {
+                unit_row(i);
+                CHECK((places[k].is_count ? (gw_real_t)(*(const uint32_t *)found) : *(const gw_real_t *)found) ==
+                      rows[i].value);
+            }
+        }
+    }
+    CHECK(made.controller.drives_enabled);
+    for (uint32_t i = made.controller.contact.vertex_count; i < GW_OUTLINE_VERTEX_MAX; i++) {
+        unit_row(i);
+        CHECK((made.controller.contact.vertex_m[i].x == GW_ZERO) && (made.controller.contact.vertex_m[i].y == GW_ZERO));
+    }
 }
 
 static void what_is_no_field_has_the_row_of_none(void)
@@ -292,5 +357,6 @@ void suite_config(void)
     unit_run("corners_of_the_outline_meet_their_bounds", corners_of_the_outline_meet_their_bounds);
     unit_run("wheel_slots_meet_their_bounds", wheel_slots_meet_their_bounds);
     unit_run("the_first_bad_field_is_the_one_that_is_named", the_first_bad_field_is_the_one_that_is_named);
+    unit_run("the_paper_s_settings_are_these", the_paper_s_settings_are_these);
     unit_run("what_is_no_field_has_the_row_of_none", what_is_no_field_has_the_row_of_none);
 }

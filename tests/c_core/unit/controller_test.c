@@ -209,6 +209,36 @@ static void a_tare_is_granted_to_a_robot_that_stands(void)
     CHECK(rig_output.mode == GW_MODE_TRACKING);
 }
 
+static void a_request_in_the_first_tick_is_an_edge(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_input.tare_request = true;
+    rig_tick(GW_STATUS_TARE_REFUSED);
+}
+
+/* How slow a turning robot is shows at its wheels: 0.02 rad/s are 4 mm/s there. */
+static void turning_counts_as_moving_at_the_rim(void)
+{
+    const struct {
+        gw_real_t omega;
+        gw_mode_t mode;
+    } rows[] = {{R(0.004), GW_MODE_SETTLED}, {R(0.02), GW_MODE_SETTLED}, {R(0.03), GW_MODE_REACTING}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        rig_set_up();
+        rig_config.geometry.wheel_distance_m = R(0.2);
+        rig_begin();
+        rig_until(GW_MODE_TRACKING, 10U);
+        rig_ticks(20U);
+        rig_controller.supervisor.mode = GW_MODE_REACTING;
+        rig_controller.supervisor.quiet_ticks = rig_config.supervisor.settled_ticks - 1U;
+        rig_controller.reference.twist.omega_radps = rows[i].omega;
+        unit_row(i);
+        rig_tick(GW_STATUS_OK);
+        CHECK_STATUS(rig_output.mode, rows[i].mode);
+    }
+}
+
 static void a_tare_is_granted_in_settled_and_refused_in_between(void)
 {
     rig_set_up();
@@ -281,6 +311,7 @@ static void counters_start_anew_after_24_days(void)
     rig_controller.tick = GW_TICK_MASK;
     rig_controller.supervisor.path_ticks = GW_TICK_MASK;
     rig_controller.detection_count = GW_TICK_MASK;
+    CHECK(gw_controller_invariant_holds(&rig_controller));
     rig_push(R(200.0));
     rig_tick(GW_STATUS_OK);
     CHECK((rig_output.tick == GW_TICK_MASK) && (rig_output.path_ticks == 0U));
@@ -302,6 +333,8 @@ void suite_controller(void)
     unit_run("a_stop_request_stops_it", a_stop_request_stops_it);
     unit_run("a_stopped_escape_is_not_resumed", a_stopped_escape_is_not_resumed);
     unit_run("a_tare_is_granted_to_a_robot_that_stands", a_tare_is_granted_to_a_robot_that_stands);
+    unit_run("a_request_in_the_first_tick_is_an_edge", a_request_in_the_first_tick_is_an_edge);
+    unit_run("turning_counts_as_moving_at_the_rim", turning_counts_as_moving_at_the_rim);
     unit_run("a_tare_is_granted_in_settled_and_refused_in_between",
              a_tare_is_granted_in_settled_and_refused_in_between);
     unit_run("a_push_while_taring_spoils_the_tare", a_push_while_taring_spoils_the_tare);

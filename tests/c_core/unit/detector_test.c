@@ -176,7 +176,9 @@ static void the_average_releases_below_its_threshold_at_the_latest(void)
     const gw_detector_input_t input = push(R(12.0), GW_REGIME_REST);
     detector.config.release_force_n = R(50.0);
     for (uint32_t tick = 0U; tick < 20U; tick++) {
-        CHECK(step(&detector, &input).active);
+        const gw_detector_output_t output = step(&detector, &input);
+        unit_row(tick);
+        CHECK(output.active && (!output.tripped));
     }
 }
 
@@ -217,6 +219,9 @@ static void the_invariant_sees_every_member(void)
     CHECK(!gw_detector_invariant_holds(&detector));
     detector = made(GW_DETECTOR_IMPULSE);
     detector.ticks_since_trip = 6U;
+    CHECK(!gw_detector_invariant_holds(&detector));
+    detector = made(GW_DETECTOR_IMPULSE);
+    detector.config.force_threshold_n = GW_ZERO;
     CHECK(!gw_detector_invariant_holds(&detector));
 }
 

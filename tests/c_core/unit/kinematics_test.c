@@ -38,7 +38,8 @@ static void a_slot_is_taken_once(void)
         gw_config_check_begin(&error);
         gw_geometry_config_check(&config, &error);
         CHECK(error.field == GW_FIELD_GEOMETRY_WHEEL_SLOT);
-        CHECK(error.minimum > error.maximum);
+        CHECK((error.minimum == GW_ONE) && (error.maximum == GW_ZERO)); /* no value repairs it alone */
+        CHECK((error.index == 2U) && (error.value == (gw_real_t)orders[i][2]));
     }
 }
 
@@ -70,6 +71,19 @@ static void the_invariant_sees_every_member(void)
         kinematics = made();
         kinematics.radial[2].x = bad[i] * R(3.0);
         CHECK(!gw_kinematics_invariant_holds(&kinematics));
+    }
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const struct {
+            gw_real_t length;
+            bool holds;
+        } rows[] = {{R(0.98), false}, {R(0.995), true}, {R(1.005), true}, {R(1.015), false}};
+        for (uint32_t k = 0U; k < UNIT_COUNT_OF(rows); k++) {
+            gw_kinematics_t scaled = made();
+            scaled.radial[i].x *= rows[k].length;
+            scaled.radial[i].y *= rows[k].length;
+            unit_row((10U * i) + k);
+            CHECK(gw_kinematics_invariant_holds(&scaled) == rows[k].holds);
+        }
     }
     gw_kinematics_t kinematics = made();
     kinematics.wheel_distance_m = unit_infinity();

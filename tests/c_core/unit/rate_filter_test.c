@@ -24,6 +24,7 @@ static void a_stiffness_of_nearly_nothing_is_rigid(void)
 {
     CHECK(made(R(0.0)).compliance_rad_per_nm == GW_ZERO);
     CHECK(made(R(1e-7)).compliance_rad_per_nm == GW_ZERO);
+    CHECK(made(R(0.000001)).compliance_rad_per_nm == (GW_ONE / R(0.000001)));
     CHECK(made(R(500.0)).compliance_rad_per_nm == (GW_ONE / R(500.0)));
 }
 

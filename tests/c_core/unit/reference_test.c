@@ -67,7 +67,7 @@ static void a_smooth_plan_is_followed_exactly(void)
         const gw_rotation_t at = gw_sincos(angle);
         const gw_plan_t plan = {{at.cosine, at.sine, angle},
                                 {R(-0.2) * at.sine, R(0.2) * at.cosine, R(0.2)},
-                                {R(-0.04) * at.cosine, R(-0.04) * at.sine, R(0.0)}};
+                                {R(-0.04) * at.cosine, R(-0.04) * at.sine, R(1e-6)}};
         if (tick == 0U) {
             gw_reference_place(&reference, &plan, true);
         } else {
@@ -78,6 +78,8 @@ static void a_smooth_plan_is_followed_exactly(void)
         CHECK(gw_reference_distance(&reference, &plan) < (R(1e-7) + (R(20.0) * ULP)));
         CHECK(gw_reference_angle(&reference, &plan) < (R(1e-7) + (R(20.0) * ULP)));
         CHECK(reference.acceleration.ax_mps2 == plan.acceleration.ax_mps2);
+        CHECK(reference.acceleration.ay_mps2 == plan.acceleration.ay_mps2);
+        CHECK(reference.acceleration.alpha_radps2 == plan.acceleration.alpha_radps2);
     }
 }
 
@@ -197,7 +199,10 @@ static void freezing_stops_at_once(void)
 
 static void the_invariant_sees_every_member(void)
 {
+    gw_reference_t turned = made();
     gw_reference_t bad[15];
+    turned.theta_rad.value = -GW_PI;
+    CHECK(gw_reference_invariant_holds(&turned));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         bad[i] = made();
     }

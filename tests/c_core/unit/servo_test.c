@@ -130,7 +130,8 @@ static void a_reference_that_is_not_finite_holds_the_last_angle(void)
         {unit_nan(), R(0.0)},
         {unit_infinity(), R(0.0)},
         {R(0.0), unit_nan()},
-        {R(0.0), R(1.1e4)},
+        {R(0.0), unit_above(R(1.0e4))},
+        {R(0.0), unit_below(R(-1.0e4))},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_servo_t servo = of_config(&config);

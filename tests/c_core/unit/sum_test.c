@@ -41,11 +41,15 @@ static void a_limited_sum_stays_within(void)
 
 static void a_sum_that_is_not_finite_is_none(void)
 {
-    const gw_sum_t rows[] = {{unit_nan(), R(0.0)}, {R(0.0), unit_infinity()}};
+    const gw_sum_t most = {GW_REAL_MAX, R(1024.0)};
+    const gw_sum_t least = {-GW_REAL_MAX, R(-1024.0)};
+    const gw_sum_t rows[] = {
+        {unit_nan(), R(0.0)}, {R(0.0), unit_infinity()}, {R(0.0), unit_above(R(1024.0))}, {unit_infinity(), R(0.0)}};
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         unit_row(i);
         CHECK(!gw_sum_invariant_holds(rows[i]));
     }
+    CHECK(gw_sum_invariant_holds(most) && gw_sum_invariant_holds(least));
 }
 
 void suite_sum(void)

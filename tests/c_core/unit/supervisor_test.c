@@ -175,7 +175,12 @@ static void a_corrupt_mode_leads_back_to_a_known_one(void)
 static void the_invariant_sees_every_member(void)
 {
     const uint32_t no_mode = 7U;
-    gw_supervisor_t bad[5];
+    gw_supervisor_t most = in_mode(GW_MODE_REJOINING);
+    gw_supervisor_t bad[6];
+    most.resume = GW_MODE_REJOINING;
+    most.quiet_ticks = rejoins.settled_ticks;
+    most.path_ticks = GW_TICK_MASK;
+    CHECK(gw_supervisor_invariant_holds(&most));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         bad[i] = in_mode(GW_MODE_TRACKING);
     }
@@ -184,6 +189,7 @@ static void the_invariant_sees_every_member(void)
     bad[2].resume = (gw_mode_t)no_mode;
     bad[3].quiet_ticks = 3U;
     bad[4].path_ticks = GW_TICK_MASK + 1U;
+    bad[5].resume = GW_MODE_STOPPED;
     CHECK(!gw_supervisor_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);
