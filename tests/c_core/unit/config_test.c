@@ -342,6 +342,25 @@ static void the_paper_s_settings_are_these(void)
     }
 }
 
+static void a_check_begins_with_nothing_to_blame(void)
+{
+    gw_config_error_t error = {GW_FIELD_BASE_MASS, 9U, R(9.0), R(9.0), R(9.0)};
+    gw_config_check_begin(&error);
+    CHECK((error.field == GW_FIELD_NONE) && (error.index == 0U) && (error.value == GW_ZERO));
+    CHECK((error.minimum == GW_ZERO) && (error.maximum == GW_ZERO));
+}
+
+static void every_roller_s_stiffness_is_checked(void)
+{
+    for (uint32_t wheel = 0U; wheel < GW_WHEEL_COUNT; wheel++) {
+        robot_t made = robot();
+        made.controller.estimator.presliding.stiffness_n_per_m[wheel] = R(9.9);
+        unit_row(wheel);
+        CHECK_STATUS(refused(&made).field, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS);
+        CHECK(refused(&made).index == wheel);
+    }
+}
+
 static void what_is_no_field_has_the_row_of_none(void)
 {
     const uint32_t beyond = (uint32_t)GW_FIELD_COUNT;
@@ -358,5 +377,7 @@ void suite_config(void)
     unit_run("wheel_slots_meet_their_bounds", wheel_slots_meet_their_bounds);
     unit_run("the_first_bad_field_is_the_one_that_is_named", the_first_bad_field_is_the_one_that_is_named);
     unit_run("the_paper_s_settings_are_these", the_paper_s_settings_are_these);
+    unit_run("a_check_begins_with_nothing_to_blame", a_check_begins_with_nothing_to_blame);
+    unit_run("every_roller_s_stiffness_is_checked", every_roller_s_stiffness_is_checked);
     unit_run("what_is_no_field_has_the_row_of_none", what_is_no_field_has_the_row_of_none);
 }

@@ -44,12 +44,13 @@ static void the_outline_has_to_be_convex_and_counter_clockwise(void)
         {3U, {{R(0.0), R(0.0)}, {R(0.0), R(1.0)}, {R(1.0), R(0.0)}}, R(1.0)}, /* clockwise */
         {3U, {{R(0.0), R(0.0)}, {R(1.0), R(0.0)}, {R(2.0), R(0.0)}}, R(1.0)}, /* on a line */
         {4U, {{R(0.0), R(0.0)}, {R(1.0), R(0.0)}, {R(0.2), R(0.2)}, {R(0.0), R(1.0)}}, R(1.0)},
+        {4U, {{R(0.0), R(1.0)}, {R(0.0), R(0.0)}, {R(1.0), R(0.0)}, {R(0.2), R(0.2)}}, R(1.0)},
         /* a star: every corner turns left */
         {5U,
          {{R(1.0), R(0.0)}, {R(-0.81), R(0.59)}, {R(0.31), R(-0.95)}, {R(0.31), R(0.95)}, {R(-0.81), R(-0.59)}},
          R(1.0)},
     };
-    const uint32_t edges[] = {0U, 0U, 1U, 0U}; /* the first that has a corner on its right or on it */
+    const uint32_t edges[] = {0U, 0U, 1U, 2U, 0U}; /* the first that has a corner on its right or on it */
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_contact_t contact;
         gw_config_error_t error;
@@ -137,6 +138,23 @@ static void a_line_through_corners_enters_or_touches(void)
     }
 }
 
+/* Of an edge along the line the end that the force meets first, also where both lie on one side of the centre. */
+static void the_end_that_is_met_first_does_not_depend_on_the_centre(void)
+{
+    const gw_contact_config_t ahead = {
+        4U, {{R(2.0), R(-0.5)}, {R(2.0), R(0.5)}, {R(1.0), R(0.5)}, {R(1.0), R(-0.5)}}, R(1.0)};
+    const gw_wrench_t rows[] = {{R(10.0), R(0.0), R(-6.0)}, {R(-10.0), R(0.0), R(6.0)}};
+    const gw_vector_t corners[] = {{R(1.0), R(0.5)}, {R(2.0), R(0.5)}};
+    gw_contact_t contact;
+    CHECK_STATUS(gw_contact_init(&contact, &ahead), GW_STATUS_OK);
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_contact_estimate_t found;
+        unit_row(i);
+        CHECK_STATUS(gw_contact_locate(&contact, rows[i], NO_SIGMA, &found), GW_STATUS_OK);
+        CHECK((found.point_m.x == corners[i].x) && (found.point_m.y == corners[i].y));
+    }
+}
+
 static void the_lever_arm_comes_with_its_deviation(void)
 {
     const gw_wrench_t push = {R(0.0), R(10.0), R(3.0)};
@@ -188,6 +206,8 @@ void suite_contact(void)
     unit_run("a_push_is_found_where_it_enters_the_body", a_push_is_found_where_it_enters_the_body);
     unit_run("a_line_past_the_outline_gives_the_nearest_corner", a_line_past_the_outline_gives_the_nearest_corner);
     unit_run("a_line_through_corners_enters_or_touches", a_line_through_corners_enters_or_touches);
+    unit_run("the_end_that_is_met_first_does_not_depend_on_the_centre",
+             the_end_that_is_met_first_does_not_depend_on_the_centre);
     unit_run("the_lever_arm_comes_with_its_deviation", the_lever_arm_comes_with_its_deviation);
     unit_run("a_weak_push_is_not_located", a_weak_push_is_not_located);
     unit_run("what_is_not_finite_is_refused", what_is_not_finite_is_refused);

@@ -199,6 +199,16 @@ static void a_tare_of_no_ticks_takes_the_sensors_at_their_word(void)
     CHECK(gw_estimator_invariant_holds(&estimator));
 }
 
+static void a_tare_of_one_tick_takes_that_tick(void)
+{
+    start();
+    robot.estimator.tare_ticks = 1U;
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    tare(torques(R(0.5), R(-0.25), R(0.125)));
+    CHECK((estimator.run_zero_nm.wheel[0] == R(0.5)) && (estimator.run_zero_nm.wheel[1] == R(-0.25)));
+    CHECK((estimator.run_zero_nm.wheel[2] == R(0.125)) && (estimator.rest_zero_nm.wheel[2] == R(0.125)));
+}
+
 static void a_new_tare_starts_from_nothing(void)
 {
     const gw_wheels_t one = torques(R(1.0), R(1.0), R(1.0));
@@ -404,6 +414,7 @@ void suite_estimator(void)
     unit_run("standing_long_does_not_wrap", standing_long_does_not_wrap);
     unit_run("a_tare_of_no_ticks_takes_the_sensors_at_their_word",
              a_tare_of_no_ticks_takes_the_sensors_at_their_word);
+    unit_run("a_tare_of_one_tick_takes_that_tick", a_tare_of_one_tick_takes_that_tick);
     unit_run("a_new_tare_starts_from_nothing", a_new_tare_starts_from_nothing);
     unit_run("the_motion_comes_from_the_source_that_is_chosen", the_motion_comes_from_the_source_that_is_chosen);
     unit_run("with_bristles_a_tare_leaves_the_rollers_part_to_the_model",

@@ -67,7 +67,7 @@ static void a_smooth_plan_is_followed_exactly(void)
         const gw_rotation_t at = gw_sincos(angle);
         const gw_plan_t plan = {{at.cosine, at.sine, angle},
                                 {R(-0.2) * at.sine, R(0.2) * at.cosine, R(0.2)},
-                                {R(-0.04) * at.cosine, R(-0.04) * at.sine, R(1e-6)}};
+                                {R(-0.04) * at.cosine, R(-0.04) * at.sine, R(1e-9) * (gw_real_t)tick}};
         if (tick == 0U) {
             gw_reference_place(&reference, &plan, true);
         } else {

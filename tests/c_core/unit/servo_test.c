@@ -42,7 +42,9 @@ static void bad_arguments_are_refused(void)
     CHECK_STATUS(gw_servo_init(NULL, &config), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_servo_init(&servo, NULL), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_servo_step(&servo, &input, NULL), GW_STATUS_NULL_POINTER);
+    output.torque_nm = R(5.0);
     CHECK_STATUS(gw_servo_step(NULL, &input, &output), GW_STATUS_NULL_POINTER);
+    CHECK((output.torque_nm == GW_ZERO) && (output.angle_error_rad == GW_ZERO) && (output.speed_radps == GW_ZERO));
     CHECK_STATUS(gw_servo_step(&servo, NULL, &output), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_servo_init(&servo, &bad), GW_STATUS_CONFIG_INVALID);
     CHECK_STATUS(gw_servo_step(&servo, &input, &output), GW_STATUS_NOT_INITIALISED);
