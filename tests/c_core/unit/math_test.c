@@ -299,8 +299,23 @@ static void the_braking_speed_stops_at_the_goal(void)
     CHECK(gw_braking_speed(R(2.0), R(0.01), unit_nan()) == R(0.0));
 }
 
+/* The ends of the range on which the exponential is computed belong to it. */
+static void exponentials_reach_to_the_ends_of_their_range(void)
+{
+#if (GW_REAL_DOUBLE == 1)
+    const gw_real_t ends[2] = {R(-708.0), R(709.0)};
+#else
+    const gw_real_t ends[2] = {R(-87.0), R(88.0)};
+#endif
+    CHECK(gw_exp(ends[0]) > GW_ZERO);
+    CHECK(gw_exp(unit_below(ends[0])) == GW_ZERO);
+    CHECK((gw_exp(ends[1]) < GW_REAL_MAX) && (gw_expm1(ends[1]) < GW_REAL_MAX));
+    CHECK((gw_exp(unit_above(ends[1])) == GW_REAL_MAX) && (gw_expm1(unit_above(ends[1])) == GW_REAL_MAX));
+}
+
 void suite_math(void)
 {
+    unit_run("exponentials_reach_to_the_ends_of_their_range", exponentials_reach_to_the_ends_of_their_range);
     unit_run("finite_means_neither_nan_nor_infinite", finite_means_neither_nan_nor_infinite);
     unit_run("a_range_holds_its_ends_and_not_their_neighbours", a_range_holds_its_ends_and_not_their_neighbours);
     unit_run("comparisons_choose_as_documented", comparisons_choose_as_documented);
