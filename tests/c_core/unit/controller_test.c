@@ -209,6 +209,18 @@ static void a_tare_is_granted_to_a_robot_that_stands(void)
     CHECK(rig_output.mode == GW_MODE_TRACKING);
 }
 
+static void a_new_tare_ends_what_was_detected(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_ticks(20U);
+    rig_controller.detector.active = true; /* tripped just now */
+    rig_input.tare_request = true;
+    rig_tick(GW_STATUS_OK);
+    CHECK((rig_output.mode == GW_MODE_TARING) && (!rig_output.detection_active));
+}
+
 static void a_request_in_the_first_tick_is_an_edge(void)
 {
     rig_set_up();
@@ -333,6 +345,7 @@ void suite_controller(void)
     unit_run("a_stop_request_stops_it", a_stop_request_stops_it);
     unit_run("a_stopped_escape_is_not_resumed", a_stopped_escape_is_not_resumed);
     unit_run("a_tare_is_granted_to_a_robot_that_stands", a_tare_is_granted_to_a_robot_that_stands);
+    unit_run("a_new_tare_ends_what_was_detected", a_new_tare_ends_what_was_detected);
     unit_run("a_request_in_the_first_tick_is_an_edge", a_request_in_the_first_tick_is_an_edge);
     unit_run("turning_counts_as_moving_at_the_rim", turning_counts_as_moving_at_the_rim);
     unit_run("a_tare_is_granted_in_settled_and_refused_in_between",

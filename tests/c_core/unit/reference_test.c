@@ -37,7 +37,7 @@ static void the_gain_is_limited_by_the_period(void)
     fast.follow_gain_per_s = unit_above(GW_HALF / R(0.1));
     gw_reference_config_check(&fast, R(0.1), &error);
     CHECK(error.field == GW_FIELD_REFERENCE_FOLLOW_GAIN);
-    CHECK(error.maximum == (GW_HALF / R(0.1)));
+    CHECK((error.maximum == (GW_HALF / R(0.1))) && (error.index == 0U));
 }
 
 static void every_number_of_a_plan_is_bounded(void)

@@ -136,6 +136,15 @@ static void quiet_ends_a_reaction(void)
     CHECK(supervisor.quiet_ticks == 0U);
 }
 
+static void quiet_ends_nothing_but_a_reaction(void)
+{
+    gw_supervisor_t supervisor = in_mode(GW_MODE_TRACKING);
+    gw_supervisor_events_t quiet = quiet_tick;
+    supervisor.config.settled_ticks = 1U;
+    quiet.quiet = true;
+    CHECK(step(&supervisor, &quiet) == GW_MODE_TRACKING);
+}
+
 static void settled_may_hold_for_ever(void)
 {
     gw_supervisor_t supervisor = in_mode(GW_MODE_SETTLED);
@@ -204,6 +213,7 @@ void suite_supervisor(void)
     unit_run("an_interruption_leads_back", an_interruption_leads_back);
     unit_run("a_tare_leads_back_to_where_it_was_asked_for", a_tare_leads_back_to_where_it_was_asked_for);
     unit_run("quiet_ends_a_reaction", quiet_ends_a_reaction);
+    unit_run("quiet_ends_nothing_but_a_reaction", quiet_ends_nothing_but_a_reaction);
     unit_run("settled_may_hold_for_ever", settled_may_hold_for_ever);
     unit_run("the_path_clock_runs_in_tracking_on_a_valid_plan_only",
              the_path_clock_runs_in_tracking_on_a_valid_plan_only);
