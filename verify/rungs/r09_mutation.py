@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from verify.context import Context
 from verify.mutation.killers import UNIT, Killers
 from verify.mutation.mutants import every, shuffled
@@ -33,10 +35,12 @@ def check(context: Context) -> Figure:
 
 def _check_planted(context: Context) -> None:
     """Without the tests of the servo its mutants live: the golden bits alone do not see them all."""
-    stub = context.work / "no_servo_test.c"
+    apart = replace(context, work=context.work / "without_tests")
+    apart.work.mkdir()
+    stub = apart.work / "no_servo_test.c"
     stub.write_text('#include "unit.h"\nvoid suite_servo(void)\n{\n}\n')
     tests = [path for path in sorted((context.root / UNIT).glob("*.c")) if path.name != "servo_test.c"]
-    killers = Killers(context, [*tests, stub])
+    killers = Killers(apart, [*tests, stub])
     mutants = [mutant for mutant in shuffled(every(context.root), SEED) if mutant.key.file == "gw_servo.c"]
     with planted("the servo's tests taken away", shows=r"\d+ survived, and not listed"):
         judge(killers, of_all(killers, mutants[:WITHOUT_TESTS]))
