@@ -7,20 +7,20 @@ import enum
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verify import golden
 from verify.context import Context, Finished
 from verify.failure import RungFailed
 from verify.mutation.mutants import Mutant
-from verify.targets import GCC, STANDARD, core_sources
+from verify.targets import GCC, PORTABLE, STANDARD, core_sources
 
 __all__ = ["AT_A_TIME", "UNIT", "Fate", "Killers"]
 
 AT_A_TIME = 2
-OPTIMISED: tuple[str, ...] = ("-O2",)  # at which an equivalent mutant gives the same object
-TRAPPING: tuple[str, ...] = ("-O1", "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error")
+OPTIMISED: tuple[str, ...] = ("-O2", PORTABLE)  # at which an equivalent mutant gives the same object
+TRAPPING: tuple[str, ...] = ("-O1", PORTABLE, "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error")
 # Some sixty times what a program takes; a mutant may print without end, too.
 CPU_S = 4
 MEMORY_GIB = 1.0
@@ -47,7 +47,8 @@ class _Program:
     """A killer: its own objects, and what it prints when all is well (None: anything, it says so by its exit code)."""
 
     fate: Fate
-    objects: tuple[Path, ...]
+    sources: tuple[Path, ...]  # beside c_core's
+    include: str
     expected: str | None
     flags: tuple[str, ...] = OPTIMISED  # with which c_core is compiled for it
 
@@ -62,13 +63,14 @@ class Killers:
         example = context.root / golden.EXAMPLE
         bits = [*sorted((context.root / golden.SOURCES).glob("*.c")), example / "digest.c"]
         bits.append(example / "recorded_collision.c")
-        unit_objects = self._objects(unit, "unit", f"-I{context.root / UNIT}")
-        bits_objects = self._objects(bits, "golden", f"-I{example}")
+        unit_program = _Program(Fate.UNIT, tuple(unit), f"-I{context.root / UNIT}", None)
         self.programs = (
-            _Program(Fate.UNIT, unit_objects, None),
-            _Program(Fate.BITS, bits_objects, golden.read_table(context.root, 0)),
-            _Program(Fate.TRAPS, unit_objects, None, TRAPPING),
+            unit_program,
+            _Program(Fate.BITS, tuple(bits), f"-I{example}", golden.read_table(context.root, 0)),
+            replace(unit_program, fate=Fate.TRAPS, flags=TRAPPING),
         )
+        self.around = {program.fate: self._around(program) for program in self.programs}
+        self.includers = self._includers()
         self.original = {
             flags: {source.name: self._compiled(source, f"core{flags[0]}", *flags) for source in self.sources}
             for flags in (OPTIMISED, TRAPPING)
@@ -76,7 +78,8 @@ class Killers:
         healthy = context.work / "healthy"
         healthy.mkdir()
         for program in self.programs:
-            if self._sees(program, list(self.original[program.flags].values()), healthy):
+            core = self.original[program.flags]
+            if self._sees(program, [*core.values(), *self.around[program.fate].values()], healthy):
                 raise RungFailed(f"c_core without any mutant is {program.fate.value}")
 
     def fates(self, mutants: Sequence[Mutant]) -> list[Fate]:
@@ -92,46 +95,61 @@ class Killers:
         mutated = folder / mutant.path.parent.name / mutant.path.name
         mutated.parent.mkdir()
         mutated.write_text(mutant.applied(mutant.path.read_text(encoding="utf-8")), encoding="utf-8")
-        changed: list[tuple[Path, tuple[str, ...]]]
         if mutant.path.suffix == ".c":
-            changed = [(mutated, ())]
+            changed = {mutant.path.name: mutated}
+            include: tuple[str, ...] = ()
         else:
-            changed = [(source, (f"-I{folder}",)) for source in self.sources]
-        objects = self._mutated(changed, folder, OPTIMISED)
-        if objects is None:
+            changed = {source.name: source for source in self.includers[mutant.path.name]}
+            include = (f"-I{folder}",)
+        core = self._mutated(self.original[OPTIMISED], changed, folder, *OPTIMISED, *include)
+        if core is None:
             return Fate.NOT_COMPILED
-        original = self.original[OPTIMISED]
-        if all(objects[name].read_bytes() == original[name].read_bytes() for name in original):
+        if all(core[name].read_bytes() == original.read_bytes() for name, original in self.original[OPTIMISED].items()):
             return Fate.SAME_OBJECT
         for program in self.programs:
             if program.flags != OPTIMISED:
-                objects = self._mutated(changed, folder, program.flags)
-            if objects is None or self._sees(program, list(objects.values()), folder):
+                core = self._mutated(self.original[program.flags], changed, folder, *program.flags, *include)
+            # A header's inline functions are in the tests' objects, too.
+            tests = self._mutated(self.around[program.fate], changed, folder, *OPTIMISED, program.include, *include)
+            if core is None or tests is None or self._sees(program, [*core.values(), *tests.values()], folder):
                 return program.fate
         return Fate.SURVIVED
 
     def _mutated(
-        self, changed: Sequence[tuple[Path, tuple[str, ...]]], folder: Path, flags: tuple[str, ...]
+        self, original: dict[str, Path], changed: dict[str, Path], folder: Path, *flags: str
     ) -> dict[str, Path] | None:
-        """The objects of c_core, those of the changed sources compiled anew; None if one does not compile."""
-        objects = dict(self.original[flags])
-        for source, include in changed:
-            target = folder / f"{source.stem}{flags[0]}.o"
-            if self._compile(source, target, *flags, *include).returncode != 0:
+        """The objects, those of the changed sources compiled anew; None if one does not compile."""
+        objects = dict(original)
+        for name in original.keys() & changed.keys():
+            target = folder / f"{name}{flags[0]}.o"
+            if self._compile(changed[name], target, *flags).returncode != 0:
                 return None
-            objects[source.name] = target
+            objects[name] = target
         return objects
 
-    def _sees(self, program: _Program, core: list[Path], folder: Path) -> bool:
+    def _around(self, program: _Program) -> dict[str, Path]:
+        name = program.fate.name.lower()
+        return {source.name: self._compiled(source, name, *OPTIMISED, program.include) for source in program.sources}
+
+    def _includers(self) -> dict[str, list[Path]]:
+        """Which sources, c_core's and the programs', include a header of c_core, by its name."""
+        sources = dict.fromkeys(self.sources, "")
+        sources |= {source: program.include for program in self.programs for source in program.sources}
+        found: dict[str, list[Path]] = {path.name: [] for path in self.context.core.glob("include/giveway/*.h")}
+        for source, include in sources.items():
+            words = ("-MM", f"-I{self.context.core / 'include'}", *((include,) if include else ()), source)
+            for header in self.context.run(self.context.which(GCC), *words).stdout.replace("\\", " ").split():
+                if Path(header).name in found:
+                    found[Path(header).name].append(source)
+        return found
+
+    def _sees(self, program: _Program, objects: Sequence[Path], folder: Path) -> bool:
         """It ends otherwise than it should: failed tests, wrong output, a crash, or out of time or memory."""
         built = folder / program.fate.name.lower()
-        self.context.run(self.context.which(GCC), *core, *program.objects, "-o", built)
+        self.context.run(self.context.which(GCC), *objects, "-o", built)
         printed = built.with_suffix(".txt")
         answer = self.context.run("bash", "-c", LIMITED, built, printed, memory_gib=MEMORY_GIB, expect=None)
         return answer.returncode != 0 or program.expected not in (None, printed.read_text(errors="replace"))
-
-    def _objects(self, sources: Sequence[Path], name: str, *flags: str) -> tuple[Path, ...]:
-        return tuple(self._compiled(source, name, *OPTIMISED, *flags) for source in sources)
 
     def _compiled(self, source: Path, name: str, *flags: str) -> Path:
         target = self.context.work / name / f"{source.stem}.o"
