@@ -34,7 +34,7 @@ class Cost:
 def measure(context: Context) -> dict[str, Cost]:
     """Nanoseconds of both in one run, taken in turns; instructions as callgrind counts them."""
     program = context.root / PROGRAM
-    lines = context.run(program, COLLISIONS).stdout.splitlines()
+    lines = context.run(program, str(COLLISIONS)).stdout.splitlines()
     times = {name: float(value) for name, value in (line.split() for line in lines)}
     return {name: Cost(times[name], _instructions(context, program, function)) for name, function in WAYS.items()}
 
@@ -47,7 +47,7 @@ def _instructions(context: Context, program: Path, function: str) -> float:
         "--collect-atstart=no",
         f"--toggle-collect={function}",
         program,
-        1,
+        "1",
         memory_gib=None,  # valgrind reserves address space
     )
     found = re.search(r"Collected : (\d+)", answer.stderr)
