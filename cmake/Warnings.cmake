@@ -4,7 +4,10 @@ function(giveway_compile_options TARGET)
   target_compile_options(
     ${TARGET}
     PRIVATE -Wall -Wextra -Wconversion -Werror -ffp-contract=off
-            "-ffile-prefix-map=${CMAKE_SOURCE_DIR}=." $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+            "-ffile-prefix-map=${CMAKE_BINARY_DIR}=build" "-ffile-prefix-map=${CMAKE_SOURCE_DIR}=."
+            $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>
+            # -Wconversion of C++ means the same set of warnings with clang as with gcc.
+            $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion>)
   set_target_properties(${TARGET} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
                                              CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
 endfunction()

@@ -1,16 +1,20 @@
-"""documentation/index.html of an FMU: what it is and a table of its variables."""
+"""documentation/index.html of an FMU: what it is, its equations and a table of its variables. Needs no network."""
 
 from __future__ import annotations
 
 from html import escape
+from pathlib import Path
 
+from .errors import TableError
+from .mathml import mathml
 from .table import Group, Table, Variable
 
 __all__ = ["page"]
 
 _STYLE = """body{font:15px/1.4 sans-serif;margin:2em auto;max-width:75em;padding:0 1em}
 table{border-collapse:collapse}td,th{border-bottom:1px solid #ccc;padding:.2em .8em .2em 0;text-align:left}
-td.number{text-align:right;font-variant-numeric:tabular-nums}"""
+td.number{text-align:right;font-variant-numeric:tabular-nums}
+math{font-size:115%}math[display=block]{width:max-content;margin:.6em 0 .6em 2em}"""
 
 
 def _number(value: object) -> str:
@@ -39,7 +43,33 @@ def _feedthrough(table: Table) -> str:
     return f"Within the same instant, outputs that follow inputs are {names}."
 
 
-def page(table: Table, version: str) -> str:
+def _words(text: str) -> str:
+    """A paragraph's text; what stands between grave accents is mathematics."""
+    parts = text.split("`")
+    return "".join(mathml(part, "inline") if i % 2 else escape(part) for i, part in enumerate(parts))
+
+
+def _equations(path: Path | None) -> str:
+    """Sections of a text file: headings start with ``#``, equations with four blanks, the rest are paragraphs."""
+    if path is None:
+        return ""
+    parts: list[str] = []
+    for block in path.read_text(encoding="utf-8").split("\n\n"):
+        lines = block.strip("\n").splitlines()
+        try:
+            if block.startswith("#"):
+                parts.append(f"<h2>{escape(block.lstrip('# '))}</h2>")
+            elif lines and lines[0].startswith("    "):
+                parts += [mathml(line) for line in lines]
+            elif lines:
+                parts.append(f"<p>{_words(' '.join(lines))}</p>")
+        except ValueError as error:
+            raise TableError(f"{path}: {lines[0].strip()!r}: {error}") from error
+    return "\n".join(parts) + "\n"
+
+
+def page(table: Table, version: str, equations: Path | None = None) -> str:
+    """The page; ``equations`` is a text file (see `_equations`)."""
     titles = ("Name", "Type", "Unit", "Start", "Minimum", "Maximum", "Meaning", "Reference")
     sections = []
     for causality in ("input", "output", "parameter", "local"):
@@ -59,7 +89,8 @@ def page(table: Table, version: str) -> str:
 <p>Co-Simulation{exchange}; any communication step size, made for {table.step_size} s. Inputs are held constant over a
 step and outputs are valid at its end. {_feedthrough(table)} Ranges are inclusive; a value outside its range, or not
 finite, is refused with a message. Parameters can be set until initialisation ends.</p>
-{chr(10).join(sections)}
+{_equations(equations)}{chr(10).join(sections)}
+<p>Licences: <a href="licenses/license.txt">licenses/license.txt</a>.</p>
 </body>
 </html>
 """

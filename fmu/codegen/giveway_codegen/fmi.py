@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
 from .table import TIME_REFERENCE, Group, Table, Value, Variable
+from .types import Quantity
+from .units import DISPLAY_UNITS
 
 __all__ = ["fmi2_model_description", "fmi3_model_description"]
 
 AUTHOR = "giveway contributors"
+_TOLERANCE = 1e-6  # for an importer's solver: the relative tolerance of our own (solver.relative_tolerance)
 
 
 def _text(value: Value) -> str:
@@ -37,9 +41,37 @@ def _header(table: Table, version: str) -> dict[str, str | None]:
 def _unit_definitions(table: Table) -> list[str]:
     lines = ["  <UnitDefinitions>"]
     for name, exponents in table.units.items():
-        base = _attributes({symbol: str(exponent) for symbol, exponent in exponents.items()})
-        lines.append(f"    <Unit name={quoteattr(name)}><BaseUnit{base}/></Unit>")
+        base = _attributes({**{symbol: str(exponent) for symbol, exponent in exponents.items()}, "factor": "1.0"})
+        lines.append(f"    <Unit name={quoteattr(name)}>")
+        lines.append(f"      <BaseUnit{base}/>")
+        for display, (factor, offset) in DISPLAY_UNITS.get(name, {}).items():
+            pairs = {"name": display, "factor": repr(factor), "offset": repr(offset) if offset else None}
+            lines.append(f"      <DisplayUnit{_attributes(pairs)}/>")
+        lines.append("    </Unit>")
     return [*lines, "  </UnitDefinitions>"]
+
+
+def _type_attributes(quantity: Quantity) -> dict[str, str | None]:
+    """What the type definition of a quantity says beside its name and description: the same in both versions."""
+    numbers = {"min": quantity.minimum, "nominal": quantity.nominal}
+    return {
+        "quantity": quantity.quantity,
+        "unit": quantity.unit,
+        "displayUnit": quantity.display_unit,
+        **{name: None if number is None else _text(number) for name, number in numbers.items()},
+    }
+
+
+def _type_definitions(table: Table, fmi: int, types: dict[str, str]) -> list[str]:
+    lines = ["  <TypeDefinitions>"]
+    for quantity in table.quantities:
+        own = {"name": quantity.name, "description": quantity.description}
+        values, tag = _type_attributes(quantity), types[quantity.kind]
+        if fmi == 3:
+            lines.append(f"    <{tag}Type{_attributes({**own, **values})}/>")
+        else:
+            lines.append(f"    <SimpleType{_attributes(dict(own))}><{tag}{_attributes(values)}/></SimpleType>")
+    return [*lines, "  </TypeDefinitions>"]
 
 
 def _log_categories() -> list[str]:
@@ -51,7 +83,10 @@ def _log_categories() -> list[str]:
 
 
 def _default_experiment(table: Table) -> str:
-    pairs = {"startTime": "0.0", "stopTime": "1.0", "stepSize": _text(table.step_size)}
+    pairs = {"startTime": "0.0", "stopTime": "1.0"}
+    if table.has_equations:
+        pairs["tolerance"] = _text(_TOLERANCE)
+    pairs["stepSize"] = _text(table.step_size)
     return f"  <DefaultExperiment{_attributes(dict(pairs))}/>"
 
 
@@ -83,9 +118,16 @@ def _variability(group: Group) -> str:
 
 
 def _value_attributes(group: Group, variable: Variable) -> dict[str, str | None]:
-    """Unit, range, nominal and start: the same words in both versions."""
-    optional = {"min": group.minimum, "max": group.maximum, "nominal": group.nominal, "start": variable.start}
-    pairs: dict[str, str | None] = {"unit": group.unit}
+    """Type, unit, range, nominal and start: the same words in both versions.
+
+    What the type says already is said again: many importers do not look there.
+    """
+    optional = {"min": group.minimum, "max": group.maximum, "nominal": group.size, "start": variable.start}
+    pairs: dict[str, str | None] = {
+        "declaredType": None if group.quantity is None else group.quantity.name,
+        "unit": group.unit,
+        "displayUnit": group.display_unit,
+    }
     pairs.update({name: None if value is None else _text(value) for name, value in optional.items()})
     return pairs
 
@@ -117,8 +159,8 @@ def fmi3_model_description(table: Table, version: str) -> str:
         "hasEventMode": "false",
     }
     lines.append(f"  <CoSimulation{_attributes(dict(simulation))}/>")
-    lines += [*_unit_definitions(table), *_log_categories(), _default_experiment(table)]
-    lines.append("  <ModelVariables>")
+    lines += [*_unit_definitions(table), *_type_definitions(table, 3, types), *_log_categories()]
+    lines += [_default_experiment(table), "  <ModelVariables>"]
     lines.append(
         f'    <Float64 name="time" valueReference="{TIME_REFERENCE}" causality="independent" '
         'variability="continuous" unit="s" description="Simulated time"/>'
@@ -150,8 +192,16 @@ def fmi3_model_description(table: Table, version: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def fmi2_model_description(table: Table, version: str) -> str:
-    """FMI 2.0, without a variable for time: some importers refuse an explicit one."""
+def _interface(tag: str, attributes: Mapping[str, str], sources: Sequence[str]) -> list[str]:
+    head = f"  <{tag}{_attributes(dict(attributes))}"
+    if not sources:
+        return [f"{head}/>"]
+    files = [f"      <File name={quoteattr(name)}/>" for name in sources]
+    return [f"{head}>", "    <SourceFiles>", *files, "    </SourceFiles>", f"  </{tag}>"]
+
+
+def fmi2_model_description(table: Table, version: str, sources: Sequence[str] = ()) -> str:
+    """FMI 2.0, without a variable for time: some importers refuse an explicit one. ``sources``: what to compile."""
     types = {"real": "Real", "integer": "Integer", "boolean": "Boolean"}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     head = {"fmiVersion": "2.0", **_header(table, version), "guid": table.token}
@@ -167,7 +217,7 @@ def fmi2_model_description(table: Table, version: str) -> str:
     }
     if table.has_equations:
         exchange = {**identifier, "completedIntegratorStepNotNeeded": "false", **common}
-        lines.append(f"  <ModelExchange{_attributes(dict(exchange))}/>")
+        lines += _interface("ModelExchange", exchange, sources)
     simulation = {
         **identifier,
         "canHandleVariableCommunicationStepSize": "true",
@@ -176,9 +226,9 @@ def fmi2_model_description(table: Table, version: str) -> str:
         "canRunAsynchronuously": "false",  # the standard's spelling
         **common,
     }
-    lines.append(f"  <CoSimulation{_attributes(dict(simulation))}/>")
-    lines += [*_unit_definitions(table), *_log_categories(), _default_experiment(table)]
-    lines.append("  <ModelVariables>")
+    lines += _interface("CoSimulation", simulation, sources)
+    lines += [*_unit_definitions(table), *_type_definitions(table, 2, types), *_log_categories()]
+    lines += [_default_experiment(table), "  <ModelVariables>"]
     indices = {variable.name: index for index, (_, variable) in enumerate(table.scalars, start=1)}
 
     def listed(variables: list[Variable]) -> str:

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from .errors import TableError
-from .units import base_units
+from .types import Quantity, quantity_of
+from .units import DISPLAY_UNITS, base_units, default_display_unit
 
 __all__ = ["Group", "Table", "Variable", "read_table"]
 
@@ -23,13 +24,13 @@ INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
 Value = float | int | bool
 
 _MODEL_KEYS = {"name", "description", "step_size_s"}
-_STATE_KEYS = {"reference", "name", "count", "unit", "nominal", "dependencies", "description"}
+_STATE_KEYS = {"reference", "name", "count", "unit", "display_unit", "nominal", "dependencies", "description"}
 _INDICATOR_KEYS = {"reference", "name", "count", "description"}
 # A state and its derivative: der(x) has the reference of x plus this.
 DERIVATIVE_OFFSET = 1000
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
-    "allow_nonfinite", "dependencies", "description",
+    "allow_nonfinite", "dependencies", "description", "display_unit",
 }  # fmt: skip
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
 
@@ -63,6 +64,19 @@ class Group:
     description: str
     variables: tuple[Variable, ...]
     role: str | None = None  # of a local variable: "state", "derivative" or "indicator"
+    display_unit: str | None = None  # what an importer may show instead of the unit
+
+    @property
+    def quantity(self) -> Quantity | None:
+        """The type definition that it belongs to; event indicators have none."""
+        return None if self.role == "indicator" else quantity_of(self.type, self.unit, self.minimum)
+
+    @property
+    def size(self) -> float | None:
+        """Nominal value: the table's, else that of its quantity; None for what does not vary and for indicators."""
+        if self.nominal is not None or self.type != "real" or self.causality == "parameter" or self.role == "indicator":
+            return self.nominal
+        return None if self.quantity is None else self.quantity.nominal
 
 
 @dataclass(frozen=True)
@@ -96,6 +110,12 @@ class Table:
         if group.dependencies is None:
             return [variable for _, variable in self.with_role("state")]
         return self.members(group.dependencies)
+
+    @property
+    def quantities(self) -> list[Quantity]:
+        """The types in use, by name."""
+        used = {group.quantity for group in self.groups} - {None}
+        return sorted((q for q in used if q is not None), key=lambda quantity: quantity.name)
 
     @property
     def units(self) -> dict[str, dict[str, int]]:
@@ -230,8 +250,18 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     )
     return Group(
         name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
-        dependencies, " ".join(description.split()), variables,
+        dependencies, " ".join(description.split()), variables, display_unit=_display_unit(entry, unit),
     )  # fmt: skip
+
+
+def _display_unit(entry: _Entry, unit: str | None) -> str | None:
+    if "display_unit" not in entry.raw:
+        return default_display_unit(unit)
+    name = entry.raw["display_unit"]
+    known = DISPLAY_UNITS.get(unit or "", {})
+    if name not in known:
+        raise entry.fail("display_unit", f"{name!r}, but must be one of {', '.join(known) or 'none'} for {unit!r}")
+    return str(name)
 
 
 def _dependencies(entry: _Entry) -> tuple[str, ...]:
@@ -280,8 +310,13 @@ def _parse_state(entry: _Entry) -> list[Group]:
         raise entry.fail("nominal", f"{nominal} is not positive")
     state = _local(entry, "state", _STATE_KEYS, 0, "{}", unit)
     rate = _local(entry, "derivative", _STATE_KEYS, DERIVATIVE_OFFSET, "der({})", "1/s" if unit == "1" else f"{unit}/s")
-    rate = replace(rate, dependencies=_dependencies(entry), description=f"Derivative: {state.description}")
-    return [replace(state, nominal=nominal), rate]
+    rate = replace(
+        rate,
+        dependencies=_dependencies(entry),
+        description=f"Derivative: {state.description}",
+        display_unit=default_display_unit(rate.unit),
+    )
+    return [replace(state, nominal=nominal, display_unit=_display_unit(entry, unit)), rate]
 
 
 def _parse_indicator(entry: _Entry) -> Group:

@@ -1,10 +1,11 @@
-"""Units as FMI wants them: exponents of the SI base units and a factor."""
+"""Units as FMI wants them: exponents of the SI base units, a factor, and what an importer may show instead."""
 
 from __future__ import annotations
 
+import math
 import re
 
-__all__ = ["base_units"]
+__all__ = ["DISPLAY_UNITS", "base_units", "default_display_unit"]
 
 _BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")  # in the order of the FMI schemas
 _SYMBOLS: dict[str, dict[str, int]] = {
@@ -16,6 +17,30 @@ _SYMBOLS: dict[str, dict[str, int]] = {
     "W": {"kg": 1, "m": 2, "s": -3},
     "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
 }
+
+# unit -> display unit -> (factor, offset): value in the display unit = factor * value in the unit + offset.
+DISPLAY_UNITS: dict[str, dict[str, tuple[float, float]]] = {
+    "1": {"%": (100.0, 0.0)},
+    "J": {"mJ": (1e3, 0.0)},
+    "K": {"degC": (1.0, -273.15)},
+    "N.m/rad": {"N.m/deg": (math.pi / 180.0, 0.0)},
+    "N/m": {"N/mm": (1e-3, 0.0)},
+    "kg": {"g": (1e3, 0.0)},
+    "m": {"cm": (1e2, 0.0), "mm": (1e3, 0.0)},
+    "m/s": {"km/h": (3.6, 0.0), "mm/s": (1e3, 0.0)},
+    "rad": {"deg": (180.0 / math.pi, 0.0)},
+    "rad/s": {"deg/s": (180.0 / math.pi, 0.0), "rpm": (30.0 / math.pi, 0.0)},
+    "rad/s2": {"deg/s2": (180.0 / math.pi, 0.0)},
+    "s": {"ms": (1e3, 0.0)},
+}
+
+# What is shown unless a variable says otherwise. Lengths in metres and in millimetres are both common on a robot.
+_DEFAULT_DISPLAY_UNITS = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2", "s": "ms"}
+
+
+def default_display_unit(unit: str | None) -> str | None:
+    """The display unit of a variable that names none; None: it is shown in its unit."""
+    return None if unit is None else _DEFAULT_DISPLAY_UNITS.get(unit)
 
 
 def base_units(unit: str) -> dict[str, int]:

@@ -84,11 +84,18 @@ def test_the_file_holds_what_it_should_in_order(model: str, version: int) -> Non
     assert names == sorted(names)
     assert {entry.compress_type for entry in entries} == {zipfile.ZIP_DEFLATED}
     assert {entry.date_time for entry in entries} == {(1980, 1, 1, 0, 0, 0)}
-    licences = ["documentation/licenses/license.txt"]
+    wanted = {
+        f"binaries/{BINARY_FOLDERS[version]}/giveway_{model}.so",
+        "documentation/index.html",
+        "documentation/licenses/license.txt",
+        "modelDescription.xml",
+    }
     if model in INTEGRATED:
-        licences.append("documentation/licenses/sundials.txt")
-    wanted = [f"binaries/{BINARY_FOLDERS[version]}/giveway_{model}.so", "documentation/index.html", *licences]
-    assert names == [*wanted, "modelDescription.xml"]
+        wanted.add("documentation/licenses/sundials.txt")
+    if model != "lag":
+        wanted |= {"model.png"} if version == 2 else {f"terminalsAndIcons/icon.{kind}" for kind in ("png", "svg")}
+    assert {name for name in names if not name.startswith("sources/")} == wanted
+    assert any(name.startswith("sources/") for name in names) == (model == "controller")
 
 
 def test_packing_twice_gives_the_same_bytes(tmp_path: Path) -> None:
@@ -106,7 +113,7 @@ def test_packing_twice_gives_the_same_bytes(tmp_path: Path) -> None:
         binary.chmod(0o600 if name == "first" else 0o755)
         output = folder / "lag.fmu"
         codegen(
-            "package", "--fmi", "3", "--generated", folder, "--binary", binary,
+            "package", "--fmi", "3", "--generated", folder, "--binary", f"x86_64-linux={binary}",
             "--licence", f"license.txt={ROOT / 'LICENSE'}", "--out", output,
         )  # fmt: skip
         packed.append(output.read_bytes())

@@ -120,6 +120,7 @@ WRONG = {
         "dependencies: there is no input or state 'third'",
     ),
     "nominal": (variable(nominal="0.0"), "nominal: 0.0 is not positive"),
+    "display unit": (variable(display_unit='"mm"'), "display_unit: 'mm', but must be one of km/h, mm/s for 'm/s'"),
 }
 
 

@@ -1,0 +1,267 @@
+"""`make platforms`: the FMUs of `make fmus ALL=1` on their platforms, against those of this machine's compiler.
+
+Every library is read: exports, needs, oldest system. Those for Linux and Windows are run, under qemu and wine where
+they are not at home: a coupled collision, and each component by itself. Prints a line for each platform and FMU, then
+shows each check failing on a planted fault, and ends with 1 if anything was wrong.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from .plan import Plan, read_outputs
+from .runs import CONTROLLER, all_runs, replay
+
+ROOT = Path(__file__).parents[2]
+FMUS = ROOT / "out" / "fmus"
+NATIVE = ROOT / "build" / "fmus"
+WORK = ROOT / "build" / "platforms" / "check"
+TOOLS = ROOT / "build" / "platforms" / "tools" / "bin" / "python"
+ZIG_CACHE = ROOT / "build" / "platforms" / "zig-cache"
+MODELS = ("controller", "testbed", "drivetrain", "bumper")
+# Platform -> what a program for it is started with; without an entry it cannot be run here.
+LAUNCHERS = {
+    "x86_64-linux": [],
+    "aarch64-linux": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"],
+    "x86_64-windows": ["/usr/lib/wine/wine64"],
+}
+TARGETS = {
+    "x86_64-linux": "x86_64-linux-gnu.2.17",
+    "aarch64-linux": "aarch64-linux-gnu.2.17",
+    "x86_64-windows": "x86_64-windows-gnu",
+    "x86_64-darwin": "x86_64-macos.11.0",
+    "aarch64-darwin": "aarch64-macos.11.0",
+}
+# The plant calls libm's pow in choosing step sizes, which may differ in its last bit from library to library.
+PLANT_TOLERANCE = 1e-9
+
+Outputs = Mapping[tuple[int, str], np.ndarray]
+
+
+@dataclass
+class Findings:
+    """What was wrong, in sentences."""
+
+    faults: list[str] = field(default_factory=list)
+
+    def say(self, subject: str, text: str, faults: Sequence[str]) -> None:
+        print(f"{'FAIL' if faults else 'ok':5}{subject:32}{'; '.join(faults) if faults else text}", flush=True)
+        self.faults += [f"{subject}: {fault}" for fault in faults]
+
+
+def _headers() -> Path:
+    spec = find_spec("fmpy")
+    assert spec is not None
+    assert spec.origin is not None
+    return Path(spec.origin).parent / "c-code"
+
+
+def zig(*arguments: object) -> None:
+    """Run zig's compiler."""
+    (binary,) = TOOLS.parents[1].glob("lib/python3*/site-packages/ziglang/zig")
+    cache = {"ZIG_GLOBAL_CACHE_DIR": str(ZIG_CACHE), "ZIG_LOCAL_CACHE_DIR": str(ZIG_CACHE)}
+    subprocess.run([binary, *map(str, arguments)], check=True, env={**os.environ, **cache})
+
+
+def inspected(fmus: Sequence[Path]) -> list[dict[str, object]]:
+    """What `binaries` says of the libraries of these FMUs."""
+    command = [str(TOOLS), "-m", "fmu.platforms.binaries", str(_headers()), *map(str, fmus)]
+    answer = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+    return [json.loads(line) for line in answer.stdout.splitlines()]
+
+
+def _runner(platform: str) -> Path:
+    """run_fmus for a platform."""
+    path = WORK / platform / ("run_fmus.exe" if "windows" in platform else "run_fmus")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    source = Path(__file__).with_name("run_fmus.c")
+    options = [] if "windows" in platform else ["-ldl"]
+    zig("cc", f"--target={TARGETS[platform]}", "-O1", "-s", f"-I{_headers()}", source, "-o", path, *options)
+    return path
+
+
+def run(plan: Plan, name: str, platform: str, launcher: Sequence[str], runner: Path) -> Outputs:
+    """The outputs of a plan on a platform."""
+    folder = WORK / platform
+    libraries = []
+    for fmu in plan.fmus:
+        library = fmu.library(platform, folder)
+        libraries.append(os.path.relpath(library, folder))
+        if "windows" not in platform:
+            libraries[-1] = f"./{libraries[-1]}"
+    path = folder / f"{name}.plan"
+    plan.write(path, [library.replace("/", "\\") if "windows" in platform else library for library in libraries])
+    environment = {**os.environ, "WINEPREFIX": str(WORK / "wine"), "WINEDEBUG": "-all", "DISPLAY": ""}
+    command = [*launcher, runner, path.name]
+    answer = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False
+    )
+    if answer.returncode != 0:
+        raise RuntimeError(f"{name} on {platform}: {answer.stderr.strip()}")
+    return read_outputs(answer.stdout, plan)
+
+
+def deviation(found: Outputs, expected: Outputs, instances: Sequence[int]) -> tuple[float, str]:
+    """Largest difference of a real output over its peak, with its name; integers and booleans must be equal."""
+    worst = (0.0, "")
+    for (instance, name), values in expected.items():
+        if instance not in instances:
+            continue
+        other = found[instance, name]
+        if values.dtype == np.float64:
+            peak = float(np.max(np.abs(values)))
+            difference = float(np.max(np.abs(other - values)))
+            error = difference / peak if peak > 0 else difference
+        else:
+            error = 0.0 if np.array_equal(other, values) else float("inf")
+        if not error <= worst[0]:
+            worst = (error, name)
+    return worst
+
+
+def different_bits(found: Outputs, expected: Outputs) -> list[str]:
+    """Names of outputs that are not the same to the bit."""
+    return [name for key, values in expected.items() for name in [key[1]] if found[key].tobytes() != values.tobytes()]
+
+
+# Counts of the solver's work are not results.
+_WORK = ("solver.steps", "solver.rhs_calls", "solver.jacobian_calls")
+
+
+def results(outputs: Outputs) -> Outputs:
+    return {key: values for key, values in outputs.items() if key[1] not in _WORK}
+
+
+def check_runs(findings: Findings) -> None:
+    """Every run on every platform that runs here, against this machine's own FMUs."""
+    host = "x86_64-linux"
+    runner = _runner(host)
+    expected = {name: run(plan, f"native_{name}", host, [], runner) for name, plan in all_runs(NATIVE).items()}
+    if expected["collision"][CONTROLLER, "detection.count"][-1] < 1:
+        findings.say("collision", "", ["nothing was detected: it was no collision"])
+    alone = replay(NATIVE, all_runs(NATIVE)["collision"], expected["collision"])
+    controller = run(alone, "native_controller", host, [], runner)
+    for platform, launcher in LAUNCHERS.items():
+        runner = _runner(platform)
+        plan = replay(FMUS, all_runs(FMUS)["collision"], expected["collision"])
+        odd = different_bits(run(plan, "controller", platform, launcher, runner), controller)
+        text = f"{len(controller)} outputs of {plan.steps} steps: the same bits"
+        findings.say(f"{platform} controller", text, [f"other bits: {', '.join(odd[:3])}"] if odd else [])
+        for name, plan in all_runs(FMUS).items():
+            outputs = run(plan, name, platform, launcher, runner)
+            model = "testbed" if name == "collision" else name
+            error, worst = deviation(results(outputs), results(expected[name]), range(len(plan.fmus)))
+            same = sum(outputs[key].tobytes() == values.tobytes() for key, values in expected[name].items())
+            text = f"off by {error:.1e} {worst}; {same} of {len(outputs)} outputs the same bits"
+            findings.say(f"{platform} {model}", text, [] if error <= PLANT_TOLERANCE else [text])
+    plant_faults(findings, expected, controller)
+
+
+def plant_faults(findings: Findings, expected: Mapping[str, Outputs], controller: Outputs) -> None:
+    """The comparisons must see a stiffness that is 1e-6 off and a torque that is 0.1 N m off once."""
+    host, launcher = "x86_64-linux", LAUNCHERS["x86_64-linux"]
+    runner = _runner(host)
+    for name, plan in all_runs(FMUS, 1.0 + 1e-6).items():
+        error, _ = deviation(results(run(plan, "planted", host, launcher, runner)), results(expected[name]), range(2))
+        missed = [] if error > PLANT_TOLERANCE else [f"a stiffness 1e-6 off was not seen ({error:.1e})"]
+        findings.say(f"planted fault: {name}", f"seen: off by {error:.1e}", missed)
+    plan = replay(FMUS, all_runs(FMUS)["collision"], expected["collision"], nudge=0.1)
+    odd = different_bits(run(plan, "planted", host, launcher, runner), controller)
+    findings.say(
+        "planted fault: controller", f"seen in {len(odd)} outputs", [] if odd else ["a torque off was not seen"]
+    )
+
+
+def check_libraries(findings: Findings) -> None:
+    """Every library of every FMU; both FMI versions hold the same."""
+    fmus = [FMUS / f"giveway_{model}_fmi{version}.fmu" for model in MODELS for version in (2, 3)]
+    seen: dict[tuple[str, str], object] = {}
+    for entry in inspected(fmus):
+        needed, faults = entry["needed"], entry["faults"]
+        assert isinstance(needed, list)
+        assert isinstance(faults, list)
+        libraries = ", ".join(sorted({Path(str(name)).name.split("-l1-")[0] for name in needed}))
+        text = f"{entry['exports']} exports, {entry['since']}, {entry['bytes']} bytes, needs {libraries}"
+        subject = str(entry["fmu"]).removeprefix("giveway_").removesuffix(".fmu")
+        model, platform = subject.split("_")[0], str(entry["platform"])
+        if seen.setdefault((model, platform), entry["sha256"]) != entry["sha256"]:
+            faults.append("is not the library of the other FMI version")
+        findings.say(f"{subject} {entry['folder']}", text, faults)
+    wanted = {(model, platform) for model in MODELS for platform in TARGETS}
+    if set(seen) != wanted:
+        findings.say("platforms", "", [f"missing: {sorted(wanted - set(seen))}"])
+
+
+# Platform -> target, compiler options, what has to be said of the result.
+_PLANTED = {
+    "x86_64-linux": (
+        "x86_64-linux-gnu.2.34",
+        ["-Wl,--build-id"],
+        ("glibc 2.34", "build id", "exports", "needs libother"),
+    ),
+    "aarch64-linux": ("x86_64-linux-gnu.2.17", [], ("processor",)),
+    "x86_64-windows": ("x86_64-windows-gnu", ["-luser32"], ("exports", "needs libother.dll, USER32.dll")),
+    "x86_64-darwin": ("x86_64-macos.14.0", [], ("macOS 14.0", "exports", "needs", "own name")),
+    "aarch64-darwin": ("aarch64-linux-gnu.2.17", [], ("no library for darwin",)),
+}
+_PLANTED_SOURCE = """
+#ifdef _WIN32
+#include <windows.h>
+__declspec(dllimport) int other(void);
+__declspec(dllexport) int planted(void) { return other() + MessageBoxA(0, "", "", 0); }
+#else
+#include <pthread.h>
+int other(void);
+int planted(void) { return other() + pthread_detach(pthread_self()); }
+#endif
+"""
+
+
+def plant_library_faults(findings: Findings) -> None:
+    """A library for each platform with everything wrong that the check looks for."""
+    folder = WORK / "planted"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "planted.c").write_text(_PLANTED_SOURCE)
+    (folder / "other.c").write_text(
+        "#ifdef _WIN32\n__declspec(dllexport)\n#endif\nint other(void) { return 1; }\n"
+    )  # fmt: skip
+    fmu = folder / "planted.fmu"
+    with zipfile.ZipFile(fmu, "w") as archive:
+        for platform, (target, options, _) in _PLANTED.items():
+            suffix = {"linux": "so", "windows": "dll", "macos": "dylib"}[target.split("-")[1].split(".")[0]]
+            other = folder / platform / f"libother.{suffix}"
+            library = other.with_name(f"planted.{suffix}")
+            other.parent.mkdir(exist_ok=True)
+            common = ["cc", f"--target={target}", "-shared"]
+            against = other.with_suffix(".lib") if suffix == "dll" else other
+            implib = [f"-Wl,--out-implib,{against}"] if suffix == "dll" else []
+            zig(*common, folder / "other.c", "-o", other, *implib)
+            zig(*common, folder / "planted.c", against, *options, "-o", library)
+            archive.write(library, f"binaries/{platform}/planted.{suffix}")
+    for entry in inspected([fmu]):
+        said = "; ".join(map(str, entry["faults"])) if isinstance(entry["faults"], list) else ""
+        missed = [f"not seen: {word}" for word in _PLANTED[str(entry["platform"])][2] if word not in said]
+        findings.say(f"planted fault: {entry['platform']}", f"seen: {said}", missed)
+
+
+def main() -> int:
+    findings = Findings()
+    check_libraries(findings)
+    plant_library_faults(findings)
+    check_runs(findings)
+    print(f"{len(findings.faults)} faults")
+    return 1 if findings.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
