@@ -22,9 +22,9 @@ need libgtest-dev compiles gtest/gtest.h
 need libeigen3-dev compiles Eigen/Core
 need python3 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))'
 need python3-venv "$python" -c 'import ensurepip, venv'
-# Cortex-M: c_core's bits, its cost and the firmware example are tested there.
 # 32-bit x86: the sources in the controller FMU are compiled for it.
 need g++-i686-linux-gnu i686-linux-gnu-g++ --version
+# Cortex-M: c_core's bits, its cost and the firmware example are tested there.
 need gcc-arm-none-eabi arm-none-eabi-gcc --version
 need libnewlib-arm-none-eabi test -e /usr/lib/arm-none-eabi/newlib/libc.a
 need qemu-system-arm qemu-system-arm --version

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from .plan import Plan, read_outputs
+from .reproduce import build_again, differing
 from .runs import CONTROLLER, all_runs, replay
 
 ROOT = Path(__file__).parents[2]
@@ -102,7 +103,7 @@ def run(plan: Plan, name: str, platform: str, launcher: Sequence[str], runner: P
     path = folder / f"{name}.plan"
     plan.write(path, [library.replace("/", "\\") if "windows" in platform else library for library in libraries])
     environment = {**os.environ, "WINEPREFIX": str(WORK / "wine"), "WINEDEBUG": "-all", "DISPLAY": ""}
-    command = [*launcher, runner, path.name]
+    command: list[str | Path] = [*launcher, runner, path.name]
     answer = subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False
     )
@@ -207,7 +208,7 @@ _PLANTED = {
     "x86_64-linux": (
         "x86_64-linux-gnu.2.34",
         ["-Wl,--build-id"],
-        ("glibc 2.34", "build id", "exports", "needs libother"),
+        ("glibc 2.34", "build id", "exports", "libother.so"),
     ),
     "aarch64-linux": ("x86_64-linux-gnu.2.17", [], ("processor",)),
     "x86_64-windows": ("x86_64-windows-gnu", ["-luser32"], ("exports", "needs libother.dll, USER32.dll")),
@@ -254,8 +255,28 @@ def plant_library_faults(findings: Findings) -> None:
         findings.say(f"planted fault: {entry['platform']}", f"seen: {said}", missed)
 
 
+def check_reproduction(findings: Findings) -> None:
+    """A build from nothing in another folder gives the same files."""
+    elsewhere = ROOT / "build" / "platforms" / "again" / "elsewhere"
+    wall_s = build_again(ROOT, elsewhere)
+    odd = differing(FMUS, elsewhere / "out" / "fmus")
+    faults = [f"other bytes: {', '.join(odd)}"] if odd else []
+    findings.say("another folder, from nothing", f"the same bytes, after {wall_s:.0f} s", faults)
+    # The planted fault: a file name in a library, without the option that takes its folder away.
+    names = []
+    for name in ("one", "two"):
+        folder = WORK / "planted" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "path.c").write_text("const char *path(void) { return __FILE__; }\n")
+        zig("cc", "-shared", f"--target={TARGETS['x86_64-linux']}", folder / "path.c", "-o", folder / "path.fmu")
+        names.append(folder)
+    seen = differing(*names)
+    findings.say("planted fault: a folder's name", f"seen in {seen}", [] if seen else ["not seen"])
+
+
 def main() -> int:
     findings = Findings()
+    check_reproduction(findings)
     check_libraries(findings)
     plant_library_faults(findings)
     check_runs(findings)

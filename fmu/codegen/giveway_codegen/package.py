@@ -20,6 +20,7 @@ PLATFORMS = {
     "x86_64-darwin": ("darwin64",),
     "aarch64-darwin": ("darwin64", "aarch64-darwin"),
 }
+_LICENCES, _ENTRY = "documentation/licenses", "license.txt"
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip file can hold
 
 
@@ -46,7 +47,13 @@ def write_fmu(fmi: int, generated: Path, binaries: dict[str, Path], licences: di
             if path.is_file():
                 contents[path.relative_to(folder).as_posix()] = path.read_bytes()
     for name, path in licences.items():
-        contents[f"documentation/licenses/{name}"] = path.read_bytes()
+        contents[f"{_LICENCES}/{name}"] = path.read_bytes()
+    others = sorted(set(licences) - {_ENTRY})
+    if others:  # the entry point names the rest
+        contents[f"{_LICENCES}/{_ENTRY}"] += (
+            "\nThe binaries also contain work of others; their licences are beside this file:\n"
+            + "".join(f"    {name}\n" for name in others)
+        ).encode()
     output.parent.mkdir(parents=True, exist_ok=True)
     temporary = output.with_suffix(".partial")
     with zipfile.ZipFile(temporary, "w") as archive:

@@ -1,0 +1,51 @@
+"""Builds the FMUs of all platforms once more, in another folder and from nothing, and compares the files."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+__all__ = ["build_again", "differing"]
+
+# What the build reads of the repository.
+_SOURCES = ("CMakeLists.txt", "LICENSE", "Makefile", "c_core", "cmake", "fmu", "requirements.lock", "robots")
+
+
+def build_again(root: Path, folder: Path) -> float:
+    """``make fmus ALL=1`` in a copy of the repository ``root`` that is made in ``folder``; wall time in s.
+
+    Only the Python environment and the compiler are shared; the compiler starts without its cache.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name in _SOURCES:
+        source = root / name
+        if source.is_dir():
+            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, folder / name)
+    (folder / ".venv").symlink_to(root / ".venv")
+    platforms = folder / "build" / "platforms"
+    platforms.mkdir(parents=True)
+    (platforms / "tools").symlink_to(root / "build" / "platforms" / "tools")
+    (platforms / "tools-installed").touch()
+    started = time.perf_counter()
+    answer = subprocess.run(["make", "fmus", "ALL=1"], cwd=folder, capture_output=True, text=True, check=False)
+    if answer.returncode != 0:
+        raise RuntimeError(f"make fmus ALL=1 failed in {folder}: {answer.stdout[-2000:]}{answer.stderr[-2000:]}")
+    return time.perf_counter() - started
+
+
+def differing(first: Path, second: Path) -> list[str]:
+    """Names of the FMUs of two folders that are not the same bytes, or only in one of them."""
+    names = {path.name for folder in (first, second) for path in folder.glob("*.fmu")}
+    same = {
+        name
+        for name in names
+        if (first / name).is_file()
+        and (second / name).is_file()
+        and (first / name).read_bytes() == (second / name).read_bytes()
+    }
+    return sorted(names - same)
