@@ -24,6 +24,10 @@ string(REGEX MATCH "(.*)-(.*)" _ "${GIVEWAY_PLATFORM}")
 set(CMAKE_SYSTEM_PROCESSOR ${CMAKE_MATCH_1})
 set(CMAKE_SYSTEM_NAME ${_system_of_${CMAKE_MATCH_2}})
 
+# A compiler cache may hand on other file names than it was given, and file names get into libraries; zig has its own.
+unset(ENV{CMAKE_C_COMPILER_LAUNCHER})
+unset(ENV{CMAKE_CXX_COMPILER_LAUNCHER})
+
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 set(CMAKE_C_COMPILER "${GIVEWAY_ZIG}" cc)
