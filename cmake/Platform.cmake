@@ -38,7 +38,6 @@ foreach(_language C CXX)
   set(CMAKE_${_language}_COMPILER_WORKS TRUE)
 endforeach()
 
-
 # CMake wants archiver and ranlib as files without arguments.
 set(_tools "${CMAKE_BINARY_DIR}/zig")
 foreach(_tool ar ranlib)
