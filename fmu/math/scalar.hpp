@@ -39,4 +39,8 @@ template <class T> T sign(T a) {
 
 template <class T> T square(T a) { return a * a; }
 
+// Whether a one-sided element (contact, stop, rope) acts, 1 or 0: by its mode, which an integrator with root finding keeps on the right side
+// of depth = 0. Lanes, which have no root finding, also ask the depth.
+template <class T> T acting(T mode, T) { return mode; }
+
 } // namespace giveway::math

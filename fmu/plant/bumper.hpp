@@ -17,7 +17,7 @@ template <class T> struct StopForce {
 };
 
 template <class T> StopForce<T> stop_force(T engaged, T stiffness, T damping, T depth, T rate) {
-    const T spring = engaged * stiffness * depth;
+    const T spring = math::acting(engaged, depth) * stiffness * depth;
     const T force = math::max(T(0.0), spring * (T(1.0) + damping * rate));
     return {force, (force - spring) * rate, T(0.5) * spring * depth};
 }

@@ -76,9 +76,8 @@ template <class T> T stored_energy(const TippingVector<T>& x, const TippingEvalu
     return slider_energy(energy, x, e, p, d);
 }
 
-template <class T, std::size_t N>
-Outputs<T> outputs(const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
-    const auto e = evaluate(x, u, m, p, d);
+// `e`: everything evaluated at x.
+template <class E, class T, std::size_t N> Outputs<T> outputs(const E& e, const std::array<T, N>& x, const Parameters<T>& p, const Derived<T>& d) {
     Outputs<T> o{};
     o.wheel_speed = e.wheel_speed;
     o.wheel_torque = e.sensed_torque;
@@ -112,6 +111,11 @@ Outputs<T> outputs(const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>
     o.wall_force = e.wall.force;
     o.stored_energy = stored_energy(x, e, p, d);
     return o;
+}
+
+template <class T, std::size_t N>
+Outputs<T> outputs(const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    return outputs(evaluate(x, u, m, p, d), x, p, d);
 }
 
 } // namespace giveway::plant

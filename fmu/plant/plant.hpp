@@ -186,16 +186,16 @@ StateVector<T> rhs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& 
     return evaluate(x, u, m, p, d).rate;
 }
 
-// Of slider, weight and bumper. What cannot happen keeps a constant sign.
-template <class T, std::size_t N, std::size_t E>
-void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d,
-                       T depth) {
+// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for an idealised latch only.
+template <class T, std::size_t N, std::size_t E, class InternalForce>
+void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d, T depth,
+                       InternalForce internal_force) {
     const bool slider = p.slider_present != 0;
     g[event_contact] = depth;
     g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
     g[event_end_stop] = T(1.0);
     if (slider && p.has_ideal_latch()) {
-        const T holding = p.latch_force + p.preload - evaluate(x, u, m, p, d).internal_force;
+        const T holding = p.latch_force + p.preload - internal_force();
         g[event_end_stop] = math::select(math::less(T(0.5), m.latched), holding, x[compression]);
     } else if (slider && p.has_plate()) {
         g[event_end_stop] = x[compression];
@@ -220,13 +220,25 @@ EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, con
                                                            x[compression_rate])
                                                 .depth
                                           : T(-1.0);
-    slider_indicators(g, x, u, m, p, d, depth);
+    slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
     return g;
 }
-// The events that the planar plant has.
+
+// The same where everything has been evaluated already.
+template <class T>
+EventVector<T> event_indicators(const Evaluation<T>& e, const StateVector<T>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    EventVector<T> g{};
+    for (int i = 0; i < wheel_count; ++i) {
+        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], e.net_torque[i], x[motor_speed + i]);
+    }
+    slider_indicators(g, x, m, p, d, p.slider_present != 0 ? e.contact.depth : T(-1.0), [&] { return e.internal_force; });
+    return g;
+}
+
+// The events that the planar plant has; `e` is the evaluation before them.
 template <class T, std::size_t N, std::size_t E>
-void planar_transition(std::array<T, N>& x, const Inputs<T>& u, Modes<T>& m, const std::array<T, E>& fired, const Parameters<T>& p, const Derived<T>& d) {
-    const auto e = evaluate(x, u, m, p, d);
+void planar_transition(const Evaluation<T, N>& e, std::array<T, N>& x, Modes<T>& m, const std::array<T, E>& fired, const Parameters<T>& p,
+                       const Derived<T>& d) {
     for (int i = 0; i < wheel_count; ++i) {
         const auto now = math::less(fired[event_gear + i], T(0.0));
         const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
@@ -279,7 +291,7 @@ void planar_transition(std::array<T, N>& x, const Inputs<T>& u, Modes<T>& m, con
 // `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where it jumps.
 template <class T>
 void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventVector<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
-    planar_transition(x, u, m, fired, p, d);
+    planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
 }
 
 template <class T> void break_away(const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, int wheel, T sensed) {

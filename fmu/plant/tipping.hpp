@@ -209,7 +209,7 @@ TippingEvents<T> event_indicators(const TippingVector<T>& x, const Inputs<T>& u,
                                                            x[base_omega], x[compression], x[compression_rate])
                                                 .depth
                                           : T(-1.0);
-    slider_indicators(g, x, u, m, p, d, depth);
+    slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
     return g;
 }
 
@@ -224,7 +224,7 @@ void transition(TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Tipp
         x[grip + i] = math::select(lifted, T(0.0), x[grip + i]);
     }
     m.overturned = math::select(math::less(fired[event_tilt], T(0.0)), T(1.0), m.overturned);
-    planar_transition(x, u, m, fired, p, d);
+    planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
 }
 
 template <class T> void accept_inputs(const TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {

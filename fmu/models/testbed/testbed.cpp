@@ -6,12 +6,12 @@
 #include <new>
 
 #include "exchange.hpp"
-#include "from_variables.hpp"
 #include "hybrid_integrator.hpp"
 #include "model.hpp"
-#include "plant_system.hpp"
+#include "start.hpp"
 #include "state_archive.hpp"
 #include "testbed_variables.hpp"
+#include "truth.hpp"
 
 namespace giveway::testbed {
 
@@ -66,7 +66,8 @@ public:
     }
 
     Status initialise(double start_time_s, Message& message) override {
-        if (!check_relations(v_, message)) {
+        plant::TippingVector<double> state{};
+        if (!start_run(v_, system_, state, drives_, stored_at_start_j_, message)) {
             return Status::error;
         }
         start_time_s_ = start_time_s;
@@ -75,26 +76,6 @@ public:
         now_s_ = 0.0;
         events_ = 0;
         exchanging_ = false;
-        const plant::InitialMotion<double> motion{v_.start_x, v_.start_y, v_.start_theta, v_.start_vx, v_.start_vy, v_.start_omega, v_.slider_speed,
-                                                   {v_.start_bristle[0], v_.start_bristle[1], v_.start_bristle[2]}};
-        plant::TippingVector<double> state{};
-        system_.start(plant_parameters(v_), motion, push_inputs({}), state);
-        const auto truth = system_.outputs(state.data());
-        // A start inside the robot would be a catapult.
-        constexpr double touching_m = 1e-6;
-        if (v_.slider_present && truth.contact_depth > touching_m) {
-            std::snprintf(message.text, sizeof message.text,
-                          "slider.run_up = %.9g is not allowed: with this target, direction and start the nose starts %.9g m inside the robot", v_.slider_run_up,
-                          truth.contact_depth);
-            return Status::error;
-        }
-        stored_at_start_j_ = truth.stored_energy;
-        const auto refused = drives_.start(drive_options(v_), motor_angles(state.data()), truth.wheel_speed, truth.wheel_torque, v_.command_enable);
-        if (refused.field != GW_FIELD_NONE) {
-            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_name(refused.field),
-                          static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
-            return Status::error;
-        }
         if (!integrator_.create(system_, 0.0, state.data(), solver_options())) {
             std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
             return Status::error;
@@ -171,7 +152,7 @@ public:
         if (!settle_now(update, message) || !pass_tick(update, message)) {
             return Status::error;
         }
-        system_.set_inputs(push_inputs(system_.inputs().motor_torque), state());
+        system_.set_inputs(plant_inputs(v_, system_.inputs().motor_torque), state());
         if (!settle_now(update, message)) {
             return Status::error;
         }
@@ -186,54 +167,8 @@ public:
     void write_outputs() override {
         follow_push();
         const double* x = state();
-        const auto truth = system_.outputs(x);
-        const auto& modes = system_.modes();
-        v_.truth_x = x[plant::base_x];
-        v_.truth_y = x[plant::base_y];
-        v_.truth_theta = x[plant::base_theta];
-        v_.truth_vx = x[plant::base_vx];
-        v_.truth_vy = x[plant::base_vy];
-        v_.truth_omega = x[plant::base_omega];
-        for (int i = 0; i < plant::wheel_count; ++i) {
-            const auto wheel = static_cast<std::size_t>(i);
-            v_.truth_wheel_angle[i] = x[plant::wheel_angle + i];
-            v_.truth_wheel_speed[i] = truth.wheel_speed[wheel];
-            v_.truth_wheel_torque[i] = truth.wheel_torque[wheel];
-            v_.truth_motor_torque[i] = system_.inputs().motor_torque[wheel];
-            v_.truth_gear_stuck[i] = std::fabs(modes.gear_direction[wheel]) < 0.5;
-            v_.truth_roller_force[i] = truth.roller_force[wheel];
-        }
-        v_.truth_contact = modes.contact > 0.5;
-        v_.truth_contact_force = truth.contact_force;
-        v_.truth_contact_force_x = truth.contact_force_x;
-        v_.truth_contact_force_y = truth.contact_force_y;
-        v_.truth_contact_point_x = truth.contact_point_x;
-        v_.truth_contact_point_y = truth.contact_point_y;
-        v_.truth_contact_base_x = truth.contact_base_x;
-        v_.truth_contact_base_y = truth.contact_base_y;
-        v_.truth_contact_impulse_x = x[plant::impulse_x];
-        v_.truth_contact_impulse_y = x[plant::impulse_y];
-        v_.truth_first_contact_time = system_.first_contact_time() < 0.0 ? -1.0 : start_time_s_ + system_.first_contact_time();
-        v_.truth_slider_position = x[plant::slider_position];
-        v_.truth_slider_speed = x[plant::slider_speed];
-        v_.truth_nose_x = truth.nose_x;
-        v_.truth_nose_y = truth.nose_y;
-        v_.truth_bumper_compression = x[plant::compression];
-        v_.truth_bumper_force = truth.bumper_force;
-        const auto& p = system_.parameters();
-        v_.truth_latched = p.has_ideal_latch() ? modes.latched > 0.5 : p.has_continuous_latch() && x[plant::compression] < p.latch_gap;
-        v_.truth_rope_tension = truth.rope_tension;
-        v_.truth_rope_taut = modes.rope_taut > 0.5;
-        v_.truth_wall_force = truth.wall_force;
-        v_.truth_roll = truth.roll;
-        v_.truth_pitch = truth.pitch;
-        std::copy_n(truth.wheel_load.begin(), 3, v_.truth_wheel_load);
-        v_.truth_tip_margin = truth.tip_margin;
-        v_.truth_weight_drop = x[plant::weight_drop];
-        v_.energy_stored = truth.stored_energy - stored_at_start_j_;
-        v_.energy_work_in = x[plant::work_in];
-        v_.energy_dissipated = x[plant::dissipated];
-        v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
+        write_truth(v_, x, system_.outputs(x), system_.modes(), system_.parameters(), system_.inputs().motor_torque,
+                    {start_time_s_, system_.first_contact_time()}, stored_at_start_j_);
         const auto statistics = integrator_.statistics(); // nothing in Model Exchange
         const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
         v_.events = static_cast<std::int32_t>(statistics.events) + events_;
@@ -284,18 +219,10 @@ private:
         };
     }
 
-    [[nodiscard]] plant::Inputs<double> push_inputs(const std::array<double, 3>& motor_torque_nm) const {
-        return {motor_torque_nm, v_.push_force_x, v_.push_force_y, v_.push_point_x, v_.push_point_y};
-    }
-
-    static std::array<double, 3> motor_angles(const double* state) {
-        return {state[plant::motor_angle], state[plant::motor_angle + 1], state[plant::motor_angle + 2]};
-    }
-
     // Co-Simulation takes a push in at the start of a step.
     void follow_push() {
         if (exchanging_) {
-            system_.follow_inputs(push_inputs(system_.inputs().motor_torque));
+            system_.follow_inputs(plant_inputs(v_, system_.inputs().motor_torque));
         }
     }
 
@@ -340,7 +267,7 @@ private:
         const auto& now = system_.inputs();
         if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y || v_.push_point_x != now.push_point_x ||
             v_.push_point_y != now.push_point_y) {
-            system_.set_inputs(push_inputs(now.motor_torque), integrator_.state());
+            system_.set_inputs(plant_inputs(v_, now.motor_torque), integrator_.state());
             integrator_.restart();
         }
     }
@@ -348,22 +275,14 @@ private:
     void leave_tick() {
         due_ = false;
         if (tick_ % servo_ticks_per_cycle == 0) {
-            Command command{};
-            std::copy_n(v_.command_wheel_angle, 3, command.wheel_angle_rad.begin());
-            std::copy_n(v_.command_wheel_speed, 3, command.wheel_speed_radps.begin());
-            command.enable = v_.command_enable;
-            drives_.receive(command);
+            drives_.receive(bus_command(v_));
         }
-        system_.set_inputs(push_inputs(drives_.regulate(motor_angles(state()))), state());
+        system_.set_inputs(plant_inputs(v_, drives_.regulate(motor_angles(state()))), state());
         integrator_.restart();
     }
 
     void sample_sensors() {
-        const SensorSample sample = drives_.sample(motor_angles(state()), system_.outputs(state()).wheel_torque);
-        std::copy_n(sample.torque_nm.begin(), 3, v_.sensor_torque);
-        std::copy_n(sample.encoder_counts.begin(), 3, v_.sensor_encoder);
-        v_.sensor_counter = sample.counter;
-        v_.sensor_present = true;
+        write_sensors(v_, drives_.sample(motor_angles(state()), system_.outputs(state()).wheel_torque));
     }
 
     Variables v_{};

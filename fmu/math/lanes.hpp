@@ -1,0 +1,99 @@
+// N designs side by side: a scalar type of the plant that computes N of them at once, with gcc's vector types.
+// Every operation is exact or correctly rounded in each lane, so a design gets the same bits in every lane and in every width.
+// 4 lanes need a file compiled for AVX2, 8 lanes one for AVX-512; 1 lane is for any processor.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "scalar.hpp"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace giveway::math {
+
+namespace detail {
+
+template <int N> struct LaneRegister;
+template <> struct LaneRegister<1> {
+    using Numbers = double;
+    using Bits = std::int64_t;
+    static Numbers min(Numbers a, Numbers b) { return math::min(a, b); }
+    static Numbers max(Numbers a, Numbers b) { return math::max(a, b); }
+    static Numbers sqrt(Numbers a) { return math::sqrt(a); }
+};
+#if defined(__AVX2__)
+template <> struct LaneRegister<4> {
+    typedef double Numbers __attribute__((vector_size(32)));
+    typedef std::int64_t Bits __attribute__((vector_size(32)));
+    static Numbers min(Numbers a, Numbers b) { return _mm256_min_pd(a, b); } // a < b ? a : b, as for double
+    static Numbers max(Numbers a, Numbers b) { return _mm256_max_pd(a, b); }
+    static Numbers sqrt(Numbers a) { return _mm256_sqrt_pd(a); }
+};
+#endif
+#if defined(__AVX512F__)
+template <> struct LaneRegister<8> {
+    typedef double Numbers __attribute__((vector_size(64)));
+    typedef std::int64_t Bits __attribute__((vector_size(64)));
+    static Numbers min(Numbers a, Numbers b) { return _mm512_min_pd(a, b); }
+    static Numbers max(Numbers a, Numbers b) { return _mm512_max_pd(a, b); }
+    static Numbers sqrt(Numbers a) { return _mm512_sqrt_pd(a); }
+};
+#endif
+
+} // namespace detail
+
+template <int N> struct LaneMask {
+    typename detail::LaneRegister<N>::Bits bits; // zero where false
+};
+
+template <int N> struct Lanes {
+    using Register = detail::LaneRegister<N>;
+    using Numbers = typename Register::Numbers;
+    using Bits = typename Register::Bits;
+    Numbers value;
+
+    Lanes() : value{} {}
+    explicit Lanes(double same) : value(same - Numbers{}) {} // exact, and keeps -0
+    static Lanes of(Numbers numbers) {
+        Lanes a;
+        a.value = numbers;
+        return a;
+    }
+
+    friend Lanes operator+(Lanes a, Lanes b) { return of(a.value + b.value); }
+    friend Lanes operator-(Lanes a, Lanes b) { return of(a.value - b.value); }
+    friend Lanes operator*(Lanes a, Lanes b) { return of(a.value * b.value); }
+    friend Lanes operator/(Lanes a, Lanes b) { return of(a.value / b.value); }
+};
+
+template <int N> LaneMask<N> less(Lanes<N> a, Lanes<N> b) { return {a.value < b.value}; }
+template <int N> Lanes<N> select(LaneMask<N> mask, Lanes<N> if_true, Lanes<N> if_false) {
+    return Lanes<N>::of(mask.bits ? if_true.value : if_false.value);
+}
+template <int N> Lanes<N> min(Lanes<N> a, Lanes<N> b) { return Lanes<N>::of(Lanes<N>::Register::min(a.value, b.value)); }
+template <int N> Lanes<N> max(Lanes<N> a, Lanes<N> b) { return Lanes<N>::of(Lanes<N>::Register::max(a.value, b.value)); }
+template <int N> Lanes<N> sqrt(Lanes<N> a) { return Lanes<N>::of(Lanes<N>::Register::sqrt(a.value)); }
+template <int N> Lanes<N> abs(Lanes<N> a) {
+    using L = Lanes<N>;
+    return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<typename L::Bits>(a.value) & 0x7FFFFFFFFFFFFFFFLL));
+}
+
+template <int N> Lanes<N> acting(Lanes<N> mode, Lanes<N> depth) { return select(less(Lanes<N>(0.0), depth), mode, Lanes<N>(0.0)); }
+
+// Nearest integer (ties to even) for |a| < 2^51, as for double.
+template <int N> Lanes<N> round(Lanes<N> a) {
+    const Lanes<N> shift(6755399441055744.0); // 1.5 * 2^52
+    return (a + shift) - shift;
+}
+
+// 2^k for an integral k in [-1022, 1023]: the sum carries k + 1023 in its lowest bits.
+template <int N> Lanes<N> exp2_integer(Lanes<N> k) {
+    using L = Lanes<N>;
+    const L sum = k + L(6755399441055744.0 + 1023.0);
+    return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<typename L::Bits>(sum.value) << 52));
+}
+
+} // namespace giveway::math
