@@ -37,6 +37,9 @@ __all__ = ["BatchProgress", "run", "run_many"]
 BatchProgress = Callable[[int, int], None]
 """Called now and then with the number of finished runs and of all runs."""
 
+METHODS = ("event-exact", "fixed-step")
+LANES = (1, 4, 8)
+PLANT_STEP_RANGE_S = (1e-6, 5e-4)
 STATUSES = ("ok", "cancelled", "wrong", "refused", "failed", "no memory")
 OK, CANCELLED, WRONG = 0, 1, 2
 NONE = 2**32 - 1  # no model, no reference
@@ -81,6 +84,16 @@ class _Variable(ctypes.Structure):
     ]
 
 
+class _Options(ctypes.Structure):
+    _fields_ = [
+        ("threads", ctypes.c_uint32),
+        ("method", ctypes.c_uint32),
+        ("lanes", ctypes.c_uint32),
+        ("reserved", ctypes.c_uint32),
+        ("plant_step_s", ctypes.c_double),
+    ]
+
+
 class _Progress(ctypes.Structure):
     _fields_ = [(name, ctypes.c_uint64) for name in ("runs_done", "runs", "steps_done", "steps")]
 
@@ -114,7 +127,7 @@ class _Library:
         self._function("gwb_find_variable", ctypes.c_int, number, ctypes.c_char_p, pointer)
         self._function("gwb_metric_info", ctypes.c_int, number, pointer)
         self._function("gwb_metric_count", number)
-        self.start = self._function("gwb_start", ctypes.c_int, pointer, size, number, pointer, pointer, ctypes.c_char_p)
+        self.start = self._function("gwb_start", ctypes.c_int, pointer, size, pointer, pointer, pointer, ctypes.c_char_p)
         self.wait = self._function("gwb_wait", ctypes.c_int, pointer, ctypes.c_double, pointer)
         self.cancel = self._function("gwb_cancel", None, pointer)
         self.finish = self._function("gwb_finish", None, pointer)
@@ -131,7 +144,9 @@ class _Library:
                 ("model", "u4"),
                 ("reference", "u4"),
                 ("rows", "u4"),
+                ("method", "u4"),
                 ("time_s", "f8"),
+                ("plant_step_s", "f8"),
                 ("value", "f8"),
                 ("minimum", "f8"),
                 ("maximum", "f8"),
@@ -238,14 +253,15 @@ class _Batch:
         self._specs["column_count"] = len(traces)
         self._specs["columns"] = self._columns.ctypes.data + np.arange(len(self.results)) * self._columns.strides[0]
 
-    def execute(self, threads: int, report: Callable[[_Progress], None]) -> bool:
+    def execute(self, options: _Options, report: Callable[[_Progress], None]) -> bool:
         """Run everything; True if Ctrl-C ended it early. ``report`` is called on this thread."""
         library, progress, interrupted = self.library, _Progress(), False
         handle = ctypes.c_void_p()
         message = ctypes.create_string_buffer(MESSAGE_SIZE)
         try:
             specs, results = self._specs.ctypes.data, self.results.ctypes.data
-            if not library.start(specs, len(self.results), threads, results, ctypes.byref(handle), message):
+            chosen = ctypes.byref(options)
+            if not library.start(specs, len(self.results), chosen, results, ctypes.byref(handle), message):
                 raise SimulationError("batch library", message.value.decode(), 0.0)
             done = False
             while not done:
@@ -325,7 +341,7 @@ def run(scenario: Scenario, progress: Progress | None = None) -> Result:
             progress(state.steps_done * scenario.step_s, scenario.duration_s)
 
     started = time.perf_counter()
-    interrupted = batch.execute(1, report)
+    interrupted = batch.execute(_Options(threads=1), report)
     elapsed = time.perf_counter() - started
     status, rows = int(batch.results["status"][0]), int(batch.results["rows"][0])
     if status not in (OK, CANCELLED):
@@ -349,6 +365,9 @@ def run_many(
     threads: int | None = None,
     traces: Sequence[str] = (),
     progress: BatchProgress | None = None,
+    method: str = "event-exact",
+    lanes: int | None = None,
+    plant_step_s: float | None = None,
 ) -> xarray.Dataset:
     """Run ``scenarios`` in ``threads`` threads (None: one per processor) and return a table.
 
@@ -374,7 +393,8 @@ def run_many(
         if progress is not None:
             progress(int(state.runs_done), int(state.runs))
 
-    interrupted = batch.execute(threads, report)
+    options = _Options(threads=threads, method=METHODS.index(method), lanes=lanes or 0, plant_step_s=plant_step_s or 0.0)
+    interrupted = batch.execute(options, report)
     return _dataset(batch, chosen, scenarios[0].step_s if scenarios else 0.0, interrupted)
 
 

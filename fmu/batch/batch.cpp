@@ -9,6 +9,7 @@
 #include <new>
 
 #include "giveway_batch.h"
+#include "lane_group.hpp"
 #include "models.hpp"
 #include "run.hpp"
 
@@ -55,22 +56,53 @@ int describe(std::uint32_t model, const VariableInfo* found, gwb_variable_t* var
 }
 
 // Always 0.
-int refuse(char* message, const char* format, unsigned long value) {
+template <class Value> [[gnu::format(printf, 2, 0)]] int refuse(char* message, const char* format, Value value) {
     if (message != nullptr) {
         std::snprintf(message, GWB_MESSAGE_SIZE, format, value);
     }
     return 0;
 }
 
+constexpr std::size_t largest_portion = 256;
+constexpr double plant_step_min_s = 1e-6;
+constexpr double plant_step_max_s = 5e-4;
+
+// 1 if they can be used, else 0 and a message.
+int check_options(const gwb_options_t* options, char* message) {
+    if (options == nullptr) {
+        return refuse(message, "options is a null pointer%s", "");
+    }
+    const gwb_options_t& o = *options;
+    if (o.threads < 1 || o.threads > GWB_THREADS_MAX) {
+        return refuse(message, "threads = %u is not allowed: [1, 1024]", o.threads);
+    }
+    static_assert(GWB_THREADS_MAX == 1024);
+    if (o.method != GWB_EVENT_EXACT && o.method != GWB_FIXED_STEP) {
+        return refuse(message, "method = %u is not allowed: 0 (event-exact) or 1 (fixed step)", o.method);
+    }
+    if (o.lanes != 0 && o.lanes != 1 && o.lanes != 4 && o.lanes != 8) {
+        return refuse(message, "lanes = %u is not allowed: 0 (as many as the processor has), 1, 4 or 8", o.lanes);
+    }
+    if (o.lanes > static_cast<std::uint32_t>(batch::widest_lanes())) {
+        return refuse(message, "lanes = %u is not allowed: this processor has not so many (gwb_widest_lanes)", o.lanes);
+    }
+    if (o.plant_step_s != 0.0 && !(o.plant_step_s >= plant_step_min_s && o.plant_step_s <= plant_step_max_s)) {
+        return refuse(message, "plant_step_s = %.9g is not allowed: 0, or [1e-6, 5e-4] s", o.plant_step_s);
+    }
+    return 1;
+}
+
 } // namespace
 
-// Workers take the next run until none is left; each writes only its own runs' results, so the order in which they
+// Workers take the next runs until none is left; each writes only its own runs' results, so the order in which they
 // come to it does not matter.
-struct gwb_batch {
+struct gwb_batch final : batch::RunDone {
     const gwb_spec_t* specs = nullptr;
     std::size_t count = 0;
     gwb_result_t* results = nullptr;
     std::uint64_t steps = 0; // of all runs
+    gwb_options_t options{};
+    std::size_t portion = 1; // runs that a worker takes at once
     batch::Monitor monitor;
     std::atomic<std::size_t> next{0};
     std::atomic<std::uint64_t> runs_done{0};
@@ -92,17 +124,11 @@ struct gwb_batch {
 
     void work() {
         for (;;) {
-            const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
-            if (i >= count) {
+            const std::size_t first = next.fetch_add(portion, std::memory_order_relaxed);
+            if (first >= count) {
                 break;
             }
-            if (monitor.cancelled.load(std::memory_order_relaxed)) {
-                batch::never_started(results[i]);
-                monitor.steps_done.fetch_add(specs[i].step_count, std::memory_order_relaxed);
-            } else {
-                batch::run(specs[i], monitor, results[i]);
-            }
-            runs_done.fetch_add(1, std::memory_order_release);
+            do_portion(first, std::min(first + portion, count));
         }
         pthread_mutex_lock(&mutex);
         if (--working == 0) {
@@ -110,6 +136,26 @@ struct gwb_batch {
         }
         pthread_mutex_unlock(&mutex);
     }
+
+    void do_portion(std::size_t first, std::size_t last) {
+        if (monitor.cancelled.load(std::memory_order_relaxed)) {
+            for (std::size_t i = first; i < last; ++i) {
+                batch::never_started(results[i]);
+                monitor.steps_done.fetch_add(specs[i].step_count, std::memory_order_relaxed);
+                done();
+            }
+        } else if (options.method == GWB_FIXED_STEP) {
+            const batch::FixedStep how{static_cast<int>(options.lanes), options.plant_step_s};
+            batch::run_fixed_step(specs + first, last - first, how, monitor, results + first, *this);
+        } else {
+            for (std::size_t i = first; i < last; ++i) {
+                batch::run(specs[i], monitor, results[i]);
+                done();
+            }
+        }
+    }
+
+    void done() override { runs_done.fetch_add(1, std::memory_order_release); }
 
     static void* thread(void* self) {
         static_cast<gwb_batch*>(self)->work();
@@ -134,7 +180,7 @@ struct gwb_batch {
         pthread_mutex_unlock(&mutex);
     }
 
-    ~gwb_batch() {
+    ~gwb_batch() override {
         for (std::uint32_t i = 0; i < thread_count; ++i) {
             pthread_join(threads[i], nullptr);
         }
@@ -182,38 +228,49 @@ uint32_t gwb_run(const gwb_spec_t* spec, gwb_result_t* result) {
     return result->status;
 }
 
-int gwb_start(const gwb_spec_t* specs, size_t count, uint32_t threads, gwb_result_t* results, gwb_batch_t** started,
-              char* message) {
+uint32_t gwb_widest_lanes(void) { return static_cast<std::uint32_t>(batch::widest_lanes()); }
+
+int gwb_start(const gwb_spec_t* specs, size_t count, const gwb_options_t* options, gwb_result_t* results,
+              gwb_batch_t** started, char* message) {
     if (message != nullptr) {
         message[0] = '\0';
     }
     if (started == nullptr) {
-        return refuse(message, "batch is a null pointer (for %lu runs)", count);
+        return refuse(message, "batch is a null pointer (for %zu runs)", count);
     }
     *started = nullptr;
     if ((specs == nullptr || results == nullptr) && count > 0) {
-        return refuse(message, "specs or results is a null pointer, but count is %lu", count);
+        return refuse(message, "specs or results is a null pointer, but count is %zu", count);
     }
-    if (threads < 1 || threads > GWB_THREADS_MAX) {
-        return refuse(message, "threads = %lu is not allowed: [1, 1024]", threads);
+    if (check_options(options, message) == 0) {
+        return 0;
     }
-    static_assert(GWB_THREADS_MAX == 1024);
     std::unique_ptr<gwb_batch> made(new (std::nothrow) gwb_batch);
-    const auto wanted = static_cast<std::uint32_t>(std::min<std::size_t>(threads, count));
+    const auto wanted = static_cast<std::uint32_t>(std::min<std::size_t>(options->threads, count));
     if (made != nullptr) {
         made->threads.reset(new (std::nothrow) pthread_t[wanted]);
     }
     if (made == nullptr || made->threads == nullptr) {
-        return refuse(message, "no memory for a batch of %lu runs", count);
+        return refuse(message, "no memory for a batch of %zu runs", count);
     }
     made->specs = specs;
     made->count = count;
     made->results = results;
+    made->options = *options;
+    if (options->method == GWB_FIXED_STEP) {
+        if (options->lanes == 0) {
+            made->options.lanes = gwb_widest_lanes();
+        }
+        // Enough of them that designs of one kind meet, and some portions for each thread while there are few.
+        const std::size_t lanes = made->options.lanes;
+        const std::size_t fair = count / (4U * std::size_t{options->threads}) / lanes * lanes;
+        made->portion = std::clamp<std::size_t>(fair, lanes, largest_portion);
+    }
     for (std::size_t i = 0; i < count; ++i) {
         made->steps += specs[i].step_count;
     }
     if (!made->start(wanted)) {
-        return refuse(message, "none of %lu threads could be started", wanted);
+        return refuse(message, "none of %u threads could be started", wanted);
     }
     *started = made.release();
     return 1;

@@ -2,7 +2,7 @@
  *
  * A run gives bit for bit what the FMUs give in co-simulation: the same models with the same checks, in the same
  * exchange order (fmu/README.md). It returns metrics and, on request, traces. Runs share nothing: a run gives the same
- * bits alone, in any batch, on any thread.
+ * bits alone, in any batch, on any thread. Many designs run several times as fast over fixed steps (gwb_options_t).
  *
  *     gwb_variable_t mass;
  *     gwb_find_variable(GWB_TESTBED, "slider.mass", &mass);
@@ -32,6 +32,12 @@ extern "C" {
 enum { GWB_CONTROLLER = 0, GWB_TESTBED = 1, GWB_MODEL_COUNT = 2 };
 enum { GWB_REAL = 0, GWB_INTEGER = 1, GWB_BOOLEAN = 2 };
 enum { GWB_PARAMETER = 0, GWB_INPUT = 1, GWB_OUTPUT = 2 };
+
+/* How a batch is computed, and how a run was (gwb_result_t.method). */
+enum {
+    GWB_EVENT_EXACT = 0, /* as the FMUs: adaptive steps, every event located. The reference */
+    GWB_FIXED_STEP = 1   /* several designs side by side over fixed steps, mode changes at step ends */
+};
 
 /* How a run ended. */
 enum {
@@ -134,7 +140,9 @@ typedef struct gwb_result {
     uint32_t model;                 /* that was wrong, refused or failed; else GWB_NONE */
     uint32_t reference;             /* the variable whose value was not allowed; else GWB_NONE */
     uint32_t rows;                  /* of every column that were written */
+    uint32_t method;                /* that the run was computed with: not always the batch's, see gwb_options_t */
     double time_s;                  /* how far the run came: its end, or the last good time */
+    double plant_step_s;            /* GWB_FIXED_STEP: the plant's step; else 0 */
     double value, minimum, maximum; /* of that variable; else NaN */
     /* NaN for what did not happen; all NaN unless status is GWB_OK. */
     double metric[GWB_METRIC_COUNT];
@@ -166,8 +174,9 @@ GWB_API uint32_t gwb_run(const gwb_spec_t *spec, gwb_result_t *result);
 /* Many runs on threads of their own. There are no callbacks: whoever waits asks for progress as often as it likes,
  * on its own thread.
  *
+ *     gwb_options_t options = {.threads = 2, .method = GWB_FIXED_STEP};
  *     gwb_batch_t *batch;
- *     if (gwb_start(specs, count, 2, results, &batch, message)) {
+ *     if (gwb_start(specs, count, &options, results, &batch, message)) {
  *         while (!gwb_wait(batch, 0.1, &progress)) { ... show progress; perhaps gwb_cancel(batch) ... }
  *         gwb_finish(batch);
  *     }
@@ -179,11 +188,27 @@ typedef struct gwb_progress {
     uint64_t steps_done, steps; /* of all runs; a run that ends early counts all of its steps */
 } gwb_progress_t;
 
-/* Starts `threads` threads ([1, GWB_THREADS_MAX], not more than runs) on `count` runs; results[i] is that of specs[i].
- * All that is passed must stay as it is until gwb_finish returns. A run that cannot be done says so in its result and
- * does not stop the others. 1 if the batch was started; else 0, *batch is null, and message (GWB_MESSAGE_SIZE bytes, or
- * null) says why. */
-GWB_API int gwb_start(const gwb_spec_t *specs, size_t count, uint32_t threads, gwb_result_t *results,
+/* GWB_FIXED_STEP trades a bounded error (README.md of fmu/batch has the figures) for speed. A design gives the same bits
+ * in every lane, with any number of lanes, on any thread and in any batch. Its step follows from its own parameters
+ * alone; the integrator's settings (solver.*) do not act. What it cannot do is run event-exact, and the result's method
+ * says so: a base that tips, a communication step that is not a whole number of servo ticks (0.5 ms), and designs so
+ * stiff that their step would be below 0.5 ms / 32. */
+typedef struct gwb_options {
+    uint32_t threads;    /* [1, GWB_THREADS_MAX]; not more than runs are started */
+    uint32_t method;     /* GWB_EVENT_EXACT or GWB_FIXED_STEP */
+    uint32_t lanes;      /* of GWB_FIXED_STEP: 1, 4 or 8, at most gwb_widest_lanes(); 0: these */
+    uint32_t reserved;   /* 0 */
+    double plant_step_s; /* of GWB_FIXED_STEP: [1e-6, 5e-4], rounded down to a whole part of 0.5 ms; 0: as the design needs */
+} gwb_options_t;
+
+/* Designs that this processor computes side by side: 8 with AVX-512 (F, DQ, VL), 4 with AVX2, else 1. */
+GWB_API uint32_t gwb_widest_lanes(void);
+
+/* Starts threads on `count` runs; results[i] is that of specs[i]. All that is passed must stay as it is until
+ * gwb_finish returns, but the options, which are copied. A run that cannot be done says so in its result and does not
+ * stop the others. 1 if the batch was started; else 0, *batch is null, and message (GWB_MESSAGE_SIZE bytes, or null)
+ * says why. */
+GWB_API int gwb_start(const gwb_spec_t *specs, size_t count, const gwb_options_t *options, gwb_result_t *results,
                       gwb_batch_t **batch, char *message);
 
 /* Waits until all runs are done, at most timeout_s. 1 if they are, else 0. progress may be null. */

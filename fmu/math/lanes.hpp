@@ -34,12 +34,13 @@ template <> struct LaneRegister<4> {
 };
 #endif
 #if defined(__AVX512F__)
+// The unmasked intrinsics make gcc 12 warn of its own header.
 template <> struct LaneRegister<8> {
     typedef double Numbers __attribute__((vector_size(64)));
     typedef std::int64_t Bits __attribute__((vector_size(64)));
-    static Numbers min(Numbers a, Numbers b) { return _mm512_min_pd(a, b); }
-    static Numbers max(Numbers a, Numbers b) { return _mm512_max_pd(a, b); }
-    static Numbers sqrt(Numbers a) { return _mm512_sqrt_pd(a); }
+    static Numbers min(Numbers a, Numbers b) { return _mm512_maskz_min_pd(0xFF, a, b); }
+    static Numbers max(Numbers a, Numbers b) { return _mm512_maskz_max_pd(0xFF, a, b); }
+    static Numbers sqrt(Numbers a) { return _mm512_maskz_sqrt_pd(0xFF, a); }
 };
 #endif
 
@@ -62,6 +63,13 @@ template <int N> struct Lanes {
         a.value = numbers;
         return a;
     }
+    // From and to N numbers of any alignment.
+    static Lanes load(const double* from) {
+        Lanes a;
+        __builtin_memcpy(&a.value, from, sizeof a.value);
+        return a;
+    }
+    void store(double* to) const { __builtin_memcpy(to, &value, sizeof value); }
 
     friend Lanes operator+(Lanes a, Lanes b) { return of(a.value + b.value); }
     friend Lanes operator-(Lanes a, Lanes b) { return of(a.value - b.value); }

@@ -1,0 +1,62 @@
+// The planar plant of several designs side by side, over fixed steps. Numbers go in and out as rows of lanes() doubles, one per design.
+#pragma once
+
+#include "outputs.hpp"
+
+namespace giveway::batch {
+
+// A design where it starts.
+struct LaneStart {
+    plant::Parameters<double> parameters;
+    plant::StateVector<double> state;
+    plant::Modes<double> modes;
+    plant::Inputs<double> inputs;
+    double first_contact_s; // negative: none yet
+};
+
+// What decides which code a design runs through: designs side by side share it.
+struct Structure {
+    explicit Structure(const plant::Parameters<double>& p)
+        : roller_model(p.roller_model), bumper_kind(p.bumper_kind), bumper_mount(p.bumper_mount), latch_model(p.latch_model), nose_shape(p.nose_shape),
+          slider_present(p.slider_present), wall_present(p.wall_present), rope_attached(p.rope_attached), outline_body(p.outline_body),
+          outline_wheels(p.outline_wheels), outline_count(p.outline_count) {}
+    friend auto operator<=>(const Structure&, const Structure&) = default;
+
+    plant::RollerModel roller_model;
+    plant::BumperKind bumper_kind;
+    plant::BumperMount bumper_mount;
+    plant::LatchModel latch_model;
+    plant::NoseShape nose_shape;
+    std::int32_t slider_present, wall_present, rope_attached, outline_body, outline_wheels, outline_count;
+};
+
+class LanePlant {
+public:
+    virtual ~LanePlant() = default;
+    [[nodiscard]] virtual int lanes() const = 0;
+
+    // lanes() designs of one structure, at time 0.
+    virtual void start(const LaneStart* designs) = 0;
+    // New inputs from now on: pushes are rows in the order of plant::Inputs.
+    virtual void set_motor_torques(const double* rows) = 0;
+    virtual void set_pushes(const double* rows) = 0;
+    // `count` steps of `step_s`.
+    virtual void advance(int count, double step_s) = 0;
+    // Brings modes and observed outputs up to the present state.
+    virtual void observe() = 0;
+
+    // Rows, in the order of StateVector, Modes and Outputs.
+    [[nodiscard]] virtual const double* state() const = 0;
+    [[nodiscard]] virtual const double* modes() const = 0;
+    [[nodiscard]] virtual const double* outputs() const = 0;
+    [[nodiscard]] virtual const double* first_contact_s() const = 0; // one row; negative: none yet
+    [[nodiscard]] virtual const double* events() const = 0;          // one row: instants at which a mode changed
+    [[nodiscard]] virtual const double* last_event_s() const = 0;    // one row
+};
+
+// nullptr when memory is short. 4 lanes need AVX2, 8 lanes AVX-512 F, DQ and VL.
+[[nodiscard]] LanePlant* new_lane_plant_1();
+[[nodiscard]] LanePlant* new_lane_plant_4();
+[[nodiscard]] LanePlant* new_lane_plant_8();
+
+} // namespace giveway::batch

@@ -1,0 +1,3 @@
+#include "lane_plant_of.hpp"
+
+giveway::batch::LanePlant* giveway::batch::new_lane_plant_8() { return new (std::nothrow) LanePlantOf<8>; }

@@ -1,0 +1,90 @@
+// What one model hands to the other, and the inputs that tables drive.
+#pragma once
+
+#include <array>
+
+#include "models.hpp"
+
+namespace giveway::batch {
+
+// Outputs of one model that are inputs of the other, by name. The two together are the exchange.
+class Links {
+public:
+    Links(std::uint32_t from, std::uint32_t to) : from_(from), to_(to) {
+        const ModelInfo& receiver = info_of(to);
+        for (std::size_t i = 0; i < receiver.variable_count; ++i) {
+            const VariableInfo& input = receiver.variables[i];
+            if (input.causality != Causality::input) {
+                continue;
+            }
+            const VariableInfo* output = find(info_of(from), input.name);
+            if (output != nullptr && output->causality == Causality::output && count_ < links_.size()) {
+                links_[count_++] = {output, &input};
+            }
+        }
+    }
+
+    // Passes all values on, or none and returns the input that does not take its value.
+    const VariableInfo* pass(unsigned char* const* variables, double& refused) const {
+        for (std::size_t i = 0; i < count_; ++i) {
+            const double value = load(*links_[i].output, variables[from_]);
+            if (!allowed(*links_[i].input, value)) {
+                refused = value;
+                return links_[i].input;
+            }
+        }
+        for (std::size_t i = 0; i < count_; ++i) {
+            store(*links_[i].input, variables[to_], load(*links_[i].output, variables[from_]));
+        }
+        return nullptr;
+    }
+
+private:
+    struct Link {
+        const VariableInfo* output;
+        const VariableInfo* input;
+    };
+    std::uint32_t from_, to_;
+    std::array<Link, 64> links_{};
+    std::size_t count_ = 0;
+};
+
+inline const Links& sensors() {
+    static const Links links(GWB_TESTBED, GWB_CONTROLLER);
+    return links;
+}
+inline const Links& commands() {
+    static const Links links(GWB_CONTROLLER, GWB_TESTBED);
+    return links;
+}
+
+// Inputs that a table drives, one per column.
+template <std::size_t N> struct TableInputs {
+    std::uint32_t model;
+    std::array<const VariableInfo*, N> column;
+
+    TableInputs(std::uint32_t model_, const std::array<const char*, N>& names) : model(model_), column{} {
+        for (std::size_t i = 0; i < N; ++i) {
+            column[i] = find(info_of(model), names[i]);
+        }
+    }
+    void set(unsigned char* const* variables, const double* row) const {
+        for (std::size_t i = 0; i < N; ++i) {
+            std::memcpy(variables[model] + column[i]->offset, &row[i], sizeof row[i]);
+        }
+    }
+};
+
+inline const TableInputs<GWB_PLAN_COLUMNS>& plan_inputs() {
+    static const TableInputs<GWB_PLAN_COLUMNS> inputs(GWB_CONTROLLER,
+                                                      {"plan.x", "plan.y", "plan.theta", "plan.vx", "plan.vy",
+                                                       "plan.omega", "plan.ax", "plan.ay", "plan.alpha"});
+    return inputs;
+}
+inline const TableInputs<GWB_PUSH_COLUMNS>& push_inputs() {
+    static const TableInputs<GWB_PUSH_COLUMNS> inputs(GWB_TESTBED,
+                                                      {"push.force_x", "push.force_y", "push.point_x", "push.point_y"});
+    return inputs;
+}
+
+} // namespace giveway::batch

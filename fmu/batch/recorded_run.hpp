@@ -1,0 +1,70 @@
+// One run around its plant: checks and settings, the controller, the exchange with the plant's variables, traces and metrics.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "metrics.hpp"
+#include "models.hpp"
+#include "run.hpp"
+
+namespace giveway::batch {
+
+// Writes all of `result`, as of a run that has not started.
+void clear(gwb_result_t& result);
+
+class RecordedRun {
+public:
+    RecordedRun(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result);
+    ~RecordedRun(); // counts all steps as done
+    RecordedRun(const RecordedRun&) = delete;
+    RecordedRun& operator=(const RecordedRun&) = delete;
+
+    // In this order. Each is false if the run ended with a message.
+    // Checks the spec, makes the controller and applies the settings to it and to the testbed's variables.
+    bool prepare(testbed::Variables& testbed);
+    bool start_controller();
+    // At every step 0 .. step_count: sensors, plan, controller, commands, push, record.
+    bool exchange(std::uint32_t step);
+    // After a step of the plant to `step`.
+    void report(std::uint32_t step);
+    // After the last exchange: metrics.
+    void judge();
+
+    // Ends the run with a message; always false.
+    [[gnu::format(printf, 3, 4)]] bool end(std::uint32_t status, const char* format, ...);
+    bool model_failed(std::uint32_t status, std::uint32_t model, Message& message);
+
+    [[nodiscard]] const gwb_spec_t& spec() const { return spec_; }
+    [[nodiscard]] gwb_result_t& result() { return result_; }
+    [[nodiscard]] double time_s(std::uint32_t step) const { return static_cast<double>(step) * spec_.step_s; }
+
+private:
+    struct Recorder {
+        const unsigned char* from;
+        unsigned char* to;
+        std::size_t size;
+    };
+
+    bool refuse_value(std::uint32_t status, const char* where, std::uint32_t model, const VariableInfo& variable, double value);
+    bool check_spec();
+    template <class Inputs> bool check_table(const char* name, const Inputs& inputs, const double* table, std::uint32_t rows);
+    const VariableInfo* lookup(const char* array, std::uint32_t index, std::uint32_t model, std::uint32_t reference);
+    bool check_columns();
+    bool create();
+    bool apply_settings();
+    bool pass(const class Links& links, std::uint32_t receiver);
+    void record(std::uint32_t k, double now_s);
+
+    const gwb_spec_t& spec_;
+    Monitor& monitor_;
+    gwb_result_t& result_;
+    std::unique_ptr<Model> controller_;
+    std::array<unsigned char*, GWB_MODEL_COUNT> variables_{};
+    std::unique_ptr<Sample[]> samples_;
+    std::unique_ptr<Recorder[]> recorders_;
+    std::uint32_t path_row_ = 0;
+    std::uint32_t reported_ = 0; // steps counted as done
+};
+
+} // namespace giveway::batch
