@@ -26,10 +26,14 @@ template <int N> struct Strided {
     }
 };
 
+// Contacts, stops and the rope see for themselves whether they act; their modes only report it. What a mode decides, a gear that sticks or slides and an
+// idealised latch, changes at the end of a step too, and the way the state would have gone is made up for: the instant at which the indicator was zero and
+// the state there are interpolated, the mode changes there, and the rest of the step is done again.
 template <int N> class LanePlantOf final : public LanePlant {
     using L = math::Lanes<N>;
     using State = plant::StateVector<L>;
     using Evaluation = plant::Evaluation<L>;
+    using Events = plant::EventVector<L>;
 
 public:
     [[nodiscard]] int lanes() const override { return N; }
@@ -43,14 +47,14 @@ public:
         first_contact_ = L(Strided<N>(designs[0].first_contact_s));
         events_ = L(0.0);
         last_event_ = L(-1.0);
-        now_ = 0.0;
-        before_ = 0.0;
-        depth_before_ = L(0.0);
-        // Elements that there are; whether they act, they see by themselves.
+        now_s_ = 0.0;
+        last_step_s_ = 0.0;
+        inputs_are_new_ = false;
+        // Elements that there are.
         const auto there = [](bool yes) { return L(yes ? 1.0 : 0.0); };
         const bool rope = p_.slider_present != 0 && p_.rope_attached != 0;
         const bool plate = p_.slider_present != 0 && p_.has_plate();
-        armed_ = {.gear_direction = {},
+        there_ = {.gear_direction = {},
                   .contact = there(p_.slider_present != 0),
                   .rope_taut = there(rope),
                   .end_stop = there(plate && !p_.has_ideal_latch()),
@@ -65,7 +69,7 @@ public:
         for (std::size_t i = 0; i < u_.motor_torque.size(); ++i) {
             u_.motor_torque[i] = L::load(rows + i * N);
         }
-        plant::accept_inputs(x_, u_, m_, p_, d_);
+        inputs_are_new_ = true;
     }
 
     void set_pushes(const double* rows) override {
@@ -73,33 +77,20 @@ public:
         u_.push_force_y = L::load(rows + N);
         u_.push_point_x = L::load(rows + 2 * N);
         u_.push_point_y = L::load(rows + 3 * N);
+        inputs_are_new_ = true;
     }
 
     [[gnu::flatten]] void advance(int count, double step_s) override {
-        const L half(0.5 * step_s);
-        const L whole(step_s);
-        const L sixth(step_s / 6.0);
-        const L third(step_s / 3.0);
-        const double start_s = now_;
-        for (int step = 0; step < count; ++step) {
-            State rate = settled().rate;
-            State next = x_;
-            State stage;
-            for (int stage_number = 0;; ++stage_number) {
-                const bool outer = stage_number == 0 || stage_number == 3;
-                const L weight = outer ? sixth : third;
-                const L reach = stage_number == 2 ? whole : half;
-                for (std::size_t i = 0; i < next.size(); ++i) {
-                    next[i] = next[i] + weight * rate[i];
-                    stage[i] = x_[i] + reach * rate[i];
-                }
-                if (stage_number == 3) {
-                    break;
-                }
-                rate = evaluate(stage).rate;
-            }
-            x_ = next;
-            now_ = start_s + static_cast<double>(step + 1) * step_s;
+        const double start_s = now_s_;
+        for (int step = 1; step <= count; ++step) {
+            const Evaluation e = settled();
+            before_ = x_;
+            rate_before_ = e.rate;
+            indicators_before_ = plant::event_indicators(e, x_, m_, p_, d_);
+            acted_ = u_;
+            x_ = moved(x_, e.rate, L(step_s), u_);
+            last_step_s_ = step_s;
+            now_s_ = start_s + static_cast<double>(step) * step_s;
         }
     }
 
@@ -115,63 +106,135 @@ public:
 private:
     template <class Block> static const double* rows(const Block& block) { return reinterpret_cast<const double*>(&block); }
 
-    Evaluation evaluate(const State& x) {
-        armed_.gear_direction = m_.gear_direction;
-        armed_.latched = m_.latched;
-        return plant::evaluate(x, u_, armed_, p_, d_);
+    Evaluation evaluate(const State& x, const plant::Inputs<L>& u) {
+        there_.gear_direction = m_.gear_direction;
+        there_.latched = m_.latched;
+        return plant::evaluate(x, u, there_, p_, d_);
     }
 
-    // Everything at the present state, after the mode changes that are due. A lane in which none is due keeps its bits.
+    // One step of the classic Runge-Kutta method. `rate`: at x.
+    State moved(const State& x, State rate, L step_s, const plant::Inputs<L>& u) {
+        const L weights[4] = {L(1.0 / 6.0) * step_s, L(1.0 / 3.0) * step_s, L(1.0 / 3.0) * step_s, L(1.0 / 6.0) * step_s};
+        const L reaches[3] = {L(0.5) * step_s, L(0.5) * step_s, step_s};
+        State next = x;
+        for (int stage = 0;; ++stage) {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                next[i] = next[i] + weights[stage] * rate[i];
+            }
+            if (stage == 3) {
+                return next;
+            }
+            State reached;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                reached[i] = x[i] + reaches[stage] * rate[i];
+            }
+            rate = evaluate(reached, u).rate;
+        }
+    }
+
+    // Everything at the present state and inputs, after the mode changes that are due. A lane in which none is due keeps its bits.
     Evaluation settled() {
-        const Evaluation e = evaluate(x_);
+        Evaluation e = evaluate(x_, u_);
+        if (last_step_s_ > 0.0) {
+            if (change_modes(e)) {
+                e = evaluate(x_, u_);
+            }
+            last_step_s_ = 0.0;
+        }
+        if (inputs_are_new_) {
+            // As accept_inputs() of the plant.
+            const auto before = m_.gear_direction;
+            L changed(0.0);
+            for (int i = 0; i < plant::wheel_count; ++i) {
+                plant::break_away(u_, m_, p_, i, e.sensed_torque[i]);
+                changed = changed + math::abs(m_.gear_direction[i] - before[i]);
+            }
+            if (any_positive(changed)) {
+                e = evaluate(x_, u_);
+            }
+            inputs_are_new_ = false;
+        }
+        return e;
+    }
+
+    // What the last step has led to. `e`: at its end, with the inputs of now. True if anything changed.
+    bool change_modes(const Evaluation& e) {
         const L zero(0.0);
         const L one(1.0);
-        const auto g = plant::event_indicators(e, x_, m_, p_, d_);
-        plant::EventVector<L> fired{};
-        // One-sided elements follow their indicator.
-        const auto follow = [&](int event, L mode) {
-            const L side = math::select(math::less(zero, g[event]), one, zero);
-            fired[event] = side - mode;
-        };
+        // The gears with the torques that acted during the step.
+        Evaluation end = e;
         for (int i = 0; i < plant::wheel_count; ++i) {
-            fired[plant::event_gear + i] = math::select(math::less(g[plant::event_gear + i], zero), L(-1.0), zero);
+            end.net_torque[i] = plant::net_motor_torque(p_, acted_.motor_torque[i], e.sensed_torque[i]);
         }
+        const Events g = plant::event_indicators(end, x_, m_, p_, d_);
+
+        // What only reports.
+        Events reported{};
+        const auto follow = [&](int event, L mode) { reported[event] = math::select(math::less(zero, g[event]), one, zero) - mode; };
         follow(plant::event_contact, m_.contact);
         follow(plant::event_rope, m_.rope_taut);
         follow(plant::event_bottom_stop, m_.bottom_stop);
         follow(plant::event_landing, m_.landed);
         follow(plant::event_wall, m_.walled);
-        if (p_.has_ideal_latch()) {
-            fired[plant::event_end_stop] = math::select(math::less(g[plant::event_end_stop], zero), L(-1.0), zero);
-        } else {
+        if (!p_.has_ideal_latch()) {
             follow(plant::event_end_stop, one - m_.end_stop);
         }
-        L any = zero;
-        for (const L& one_fired : fired) {
-            any = any + math::abs(one_fired);
+        // What decides; of several in one step the first.
+        constexpr int deciding[] = {plant::event_gear, plant::event_gear + 1, plant::event_gear + 2, plant::event_end_stop};
+        const int deciding_count = p_.has_ideal_latch() ? 4 : 3;
+        L share[4];
+        L first = L(2.0);
+        for (int k = 0; k < deciding_count; ++k) {
+            const int event = deciding[k];
+            const L from = math::max(indicators_before_[event], zero);
+            const L crossed = from / math::max(from - g[event], L(1e-300));
+            share[k] = math::select(math::less(g[event], zero), crossed, L(2.0));
+            first = math::min(first, share[k]);
         }
-        const L depth = g[plant::event_contact];
-        if (!any_positive(any)) {
-            before_ = now_;
-            depth_before_ = depth;
-            return e;
+        const auto decided = math::less(first, L(1.5));
+        L changes = math::select(decided, one, zero);
+        for (const L& change : reported) {
+            changes = changes + math::abs(change);
         }
-        // The instant of the first contact: the depth crosses zero on its way from the last state to this one.
-        const auto touched = math::less(zero, fired[plant::event_contact]);
-        const L crossing = L(before_) + L(now_ - before_) * (zero - depth_before_) / math::max(depth - depth_before_, L(1e-300));
-        const L since = math::clamp(crossing, L(before_), L(now_));
-        first_contact_ = math::select(math::less(first_contact_, zero), math::select(touched, since, first_contact_), first_contact_);
-        before_ = now_;
-        depth_before_ = depth;
-        const auto changed = math::less(zero, any);
+        if (!any_positive(changes)) {
+            return false;
+        }
+        const double before_s = now_s_ - last_step_s_;
+        const L before_depth = indicators_before_[plant::event_contact];
+        const L rise = math::max(g[plant::event_contact] - before_depth, L(1e-300));
+        const L touched = L(before_s) + L(last_step_s_) * math::clamp((zero - before_depth) / rise, zero, one);
+        const L met = math::select(math::less(zero, reported[plant::event_contact]), touched, first_contact_);
+        first_contact_ = math::select(math::less(first_contact_, zero), met, first_contact_);
+        const auto changed = math::less(zero, changes);
         events_ = events_ + math::select(changed, one, zero);
-        last_event_ = math::select(changed, L(now_), last_event_);
-        State x = x_;
-        plant::planar_transition(e, x, m_, fired, p_, d_);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            x_[i] = math::select(changed, x[i], x_[i]);
+        last_event_ = math::select(changed, math::select(decided, L(before_s) + L(last_step_s_) * first, L(now_s_)), last_event_);
+        State as_it_is = x_; // nothing jumps where modes only report
+        plant::planar_transition(end, as_it_is, m_, reported, p_, d_);
+        if (any_positive(math::select(decided, one, zero))) {
+            Events fired{};
+            for (int k = 0; k < deciding_count; ++k) {
+                fired[deciding[k]] = math::select(math::less(first, share[k]), zero, math::select(decided, L(-1.0), zero));
+            }
+            redo(first, decided, fired);
         }
-        return evaluate(x_);
+        return true;
+    }
+
+    // Takes the lanes in which something was decided back to `share` of the last step and forth again with new modes.
+    template <class Mask> void redo(L share, Mask decided, const Events& fired) {
+        const L step(last_step_s_);
+        const L part = math::select(decided, share, L(0.0));
+        State x;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            // Through both ends, with the slope of the beginning.
+            const L straight = step * rate_before_[i];
+            x[i] = before_[i] + part * (straight + part * (x_[i] - before_[i] - straight));
+        }
+        plant::planar_transition(evaluate(x, acted_), x, m_, fired, p_, d_);
+        x = moved(x, evaluate(x, acted_).rate, (L(1.0) - part) * step, acted_);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            x_[i] = math::select(decided, x[i], x_[i]);
+        }
     }
 
     static bool any_positive(const L& lanes) {
@@ -188,13 +251,17 @@ private:
     plant::Derived<L> d_{};
     State x_{};
     plant::Modes<L> m_{};
-    plant::Modes<L> armed_{};
+    plant::Modes<L> there_{}; // m_ where it decides, else 1 for all elements that there are
     plant::Inputs<L> u_{};
     plant::Outputs<L> outputs_{};
     L first_contact_, events_, last_event_;
-    double now_ = 0.0;
-    double before_ = 0.0; // of the last settled state
-    L depth_before_;
+    double now_s_ = 0.0;
+    bool inputs_are_new_ = false;
+    // The last step: its length (0 once its mode changes were made), its beginning, and the inputs during it.
+    double last_step_s_ = 0.0;
+    State before_{}, rate_before_{};
+    Events indicators_before_{};
+    plant::Inputs<L> acted_{};
 };
 
 } // namespace giveway::batch

@@ -6,7 +6,7 @@
 namespace giveway::batch {
 
 // Steps per servo tick of 0.5 ms that a design can have; more are not offered: it is left to the event-exact method.
-inline constexpr int lane_steps[] = {2, 4, 8, 16, 32};
+inline constexpr int lane_steps[] = {1, 2, 4, 8, 16, 32};
 
 // 0 if even the shortest step is too long. `impact_speed_mps`: at which the slider may hit.
 int lane_steps_per_tick(const plant::Parameters<double>& p, double impact_speed_mps);
