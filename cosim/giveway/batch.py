@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway import native
-from giveway.checks import whole
+from giveway.body_regions import body_region
+from giveway.checks import finite, whole
 from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
 from giveway.master import Progress, Record, plan_table, push_table
 from giveway.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from giveway.result import Result
     from giveway.scenario import Scenario
 
-__all__ = ["BatchProgress", "run", "run_many"]
+__all__ = ["METHODS", "BatchProgress", "run", "run_many", "widest_lanes"]
 
 BatchProgress = Callable[[int, int], None]
 """Called now and then with the number of finished runs and of all runs."""
@@ -63,6 +64,9 @@ _SPEC = np.dtype(
         ("push_rows", "u4"),
         ("columns", _POINTER),
         ("column_count", "u4"),
+        ("reserved", "u4"),
+        ("transient_limit_n", "f8"),
+        ("lasting_limit_n", "f8"),
     ],
     align=True,
 )
@@ -127,9 +131,12 @@ class _Library:
         self._function("gwb_find_variable", ctypes.c_int, number, ctypes.c_char_p, pointer)
         self._function("gwb_metric_info", ctypes.c_int, number, pointer)
         self._function("gwb_metric_count", number)
-        self.start = self._function("gwb_start", ctypes.c_int, pointer, size, pointer, pointer, pointer, ctypes.c_char_p)
+        self.start = self._function(
+            "gwb_start", ctypes.c_int, pointer, size, pointer, pointer, pointer, ctypes.c_char_p
+        )
         self.wait = self._function("gwb_wait", ctypes.c_int, pointer, ctypes.c_double, pointer)
         self.cancel = self._function("gwb_cancel", None, pointer)
+        self.widest_lanes = self._function("gwb_widest_lanes", number)
         self.finish = self._function("gwb_finish", None, pointer)
         sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
         self.models: dict[str, _Model] = {}
@@ -145,6 +152,7 @@ class _Library:
                 ("reference", "u4"),
                 ("rows", "u4"),
                 ("method", "u4"),
+                ("reserved", "u4"),
                 ("time_s", "f8"),
                 ("plant_step_s", "f8"),
                 ("value", "f8"),
@@ -214,6 +222,11 @@ class _Batch:
         self._specs["step_s"] = [scenario.step_s for scenario in scenarios]
         self._specs["step_count"] = [scenario.steps for scenario in scenarios]
         self._set_parameters()
+        for index, scenario in enumerate(scenarios):
+            if scenario.body_region is not None:
+                region = body_region(scenario.body_region)
+                self._specs["transient_limit_n"][index] = region.peak_limit_n
+                self._specs["lasting_limit_n"][index] = region.lasting_limit_n
         self._plans = _Tables(self._specs, "plan")
         self._pushes = _Tables(self._specs, "push")
         for index, scenario in enumerate(scenarios):
@@ -377,6 +390,13 @@ def run_many(
     stop the others. Over ``run`` and ``time``: the variables named in ``traces`` ("testbed.truth.contact_force"), zero
     from where a run ended early; for these all scenarios need the same duration and step.
 
+    ``method`` "event-exact" gives the bits of `giveway.run`. "fixed-step" computes ``lanes`` designs side by side (1, 4
+    or 8; None: as many as the processor can) over fixed steps of ``plant_step_s`` (1e-6 to 5e-4 s; None: as each design
+    needs): several times as fast, with the errors that fmu/batch/README.md lists, and each design with the same bits
+    whatever the lanes, threads and other scenarios. Its table says per run how it was computed: ``method`` (what cannot
+    be done over fixed steps is done event-exact) and ``plant step`` (s, 0 if event-exact); the attributes ``method``
+    and ``lanes`` are those of the batch.
+
     Wrong scenarios are refused before anything runs. Ctrl-C ends the batch; what is done is kept, the rest is
     "cancelled", and the attribute ``interrupted`` is true.
     """
@@ -384,6 +404,7 @@ def run_many(
     if threads is None:
         threads = min(len(os.sched_getaffinity(0)), THREADS_MAX)
     whole("threads", threads, 1, THREADS_MAX)
+    options = _options(threads, method, lanes, plant_step_s)
     chosen = [_trace(name) for name in dict.fromkeys(traces)]
     if chosen and len({(scenario.steps, scenario.step_s) for scenario in scenarios}) > 1:
         raise GivewayError("traces", ", ".join(traces), "none, or scenarios of one duration and step")
@@ -393,9 +414,31 @@ def run_many(
         if progress is not None:
             progress(int(state.runs_done), int(state.runs))
 
-    options = _Options(threads=threads, method=METHODS.index(method), lanes=lanes or 0, plant_step_s=plant_step_s or 0.0)
     interrupted = batch.execute(options, report)
-    return _dataset(batch, chosen, scenarios[0].step_s if scenarios else 0.0, interrupted)
+    table = _dataset(batch, chosen, scenarios[0].step_s if scenarios else 0.0)
+    return table.assign_attrs(interrupted=interrupted, method=method, lanes=int(options.lanes))
+
+
+def widest_lanes() -> int:
+    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, else 1."""
+    return int(_library().widest_lanes())
+
+
+def _options(threads: int, method: str, lanes: int | None, plant_step_s: float | None) -> _Options:
+    if method not in METHODS:
+        raise UnknownNameError("method", method, METHODS)
+    if method == "event-exact":
+        for name, value in (("lanes", lanes), ("plant_step_s", plant_step_s)):
+            if value is not None:
+                raise GivewayError(name, value, "none with the method event-exact")
+        return _Options(threads=threads)
+    widest = widest_lanes()
+    possible = [number for number in LANES if number <= widest]
+    if lanes is not None and lanes not in possible:
+        raise GivewayError("lanes", lanes, f"one of {', '.join(map(str, possible))} on this processor")
+    if plant_step_s is not None:
+        finite("plant_step_s", plant_step_s, *PLANT_STEP_RANGE_S, "s")
+    return _Options(threads, METHODS.index(method), lanes or widest, 0, plant_step_s or 0.0)
 
 
 def _trace(name: str) -> _Trace:
@@ -408,7 +451,7 @@ def _trace(name: str) -> _Trace:
     return _Trace(model, chosen)
 
 
-def _dataset(batch: _Batch, traces: Sequence[_Trace], step_s: float, interrupted: bool) -> xarray.Dataset:
+def _dataset(batch: _Batch, traces: Sequence[_Trace], step_s: float) -> xarray.Dataset:
     import xarray
 
     results = batch.results
@@ -416,6 +459,8 @@ def _dataset(batch: _Batch, traces: Sequence[_Trace], step_s: float, interrupted
         "status": ("run", np.array(STATUSES)[results["status"]]),
         "message": ("run", np.array([message.decode() for message in results["message"]], dtype=np.str_)),
         "simulated": ("run", results["time_s"].copy(), {"units": "s", "long_name": "Simulated time"}),
+        "method": ("run", np.array(METHODS)[results["method"]]),
+        "plant step": ("run", results["plant_step_s"].copy(), {"units": "s", "long_name": "Fixed step of the plant"}),
     }
     for index, metric in enumerate(batch.library.metrics):
         attributes = {"units": metric.unit}
@@ -428,4 +473,4 @@ def _dataset(batch: _Batch, traces: Sequence[_Trace], step_s: float, interrupted
         columns[trace.name] = (("run", "time"), batch.traces[trace.name], attributes)
         rows = batch.traces[trace.name].shape[1]
         coordinates["time"] = ("time", np.arange(rows) * step_s, {"units": "s", "long_name": "Simulated time"})
-    return xarray.Dataset(columns, coords=coordinates, attrs={"interrupted": interrupted})
+    return xarray.Dataset(columns, coords=coordinates)

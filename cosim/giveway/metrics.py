@@ -13,17 +13,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.body_regions import TRANSIENT_S, BodyRegion, body_regions, judge
+
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["Collision", "Metric", "collision"]
+__all__ = ["Collision", "Metric", "collision", "design"]
 
 PEAK_WINDOW_S = 0.35
 LOADED_SHARE = 0.5
 CAUSE_WINDOW_S = 0.25
 PUSH_FORCES = ("testbed.push.force_x", "testbed.push.force_y")
 WHEELS = 3
+GRAVITY_MPS2 = 9.81  # the plant's
 
 
 @dataclass(frozen=True)
@@ -146,10 +149,7 @@ class Collision:
         row = self.until_detection().start - 1
         if self.contact_s is None or row < 1:
             return Metric(name, None, "m/s")
-        step_s = self.time_s[row] - self.time_s[row - 1]
-        nose = [np.diff(self[f"testbed.truth.nose_{axis}"][row - 1 : row + 1])[0] / step_s for axis in "xy"]
-        base = [self[f"testbed.truth.v{axis}"][row] for axis in "xy"]
-        return Metric(name, math.hypot(nose[0] - base[0], nose[1] - base[1]), "m/s", decimals=3)
+        return Metric(name, self._nose_speed(row - 1), "m/s", decimals=3)
 
     def detection_time(self) -> Metric:
         """Time from the first cover contact to the controller's decision, all delays included, ms."""
@@ -269,6 +269,85 @@ class Collision:
         """Largest compression of the bumper, mm."""
         return Metric("bumper travel", 1e3 * float(self["testbed.truth.bumper_compression"].max()), "mm", decimals=1)
 
+    # Numbers of a design
+
+    def person(self, region: BodyRegion | None) -> tuple[Metric, ...]:
+        """Transient and lasting force (N), as `body_regions.judge`, the longest contact (s), and both forces' shares of
+        the limits of ``region``. What lasts longer than 0.5 s is not known if the run ended within them."""
+        judged = judge(self.time_s, self["testbed.truth.contact_force"], region or next(iter(body_regions().values())))
+        first = self.until_detection().start
+        known = self.contact_s is None or self.time_s[-1] - self.time_s[min(first, len(self.time_s) - 1)] > TRANSIENT_S
+        lasting = judged.lasting_n if known else None
+        shares: list[float | None] = [None, None]
+        if region is not None:
+            limit = region.peak_limit_n
+            shares[0] = 0.0 if judged.peak_n == 0.0 else judged.peak_n / limit if limit > 0.0 else math.inf
+            shares[1] = None if lasting is None else lasting / region.lasting_limit_n
+        return (
+            Metric("transient force", judged.peak_n, "N", decimals=1),
+            Metric("lasting force", lasting, "N", decimals=1),
+            Metric("longest contact", judged.longest_contact_s, "s", decimals=3),
+            Metric("transient force share", shares[0], "1"),
+            Metric("lasting force share", shares[1], "1"),
+        )
+
+    def bottoming_margin(self) -> Metric:
+        """Travel that the bumper had left at its largest compression, mm; negative in the stop."""
+        testbed = self._parameters["testbed"]
+        left = float(testbed["bumper.travel"]) - float(self["testbed.truth.bumper_compression"].max())
+        return Metric("bottoming margin", 1e3 * left if testbed["bumper.kind"] else None, "mm", decimals=1)
+
+    def rebound(self) -> tuple[Metric, Metric]:
+        """How often a contact began, and the speed of the nose relative to the robot after the first one, m/s."""
+        contact = self["testbed.truth.contact"].astype(np.int8)
+        count = float((np.diff(contact, prepend=0) > 0).sum()) if self.contact_s is not None else None
+        start = self.until_detection().start
+        left = np.flatnonzero(contact[start:] == 0)
+        row = start + int(left[0]) if left.size and self.contact_s is not None else len(self.time_s)
+        speed = self._nose_speed(row) if row + 1 < len(self.time_s) else None
+        return Metric("contacts", count, "1", decimals=0), Metric("rebound speed", speed, "m/s", decimals=3)
+
+    def _nose_speed(self, row: int) -> float:
+        """Of the nose relative to the base from ``row`` to the next, m/s."""
+        step_s = self.time_s[row + 1] - self.time_s[row]
+        nose = [np.diff(self[f"testbed.truth.nose_{axis}"][row : row + 2])[0] / step_s for axis in "xy"]
+        return math.hypot(*(nose[i] - self[f"testbed.truth.v{axis}"][row + 1] for i, axis in enumerate("xy")))
+
+    def relatching(self) -> tuple[Metric, Metric]:
+        """How often the magnet caught the plate again, and when first, ms after contact."""
+        rows = np.flatnonzero(np.diff(self["testbed.truth.latched"].astype(np.int8)) > 0) + 1
+        exists = self._parameters["testbed"]["bumper.kind"] and self.contact_s is not None
+        first = 1e3 * (self.time_s[rows[0]] - self.contact_s) if exists and rows.size else None
+        count = Metric("re-latches", float(len(rows)) if exists else None, "1", decimals=0)
+        return count, Metric("re-latch time", first, "ms", decimals=1)
+
+    def tip_margin(self) -> Metric:
+        """Least tip margin of the run, 1: 1 level and at rest, 0 where a wheel lifts (or, with ``base.tipping``, the
+        base goes over).
+
+        On a plane from the centre of pressure of the wheel loads, which acceleration, contact force and push move:
+        its distance to the nearest line between two wheels over that of the centre.
+        """
+        testbed = {name: float(value) for name, value in self._parameters["testbed"].items()}
+        if testbed["base.tipping"]:
+            return Metric("tip margin", min(1.0, float(self["testbed.truth.tip_margin"].min())), "1")
+        none = np.zeros(len(self.time_s))
+        weight = testbed["base.mass"] * GRAVITY_MPS2
+        reach = []
+        for axis in "xy":
+            force, speed = self[f"testbed.truth.contact_force_{axis}"], self[f"testbed.truth.v{axis}"]
+            name = f"testbed.push.force_{axis}"
+            push = (self[name] if name in self._traces else none)[:-1]
+            inertial = testbed["base.com_height"] * testbed["base.mass"] * np.diff(speed) / np.diff(self.time_s)
+            moment = testbed["contact.height"] * 0.5 * (force[1:] + force[:-1]) + testbed["push.height"] * push
+            reach.append((moment - inertial) / weight)
+        theta = self["testbed.truth.theta"][1:]
+        azimuth = (np.arange(WHEELS) * 2.0 * math.pi / 3.0)[:, None]
+        # A line between two wheels is half a wheel distance from the centre, opposite to the third wheel.
+        beyond = -(np.cos(azimuth + theta) * reach[0] + np.sin(azimuth + theta) * reach[1])
+        farthest = max(0.0, float(beyond.max(initial=0.0)))
+        return Metric("tip margin", 1.0 - farthest / (0.5 * testbed["wheel.distance"]), "1")
+
     def energy_residual(self) -> Metric:
         """Largest error of the energy balance (work in = stored + dissipated) over the largest energy in play, 1.
 
@@ -278,6 +357,14 @@ class Collision:
         scale = max(float(np.abs(work).max()), float(np.ptp(stored)), float(self["testbed.energy.dissipated"].max()))
         worst = float(np.abs(self["testbed.energy.residual"]).max())
         return Metric("energy residual", worst / scale if scale > 0.0 else worst, "1", 0.0, None)
+
+
+def design(
+    traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]], region: BodyRegion | None = None
+) -> tuple[Metric, ...]:
+    """What a bumper design is judged by beyond `collision`; a batch computes it natively."""
+    hit = Collision(traces, parameters)
+    return (*hit.person(region), hit.bottoming_margin(), *hit.rebound(), *hit.relatching(), hit.tip_margin())
 
 
 def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]) -> tuple[Metric, ...]:

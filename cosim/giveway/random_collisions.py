@@ -71,9 +71,7 @@ def random_collisions(count: int, seed: int, duration_s: float = DURATION_S) -> 
 
 
 def _scenario(rng: np.random.Generator, start: Mapping[str, Value], index: int, duration_s: float) -> Scenario:
-    values: dict[str, Value] = {
-        name: float(start[name]) * _factor(rng, factor) for name, factor in FACTORS.items()
-    }
+    values: dict[str, Value] = {name: float(start[name]) * _factor(rng, factor) for name, factor in FACTORS.items()}
     values["drivetrain.gear_stiction"] = float(values["drivetrain.gear_coulomb"]) * rng.uniform(1.0, 1.5)
     for wheel in range(3):
         name = f"roller.presliding_stiffness[{wheel}]"

@@ -43,6 +43,17 @@ constexpr gwb_metric_info_t metric_infos[] = {
     {"latched at end", "1", 0},
     {"rope taut at end", "1", 0},
     {"events", "1", 0},
+    {"transient force", "N", 0},
+    {"lasting force", "N", 0},
+    {"longest contact", "s", 0},
+    {"transient force share", "1", 0},
+    {"lasting force share", "1", 0},
+    {"bottoming margin", "mm", 0},
+    {"contacts", "1", 0},
+    {"rebound speed", "m/s", 0},
+    {"re-latches", "1", 0},
+    {"re-latch time", "ms", 0},
+    {"tip margin", "1", 0},
 };
 static_assert(std::size(metric_infos) == GWB_METRIC_COUNT);
 

@@ -81,7 +81,19 @@ enum {
     GWB_LATCHED_AT_END = 20,    /* 0 or 1: the bumper's magnetic latch */
     GWB_ROPE_TAUT_AT_END = 21,  /* 0 or 1 */
     GWB_EVENTS = 22,            /* 1: located by the integrator */
-    GWB_METRIC_COUNT = 23
+    /* A contact ends when no force came for 0.5 s (cosim/giveway/body_regions.py). */
+    GWB_TRANSIENT_FORCE = 23,  /* N: largest within the first 0.5 s of a contact */
+    GWB_LASTING_FORCE = 24,    /* N: largest later than 0.5 s into a contact; NaN if the run ended within 0.5 s of the first */
+    GWB_LONGEST_CONTACT = 25,  /* s */
+    GWB_TRANSIENT_SHARE = 26,  /* 1: of the body region's transient limit; infinite where none is allowed and one was */
+    GWB_LASTING_SHARE = 27,    /* 1: of the body region's lasting limit */
+    GWB_BOTTOMING_MARGIN = 28, /* mm: bumper's travel less its largest compression; negative in the stop */
+    GWB_CONTACTS = 29,         /* 1: times that a contact began, as the rows show it; 1 more than the rebounds */
+    GWB_REBOUND_SPEED = 30,    /* m/s: of the nose relative to the robot when the first contact has ended */
+    GWB_RELATCHES = 31,        /* 1: times that the bumper's magnet caught its plate again */
+    GWB_RELATCH_TIME = 32,     /* ms: contact to the first of them */
+    GWB_TIP_MARGIN = 33,       /* 1: least of the run; 0: a wheel lifts (on a plane), or it goes over (base.tipping) */
+    GWB_METRIC_COUNT = 34
 };
 
 typedef struct gwb_variable {
@@ -133,6 +145,10 @@ typedef struct gwb_spec {
     uint32_t push_rows;
     const gwb_column_t *columns;
     uint32_t column_count;
+    uint32_t reserved; /* 0 */
+    /* Limits of the body region that is hit, N; a lasting limit of 0: none is given. With one, a transient limit of 0
+     * says that no transient contact is allowed. */
+    double transient_limit_n, lasting_limit_n;
 } gwb_spec_t;
 
 typedef struct gwb_result {
@@ -141,6 +157,7 @@ typedef struct gwb_result {
     uint32_t reference;             /* the variable whose value was not allowed; else GWB_NONE */
     uint32_t rows;                  /* of every column that were written */
     uint32_t method;                /* that the run was computed with: not always the batch's, see gwb_options_t */
+    uint32_t reserved;              /* 0 */
     double time_s;                  /* how far the run came: its end, or the last good time */
     double plant_step_s;            /* GWB_FIXED_STEP: the plant's step; else 0 */
     double value, minimum, maximum; /* of that variable; else NaN */

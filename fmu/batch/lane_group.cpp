@@ -7,7 +7,6 @@
 #include <memory>
 #include <new>
 #include <tuple>
-#include <vector>
 
 #include "lane_plant.hpp"
 #include "lane_step.hpp"
@@ -102,6 +101,10 @@ public:
         }
         plant_.start(starts.data());
         each([&](Lane& lane, std::size_t i) {
+            if (!lane.run().begin()) {
+                stop(lane);
+                return;
+            }
             lane.run().result().method = GWB_FIXED_STEP;
             lane.run().result().plant_step_s = tick_s / lane.steps_per_tick();
             sample(lane, i);
@@ -211,12 +214,10 @@ private:
                              lane.start().parameters, motor_torque_[i], {0.0, plant_.first_contact_s()[i]}, lane.stored_at_start_j());
         v.events = static_cast<std::int32_t>(plant_.events()[i]);
         v.last_event_time = plant_.last_event_s()[i];
-        v.solver_steps = tick_count_steps(lane);
+        v.solver_steps = static_cast<std::int32_t>(tick_ * lane.steps_per_tick());
         v.solver_rhs_calls = 4 * v.solver_steps;
         v.solver_jacobian_calls = 0;
     }
-
-    [[nodiscard]] std::int32_t tick_count_steps(const Lane& lane) const { return static_cast<std::int32_t>(tick_ * lane.steps_per_tick()); }
 
     LanePlant& plant_;
     std::size_t width_;
@@ -248,25 +249,31 @@ int widest_lanes() {
 }
 
 void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep& how, Monitor& monitor, gwb_result_t* results, RunDone& listener) {
-    const auto system = std::make_unique<testbed::PlantSystem>();
-    std::vector<std::unique_ptr<Lane>> lanes;
+    const std::unique_ptr<testbed::PlantSystem> system(new (std::nothrow) testbed::PlantSystem);
+    const std::unique_ptr<LanePlant> plant(new_lane_plant(how.lanes));
+    const std::unique_ptr<std::unique_ptr<Lane>[]> lanes(new (std::nothrow) std::unique_ptr<Lane>[count]);
+    const bool memory = system != nullptr && plant != nullptr && lanes != nullptr;
+    std::size_t fitting = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        auto lane = std::make_unique<Lane>(specs[i], monitor, results[i]);
-        if (!lane->prepare(*system, how)) {
-            listener.done();
-        } else if (!lane->fits()) {
+        std::unique_ptr<Lane> lane(memory ? new (std::nothrow) Lane(specs[i], monitor, results[i]) : nullptr);
+        if (lane == nullptr) {
+            RecordedRun(specs[i], monitor, results[i]).end(GWB_NO_MEMORY, "no memory for designs side by side");
+        } else if (lane->prepare(*system, how)) {
+            if (lane->fits()) {
+                lanes[fitting++] = std::move(lane);
+                continue;
+            }
+            lane->run().hand_over();
             lane.reset();
             run(specs[i], monitor, results[i]);
-            listener.done();
-        } else {
-            lanes.push_back(std::move(lane));
         }
+        lane.reset();
+        listener.done();
     }
-    std::stable_sort(lanes.begin(), lanes.end(), [](const auto& a, const auto& b) { return a->key() < b->key(); });
-    const std::unique_ptr<LanePlant> plant(new_lane_plant(how.lanes));
-    for (std::size_t first = 0; first < lanes.size();) {
+    std::stable_sort(lanes.get(), lanes.get() + fitting, [](const auto& a, const auto& b) { return a->key() < b->key(); });
+    for (std::size_t first = 0; first < fitting;) {
         std::size_t last = first + 1;
-        while (last < lanes.size() && last - first < static_cast<std::size_t>(how.lanes) && lanes[last]->key() == lanes[first]->key()) {
+        while (last < fitting && last - first < static_cast<std::size_t>(how.lanes) && lanes[last]->key() == lanes[first]->key()) {
             ++last;
         }
         Group(*plant, &lanes[first], last - first).go();

@@ -15,7 +15,11 @@ namespace {
 constexpr double peak_window_s = 0.35;
 constexpr double loaded_share = 0.5;
 constexpr double cause_window_s = 0.25;
+constexpr double transient_s = 0.5; // of a contact; what lasts longer is quasi-static
+constexpr double gravity_mps2 = 9.81;
 constexpr double pi = 3.14159265358979323846;
+constexpr double wheel_cos[] = {1.0, -0.5, -0.5};
+constexpr double wheel_sin[] = {0.0, 0.8660254037844386, -0.8660254037844386};
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
 struct Vector {
@@ -53,7 +57,11 @@ public:
 
     void all() {
         whole_run();
+        forces_on_a_person();
+        tip_margin();
         if (hit_) {
+            rebound();
+            relatching();
             contact_speed();
             peak_torques();
         }
@@ -114,6 +122,9 @@ private:
         const double scale = std::max({work, most_stored - least_stored, dissipated});
         set(GWB_PEAK_FORCE, peak_force);
         set(GWB_BUMPER_TRAVEL, 1e3 * travel);
+        if (parameters_.bumper) {
+            set(GWB_BOTTOMING_MARGIN, 1e3 * (parameters_.bumper_travel_m - travel));
+        }
         set(GWB_ENERGY_RESIDUAL, scale > 0.0 ? residual / scale : residual, 0.0);
         set(GWB_FALSE_DETECTIONS, false_detections, 0.0);
         set(GWB_DETECTIONS, detections);
@@ -127,15 +138,116 @@ private:
         set(GWB_EVENTS, last().events);
     }
 
+    // As body_regions.judge.
+    void forces_on_a_person() {
+        double transient = 0.0;
+        double lasting = 0.0;
+        double longest = 0.0;
+        double began_s = -std::numeric_limits<double>::infinity();
+        double touched_s = began_s;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const Sample& s = s_[i];
+            if (!(s.contact_force > 0.0)) {
+                continue;
+            }
+            if (s.time_s - touched_s >= transient_s) {
+                began_s = s.time_s;
+            }
+            touched_s = s.time_s;
+            const double since_s = s.time_s - began_s;
+            longest = std::max(longest, since_s);
+            double& largest = since_s <= transient_s ? transient : lasting;
+            largest = std::max(largest, s.contact_force);
+        }
+        const bool known = !hit_ || last().time_s - s_[std::min(start_, count_ - 1)].time_s > transient_s;
+        set(GWB_TRANSIENT_FORCE, transient);
+        set(GWB_LONGEST_CONTACT, longest);
+        if (known) {
+            set(GWB_LASTING_FORCE, lasting);
+        }
+        if (parameters_.lasting_limit_n > 0.0) {
+            set(GWB_TRANSIENT_SHARE, transient > 0.0 ? transient / parameters_.transient_limit_n : 0.0);
+            if (known) {
+                set(GWB_LASTING_SHARE, lasting / parameters_.lasting_limit_n);
+            }
+        }
+    }
+
+    // On a plane: how far the centre of pressure of the wheels' loads is from the nearest line between two of them. It follows from the base's
+    // acceleration, the horizontal forces and their heights.
+    void tip_margin() {
+        double least = 1.0;
+        for (std::size_t i = parameters_.tipping ? 0 : 1; i < count_; ++i) {
+            least = std::min(least, parameters_.tipping ? s_[i].tip_margin : standing_margin(s_[i - 1], s_[i]));
+        }
+        set(GWB_TIP_MARGIN, least);
+    }
+
+    // Over a row: mean acceleration, mean contact force, the push that acted.
+    [[nodiscard]] double standing_margin(const Sample& a, const Sample& b) const {
+        const MetricParameters& p = parameters_;
+        const double step_s = b.time_s - a.time_s;
+        const auto reach = [&](double push, double force_a, double force_b, double va, double vb) {
+            const double moment = p.contact_height_m * 0.5 * (force_a + force_b) + p.push_height_m * push - p.com_height_m * p.mass_kg * (vb - va) / step_s;
+            return moment / (p.mass_kg * gravity_mps2);
+        };
+        const Vector pressure = to_base({reach(a.push_force_x, a.contact_force_x, b.contact_force_x, a.vx, b.vx),
+                                         reach(a.push_force_y, a.contact_force_y, b.contact_force_y, a.vy, b.vy)},
+                                        b.theta);
+        // The lines between wheels lie R/2 from the centre, opposite to the wheels.
+        double farthest = 0.0;
+        for (int wheel = 0; wheel < 3; ++wheel) {
+            farthest = std::max(farthest, -(wheel_cos[wheel] * pressure.x + wheel_sin[wheel] * pressure.y));
+        }
+        return 1.0 - farthest / (0.5 * p.wheel_distance_m);
+    }
+
+    void rebound() {
+        int contacts = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            contacts += s_[i].contact && (i == 0 || !s_[i - 1].contact) ? 1 : 0;
+        }
+        set(GWB_CONTACTS, contacts);
+        std::size_t left = start_;
+        while (left < count_ && s_[left].contact) {
+            ++left;
+        }
+        if (left + 1 < count_) {
+            set(GWB_REBOUND_SPEED, nose_speed(left));
+        }
+    }
+
+    void relatching() {
+        if (!parameters_.bumper) {
+            return;
+        }
+        int times = 0;
+        double first_s = 0.0;
+        for (std::size_t i = 1; i < count_; ++i) {
+            if (s_[i].latched && !s_[i - 1].latched) {
+                first_s = times == 0 ? s_[i].time_s : first_s;
+                ++times;
+            }
+        }
+        set(GWB_RELATCHES, times);
+        if (times > 0) {
+            set(GWB_RELATCH_TIME, 1e3 * (first_s - contact_s_));
+        }
+    }
+
+    // Of the nose relative to the base, from this row to the next.
+    [[nodiscard]] double nose_speed(std::size_t row) const {
+        const Sample& a = s_[row];
+        const Sample& b = s_[row + 1];
+        const double step_s = b.time_s - a.time_s;
+        return Vector{(b.nose_x - a.nose_x) / step_s - b.vx, (b.nose_y - a.nose_y) / step_s - b.vy}.length();
+    }
+
     void contact_speed() {
         if (start_ < 2) {
             return;
         }
-        const Sample& a = s_[start_ - 2];
-        const Sample& b = s_[start_ - 1];
-        const double step_s = b.time_s - a.time_s;
-        set(GWB_CONTACT_SPEED,
-            Vector{(b.nose_x - a.nose_x) / step_s - b.vx, (b.nose_y - a.nose_y) / step_s - b.vy}.length());
+        set(GWB_CONTACT_SPEED, nose_speed(start_ - 2));
     }
 
     // Impulse of the contact up to detection, base frame at detection.

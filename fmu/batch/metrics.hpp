@@ -18,6 +18,9 @@ struct Sample {
     double first_contact_time;
     double nose_x, nose_y;
     double bumper_compression;
+    double tip_margin;
+    // testbed inputs
+    double push_force_x, push_force_y;
     double energy_stored, energy_work_in, energy_dissipated, energy_residual;
     // controller
     double estimate_force, estimate_force_x, estimate_force_y;
@@ -31,6 +34,11 @@ struct Sample {
 struct MetricParameters {
     double wheel_radius_m, wheel_distance_m;
     double estimate_window_s; // over which the estimate is averaged
+    bool bumper;
+    double bumper_travel_m;
+    bool tipping;
+    double mass_kg, com_height_m, contact_height_m, push_height_m;
+    double transient_limit_n, lasting_limit_n; // as in gwb_spec_t
 };
 
 // Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least two samples.

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t steps_per_report = 64;
+constexpr double limit_max_n = 1e9;
 
 } // namespace
 
@@ -81,6 +82,12 @@ bool RecordedRun::check_spec() {
     if (spec_.push_rows > 0 && spec_.push_rows <= spec_.step_count) {
         return end(GWB_WRONG_SPEC, "push_rows = %u is not allowed: 0, or at least step_count + 1 = %u",
                    static_cast<unsigned>(spec_.push_rows), static_cast<unsigned>(spec_.step_count + 1));
+    }
+    const double limits[] = {spec_.transient_limit_n, spec_.lasting_limit_n};
+    for (std::size_t i = 0; i < std::size(limits); ++i) {
+        if (!(limits[i] >= 0.0 && limits[i] <= limit_max_n)) {
+            return end(GWB_WRONG_SPEC, "%s = %.17g is not allowed: [0, %g] N", i == 0 ? "transient_limit_n" : "lasting_limit_n", limits[i], limit_max_n);
+        }
     }
     const struct {
         const char* name;
@@ -152,9 +159,8 @@ bool RecordedRun::check_columns() {
 
 bool RecordedRun::create() {
     controller_.reset(controller::create_model());
-    samples_.reset(new (std::nothrow) Sample[spec_.step_count + 1]);
     recorders_.reset(new (std::nothrow) Recorder[spec_.column_count]);
-    if (controller_ == nullptr || samples_ == nullptr || recorders_ == nullptr) {
+    if (controller_ == nullptr || recorders_ == nullptr) {
         return end(GWB_NO_MEMORY, "no memory for a run of %u steps", static_cast<unsigned>(spec_.step_count));
     }
     variables_[GWB_CONTROLLER] = static_cast<unsigned char*>(controller_->variables());
@@ -190,6 +196,11 @@ bool RecordedRun::apply_settings() {
 bool RecordedRun::start_controller() {
     Message message{};
     return controller_->initialise(0.0, message) == Status::ok || model_failed(GWB_REFUSED, GWB_CONTROLLER, message);
+}
+
+bool RecordedRun::begin() {
+    samples_.reset(new (std::nothrow) Sample[spec_.step_count + 1]);
+    return samples_ != nullptr || end(GWB_NO_MEMORY, "no memory for a run of %u steps", static_cast<unsigned>(spec_.step_count));
 }
 
 bool RecordedRun::pass(const Links& links, std::uint32_t receiver) {
@@ -256,6 +267,9 @@ void RecordedRun::record(std::uint32_t k, double now_s) {
     s.nose_x = t.truth_nose_x;
     s.nose_y = t.truth_nose_y;
     s.bumper_compression = t.truth_bumper_compression;
+    s.tip_margin = t.truth_tip_margin;
+    s.push_force_x = t.push_force_x;
+    s.push_force_y = t.push_force_y;
     s.energy_stored = t.energy_stored;
     s.energy_work_in = t.energy_work_in;
     s.energy_dissipated = t.energy_dissipated;
@@ -281,8 +295,11 @@ void RecordedRun::judge() {
     const auto& t = *reinterpret_cast<const testbed::Variables*>(variables_[GWB_TESTBED]);
     const auto& c = *reinterpret_cast<const controller::Variables*>(variables_[GWB_CONTROLLER]);
     const MetricParameters parameters{t.wheel_radius, t.wheel_distance,
-                                      static_cast<double>(c.estimator_average_window) * c.controller_period};
+                                          static_cast<double>(c.estimator_average_window) * c.controller_period,
+                                          t.bumper_kind != 0, t.bumper_travel, t.base_tipping, t.base_mass, t.base_com_height, t.contact_height,
+                                          t.push_height, spec_.transient_limit_n, spec_.lasting_limit_n};
     evaluate(samples_.get(), result_.rows, parameters, result_.metric, result_.truth);
+    samples_.reset();
 }
 
 void RecordedRun::report(std::uint32_t step) {

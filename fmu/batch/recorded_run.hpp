@@ -24,6 +24,8 @@ public:
     // Checks the spec, makes the controller and applies the settings to it and to the testbed's variables.
     bool prepare(testbed::Variables& testbed);
     bool start_controller();
+    // Makes room for what is recorded.
+    bool begin();
     // At every step 0 .. step_count: sensors, plan, controller, commands, push, record.
     bool exchange(std::uint32_t step);
     // After a step of the plant to `step`.
@@ -31,6 +33,8 @@ public:
     // After the last exchange: metrics.
     void judge();
 
+    // Another goes on with this run and counts its steps.
+    void hand_over() { reported_ = spec_.step_count; }
     // Ends the run with a message; always false.
     [[gnu::format(printf, 3, 4)]] bool end(std::uint32_t status, const char* format, ...);
     bool model_failed(std::uint32_t status, std::uint32_t model, Message& message);

@@ -22,6 +22,9 @@ void run(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) {
         recorded.model_failed(GWB_REFUSED, GWB_TESTBED, message);
         return;
     }
+    if (!recorded.begin()) {
+        return;
+    }
     for (std::uint32_t k = 0; recorded.exchange(k); ++k) {
         if (k == spec.step_count) {
             recorded.judge();

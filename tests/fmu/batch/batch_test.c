@@ -288,16 +288,18 @@ static void test_batches(void) {
         specs[i].setting_count = 1;
     }
     masses[2].value = NAN; /* one that cannot run */
+    const gwb_options_t one = {.threads = 1};
+    const gwb_options_t two = {.threads = 2};
     char message[GWB_MESSAGE_SIZE] = "";
     gwb_batch_t *batch = NULL;
     gwb_progress_t progress = {0, 0, 0, 0};
-    CHECK(gwb_start(specs, RUNS, 2, results, &batch, message) == 1);
+    CHECK(gwb_start(specs, RUNS, &two, results, &batch, message) == 1);
     while (!gwb_wait(batch, 10.0, &progress)) {
     }
     CHECK(progress.runs_done == RUNS && progress.runs == RUNS);
     CHECK(progress.steps == (uint64_t)RUNS * STEPS && progress.steps_done == progress.steps);
     gwb_finish(batch);
-    CHECK(gwb_start(specs, RUNS, 1, again, &batch, NULL) == 1);
+    CHECK(gwb_start(specs, RUNS, &one, again, &batch, NULL) == 1);
     CHECK(gwb_wait(batch, 600.0, NULL) == 1);
     gwb_finish(batch);
     for (int i = 0; i < RUNS; ++i) {
@@ -313,7 +315,7 @@ static void test_batches(void) {
         masses[i].value = 5.0;
         specs[i].step_count = 400000; /* seconds of computing */
     }
-    CHECK(gwb_start(specs, RUNS, 2, results, &batch, message) == 1);
+    CHECK(gwb_start(specs, RUNS, &two, results, &batch, message) == 1);
     do {
         CHECK(gwb_wait(batch, 0.01, &progress) == 0);
     } while (progress.steps_done == 0);
@@ -328,7 +330,7 @@ static void test_batches(void) {
     }
     CHECK(results[0].rows + results[1].rows > 0 && results[RUNS - 1].rows == 0);
     /* Finishing alone cancels, too. */
-    CHECK(gwb_start(specs, RUNS, 2, results, &batch, message) == 1);
+    CHECK(gwb_start(specs, RUNS, &two, results, &batch, message) == 1);
     gwb_finish(batch);
     CHECK(results[RUNS - 1].status == GWB_CANCELLED);
 }
@@ -338,18 +340,37 @@ static void test_wrong_batches(void) {
     gwb_result_t result;
     char message[GWB_MESSAGE_SIZE] = "";
     gwb_batch_t *batch = (gwb_batch_t *)&result;
-    CHECK(gwb_start(&spec, 1, 0, &result, &batch, message) == 0);
+    gwb_options_t options = {.threads = 0};
+    CHECK(gwb_start(&spec, 1, &options, &result, &batch, message) == 0);
     CHECK(batch == NULL);
     CHECK(strcmp(message, "threads = 0 is not allowed: [1, 1024]") == 0);
-    CHECK(gwb_start(&spec, 1, GWB_THREADS_MAX + 1, &result, &batch, message) == 0);
-    CHECK(gwb_start(NULL, 1, 1, &result, &batch, message) == 0);
+    options.threads = GWB_THREADS_MAX + 1;
+    CHECK(gwb_start(&spec, 1, &options, &result, &batch, message) == 0);
+    options.threads = 1;
+    CHECK(gwb_start(NULL, 1, &options, &result, &batch, message) == 0);
     CHECK(strstr(message, "null pointer") != NULL);
-    CHECK(gwb_start(&spec, 1, 1, NULL, &batch, NULL) == 0);
-    CHECK(gwb_start(&spec, 1, 1, &result, NULL, message) == 0);
+    CHECK(gwb_start(&spec, 1, &options, NULL, &batch, NULL) == 0);
+    CHECK(gwb_start(&spec, 1, &options, &result, NULL, message) == 0);
+    CHECK(gwb_start(&spec, 1, NULL, &result, &batch, message) == 0);
+    CHECK(strcmp(message, "options is a null pointer") == 0);
+    options.method = 2;
+    CHECK(gwb_start(&spec, 1, &options, &result, &batch, message) == 0);
+    CHECK(strcmp(message, "method = 2 is not allowed: 0 (event-exact) or 1 (fixed step)") == 0);
+    options.method = GWB_FIXED_STEP;
+    options.lanes = 2;
+    CHECK(gwb_start(&spec, 1, &options, &result, &batch, message) == 0);
+    CHECK(strncmp(message, "lanes = 2 is not allowed: ", 26) == 0);
+    options.lanes = 0;
+    options.plant_step_s = NAN;
+    CHECK(gwb_start(&spec, 1, &options, &result, &batch, message) == 0);
+    CHECK(strcmp(message, "plant_step_s = nan is not allowed: 0, or [1e-6, 5e-4] s") == 0);
+    options.plant_step_s = 1e-3;
+    CHECK(gwb_start(&spec, 1, &options, &result, &batch, message) == 0);
+    options.plant_step_s = 0.0;
     CHECK(gwb_wait(NULL, 0.0, NULL) == 1);
     gwb_cancel(NULL);
     gwb_finish(NULL);
-    CHECK(gwb_start(NULL, 0, 1, NULL, &batch, message) == 1);
+    CHECK(gwb_start(NULL, 0, &options, NULL, &batch, message) == 1);
     CHECK(gwb_wait(batch, 1.0, NULL) == 1);
     gwb_finish(batch);
 }
