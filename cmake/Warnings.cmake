@@ -11,3 +11,8 @@ function(giveway_compile_options TARGET)
   set_target_properties(${TARGET} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
                                              CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
 endfunction()
+
+# Files that compute several designs side by side. gcc 12 contracts a * b +- c to one rounding when it makes vectors of scalar code by
+# itself (vfmsubadd), whatever -ffp-contract says: it must not do that here.
+set(GIVEWAY_LANES_4 -mavx2 -fno-tree-slp-vectorize)
+set(GIVEWAY_LANES_8 -mavx512f -mavx512dq -mavx512vl -fno-tree-slp-vectorize)

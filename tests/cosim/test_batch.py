@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 import xarray
 from cosim_helpers import short
-from giveway import batch, native
+from giveway import batch, metrics, native
+from giveway.body_regions import body_region
 from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
 from giveway.scenario import BUMPERS
 from numpy.typing import NDArray
@@ -103,6 +104,14 @@ def test_the_manifest_names_the_library(tmp_path: Path) -> None:
 JUDGED: dict[str, giveway.Scenario] = {
     **CASES,
     "long": short(duration_s=2.0),
+    "a person": short(duration_s=1.0, body_region="lower leg"),
+    "no transient contact allowed": short(body_region="skull"),
+    "pressed into its stop": short("spring", testbed={"bumper.travel": 0.01}),
+    "thrown back": short(
+        "spring", duration_s=1.0, testbed={"rope.attached": False, "slider.speed": 0.5, "slider.run_up": 0.05}
+    ),
+    "caught again": short(duration_s=1.0, testbed={"rope.attached": False, "slider.speed": 0.7, "slider.run_up": 0.05}),
+    "tips": short(testbed={"base.tipping": True}),
     "no contact": short(testbed={"slider.present": False}),
     "contact in the last row": short(duration_s=0.158),
     "no detection": short(controller={"detector.force_threshold": 1000.0, "detector.impulse_threshold": 1000.0}),
@@ -113,15 +122,43 @@ JUDGED: dict[str, giveway.Scenario] = {
 def test_native_metrics_are_those_of_the_traces(case: str) -> None:
     scenario = JUDGED[case]
     table = batch.run_many([scenario])
-    for metric in batch.run(scenario).metrics:
+    result = batch.run(scenario)
+    region = None if scenario.body_region is None else body_region(scenario.body_region)
+    for metric in (*result.metrics, *metrics.design(result.traces, result.manifest["parameters"], region)):
         value = float(table[metric.name][0])
         assert table[metric.name].attrs["units"] == metric.unit
         # Both follow the same definitions; sums in another order differ by some roundings. A direction error is a
         # difference of directions near 180 deg.
         near = {"rel": 1e-9, "abs": 1e-11}
-        assert value == pytest.approx(np.nan if metric.value is None else metric.value, nan_ok=True, **near), metric
+        expected = np.nan if metric.value is None else metric.value
+        if metric.name == "transient force share" and region is not None and region.peak_limit_n == 0.0:
+            expected = np.inf  # a metric of a single run is finite or None
+        assert value == pytest.approx(expected, nan_ok=True, **near), metric
         if metric.truth is not None:
             assert float(table[f"{metric.name} (true)"][0]) == pytest.approx(metric.truth, **near), metric
+
+
+def test_numbers_of_a_design() -> None:
+    """Which of the cases shows what: none of these is always the same."""
+    cases = ("a person", "pressed into its stop", "thrown back", "caught again", "no transient contact allowed", "tips")
+    table = batch.run_many([dataclasses.replace(JUDGED[name]) for name in cases])
+    numbers = {name: {str(key): values.values[run] for key, values in table.items()} for run, name in enumerate(cases)}
+    person = numbers["a person"]
+    assert person["transient force"] == person["peak contact force"] > person["lasting force"] > 0.0
+    region = body_region("lower leg")
+    assert person["transient force share"] == pytest.approx(person["transient force"] / region.peak_limit_n)
+    assert person["lasting force share"] == pytest.approx(person["lasting force"] / region.lasting_limit_n)
+    assert np.isnan(numbers["tips"]["transient force share"])
+    assert numbers["no transient contact allowed"]["transient force share"] == np.inf
+    assert np.isnan(numbers["no transient contact allowed"]["lasting force share"])  # it ended too early
+    assert numbers["pressed into its stop"]["bottoming margin"] < 0.0 < person["bottoming margin"]
+    assert 0.0 < numbers["thrown back"]["rebound speed"] < numbers["thrown back"]["contact speed"]
+    assert person["contacts"] == 2.0  # the plate bounces off before the magnet lets go
+    assert numbers["caught again"]["re-latches"] >= 1.0
+    assert numbers["caught again"]["re-latch time"] > 0.0
+    assert numbers["pressed into its stop"]["re-latches"] == 0.0
+    # Both plants see the same hit; the one that tips lags behind the load of its wheels.
+    assert 0.0 < numbers["tips"]["tip margin"] < 1.0
 
 
 def test_numbers_of_the_last_row() -> None:

@@ -41,3 +41,26 @@ def test_an_ordinary_library_would_be_noticed() -> None:
     """The planted fault for both checks."""
     assert any(not name.startswith("gwb_") for name in exported(ORDINARY))
     assert needed(ORDINARY) - C_LIBRARY
+
+
+def shared_with_other_files(lanes: int) -> set[str]:
+    """Functions in the object of the lanes that the linker might take for other files, too."""
+    (found,) = BUILD.glob(f"fmu/batch/CMakeFiles/giveway_batch.dir/lane_plant_{lanes}.cpp.o")
+    listing = subprocess.run(["nm", "--demangle", found], check=True, capture_output=True, text=True)
+    symbols = [line.split(maxsplit=2) for line in listing.stdout.splitlines() if not line.startswith(" ")]
+    weak = {name for _, kind, name in symbols if kind in "WV"}
+    own = re.compile(rf"\b(Lanes|LanePlantOf|Strided)<{lanes}>")
+    return {name for name in weak if own.search(name) is None}
+
+
+def test_code_for_wide_registers_stays_with_the_lanes() -> None:
+    """An inline function that was compiled for AVX could otherwise become that of all files, and stop other processors."""
+    assert shared_with_other_files(4) == set()
+    assert shared_with_other_files(8) == set()
+
+
+def test_no_product_and_sum_are_rounded_as_one() -> None:
+    """Fused operations would give a design other bits where they are used than where they are not."""
+    listing = subprocess.run(["objdump", "--disassemble", LIBRARY], check=True, capture_output=True, text=True).stdout
+    assert "vmulpd" in listing  # it has been disassembled, lanes and all
+    assert re.search(r"\bvfn?m(add|sub)", listing) is None

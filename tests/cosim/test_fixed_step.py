@@ -1,0 +1,226 @@
+"""Batches over fixed steps: the same bits in every lane, and the results of the event-exact method."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+
+import giveway
+import numpy as np
+import pytest
+import xarray
+from cosim_helpers import short
+from giveway import batch
+from giveway.batch import LANES
+from giveway.errors import GivewayError, UnknownNameError
+from giveway.random_collisions import random_collisions
+from giveway.scenario import BUMPERS
+
+POSSIBLE = [lanes for lanes in LANES if lanes <= batch.widest_lanes()]
+FORCE, TICK = "testbed.truth.contact_force", "controller.detection.tick"
+
+# What the issue asks for: peak force within 0.5 %, detection on the same tick in 99 of 100 designs.
+FORCE_ERROR, SAME_TICK = 0.005, 0.99
+
+
+def fixed(scenarios: Sequence[giveway.Scenario], **how: object) -> xarray.Dataset:
+    return batch.run_many(scenarios, **{"method": "fixed-step", "threads": 1, **how})  # type: ignore[arg-type]
+
+
+def bits(table: xarray.Dataset) -> list[dict[str, bytes]]:
+    """Every variable's bytes, run by run."""
+    names = [str(name) for name in table.data_vars]
+    return [{name: table[name].values[run].tobytes() for name in names} for run in range(table.sizes["run"])]
+
+
+def detection_tick(table: xarray.Dataset) -> np.ndarray:  # type: ignore[type-arg]
+    """Rows from the start to the detection; NaN without one."""
+    return np.round(table["detection time"].values + 1e3 * table["contact time"].values)
+
+
+# Bits
+
+
+def designs() -> list[giveway.Scenario]:
+    """All kinds of structure: bumpers, mounts, latches, rollers, noses, with and without slider, rope, wall, wheels."""
+    near: dict[str, object] = {"slider.run_up": 0.1, "slider.speed": 1.0}
+    kinds = [short(bumper, duration_s=0.22, seed=seed) for seed in (1, 2) for bumper in BUMPERS]
+    changes: list[dict[str, object]] = [
+        {"bumper.mount": 1, **near, "slider.run_up": 0.2},
+        {"bumper.latch_model": 1},
+        {"bumper.latch_model": 1, "bumper.mount": 1, **near, "slider.run_up": 0.2},
+        {"roller.model": 1},
+        {"contact.nose_shape": 1, **near, "slider.run_up": 0.3, "slider.speed": 3.0},
+        {"slider.present": False, "start.vx": 0.1},
+        {"rope.attached": False, **near},
+        {"rope.attached": False, "wall.present": True, "slider.speed": -0.3},
+        {"outline.wheels": True, "contact.height": 0.05, **near},
+    ]
+    return [
+        *kinds,
+        *(short(duration_s=0.22, testbed=change) for change in changes),
+        *random_collisions(12, 5, duration_s=0.22),
+    ]
+
+
+def test_a_design_has_the_same_bits_in_every_lane_width_thread_and_batch() -> None:
+    scenarios = designs()
+    traces = [FORCE, TICK, "testbed.sensor.torque[1]", "testbed.truth.contact", "testbed.energy.residual"]
+    alone = [bits(fixed([scenario], lanes=1, traces=traces))[0] for scenario in scenarios]
+    assert len({tuple(sorted(one.items())) for one in alone}) == len(scenarios)  # the designs differ
+    rng = np.random.default_rng(7)
+    for size in range(1, 21):
+        for lanes in POSSIBLE:
+            chosen = rng.choice(len(scenarios), size=size, replace=size > len(scenarios))
+            threads = int(rng.integers(1, 4))
+            table = fixed([scenarios[i] for i in chosen], lanes=lanes, threads=threads, traces=traces)
+            assert bits(table) == [alone[i] for i in chosen], (size, lanes, threads)
+    everything = fixed(scenarios, threads=3, traces=traces)
+    assert bits(everything) == alone
+    assert everything.attrs["lanes"] == batch.widest_lanes()
+    assert set(everything["status"].values) == {"ok"}
+    assert set(everything["method"].values) == {"fixed-step"}
+
+
+def test_other_steps_give_other_bits() -> None:
+    """The planted fault of the comparison: it sees a difference in the last digits."""
+    one = bits(fixed([short(duration_s=0.22)], plant_step_s=1e-4))[0]
+    other = bits(fixed([short(duration_s=0.22)], plant_step_s=1e-4 / 3))[0]
+    assert one["peak contact force"] != other["peak contact force"]
+
+
+def test_runs_that_end_early_do_not_touch_their_neighbours() -> None:
+    good = [short(duration_s=0.22, testbed={"slider.mass": 5.0 + i}) for i in range(3)]
+    refused = short(duration_s=0.22, testbed={"slider.run_up": 0.0, "slider.target_x": 0.0, "slider.target_y": 0.0})
+    wild = short(duration_s=0.22, testbed={"slider.mass": 8.0, "contact.stiffness": 1e7})
+    alone = bits(fixed(good))
+    table = fixed([good[0], refused, good[1], wild, good[2]], plant_step_s=5e-4)
+    assert list(table["status"].values[[0, 2, 4]]) == ["ok"] * 3
+    assert table["status"].values[1] == "refused"
+    assert bits(fixed(good, plant_step_s=5e-4)) == [bits(table)[i] for i in (0, 2, 4)]
+    assert len(alone) == len(good)
+
+
+# Accuracy
+
+
+def test_random_designs_are_those_of_the_event_exact_method() -> None:
+    """At small size what `giveway bench` prints for thousands."""
+    scenarios = random_collisions(300, 20260101)
+    exact, table = batch.run_many(scenarios), fixed(scenarios, threads=2)
+    assert set(table["status"].values) == {"ok"}
+    assert set(table["method"].values) == {"fixed-step"}
+    hit = exact["peak contact force"].values > 0.0
+    assert hit.mean() > 0.95  # nearly all of them are collisions
+    error = np.abs(table["peak contact force"].values[hit] / exact["peak contact force"].values[hit] - 1.0)
+    assert error.max() < FORCE_ERROR
+    same = np.equal(detection_tick(table), detection_tick(exact)) | (
+        np.isnan(detection_tick(table)) & np.isnan(detection_tick(exact))
+    )
+    assert np.isfinite(detection_tick(exact)).mean() > 0.7  # most are detected
+    assert same.mean() >= SAME_TICK, np.flatnonzero(~same)
+    # A contact is found to a hundredth of a step, and where the account does not close, it is by less than a hundredth.
+    late_s = np.abs(table["contact time"].values - exact["contact time"].values)[hit]
+    assert late_s.max() < 5e-6
+    assert table["energy residual"].values.max() < 0.01
+
+
+def test_steps_that_are_too_long_would_be_noticed() -> None:
+    """The planted fault of the test above: stiff designs at the longest step miss the bounds."""
+    scenarios = [
+        dataclasses.replace(one, testbed={**one.testbed, "contact.stiffness": 1e6}) for one in random_collisions(20, 3)
+    ]
+    exact = batch.run_many(scenarios)["peak contact force"].values
+    chosen = np.abs(fixed(scenarios)["peak contact force"].values / exact - 1.0)
+    long = np.abs(fixed(scenarios, plant_step_s=5e-4)["peak contact force"].values / exact - 1.0)
+    assert np.nanmax(chosen) < FORCE_ERROR < np.nanmax(long)
+
+
+def test_half_the_step_has_a_fraction_of_the_error() -> None:
+    """The energy account's error falls with the square of the step at least: kinks and mode changes decide."""
+    errors = [
+        float(fixed([short()], plant_step_s=step)["energy residual"].values[0]) for step in (5e-4, 2.5e-4, 1.25e-4)
+    ]
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[2] < 0.3 * errors[1]
+
+
+def test_traces_are_those_of_the_event_exact_method() -> None:
+    names = ["testbed.truth.x", "testbed.truth.wheel_torque[0]", FORCE, "testbed.truth.contact", "testbed.events"]
+    for bumper in BUMPERS:
+        exact = batch.run_many([short(bumper)], traces=names)
+        table = fixed([short(bumper)], traces=names)
+        for name in names[:3]:
+            scale = np.abs(exact[name].values).max()
+            # Encoder counts that flip at another tick move a wheel torque by some hundredths of its peak.
+            assert np.abs(table[name].values - exact[name].values).max() < 0.02 * scale, name
+        # The flag changes in the same row or the next.
+        assert (table["testbed.truth.contact"].values != exact["testbed.truth.contact"].values).sum() <= 2
+        assert table["testbed.events"].values[0, -1] == pytest.approx(exact["testbed.events"].values[0, -1], abs=3)
+
+
+# What is done event-exact instead
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"testbed": {"base.tipping": True}},
+        {"step_s": 0.0007, "duration_s": 0.21},
+        {"testbed": {"drivetrain.damping": 1000.0, "drivetrain.motor_inertia": 0.005}},
+    ],
+    ids=["tipping", "odd step", "too stiff"],
+)
+def test_what_does_not_fit_is_run_event_exact_and_says_so(change: dict[str, object]) -> None:
+    scenario = short(**{"duration_s": 0.2, **change})  # type: ignore[arg-type]
+    table, exact = fixed([short(duration_s=0.2), scenario]), batch.run_many([scenario])
+    assert list(table["method"].values) == ["fixed-step", "event-exact"]
+    assert table["plant step"].values[1] == 0.0 < table["plant step"].values[0]
+    assert bits(table)[1] == bits(exact)[0]
+
+
+def test_steps_of_half_and_of_two_milliseconds() -> None:
+    for step_s in (0.0005, 0.002):
+        scenario = short(step_s=step_s)
+        exact, table = batch.run_many([scenario]), fixed([scenario])
+        assert table["method"].values[0] == "fixed-step"
+        assert float(table["detection time"][0]) == pytest.approx(float(exact["detection time"][0]), abs=0.01)
+        assert float(table["peak contact force"][0]) == pytest.approx(float(exact["peak contact force"][0]), rel=1e-3)
+
+
+def test_a_push_and_a_plan_act_as_in_the_event_exact_method() -> None:
+    def push(time_s: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+        rows = np.zeros((len(time_s), 4))
+        rows[(time_s >= 0.2) & (time_s < 0.35)] = (-60.0, 0.0, 0.35, 0.0)
+        return rows
+
+    for scenario in (
+        short(push=push, testbed={"slider.present": False}),
+        short(plan=giveway.plan.Rest(0.3, -0.2, 0.4)),
+    ):
+        names = ["testbed.truth.x", "testbed.truth.y", "testbed.truth.theta"]
+        exact, table = batch.run_many([scenario], traces=names), fixed([scenario], traces=names)
+        scale = max(np.abs(exact[name].values).max() for name in names)
+        for name in names:
+            # Encoder counts that flip at another tick: a count is 0.07 mm at the floor.
+            assert np.abs(table[name].values - exact[name].values).max() <= 0.02 * scale, name
+
+
+# Wrong input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"method": "fixed-steps"}, r"method: .*did you mean fixed-step"),
+        ({"method": "fixed-step", "lanes": 3}, r"lanes: 3 is not allowed; allowed: one of 1"),
+        ({"method": "fixed-step", "plant_step_s": math.nan}, r"plant_step_s: nan"),
+        ({"method": "fixed-step", "plant_step_s": 1e-3}, r"plant_step_s: 0\.001"),
+        ({"lanes": 1}, r"lanes: 1 .*none with the method event-exact"),
+        ({"plant_step_s": 1e-4}, r"plant_step_s: 0\.0001 .*none with the method event-exact"),
+    ],
+)
+def test_wrong_options_name_what_is_allowed(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises((GivewayError, UnknownNameError), match=message):
+        batch.run_many([short()], **arguments)  # type: ignore[arg-type]

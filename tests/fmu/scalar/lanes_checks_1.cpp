@@ -1,0 +1,4 @@
+#include "lanes_checks_of.hpp"
+
+void giveway::lanes_checks::operations_1(Report report) { operations<1>(report); }
+void giveway::lanes_checks::plant_1(Report report) { plant_in_lanes<1>(report); }
