@@ -13,11 +13,11 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 PLATFORMS := x86_64-linux aarch64-linux x86_64-windows x86_64-darwin aarch64-darwin
 PLATFORM_BUILDS := $(PLATFORMS:%=build/platforms/%/built)
 
-.PHONY: help demo reproduce test verify fuzz mutate bench fit fmus build lint lock clean platforms $(PLATFORM_BUILDS)
+.PHONY: help demo reproduce test verify fuzz mutate bench bench-scale fit fmus build lint lock clean platforms $(PLATFORM_BUILDS)
 .DEFAULT_GOAL := help
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
 demo: build ## the paper's collision experiment as a co-simulation; table, report and summary in out/demo
 	$(BIN)/giveway demo --out out/demo
@@ -38,9 +38,12 @@ fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness 
 mutate: build ## every mutant of c_core; `make verify` tries 500
 	$(BIN)/python -m verify.mutation
 
-bench: build ## how fast a co-simulated second runs
-	$(BIN)/giveway bench
+bench: build build/bench/tools-installed ## how fast runs and steps are, and how exact; other engines beside them
+	GIVEWAY_BENCH_TOOLS=$(CURDIR)/bench $(BIN)/giveway bench
 	$(BIN)/python -m verify.step_cost
+
+bench-scale: build ## does the cost of a batch grow with its designs, up to a million? (minutes)
+	$(BIN)/giveway bench --scale
 
 fit: build ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
 	$(BIN)/giveway fit --robot robots/trikey.toml --out robots/trikey.toml
@@ -80,8 +83,10 @@ lint: .venv/packages-installed ## ruff and mypy
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 
-lock: requirements.in verify/requirements.in fmu/platforms/requirements.in ## new requirements.lock files (needs uv)
-	@for name in requirements verify/requirements fmu/platforms/requirements; do \
+LOCKS := requirements verify/requirements bench/requirements fmu/platforms/requirements
+
+lock: $(LOCKS:=.in) ## new requirements.lock files (needs uv)
+	@for name in $(LOCKS); do \
 	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate --no-header --upgrade \
 	        --no-emit-index-url --no-emit-find-links --quiet $$name.in --output-file $$name.lock && \
 	    sed -i "1i # Made by \`make lock\` from $$name.in; do not edit." $$name.lock || exit 1; \
@@ -105,6 +110,13 @@ build/CMakeCache.txt: .venv/packages-installed
 	PYTHON="$(PYTHON)" bash cmake/system_packages.sh
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --require-hashes -r requirements.lock
+	@touch $@
+
+build/bench/tools-installed: bench/requirements.lock bench/system_packages.sh cmake/packages.sh
+	bash bench/system_packages.sh
+	@mkdir -p $(@D)
+	$(PYTHON) -m venv build/bench/tools
+	build/bench/tools/bin/pip install --quiet --require-hashes -r bench/requirements.lock
 	@touch $@
 
 build/verify/tools-installed: verify/requirements.lock verify/system_packages.sh cmake/packages.sh

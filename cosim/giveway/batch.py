@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from giveway.result import Result
     from giveway.scenario import Scenario
 
-__all__ = ["METHODS", "BatchProgress", "run", "run_many", "widest_lanes"]
+__all__ = ["LANES", "METHODS", "BatchProgress", "Prepared", "run", "run_many", "widest_lanes"]
 
 BatchProgress = Callable[[int, int], None]
 """Called now and then with the number of finished runs and of all runs."""
@@ -400,23 +400,47 @@ def run_many(
     Wrong scenarios are refused before anything runs. Ctrl-C ends the batch; what is done is kept, the rest is
     "cancelled", and the attribute ``interrupted`` is true.
     """
-    scenarios = list(scenarios)
-    if threads is None:
-        threads = min(len(os.sched_getaffinity(0)), THREADS_MAX)
-    whole("threads", threads, 1, THREADS_MAX)
-    options = _options(threads, method, lanes, plant_step_s)
-    chosen = [_trace(name) for name in dict.fromkeys(traces)]
-    if chosen and len({(scenario.steps, scenario.step_s) for scenario in scenarios}) > 1:
-        raise GivewayError("traces", ", ".join(traces), "none, or scenarios of one duration and step")
-    batch = _Batch(scenarios, chosen)
+    prepared = Prepared(scenarios, traces=traces)
+    return prepared.run(threads=threads, progress=progress, method=method, lanes=lanes, plant_step_s=plant_step_s)
 
-    def report(state: _Progress) -> None:
-        if progress is not None:
-            progress(int(state.runs_done), int(state.runs))
 
-    interrupted = batch.execute(options, report)
-    table = _dataset(batch, chosen, scenarios[0].step_s if scenarios else 0.0)
-    return table.assign_attrs(interrupted=interrupted, method=method, lanes=int(options.lanes))
+class Prepared:
+    """Scenarios as the library takes them, checked once, to be run as often as wanted.
+
+    Args:
+        scenarios, traces: as in `run_many`.
+    """
+
+    def __init__(self, scenarios: Sequence[Scenario], *, traces: Sequence[str] = ()) -> None:
+        scenarios = list(scenarios)
+        self._traces = [_trace(name) for name in dict.fromkeys(traces)]
+        if self._traces and len({(scenario.steps, scenario.step_s) for scenario in scenarios}) > 1:
+            raise GivewayError("traces", ", ".join(traces), "none, or scenarios of one duration and step")
+        self._step_s = scenarios[0].step_s if scenarios else 0.0
+        self._batch = _Batch(scenarios, self._traces)
+
+    def run(
+        self,
+        *,
+        threads: int | None = None,
+        progress: BatchProgress | None = None,
+        method: str = "event-exact",
+        lanes: int | None = None,
+        plant_step_s: float | None = None,
+    ) -> xarray.Dataset:
+        """Run them all, as `run_many`; what the run before recorded in its traces is overwritten."""
+        if threads is None:
+            threads = min(len(os.sched_getaffinity(0)), THREADS_MAX)
+        whole("threads", threads, 1, THREADS_MAX)
+        options = _options(threads, method, lanes, plant_step_s)
+
+        def report(state: _Progress) -> None:
+            if progress is not None:
+                progress(int(state.runs_done), int(state.runs))
+
+        interrupted = self._batch.execute(options, report)
+        table = _dataset(self._batch, self._traces, self._step_s)
+        return table.assign_attrs(interrupted=interrupted, method=method, lanes=int(options.lanes))
 
 
 def widest_lanes() -> int:

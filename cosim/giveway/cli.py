@@ -302,6 +302,9 @@ def calibrate(
 def bench(
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,
+    scale: Annotated[
+        bool, typer.Option("--scale", help="Only: does the cost grow with the designs, to a million?")
+    ] = False,
 ) -> None:
     """Measure speed: a co-simulated second over FMPy, runs per second, cost and error of the integration methods."""
     from giveway import bench_batch
@@ -310,12 +313,18 @@ def bench(
     from giveway.checks import whole
 
     whole("--repeats", repeats, 1, 100)
+    if scale:
+        title = "Random collisions of 0.6 s over fixed steps, all threads"
+        _print_columns(title, bench_batch.SCALE_HEADER, bench_batch.scale(bench_batch.SCALE_COUNTS))
+        return
     rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
     _print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
-    rates = [(row.name, f"{row.best:.1f}", f"{row.median:.1f}") for row in bench_batch.measure(repeats)]
     title = f"Collisions of {bench_batch.SIMULATED_S:g} s with metrics, best and median of {repeats}"
-    _print_columns(title, ("way", "best (runs/s)", "median (runs/s)"), rates)
+    _print_columns(title, bench_batch.HEADER, bench_batch.measure(repeats))
+    found, lines = bench_batch.accuracy()
+    _print_columns("Fixed steps against event-exact, random collisions", bench_batch.ACCURACY_HEADER, found)
+    typer.echo("\n".join(["Detected on another tick:", *lines] if lines else ["All detected on the same tick."]))
     title = "Integration methods on stiffer designs: 1 s of the testbed FMU alone at relative tolerance 1e-6"
     _print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
 

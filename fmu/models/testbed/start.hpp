@@ -52,7 +52,7 @@ inline bool start_run(const Variables& v, PlantSystem& system, plant::TippingVec
     stored_j = truth.stored_energy;
     const auto refused = drives.start(drive_options(v), motor_angles(state.data()), truth.wheel_speed, truth.wheel_torque, v.command_enable);
     if (refused.field != GW_FIELD_NONE) {
-        std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_limit(refused.field)->name,
+        std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_name(refused.field),
                       static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
         return false;
     }

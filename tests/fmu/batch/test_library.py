@@ -54,7 +54,7 @@ def shared_with_other_files(lanes: int) -> set[str]:
 
 
 def test_code_for_wide_registers_stays_with_the_lanes() -> None:
-    """An inline function that was compiled for AVX could otherwise become that of all files, and stop other processors."""
+    """An inline function compiled for AVX could otherwise become that of all files, and stop other processors."""
     assert shared_with_other_files(4) == set()
     assert shared_with_other_files(8) == set()
 
