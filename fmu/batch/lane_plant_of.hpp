@@ -157,14 +157,14 @@ private:
         return e;
     }
 
-    // What the last step has led to. `e`: at its end, with the inputs of now. True if anything changed.
-    bool change_modes(const Evaluation& e) {
+    // What the last step has led to. `end`: at its end, with the inputs of now. True if anything changed, and `end` has to be found again.
+    bool change_modes(Evaluation& end) {
         const L zero(0.0);
         const L one(1.0);
         // The gears with the torques that acted during the step.
-        Evaluation end = e;
+        const auto net_torque = end.net_torque;
         for (int i = 0; i < plant::wheel_count; ++i) {
-            end.net_torque[i] = plant::net_motor_torque(p_, acted_.motor_torque[i], e.sensed_torque[i]);
+            end.net_torque[i] = plant::net_motor_torque(p_, acted_.motor_torque[i], end.sensed_torque[i]);
         }
         const Events g = plant::event_indicators(end, x_, m_, p_, d_);
 
@@ -197,6 +197,7 @@ private:
             changes = changes + math::abs(change);
         }
         if (!any_positive(changes)) {
+            end.net_torque = net_torque;
             return false;
         }
         const double before_s = now_s_ - last_step_s_;

@@ -18,30 +18,30 @@ public:
                 continue;
             }
             const VariableInfo* output = find(info_of(from), input.name);
-            if (output != nullptr && output->causality == Causality::output && count_ < links_.size()) {
-                links_[count_++] = {output, &input};
+            if (output != nullptr && output->causality == Causality::output && output->type == input.type && count_ < links_.size()) {
+                links_[count_++] = {output->offset, &input};
             }
         }
     }
 
-    // Passes all values on, or none and returns the input that does not take its value.
+    // Passes all values on, or returns the input that does not take its value; some may have been passed on then, and the run ends.
     const VariableInfo* pass(unsigned char* const* variables, double& refused) const {
         for (std::size_t i = 0; i < count_; ++i) {
-            const double value = load(*links_[i].output, variables[from_]);
-            if (!allowed(*links_[i].input, value)) {
+            const VariableInfo& input = *links_[i].input;
+            const unsigned char* from = variables[from_] + links_[i].offset;
+            const double value = load(input.type, from);
+            if (!allowed(input, value)) {
                 refused = value;
-                return links_[i].input;
+                return &input;
             }
-        }
-        for (std::size_t i = 0; i < count_; ++i) {
-            store(*links_[i].input, variables[to_], load(*links_[i].output, variables[from_]));
+            std::memcpy(variables[to_] + input.offset, from, size_of(input.type));
         }
         return nullptr;
     }
 
 private:
     struct Link {
-        const VariableInfo* output;
+        std::size_t offset; // of the output
         const VariableInfo* input;
     };
     std::uint32_t from_, to_;

@@ -1,6 +1,7 @@
 // The two models of a run and their variable tables, as this library numbers them.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -54,9 +55,43 @@ inline std::size_t size_of(VariableType type) {
 }
 
 // True if an importer of the FMU could set this value: of the type, in range, and finite unless the table allows else.
-bool allowed(const VariableInfo& variable, double value);
+inline bool allowed(const VariableInfo& variable, double value) {
+    if (!std::isfinite(value)) {
+        return variable.type == VariableType::real && variable.allow_nonfinite;
+    }
+    switch (variable.type) {
+    case VariableType::real:
+        break;
+    case VariableType::integer:
+        if (!(value >= INT32_MIN && value <= INT32_MAX) || value != std::trunc(value)) {
+            return false;
+        }
+        break;
+    case VariableType::boolean:
+        if (value != 0.0 && value != 1.0) {
+            return false;
+        }
+        break;
+    }
+    return value >= variable.minimum && value <= variable.maximum;
+}
 
-double load(const VariableInfo& variable, const unsigned char* variables);
+// The variable of this type that lies at `place`.
+inline double load(VariableType type, const unsigned char* place) {
+    if (type == VariableType::real) {
+        double value = 0.0;
+        std::memcpy(&value, place, sizeof value);
+        return value;
+    }
+    if (type == VariableType::integer) {
+        std::int32_t value = 0;
+        std::memcpy(&value, place, sizeof value);
+        return value;
+    }
+    bool value = false;
+    std::memcpy(&value, place, sizeof value);
+    return value ? 1.0 : 0.0;
+}
 
 // `value` is allowed.
 void store(const VariableInfo& variable, unsigned char* variables, double value);

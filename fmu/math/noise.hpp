@@ -32,9 +32,11 @@ inline double log(double a) {
     }
     const double s = (m - 1.0) / (m + 1.0); // |s| < 0.1716
     const double s2 = s * s;
+    // 1/n as constants: the loop would divide.
+    constexpr double inverse[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0};
     double p = 1.0 / 21.0;
-    for (int n = 19; n >= 1; n -= 2) {
-        p = p * s2 + 1.0 / static_cast<double>(n);
+    for (const double coefficient : inverse) {
+        p = p * s2 + coefficient;
     }
     const auto k = static_cast<double>(exponent);
     return k * detail::ln2_high + (k * detail::ln2_low + 2.0 * s * p);

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray
 from cosim_helpers import short
-from giveway import batch
+from giveway import batch, bench_batch
 from giveway.batch import LANES
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.random_collisions import random_collisions
@@ -158,6 +158,17 @@ def test_traces_are_those_of_the_event_exact_method() -> None:
         # The flag changes in the same row or the next.
         assert (table["testbed.truth.contact"].values != exact["testbed.truth.contact"].values).sum() <= 2
         assert table["testbed.events"].values[0, -1] == pytest.approx(exact["testbed.events"].values[0, -1], abs=3)
+
+
+def test_the_benchmark_counts_what_differs() -> None:
+    rows, lines = bench_batch.accuracy(12, seed=8)
+    found = dict(rows)
+    assert found["designs; with a collision; detected"].startswith("12; ")
+    assert found["designs above 0.5 %"] == "0"
+    assert int(found["detected on another tick"].split()[0]) == len(lines)
+    assert sum(int(number) for name, number in rows if name.startswith("steps of ")) == 12
+    ((count, *_),) = bench_batch.scale((20,))
+    assert count == "20"
 
 
 # What is done event-exact instead
