@@ -7,8 +7,9 @@ few millimetres (servo and drivetrain give), and so does the contact point.
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,21 +17,33 @@ import numpy as np
 
 from giveway.checks import finite, whole
 from giveway.errors import GivewayError
+from giveway.plan import Plan, Rest
 from giveway.variables import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.plan import Plan
+    Numbers = NDArray[np.float64]
 
-__all__ = ["Approach", "edge_middle", "meet", "outline_of", "outward_normal"]
+__all__ = [
+    "Approach",
+    "Approaches",
+    "edge_middle",
+    "meet",
+    "meet_many",
+    "outline_of",
+    "outward_normal",
+    "outward_normals",
+]
 
 GRAVITY = 9.81  # the plant's
 ON_OUTLINE_M = 1e-3  # robot files state corners to micrometres; users state points to millimetres
 STILL_MPS = 1e-6
-SAMPLE_S = 1e-3
+SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes for 4 mm goes 0.1 mm deep
+SAMPLES_AT_ONCE = 200_000
 LONGEST_RUN_UP_S = 60.0
-_SURFACE = Callable[["NDArray[np.float64]"], "NDArray[np.float64]"]
+ROPE = ("hanging_mass", "stiffness", "damping", "drop_height")
+_SURFACE = Callable[["Numbers"], "Numbers"]
 
 
 @dataclass(frozen=True)
@@ -68,17 +81,19 @@ class Approach:
 
 @dataclass(frozen=True)
 class _RunUp:
-    """A way along the rail that ends at the asked speed.
+    """Ways along the rail that end at the asked speeds, one per run.
 
     Attributes:
-        start_mps, length_m, duration_s: start speed, travel and time to contact.
-        travel: times of shape (n,) from the start to travel in m, shape (n,).
+        start_mps, length_m, duration_s: start speed, travel and time to contact, shape (n,).
+        travel: times of shape (k, n) from the start to travel in m, shape (k, n).
+        refused: why a run cannot be met, by its index.
     """
 
-    start_mps: float
-    length_m: float
-    duration_s: float
+    start_mps: Numbers
+    length_m: Numbers
+    duration_s: Numbers
     travel: _SURFACE
+    refused: dict[int, GivewayError]
 
 
 def outline_of(testbed: Mapping[str, Value]) -> NDArray[np.float64]:
@@ -103,24 +118,22 @@ def outward_normal(outline: NDArray[np.float64], point_m: tuple[float, float]) -
 
     At a corner it is the mean of the two sides'.
     """
-    point = np.asarray(point_m, dtype=np.float64)
-    normals = [
-        np.array([side[1], -side[0]]) / math.hypot(*side)
-        for start, side in zip(outline, np.roll(outline, -1, axis=0) - outline, strict=True)
-        if _distance_to_segment(point, start, side) <= ON_OUTLINE_M
-    ]
-    if not normals:
-        nearest = min(
-            (
-                _foot(point, start, side)
-                for start, side in zip(outline, np.roll(outline, -1, axis=0) - outline, strict=True)
-            ),
-            key=lambda foot: math.hypot(*(foot - point)),
-        )
-        allowed = f"a point on the robot's outline; the nearest is [{nearest[0]:.3f}, {nearest[1]:.3f}]"
-        raise GivewayError("point_m", [float(value) for value in point], allowed)
-    mean = np.sum(normals, axis=0)
-    return np.asarray(mean / math.hypot(*mean))
+    point = np.array([point_m], dtype=np.float64)
+    normals, found = outward_normals(outline, point)
+    if not found[0]:
+        raise _off_outline(outline, point[0])
+    return np.asarray(normals[0])
+
+
+def outward_normals(outline: Numbers, points_m: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
+    """`outward_normal` of many points, shape (n, 2); and which points are on the outline, shape (n,)."""
+    total = np.zeros(points_m.shape)
+    for start, side in zip(outline, np.roll(outline, -1, axis=0) - outline, strict=True):
+        near = _distance_to_segment(points_m, start, side) <= ON_OUTLINE_M
+        total[near] += np.array([side[1], -side[0]]) / math.hypot(*side)
+    length = np.hypot(*total.T)
+    found = length > 0.0
+    return total / np.where(found, length, 1.0)[:, None], found
 
 
 def meet(
@@ -138,131 +151,229 @@ def meet(
         GivewayError: naming the field of `Approach` that cannot be met: the point is not on the outline, slider and
             robot do not approach there, the weight cannot make the slider so fast, or they would touch before.
     """
-    if testbed["bumper.kind"] != 0 and testbed["bumper.mount"] != 0:
-        raise GivewayError(
-            "bumper.mount", testbed["bumper.mount"], "0: a bumper on the robot is in front of its outline"
-        )
-    outline = outline_of(testbed)
-    normal = outward_normal(outline, approach.point_m)
-    run_up = _with_rope(approach, testbed) if approach.rope else _free(approach, testbed)
-    x, y, theta, vx, vy, omega = (float(value) for value in _at(plan, run_up.duration_s - path_start_s)[0, :6])
-    turn = np.array([[math.cos(theta), -math.sin(theta)], [math.sin(theta), math.cos(theta)]])
-    arm, outward = turn @ np.asarray(approach.point_m), turn @ normal
-    direction_rad = approach.direction_rad
-    if direction_rad is None:
-        direction_rad = math.atan2(-outward[1], -outward[0])
-    along = np.array([math.cos(direction_rad), math.sin(direction_rad)])
-    surface = np.array([vx - omega * arm[1], vy + omega * arm[0]])
-    if float((approach.speed_mps * along - surface) @ outward) >= -STILL_MPS:
-        allowed = "a direction and speed with which slider and robot approach each other at this point"
-        raise GivewayError("direction_rad" if approach.speed_mps > 0.0 else "speed_mps", _given(approach), allowed)
-    radius = float(testbed["contact.nose_radius"])
-    centre = np.array([x, y]) + arm + radius * outward  # of the nose, when it touches
-    target = centre + radius * along
-    _refuse_earlier_contact(run_up, centre, along, radius, outline, plan, path_start_s)
+    direction_rad = math.nan if approach.direction_rad is None else approach.direction_rad
+    many = Approaches(
+        np.array([approach.point_m]),
+        np.array([approach.speed_mps]),
+        np.array([direction_rad]),
+        None if approach.time_s is None else np.array([approach.time_s]),
+    )
+    found, refused = meet_many(many, testbed, plan, np.array([path_start_s]))
+    if refused:
+        raise refused[0]
     return {
         "slider.present": True,
-        "slider.direction": math.remainder(direction_rad, 2.0 * math.pi),
-        "slider.target_x": float(target[0]),
-        "slider.target_y": float(target[1]),
-        "slider.run_up": run_up.length_m,
-        "slider.speed": run_up.start_mps,
+        **{name: float(values[0]) for name, values in found.items()},
         "rope.attached": approach.rope,
     }
 
 
-def _given(approach: Approach) -> float:
-    if approach.speed_mps > 0.0 and approach.direction_rad is not None:
-        return approach.direction_rad
-    return approach.speed_mps
+@dataclass(frozen=True)
+class Approaches:
+    """Many `Approach`, the fields as arrays over the runs.
+
+    Attributes:
+        point_m: shape (n, 2).
+        speed_mps, direction_rad: shape (n,); a direction of NaN is straight into the robot's side.
+        time_s: shape (n,); None with the rope.
+    """
+
+    point_m: Numbers
+    speed_mps: Numbers
+    direction_rad: Numbers
+    time_s: Numbers | None
 
 
-def _free(approach: Approach, testbed: Mapping[str, Value]) -> _RunUp:
-    """Without the rope: the start speed that rail friction brings down to the asked one at the asked time."""
-    assert approach.time_s is not None
-    mass = float(testbed["slider.mass"])
-    coulomb, viscous = float(testbed["slider.friction"]) / mass, float(testbed["slider.damping"]) / mass
-    end, duration = approach.speed_mps, approach.time_s
-    if end == 0.0:
-        return _RunUp(0.0, 0.0, duration, np.zeros_like)
+def meet_many(
+    approaches: Approaches, testbed: Mapping[str, Value | Numbers], plan: Plan, path_start_s: Numbers
+) -> tuple[dict[str, Numbers], dict[int, GivewayError]]:
+    """`meet` for n runs at once: each of ``slider.*`` that it sets, shape (n,), and the reason of each run refused.
+
+    ``testbed`` may hold arrays of shape (n,), but for the outline, which all runs share; ``path_start_s`` is one.
+    """
+    count = len(approaches.speed_mps)
+    values = {name: np.broadcast_to(np.asarray(value, dtype=np.float64), count) for name, value in testbed.items()}
+    outline = outline_of({name: float(values[name][0]) for name in testbed if name.startswith("outline.")})
+    run_up = (_free if approaches.time_s is not None else _with_rope)(approaches, values)
+    refused = dict(run_up.refused)
+    mounted = np.flatnonzero((values["bumper.kind"] != 0.0) & (values["bumper.mount"] != 0.0))
+    for index in mounted:
+        allowed = "0: a bumper on the robot is in front of its outline"
+        refused[int(index)] = GivewayError("bumper.mount", int(values["bumper.mount"][index]), allowed)
+    normal, on_outline = outward_normals(outline, approaches.point_m)
+    for index in np.flatnonzero(~on_outline):
+        refused[int(index)] = _off_outline(outline, approaches.point_m[index])
+    pose = _at(plan, run_up.duration_s - path_start_s)
+    velocity, omega = pose[:, 3:5], pose[:, 5]
+    cosine, sine = _each(math.cos, pose[:, 2]), _each(math.sin, pose[:, 2])
+    arm, outward = _turned(cosine, sine, approaches.point_m), _turned(cosine, sine, normal)
+    given = approaches.direction_rad
+    straight = np.fromiter(map(math.atan2, -outward[:, 1], -outward[:, 0]), np.float64, count)
+    direction = np.where(np.isnan(given), straight, given)
+    along = np.stack([_each(math.cos, direction), _each(math.sin, direction)], axis=1)
+    surface = velocity + omega[:, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+    closing = np.sum((approaches.speed_mps[:, None] * along - surface) * outward, axis=1)
+    for index in np.flatnonzero(on_outline & (closing >= -STILL_MPS)):
+        speed = float(approaches.speed_mps[index])
+        allowed = "a direction and speed with which slider and robot approach each other at this point"
+        found = float(given[index]) if speed > 0.0 and not math.isnan(given[index]) else speed
+        refused.setdefault(int(index), GivewayError("direction_rad" if speed > 0.0 else "speed_mps", found, allowed))
+    radius = values["contact.nose_radius"]
+    centre = pose[:, 0:2] + arm + radius[:, None] * outward  # of the nose, when it touches
+    target = centre + radius[:, None] * along
+    if not isinstance(plan, Rest):  # onto a resting convex outline, a straight line comes only once
+        motion = _Nose(run_up, centre, along, radius)
+        for run, time_s in _earlier_contacts(motion, outline, plan, path_start_s):
+            when = f"touches the robot elsewhere before, at {time_s:.3g} s"
+            error = GivewayError("point_m", f"a slider that {when}", "a point that the slider reaches first")
+            refused.setdefault(run, error)
+    met = {
+        "slider.direction": np.fromiter((math.remainder(d, 2.0 * math.pi) for d in direction), np.float64, count),
+        "slider.target_x": target[:, 0],
+        "slider.target_y": target[:, 1],
+        "slider.run_up": run_up.length_m,
+        "slider.speed": run_up.start_mps,
+    }
+    return met, refused
+
+
+def _each(function: Callable[[float], float], values: Numbers) -> Numbers:
+    """``function`` of the math module: the same bits on every processor, alone and among many."""
+    return np.fromiter(map(function, values), np.float64, len(values))
+
+
+def _turned(cosine: Numbers, sine: Numbers, vectors: Numbers) -> Numbers:
+    x, y = vectors.T
+    return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
+
+
+def _off_outline(outline: Numbers, point: Numbers) -> GivewayError:
+    feet = [_foot(point, start, side) for start, side in zip(outline, np.roll(outline, -1, 0) - outline, strict=True)]
+    nearest = min(feet, key=lambda foot: math.hypot(*(foot - point)))
+    allowed = f"a point on the robot's outline; the nearest is [{nearest[0]:.3f}, {nearest[1]:.3f}]"
+    return GivewayError("point_m", [float(value) for value in point], allowed)
+
+
+def _free(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
+    """Without the rope: the start speeds that rail friction brings down to the asked ones at the asked times."""
+    assert approaches.time_s is not None
+    mass = testbed["slider.mass"]
+    end, duration = approaches.speed_mps, approaches.time_s
+    moves = end > 0.0
+    coulomb = np.where(moves, testbed["slider.friction"] / mass, 0.0)
+    viscous = np.where(moves, testbed["slider.damping"] / mass, 0.0)
     # Backwards in time friction is growth: v' = a + c v, written with expm1 so that c may be small.
-    if viscous * duration < 1e-9:
-        start = end + coulomb * duration
-    else:
-        start = end + (end + coulomb / viscous) * math.expm1(viscous * duration)
+    small = viscous * duration < 1e-9
+    rate = np.where(small, 1.0, viscous)
+    grown = end + (end + coulomb / rate) * np.expm1(rate * duration)
+    start = np.where(small, end + coulomb * duration, grown)
 
-    def travel(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        if viscous * duration < 1e-9:
-            return np.asarray(start * time_s - 0.5 * coulomb * time_s**2)
-        return np.asarray(
-            -(start + coulomb / viscous) * np.expm1(-viscous * time_s) / viscous - coulomb / viscous * time_s
-        )
+    def travel(time_s: Numbers) -> Numbers:
+        slowing = -(start + coulomb / rate) * np.expm1(-rate * time_s) / rate - coulomb / rate * time_s
+        return np.where(small, start * time_s - 0.5 * coulomb * time_s**2, slowing)
 
-    return _RunUp(start, float(travel(np.array([duration]))[0]), duration, travel)
+    return _RunUp(start, travel(duration[None, :])[0], duration, travel, {})
 
 
-def _with_rope(approach: Approach, testbed: Mapping[str, Value]) -> _RunUp:
+def _with_rope(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
     """With the rope: slider and weight integrated from rest until the slider is as fast as asked."""
-    slider, weight = float(testbed["slider.mass"]), float(testbed["rope.hanging_mass"])
-    friction, viscous = float(testbed["slider.friction"]), float(testbed["slider.damping"])
-    stiffness, damping = float(testbed["rope.stiffness"]), float(testbed["rope.damping"])
+    names = ("slider.mass", "slider.friction", "slider.damping", *(f"rope.{name}" for name in ROPE))
+    rows = np.stack([approaches.speed_mps, *(testbed[name] for name in names)], axis=1)
+    # Most runs of a batch share theirs.
+    different, which = np.unique(rows, axis=0, return_inverse=True)
+    times, travels, refused = _pulled(different.tobytes(), len(different))
+    which = which.ravel()
+    reasons = {i: refused[int(k)] for i, k in enumerate(which) if int(k) in refused} if refused else {}
+
+    def travel(time_s: Numbers) -> Numbers:
+        columns = np.broadcast_to(time_s, (len(time_s), len(which))).T
+        return np.stack([np.interp(t, times[:, k], travels[:, k]) for t, k in zip(columns, which, strict=True)], axis=1)
+
+    start = np.zeros(len(which))
+    return _RunUp(start, travels[-1, which], times[-1, which], travel, reasons)
+
+
+@functools.lru_cache(maxsize=8)
+def _pulled(packed: bytes, count: int) -> tuple[Numbers, Numbers, dict[int, GivewayError]]:
+    """Times and travels of ``count`` run-ups on the rope, shape (steps, count); each ends in its last value.
+
+    ``packed`` holds speed, slider mass, friction, damping and `ROPE`, shape (count, 9).
+    """
+    speed, slider, friction, viscous, weight, stiffness, damping, drop = np.frombuffer(packed).reshape(count, -1).T
     pull = weight * GRAVITY
 
-    def rate(state: NDArray[np.float64]) -> NDArray[np.float64]:
+    def rate(state: Numbers) -> Numbers:
         s, s_rate, h, h_rate = state
-        tension = max(0.0, pull + stiffness * (h - s) + damping * (h_rate - s_rate))
-        return np.array([
+        tension = np.maximum(0.0, pull + stiffness * (h - s) + damping * (h_rate - s_rate))
+        return np.stack([
             s_rate, (tension - friction - viscous * s_rate) / slider, h_rate, GRAVITY - tension / weight,
         ])  # fmt: skip
 
     # Small against the rope's fastest motion, for the classical Runge-Kutta method.
     reduced = 1.0 / slider + 1.0 / weight
-    step = min(1e-3, 0.3 / math.sqrt(stiffness * reduced), 1.0 / max(damping * reduced, 1e-9))
-    drop = float(testbed["rope.drop_height"])
-    state, times, travels = np.zeros(4), [0.0], [0.0]
-    while state[1] < approach.speed_mps:
-        if pull <= friction or state[2] > drop or times[-1] > LONGEST_RUN_UP_S:
-            allowed = f"a speed that the hanging weight reaches: at most {max(0.0, float(state[1])):.3g} m/s"
-            raise GivewayError("speed_mps", approach.speed_mps, allowed)
-        before = state
+    fastest = np.minimum(0.3 / np.sqrt(stiffness * reduced), 1.0 / np.maximum(damping * reduced, 1e-9))
+    step = np.minimum(1e-3, fastest)
+    state, times, travels = np.zeros((4, count)), [np.zeros(count)], [np.zeros(count)]
+    refused: dict[int, GivewayError] = {}
+    pulling = state[1] < speed
+    while pulling.any():
+        for index in np.flatnonzero(
+            pulling & ((pull <= friction) | (state[2] > drop) | (times[-1] > LONGEST_RUN_UP_S))
+        ):
+            allowed = f"a speed that the hanging weight reaches: at most {max(0.0, float(state[1, index])):.3g} m/s"
+            refused[int(index)] = GivewayError("speed_mps", float(speed[index]), allowed)
+            pulling[index] = False
         k1 = rate(state)
         k2 = rate(state + 0.5 * step * k1)
         k3 = rate(state + 0.5 * step * k2)
         k4 = rate(state + step * k3)
-        state = state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        times.append(times[-1] + step)
-        travels.append(float(state[0]))
-    share = (approach.speed_mps - before[1]) / (state[1] - before[1])  # of the last step
-    times[-1] += (share - 1.0) * step
-    travels[-1] = float(before[0] + share * (state[0] - before[0]))
-    known_times, known_travels = np.array(times), np.array(travels)
-    return _RunUp(0.0, travels[-1], times[-1], lambda time_s: np.interp(time_s, known_times, known_travels))
+        after = state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        ends = pulling & (after[1] >= speed)
+        gain = np.where(ends, after[1] - state[1], 1.0)
+        share = np.where(ends, (speed - state[1]) / gain, 1.0)  # of the last step
+        times.append(np.where(pulling, times[-1] + share * step, times[-1]))
+        travels.append(np.where(pulling, state[0] + share * (after[0] - state[0]), travels[-1]))
+        state = np.where(pulling, after, state)
+        pulling &= ~ends
+    return np.array(times), np.array(travels), refused
 
 
-def _at(plan: Plan, path_s: float | NDArray[np.float64]) -> NDArray[np.float64]:
+def _at(plan: Plan, path_s: Numbers) -> Numbers:
     """Rows of the plan; before its clock starts the robot waits at its beginning."""
-    return plan(np.maximum(np.atleast_1d(np.asarray(path_s, dtype=np.float64)), 0.0))
+    return plan(np.maximum(path_s, 0.0))
 
 
-def _refuse_earlier_contact(
-    run_up: _RunUp,
-    centre: NDArray[np.float64],
-    along: NDArray[np.float64],
-    radius: float,
-    outline: NDArray[np.float64],
-    plan: Plan,
-    path_start_s: float,
-) -> None:
-    """The nose must be outside the robot from the start until it meets the point."""
-    time_s = np.arange(0.0, run_up.duration_s - SAMPLE_S, SAMPLE_S)
-    poses = _at(plan, time_s - path_start_s)
-    nose = centre + (run_up.travel(time_s) - run_up.length_m)[:, None] * along - poses[:, :2]
-    cosine, sine = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-    seen = np.stack([cosine * nose[:, 0] + sine * nose[:, 1], -sine * nose[:, 0] + cosine * nose[:, 1]], axis=1)
-    touching = np.flatnonzero(_outside(outline, seen) < radius - ON_OUTLINE_M)
-    if touching.size:
-        when = f"touches the robot elsewhere before, at {time_s[touching[0]]:.3g} s"
-        raise GivewayError("point_m", f"a slider that {when}", "a point that the slider reaches first")
+@dataclass(frozen=True)
+class _Nose:
+    """Where the noses go: run-up, centre at the contact (n, 2), unit vector along the rail (n, 2), radius (n,)."""
+
+    run_up: _RunUp
+    centre: Numbers
+    along: Numbers
+    radius: Numbers
+
+
+def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: Numbers) -> Iterator[tuple[int, float]]:
+    """The runs in which the nose is not outside the robot from the start until it meets the point; and when."""
+    duration = np.maximum(nose.run_up.duration_s - SAMPLE_S, 0.0)
+    longest = float(duration.max(initial=0.0))
+    way = _at(plan, np.arange(0.0, longest + SAMPLE_S, SAMPLE_S))[:, :3]
+    moved = np.abs(np.diff(way, axis=0)).sum(axis=0) @ [1.0, 1.0, float(np.hypot(*outline.T).max())]
+    moved += float(np.abs(nose.run_up.length_m).max(initial=0.0))
+    samples = 1 + max(1, math.ceil(min(longest / SAMPLE_S, moved / SAMPLE_M)))
+    time_s = np.linspace(0.0, 1.0, samples)[:, None] * duration
+    travel = nose.run_up.travel(time_s) - nose.run_up.length_m
+    runs = max(1, SAMPLES_AT_ONCE // samples)
+    for first in range(0, len(duration), runs):
+        part = slice(first, first + runs)
+        poses = _at(plan, (time_s[:, part] - path_start_s[part]).ravel())
+        centre = nose.centre[part] + travel[:, part, None] * nose.along[part]
+        from_base = centre.reshape(-1, 2) - poses[:, :2]
+        seen = _turned(np.cos(poses[:, 2]), -np.sin(poses[:, 2]), from_base)
+        outside = _outside(outline, seen).reshape(samples, -1)
+        touching = (outside < nose.radius[part] - ON_OUTLINE_M) & (duration[part] > 0.0)
+        for index in np.flatnonzero(touching.any(axis=0)):
+            yield first + int(index), float(time_s[touching[:, index].argmax(), first + index])
 
 
 def _outside(outline: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -283,5 +394,9 @@ def _foot(point: NDArray[np.float64], start: NDArray[np.float64], side: NDArray[
     return np.asarray(start + share * side)
 
 
-def _distance_to_segment(point: NDArray[np.float64], start: NDArray[np.float64], side: NDArray[np.float64]) -> float:
-    return math.hypot(*(_foot(point, start, side) - point))
+def _distance_to_segment(
+    points: NDArray[np.float64], start: NDArray[np.float64], side: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Distances of points (n, 2), shape (n,)."""
+    share = np.clip((points - start) @ side / (side @ side), 0.0, 1.0)
+    return np.asarray(np.hypot(*(start + share[:, None] * side - points).T))

@@ -7,22 +7,17 @@ one message that names file, line and key; ranges are those of the variable tabl
 from __future__ import annotations
 
 import dataclasses
-import math
-import re
-import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from giveway.checks import finite
-from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.errors import GivewayError
 from giveway.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
 from giveway.scenario import BUMPERS, Scenario
-from giveway.toml_lines import line_of
+from giveway.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.variables import Value, table
 
-__all__ = ["read_scenario"]
+__all__ = ["read_scenario", "scenario_of"]
 
 SCHEMA_VERSION = 1
 NAME_MAX = 80
@@ -69,35 +64,16 @@ def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | 
             something else in it; names the line.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise FileError(path, "no such file", "give the path of a scenario file (TOML)") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputFileError(path, *_syntax(text, str(error))) from None
-    try:
-        return _scenario(document, path, bumper, robot)
-    except FileError:
-        raise  # about another file, which it names
-    except GivewayError as error:
-        raise InputFileError(path, line_of(text, error.field), error) from None
+    text, document = read_toml(path, "give the path of a scenario file (TOML)")
+    with lines_named(path, text):
+        return scenario_of(document, path, bumper, robot)
 
 
-def _syntax(text: str, message: str) -> tuple[int, GivewayError]:
-    """Line and cause of what tomllib said."""
-    found = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)", message)
-    if found is None:
-        return 1, FileError("not TOML", message)
-    line = int(found[1]) if found[1] else max(1, len(text.splitlines()))
-    return line, FileError("not TOML", message[: found.start()])
-
-
-def _scenario(document: dict[str, Any], path: Path, bumper: str | None, robot: Path | None) -> Scenario:
-    top = _Section("", document, _TOP)
+def scenario_of(
+    document: Mapping[str, Any], path: Path, bumper: str | None = None, robot: Path | None = None
+) -> Scenario:
+    """The scenario that ``document`` describes, as the file ``path`` would; errors name its keys, without lines."""
+    top = Section("", document, _TOP)
     version = top.required("schema_version", "1")
     if version != SCHEMA_VERSION:
         raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
@@ -113,7 +89,7 @@ def _scenario(document: dict[str, Any], path: Path, bumper: str | None, robot: P
         raise GivewayError("body_region", top.values["body_region"], "nothing without [collision]: it judges a contact")
     plan = _plan(top)
     overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
-    with _renamed("", duration_s="duration"):
+    with renamed("", duration_s="duration"):
         bare = Scenario(
             name=top.text("name", path.stem),
             duration_s=top.number("duration"),
@@ -133,29 +109,29 @@ def _scenario(document: dict[str, Any], path: Path, bumper: str | None, robot: P
     return dataclasses.replace(bare, testbed={**bare.testbed, **_collision(collision, bare)})
 
 
-def _plan(top: _Section) -> Plan:
+def _plan(top: Section) -> Plan:
     kind = "rest"
     if "plan" in top.values:
-        kind = _Section("plan", top.values["plan"], None).choice("kind", PLANS)
-    section = top.table("plan", ("kind", *_PLAN_KEYS[kind])) or _Section("plan", {}, None)
+        kind = Section("plan", top.values["plan"], None).choice("kind", PLANS)
+    section = top.table("plan", ("kind", *_PLAN_KEYS[kind])) or Section("plan", {}, None)
     heading = section.angle("heading", 0.0)
     if kind == "rest":
-        with _renamed("plan", x_m="x", y_m="y"):
+        with renamed("plan", x_m="x", y_m="y"):
             return Rest(section.number("x", 0.0), section.number("y", 0.0), heading)
     speed, acceleration = section.number("speed"), section.number("acceleration", START_ACCELERATION_MPS2)
     names = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}
     if kind == "straight":
-        with _renamed("plan", x_m="x", y_m="y", **names):
+        with renamed("plan", x_m="x", y_m="y", **names):
             x, y = section.number("x", 0.0), section.number("y", 0.0)
             return Straight(speed, section.angle("direction", 0.0), x, y, heading, acceleration)
     centre = section.pair("centre", (0.0, 0.0))
     turning = "turning" if section.flag("turning", False) else "fixed"
-    with _renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **names):
+    with renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **names):
         start = section.angle("start", 0.0)
         return Circle(section.number("diameter"), speed, *centre, start, turning, heading, acceleration)
 
 
-def _pushes(top: _Section) -> Pushes | None:
+def _pushes(top: Section) -> Pushes | None:
     if "push" not in top.values:
         return None
     entries = top.values["push"]
@@ -164,9 +140,9 @@ def _pushes(top: _Section) -> Pushes | None:
     names = {"force_n": "force", "start_s": "start", "duration_s": "duration", "ramp_s": "ramp"}
     pushes: list[TimedPush] = []
     for index, entry in enumerate(entries):
-        section = _Section(f"push[{index}]", entry, _PUSH_KEYS)
+        section = Section(f"push[{index}]", entry, _PUSH_KEYS)
         point = section.pair("point")
-        with _renamed(section.name, point_x_m="point", point_y_m="point", **names):
+        with renamed(section.name, point_x_m="point", point_y_m="point", **names):
             pushes.append(
                 TimedPush(
                     section.number("force"),
@@ -181,7 +157,7 @@ def _pushes(top: _Section) -> Pushes | None:
     return Pushes(tuple(pushes))
 
 
-def _overrides(top: _Section, model: str) -> dict[str, Value]:
+def _overrides(top: Section, model: str) -> dict[str, Value]:
     """Checked parameters of [testbed] or [controller]; dotted names and lists as in the variable tables."""
     values = top.values.get(model, {})
     if not isinstance(values, dict):
@@ -208,13 +184,13 @@ def _scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
             yield f"{prefix}{key}", value
 
 
-def _collision(section: _Section, bare: Scenario) -> dict[str, Value]:
+def _collision(section: Section, bare: Scenario) -> dict[str, Value]:
     """The testbed's parameters for the dummy."""
     from giveway.approach import Approach, edge_middle, meet, outline_of
 
     set_already = bare.parameters("testbed")
     mass = section.number("mass", float(table("testbed")["slider.mass"].start or 0.0))
-    with _renamed("collision", **{"testbed.slider.mass": "mass"}):
+    with renamed("collision", **{"testbed.slider.mass": "mass"}):
         set_already["slider.mass"] = table("testbed").check("slider.mass", mass)
     everything = {v.name: set_already.get(v.name, v.start) for v in table("testbed").select("parameter")}
     testbed = {name: value for name, value in everything.items() if value is not None}
@@ -223,7 +199,7 @@ def _collision(section: _Section, bare: Scenario) -> dict[str, Value]:
     if "offset" in section.values and "edge" not in section.values:
         raise GivewayError("collision.offset", section.values["offset"], "only with edge: it counts from its middle")
     names = {"point_m": "point", "offset_m": "offset", "speed_mps": "speed", "direction_rad": "direction"}
-    with _renamed("collision", edge="edge", time_s="time", **names):
+    with renamed("collision", edge="edge", time_s="time", **names):
         if "edge" in section.values:
             point = edge_middle(outline_of(testbed), section.values["edge"], section.number("offset", 0.0))
         else:
@@ -236,11 +212,11 @@ def _collision(section: _Section, bare: Scenario) -> dict[str, Value]:
     return met | _height(section)
 
 
-def _height(section: _Section) -> dict[str, Value]:
+def _height(section: Section) -> dict[str, Value]:
     """A height above the floor matters to a base that can tip."""
     if "height" not in section.values:
         return {}
-    with _renamed("collision", **{"testbed.contact.height": "height"}):
+    with renamed("collision", **{"testbed.contact.height": "height"}):
         height = table("testbed").check("contact.height", section.number("height"))
     return {"base.tipping": True, "contact.height": height}
 
@@ -250,81 +226,3 @@ def _tare_s(scenario: Scenario) -> float:
     values, variables = scenario.parameters("controller"), table("controller")
     ticks, period = (values.get(n, variables[n].start) for n in ("estimator.tare_ticks", "controller.period"))
     return float(ticks or 0) * float(period or 0.0)
-
-
-@contextmanager
-def _renamed(section: str, **names: str) -> Iterator[None]:
-    """Errors of what the file's values are handed to, in the names of the file."""
-    try:
-        yield
-    except GivewayError as error:
-        key = error.field.rpartition(".")[2] if error.field not in names else error.field
-        if key in names:
-            error.field = f"{section}.{names[key]}" if section else names[key]
-        raise
-
-
-class _Section:
-    """One table of the file; every reader names the key, what was found and what is allowed."""
-
-    def __init__(self, name: str, values: Any, known: Sequence[str] | None) -> None:
-        """``known``: the keys it may have; None: any."""
-        if not isinstance(values, dict):
-            raise GivewayError(name, values, "a table")
-        self.name, self.values = name, values
-        if known is not None:
-            for key in values:
-                if key not in known:
-                    raise UnknownNameError(self.full(key), key, known)
-
-    def full(self, key: str) -> str:
-        return f"{self.name}.{key}" if self.name else key
-
-    def table(self, key: str, known: Sequence[str]) -> _Section | None:
-        return _Section(self.full(key), self.values[key], known) if key in self.values else None
-
-    def required(self, key: str, allowed: str) -> Any:
-        if key not in self.values:
-            raise GivewayError(self.full(key), "nothing", f"{allowed}; it is needed")
-        return self.values[key]
-
-    def number(self, key: str, default: float | None = None) -> float:
-        if key not in self.values and default is not None:
-            return default
-        return finite(self.full(key), self.required(key, "a finite number"))
-
-    def angle(self, key: str, default_rad: float | None = None) -> float:
-        """Degrees in the file, rad here."""
-        if key not in self.values and default_rad is not None:
-            return default_rad
-        found = self.required(key, "a number from -360 to 360 deg")
-        return math.radians(finite(self.full(key), found, -360.0, 360.0, "deg"))
-
-    def pair(self, key: str, default: tuple[float, float] | None = None) -> tuple[float, float]:
-        if key not in self.values and default is not None:
-            return default
-        found = self.required(key, "two numbers, [x, y] in m")
-        if not isinstance(found, list) or len(found) != 2:
-            raise GivewayError(self.full(key), found, "two numbers, [x, y] in m")
-        x, y = (finite(self.full(key), value) for value in found)
-        return x, y
-
-    def flag(self, key: str, default: bool) -> bool:
-        found = self.values.get(key, default)
-        if not isinstance(found, bool):
-            raise GivewayError(self.full(key), found, "true or false")
-        return found
-
-    def text(self, key: str, default: str | None = None) -> str:
-        found = self.values.get(key, default)
-        if not isinstance(found, str):
-            raise GivewayError(self.full(key), found, "a text in quotes")
-        return found
-
-    def choice(self, key: str, known: Sequence[str] | Mapping[str, Any], default: str | None = None) -> str:
-        if key not in self.values and default is None:
-            self.required(key, ", ".join(known))
-        found = self.text(key, default)
-        if found not in known:
-            raise UnknownNameError(self.full(key), found, known)
-        return found
