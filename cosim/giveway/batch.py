@@ -195,6 +195,11 @@ def _load(path: Path, _modified_ns: int) -> _Library:
     return _Library(path)
 
 
+def native_metrics() -> list[_NativeMetric]:
+    """What the library measures, with units, in the order of its results."""
+    return _library().metrics
+
+
 @dataclass(frozen=True)
 class _Trace:
     """A variable to record."""

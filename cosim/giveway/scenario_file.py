@@ -17,7 +17,7 @@ from giveway.scenario import BUMPERS, Scenario
 from giveway.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.variables import Value, table
 
-__all__ = ["read_scenario", "scenario_of"]
+__all__ = ["SET_BY", "read_scenario", "scenario_of"]
 
 SCHEMA_VERSION = 1
 NAME_MAX = 80
@@ -38,7 +38,7 @@ _PLAN_KEYS = {
 _COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
 # Parameters that a key of the file sets; [testbed] must not set them once more.
-_SET_BY = {
+SET_BY = {
     "bumper.kind": "bumper",
     "electronics.seed": "seed",
     "base.tipping": "collision.height",
@@ -164,8 +164,8 @@ def _overrides(top: Section, model: str) -> dict[str, Value]:
         raise GivewayError(model, values, "a table")
     found: dict[str, Value] = {}
     for name, value in _scalars(values):
-        if model == "testbed" and name in _SET_BY:
-            raise GivewayError(f"{model}.{name}", value, f"one place to set it: {_SET_BY[name]}")
+        if model == "testbed" and name in SET_BY:
+            raise GivewayError(f"{model}.{name}", value, f"one place to set it: {SET_BY[name]}")
         try:
             found[name] = table(model).check(name, value)
         except GivewayError as error:

@@ -1,0 +1,144 @@
+"""The designs of a study: which values its quantities take together. The samplers are SciPy's and SALib's."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from giveway.errors import GivewayError
+from giveway.study.distributions import Tolerance, Varied
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["KINDS", "DesignPlan", "deviations", "make", "problem"]
+
+KINDS = ("factorial", "latin-hypercube", "sobol", "one-at-a-time", "morris", "sobol-indices", "csv")
+COUNT_MAX = 20_000_000
+OPTIONS: Mapping[str, tuple[str, ...]] = {
+    "factorial": (),
+    "latin-hypercube": ("count",),
+    "sobol": ("count",),
+    "one-at-a-time": (),
+    "morris": ("trajectories", "grid"),
+    "sobol-indices": ("count",),
+    "csv": ("file",),
+}
+"""Options of each kind, by the key of the study file."""
+
+
+@dataclass(frozen=True)
+class DesignPlan:
+    """Which designs are to be made.
+
+    Attributes:
+        kind: one of `KINDS`.
+        count: designs of a Latin hypercube or a Sobol sequence; base samples of "sobol-indices".
+        trajectories, grid: of the Morris method: how many, and levels per quantity (even).
+        rows: the designs of a CSV file, shape (n, quantities).
+    """
+
+    kind: str
+    count: int = 0
+    trajectories: int = 0
+    grid: int = 4
+    rows: NDArray[np.float64] | None = None
+
+    def size(self, varied: Sequence[Varied]) -> int:
+        """Number of designs, known before they are made."""
+        if self.kind == "factorial":
+            return int(np.prod([len(one.levels) for one in varied], dtype=object))
+        if self.kind == "one-at-a-time":
+            return 1 + sum(len(_others(one)) for one in varied)
+        if self.kind == "morris":
+            return self.trajectories * (len(varied) + 1)
+        if self.kind == "sobol-indices":
+            return self.count * (len(varied) + 2)
+        if self.rows is not None:
+            return len(self.rows)
+        return self.count
+
+
+def _others(one: Varied) -> list[float]:
+    """The levels but for the nominal value, which every other design has."""
+    return [level for level in one.levels if level != one.nominal]
+
+
+def problem(varied: Sequence[Varied]) -> dict[str, Any]:
+    """The quantities as SALib wants them, on [0, 1]."""
+    names = [one.quantity.name for one in varied]
+    return {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
+
+
+def make(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.float64]:
+    """All designs, shape (designs, quantities); the same for the same seed."""
+    if plan.rows is not None:
+        return plan.rows
+    if not varied:
+        return np.zeros((1, 0))
+    if plan.kind == "factorial":
+        grid = np.meshgrid(*(np.array(one.levels) for one in varied), indexing="ij")
+        return np.stack([axis.ravel() for axis in grid], axis=1)
+    if plan.kind == "one-at-a-time":
+        return _one_at_a_time(varied)
+    shares = _shares(plan, varied, seed)
+    return np.stack([one.at(shares[:, j]) for j, one in enumerate(varied)], axis=1)
+
+
+def _one_at_a_time(varied: Sequence[Varied]) -> NDArray[np.float64]:
+    nominal = []
+    for index, one in enumerate(varied):
+        if one.nominal is None:
+            raise GivewayError(f"vary[{index}].nominal", "nothing", "its value while another quantity varies")
+        nominal.append(one.nominal)
+    rows = [nominal]
+    for j, one in enumerate(varied):
+        rows += [[*nominal[:j], level, *nominal[j + 1 :]] for level in _others(one)]
+    return np.array(rows)
+
+
+def _shares(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.float64]:
+    """Points of the unit cube, shape (designs, quantities)."""
+    if plan.kind == "morris":
+        from SALib.sample import morris
+
+        return np.asarray(morris.sample(problem(varied), plan.trajectories, num_levels=plan.grid, seed=seed))
+    if plan.kind == "sobol-indices":
+        from SALib.sample import sobol
+
+        with warnings.catch_warnings():  # it would rather have powers of two
+            warnings.simplefilter("ignore", UserWarning)
+            found = sobol.sample(problem(varied), plan.count, calc_second_order=False, seed=seed)
+        return np.asarray(found)
+    return _filled(plan.kind, plan.count, len(varied), seed)
+
+
+def _filled(kind: str, count: int, dimensions: int, seed: int) -> NDArray[np.float64]:
+    """Space filled evenly."""
+    from scipy.stats import qmc
+
+    if kind == "latin-hypercube":
+        return np.asarray(qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(count))
+    with warnings.catch_warnings():  # it would rather have powers of two
+        warnings.simplefilter("ignore", UserWarning)
+        return np.asarray(qmc.Sobol(dimensions, rng=np.random.default_rng(seed)).random(count))
+
+
+def deviations(tolerances: Sequence[Tolerance], kind: str, count: int, seed: int) -> NDArray[np.float64]:
+    """Deviations from the design, shape (1 + n, tolerances): first none at all, then the tolerance samples.
+
+    Every design gets the same ones, so that designs differ by what they are and not by their luck. ``kind``
+    "corners": every combination of both ends, whatever ``count``.
+    """
+    none = np.zeros((1, len(tolerances)))
+    if not tolerances:
+        return none
+    if kind == "corners":
+        ends = [(one.spread.low, one.spread.high) for one in tolerances]
+        return np.concatenate([none, np.array(list(itertools.product(*ends)))])
+    shares = _filled(kind, count, len(tolerances), seed)
+    return np.concatenate([none, np.stack([one.spread.at(shares[:, j]) for j, one in enumerate(tolerances)], axis=1)])

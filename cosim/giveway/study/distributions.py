@@ -1,0 +1,115 @@
+"""How a quantity spreads: distributions of scipy.stats, cut where the study says, as maps from [0, 1]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from giveway.checks import finite
+from giveway.errors import GivewayError, UnknownNameError
+from giveway.study.quantities import Quantity
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["DISTRIBUTIONS", "Spread", "Tolerance", "Varied", "check_spread"]
+
+SIGMAS = 3.0  # where a normal distribution is cut if the study does not say
+# Per distribution: the keys it needs besides low and high, and whether these are needed, too.
+DISTRIBUTIONS: Mapping[str, tuple[tuple[str, ...], bool]] = {
+    "uniform": ((), True),
+    "loguniform": ((), True),
+    "triangular": (("mode",), True),
+    "normal": (("mean", "sigma"), False),
+}
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A distribution between ``low`` and ``high``; ``mode``, ``mean``, ``sigma`` where it has them."""
+
+    kind: str
+    low: float
+    high: float
+    mode: float = 0.0
+    mean: float = 0.0
+    sigma: float = 1.0
+
+    def at(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The values below which the shares (0 to 1) lie."""
+        from scipy import stats
+
+        width = self.high - self.low
+        distribution: Any
+        if self.kind == "uniform":
+            distribution = stats.uniform(self.low, width)
+        elif self.kind == "loguniform":
+            distribution = stats.loguniform(self.low, self.high)
+        elif self.kind == "triangular":
+            distribution = stats.triang((self.mode - self.low) / width, self.low, width)
+        else:
+            cut = (self.low - self.mean) / self.sigma, (self.high - self.mean) / self.sigma
+            distribution = stats.truncnorm(*cut, self.mean, self.sigma)
+        # The inverse of a cut distribution may leave its range by a rounding error.
+        return np.clip(distribution.ppf(share), self.low, self.high)
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A quantity that differs from design to design: either between ``levels``, or over ``spread``.
+
+    ``nominal`` is what it has while another one varies; None: what the scenario has.
+    """
+
+    quantity: Quantity
+    nominal: float | None = None
+    levels: tuple[float, ...] = ()
+    spread: Spread | None = None
+
+    def at(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The values of the shares (0 to 1)."""
+        if self.spread is None:
+            last = len(self.levels) - 1
+            return np.array(self.levels)[np.minimum((share * len(self.levels)).astype(int), last)]
+        if self.quantity.kind == "real":
+            return self.spread.at(share)
+        return np.rint(self.spread.at(share))
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How a quantity deviates from what the design says: ``value (1 + d)`` if ``relative``, else ``value + d``."""
+
+    quantity: Quantity
+    relative: bool
+    spread: Spread
+
+
+def check_spread(field: str, quantity: Quantity, kind: str, values: Mapping[str, float]) -> Spread:
+    """The spread of ``kind`` with the checked ``values`` (low, high, mode, mean, sigma), errors named ``field.key``."""
+    if kind not in DISTRIBUTIONS:
+        raise UnknownNameError(f"{field}.distribution", kind, DISTRIBUTIONS)
+    needed, ends = DISTRIBUTIONS[kind]
+    for key in (*needed, *(("low", "high") if ends else ())):
+        if key not in values:
+            raise GivewayError(f"{field}.{key}", "nothing", f"a finite number; {kind} needs it")
+    for key in values:
+        if key not in (*needed, "low", "high"):
+            raise GivewayError(f"{field}.{key}", values[key], f"nothing: {kind} has no {key}")
+    given = dict(values)
+    if kind == "normal":
+        if given["sigma"] <= 0.0:
+            raise GivewayError(f"{field}.sigma", given["sigma"], "above 0")
+        given.setdefault("low", given["mean"] - SIGMAS * given["sigma"])
+        given.setdefault("high", given["mean"] + SIGMAS * given["sigma"])
+    if not given["low"] < given["high"]:
+        raise GivewayError(f"{field}.high", given["high"], f"above low, {given['low']:g}: the range is empty")
+    if kind == "loguniform" and given["low"] <= 0.0:
+        raise GivewayError(f"{field}.low", given["low"], "above 0: the range is logarithmic")
+    if kind == "triangular":
+        finite(f"{field}.mode", given["mode"], given["low"], given["high"])
+    if quantity.kind not in ("real", "integer"):
+        raise GivewayError(f"{field}.low", given["low"], f"values = [...] with some of {quantity.allowed}")
+    return Spread(kind, **{key: float(value) for key, value in given.items()})

@@ -1,0 +1,384 @@
+"""Runs a study, part by part: each is one call of the batch library, stored as a whole before the next begins."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from giveway.errors import FileError, GivewayError, InputFileError
+from giveway.study import designs as design_module
+from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
+from giveway.study.runs import RunTable
+from giveway.study.setup import Setup
+from giveway.study.store import KeyIndex, Store
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Outcome", "Progress", "Report", "plan_runs", "sweep"]
+
+PART_S = 5.0  # of work in one part: what a kill may lose
+PART_FIRST, PART_MAX = 32, 8192
+WAIT_S = 0.1
+DISK_SHARE = 0.9  # of the free space that a study may fill
+BYTES_PER_NUMBER = 8  # metrics hardly compress
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a study is: runs ``done`` of ``runs``, of which ``reused`` were stored before; ``rate`` in runs/s."""
+
+    done: int
+    runs: int
+    reused: int
+    failed: int
+    rate: float
+
+    @property
+    def left_s(self) -> float | None:
+        """Time left at this rate, s; None: not known yet."""
+        return (self.runs - self.done) / self.rate if self.rate > 0.0 else None
+
+
+Report = Callable[[Progress], None]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What `sweep` did: ``stored`` of ``runs`` are in the folder, ``ran`` of them run now, ``reused`` taken over."""
+
+    folder: Path
+    runs: int
+    stored: int
+    ran: int
+    reused: int
+    failed: int
+    wall_s: float
+    interrupted: bool
+
+
+@dataclass
+class _Prepared:
+    """A part before it runs."""
+
+    first: int
+    values: NDArray[np.float64]
+    case: NDArray[np.int64]
+    keys: list[bytes]
+    refused: dict[int, str]
+
+
+def plan_runs(setup: Setup) -> RunTable:
+    """The table of all runs of ``setup``."""
+    designs = design_module.make(setup.plan, setup.varied, setup.seed)
+    deviations = design_module.deviations(setup.tolerances, setup.tolerance_kind, setup.tolerance_count, setup.seed + 1)
+    if setup.noise_seeds and not setup.tolerances:
+        deviations = np.zeros((1 + setup.tolerance_count, 0))
+    return RunTable(setup, designs, deviations)
+
+
+def check_disk(setup: Setup, count: int, folder: Path) -> None:
+    """Refuse a study whose results would not fit, before anything is run."""
+    columns = len(result_columns()) + len(setup.varied) + len(setup.tolerances) + 6
+    needed = count * columns * BYTES_PER_NUMBER
+    parent = folder.absolute()
+    while not parent.exists():
+        parent = parent.parent
+    free = shutil.disk_usage(parent).free
+    if needed > DISK_SHARE * free:
+        key = "designs.count" if setup.plan.count else "designs"
+        allowed = f"as many as fit into {DISK_SHARE * free / 1e9:.3g} GB of free space on the disk of {folder}"
+        error = GivewayError(key, f"{count} runs ({needed / 1e9:.3g} GB)", allowed)
+        if setup.text is not None and setup.path is not None:
+            from giveway.toml_lines import line_of
+
+            raise InputFileError(setup.path, line_of(setup.text, key), error)
+        raise error
+
+
+def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progress: Report | None = None) -> Outcome:
+    """Run what is missing of ``setup`` in ``folder``.
+
+    Ctrl-C ends it cleanly: all parts but the one under way are kept, and the same call goes on from there.
+
+    Raises:
+        GivewayError: the study cannot be run as it is; nothing was run.
+        FileError: the folder holds something else, is in use, or cannot be written.
+    """
+    from giveway.checks import whole
+    from giveway.study.native_part import default_threads
+
+    threads = default_threads() if threads is None else whole("threads", threads, 1, 1024)
+    folder = Path(folder)
+    design_count = setup.plan.size(setup.varied)
+    expected = design_count * max(1, setup.tolerance_count) * len(setup.cases)
+    check_disk(setup, expected, folder)  # before the designs are made: they may be too many for the memory as well
+    table = plan_runs(setup)
+    shared = _shared(setup)
+    contexts = [case.context(shared) for case in table.cases]
+    fingerprint = _fingerprint(table, contexts)
+    store = Store(folder, fingerprint)
+    try:
+        manifest = _manifest(setup, table, shared, fingerprint)
+        _keep_inputs(setup, store.folder)
+        store.write_manifest({**manifest, "complete": not store.missing(table.count)})
+        runner = _Runner(setup, table, contexts, store, threads, progress)
+        outcome = runner.run()
+        if not outcome.interrupted:
+            store.write_manifest({**manifest, "complete": True})
+        return outcome
+    finally:
+        store.close()
+
+
+class _Runner:
+    """The loop over the parts."""
+
+    def __init__(
+        self,
+        setup: Setup,
+        table: RunTable,
+        contexts: list[bytes],
+        store: Store,
+        threads: int,
+        progress: Report | None,
+    ) -> None:
+        self._setup, self._table, self._contexts, self._store = setup, table, contexts, store
+        self._threads, self._progress = threads, progress
+        self._index = KeyIndex()
+        self._stored = self._ran = self._reused = self._failed = 0
+        self._started = time.perf_counter()
+        self._rate = 0.0
+        self._said = 0.0
+
+    def run(self) -> Outcome:
+        interrupted = False
+        try:
+            self._load_keys()
+            gaps = self._store.missing(self._table.count)
+            self._stored = self._table.count - sum(end - first for first, end in gaps)
+            prepared = None
+            for first, end in gaps:
+                while first < end:
+                    size = min(self._part_size(), end - first)
+                    if prepared is None or prepared.first != first:
+                        prepared = self._prepare(first, size)
+                    first += len(prepared.keys)
+                    following = (first, min(self._part_size(), end - first)) if first < end else None
+                    prepared = self._run_part(prepared, following)
+        except KeyboardInterrupt:
+            interrupted = True
+        wall_s = time.perf_counter() - self._started
+        found = (self._table.count, self._stored, self._ran, self._reused, self._failed)
+        return Outcome(self._store.folder, *found, wall_s, interrupted)
+
+    def _load_keys(self) -> None:
+        for path in self._store.all_parts():
+            part = read_part(path, ["key", "status"])
+            keys, statuses = part["key"].to_pylist(), part["status"].to_pylist()
+            self._index.add(path, [b"" if s in NOT_CACHED else key for key, s in zip(keys, statuses, strict=True)])
+
+    def _part_size(self) -> int:
+        if self._setup.part_runs:
+            return self._setup.part_runs
+        return int(np.clip(PART_S * self._rate, PART_FIRST, PART_MAX))
+
+    def _prepare(self, first: int, size: int) -> _Prepared:
+        """Values and keys of the runs from ``first`` on."""
+        table = self._table
+        design, sample, case = table.split(np.arange(first, first + size))
+        values = np.empty((size, len(table.columns.names)))
+        keys, refused = [b""] * size, {}
+        for number in range(len(table.cases)):
+            mine = np.flatnonzero(case == number)
+            if not mine.size:
+                continue
+            rows = table.rows(design[mine], sample[mine], number)
+            values[mine] = rows.values
+            for index, key in zip(mine.tolist(), table.keys(self._contexts, rows, number), strict=True):
+                keys[index] = key
+            for row, message in rows.refused.items():
+                index = int(mine[row])
+                refused[index] = message
+                # What cannot be may look like what can: the slider was never placed.
+                keys[index] = hashlib.blake2b(keys[index] + message.encode(), digest_size=len(keys[index])).digest()
+        return _Prepared(first, values, case, keys, refused)
+
+    def _run_part(self, part: _Prepared, following: tuple[int, int] | None) -> _Prepared | None:
+        """Run and store a part; meanwhile prepare the ``following`` one (first run, number of runs)."""
+        outcomes = Outcomes(len(part.keys))
+        for index, message in part.refused.items():
+            outcomes.refuse(index, message)
+        reused = self._take_stored(part, outcomes)
+        first_of: dict[bytes, int] = {}
+        fresh, twins, twins_of = [], [], []
+        for index, key in enumerate(part.keys):
+            if index in part.refused or index in reused:
+                continue
+            if key in first_of:
+                twins.append(index)
+                twins_of.append(first_of[key])
+            else:
+                first_of[key] = index
+                fresh.append(index)
+        where = np.array(fresh, dtype=np.int64)
+        prepared = self._run_fresh(part, where, outcomes, following)
+        outcomes.copy(np.array(twins, dtype=np.int64), np.array(twins_of, dtype=np.int64))
+        path = self._store.write_part(part.first, part_table(self._table, part.first, part.keys, outcomes))
+        keys = [b"" if s in NOT_CACHED else key for key, s in zip(part.keys, outcomes.status, strict=True)]
+        self._index.add(path, keys)
+        self._stored += len(part.keys)
+        self._ran += len(fresh)
+        self._reused += len(reused) + len(twins)
+        self._failed += sum(status != "ok" for status in outcomes.status)
+        self._say(0, force=True)
+        return prepared
+
+    def _take_stored(self, part: _Prepared, outcomes: Outcomes) -> set[int]:
+        """Results that are there already, from whichever part."""
+        found = self._index.find(part.keys)
+        taken: set[int] = set()
+        for number in np.unique(found[found[:, 0] >= 0, 0]):
+            where = np.flatnonzero(found[:, 0] == number)
+            where = where[[int(index) not in part.refused for index in where]]
+            path, rows = self._index.files[int(number)], found[where, 1]
+            # The index compares halves of keys.
+            keys = read_part(path, ["key"])["key"].take(rows).to_pylist()
+            same = np.array([part.keys[i] == key for i, key in zip(where, keys, strict=True)], dtype=bool)
+            outcomes.take_stored(where[same], path, rows[same])
+            taken.update(where[same].tolist())
+        return taken
+
+    def _run_fresh(
+        self, part: _Prepared, where: NDArray[np.int64], outcomes: Outcomes, following: tuple[int, int] | None
+    ) -> _Prepared | None:
+        from giveway.study.native_part import NativePart
+
+        if not where.size:
+            return None
+        started = time.perf_counter()
+        running = NativePart(self._table, part.values[where], part.case[where], self._threads, self._setup.method)
+        try:
+            prepared = self._prepare(*following) if following is not None else None
+            done = False
+            while not done:
+                done, runs_done = running.wait(WAIT_S)
+                self._say(runs_done)
+        finally:
+            running.finish()
+        self._rate = len(where) / max(time.perf_counter() - started, 1e-6)
+        outcomes.take_native(where, running.results)
+        return prepared
+
+    def _say(self, under_way: int, force: bool = False) -> None:
+        now = time.perf_counter()
+        if self._progress is None or (now - self._said < WAIT_S and not force):
+            return
+        self._said = now
+        rate = (self._ran + under_way) / max(now - self._started, 1e-6)
+        done = self._stored + under_way
+        self._progress(Progress(done, self._table.count, self._reused, self._failed, rate))
+
+
+def _shared(setup: Setup) -> dict[str, Any]:
+    """What decides every run, besides its own numbers: the code and the method."""
+    import giveway
+    from giveway import batch
+
+    library = batch._library()
+    model = next(iter(library.models.values()))
+    return {
+        "giveway": giveway.__version__,
+        "library_sha256": model.sha256,
+        "tokens": {name: one.token for name, one in library.models.items()},
+        "method": setup.method,
+        "metrics": [name for name, _ in result_columns()],
+    }
+
+
+def _fingerprint(table: RunTable, contexts: list[bytes]) -> str:
+    """Hash of everything that decides the results of the study, and in which order they lie."""
+    found = hashlib.sha256()
+    names = [one.quantity.name for one in (*table.varied, *table.tolerances)]
+    found.update(json.dumps([names, [case.case.name for case in table.cases], table.noise_seeds]).encode())
+    for part in (*contexts, table.designs.tobytes(), table.deviations.tobytes()):
+        found.update(hashlib.sha256(part).digest())
+    for case in table.cases:
+        found.update(case.base.tobytes() + repr(case.case.hit).encode())
+    return found.hexdigest()
+
+
+def _manifest(setup: Setup, table: RunTable, shared: dict[str, Any], fingerprint: str) -> dict[str, Any]:
+    import importlib.metadata
+
+    return {
+        "name": setup.name,
+        "study": _portable(setup),
+        "fingerprint": fingerprint,
+        "designs": len(table.designs),
+        "tolerance_samples": table.samples,
+        "collisions": [case.case.name for case in table.cases],
+        "runs": table.count,
+        "seed": setup.seed,
+        "method": setup.method,
+        "designs_sha256": hashlib.sha256(table.designs.tobytes()).hexdigest(),
+        "library": {key: value for key, value in shared.items() if key != "metrics"},
+        "versions": {
+            "giveway": shared["giveway"],
+            "python": platform.python_version(),
+            **{name: importlib.metadata.version(name) for name in ("numpy", "scipy", "SALib", "pyarrow")},
+        },
+        "platform": platform.platform(),
+    }
+
+
+def _portable(setup: Setup) -> dict[str, Any]:
+    """The document of the study, with its paths into the study's folder."""
+    document = json.loads(json.dumps(setup.document))
+    if "robot" in document.get("scenario", {}):
+        document["scenario"]["robot"] = "robot.toml"
+    if document.get("designs", {}).get("kind") == "csv":
+        document["designs"]["file"] = "designs.csv"
+    assert isinstance(document, dict)
+    return document
+
+
+def _keep_inputs(setup: Setup, folder: Path) -> None:
+    """Copies of the files that the study names: the folder must say all by itself."""
+    from giveway.files import write_text
+
+    for source, name in _input_files(setup):
+        text = source.read_text(encoding="utf-8")
+        if not (folder / name).is_file() or (folder / name).read_text(encoding="utf-8") != text:
+            write_text(folder / name, text)
+
+
+def _input_files(setup: Setup) -> Iterator[tuple[Path, str]]:
+    robot = setup.cases[0].scenario.robot
+    if robot is not None:
+        yield Path(robot), "robot.toml"
+    if setup.plan.kind == "csv":
+        yield setup.folder / setup.document["designs"]["file"], "designs.csv"
+
+
+def load_setup(folder: Path | str) -> tuple[Setup, dict[str, Any]]:
+    """The study in a folder that `sweep` wrote, and its manifest."""
+    from giveway.study.store import MANIFEST_FILE, read_manifest
+    from giveway.study.study_file import check
+
+    folder = Path(folder)
+    manifest = read_manifest(folder)
+    try:
+        return check(manifest["study"], folder, manifest["name"]), manifest
+    except FileError:
+        raise
+    except GivewayError as error:
+        raise FileError(folder / MANIFEST_FILE, f"is of another version of giveway: {error}") from None

@@ -1,0 +1,65 @@
+"""Names of what the batch library measures, as a study's objectives and constraints call them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from giveway.errors import UnknownNameError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Metric", "all_metrics", "find_metric"]
+
+TRUE, ERROR = " (true)", " (error)"
+
+
+@dataclass(frozen=True)
+class Metric:
+    """Something that comes out of a run: one column of the results, or how far it is from the truth.
+
+    Attributes:
+        name, unit: "peak contact force" in "N".
+        column: of the results table.
+        truth: column of what it is compared with, if it is an error: the absolute difference of both.
+    """
+
+    name: str
+    unit: str
+    column: str
+    truth: str | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """What it is computed from."""
+        return (self.column,) if self.truth is None else (self.column, self.truth)
+
+    def of(self, results: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Its values, NaN for what did not happen."""
+        if self.truth is None:
+            return results[self.column]
+        return np.abs(results[self.column] - results[self.truth])
+
+
+def all_metrics() -> dict[str, Metric]:
+    """Everything the library measures, by name; ``NAME (true)`` and ``NAME (error)`` where there is a truth."""
+    from giveway.batch import native_metrics
+
+    found = {}
+    for metric in native_metrics():
+        found[metric.name] = Metric(metric.name, metric.unit, metric.name)
+        if metric.has_truth:
+            truth, error = metric.name + TRUE, metric.name + ERROR
+            found[truth] = Metric(truth, metric.unit, truth)
+            found[error] = Metric(error, metric.unit, metric.name, truth)
+    return found
+
+
+def find_metric(field: str, name: str) -> Metric:
+    """The metric ``name``; the error names ``field`` and the nearest."""
+    known = all_metrics()
+    if name not in known:
+        raise UnknownNameError(field, name, known)
+    return known[name]

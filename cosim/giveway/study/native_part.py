@@ -1,0 +1,68 @@
+"""One call of the batch library for one part of a study: arrays in, arrays out, no scenario per run."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from giveway import batch
+from giveway.errors import SimulationError
+from giveway.study.runs import RunTable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["NativePart", "default_threads"]
+
+
+def default_threads() -> int:
+    """One per processor that this process may use."""
+    return min(len(os.sched_getaffinity(0)), batch.THREADS_MAX)
+
+
+class NativePart:
+    """Runs that were started and are under way. ``values`` has shape (runs, columns), ``case`` shape (runs,)."""
+
+    def __init__(
+        self, table: RunTable, values: NDArray[np.float64], case: NDArray[np.int64], threads: int, method: str
+    ) -> None:
+        self._library = batch._library()
+        count, used = len(values), table.used
+        self._settings = np.zeros((count, len(used)), dtype=batch._SETTING)
+        self._settings["model"] = table.columns.model[used]
+        self._settings["reference"] = table.columns.reference[used]
+        self._settings["value"] = values[:, used]
+        self._specs = np.zeros(count, dtype=batch._SPEC)
+        self._specs["setting_count"] = len(used)
+        self._specs["settings"] = self._settings.ctypes.data + np.arange(count) * self._settings.strides[0]
+        for index, one in enumerate(table.cases):
+            mine = case == index
+            self._specs["step_s"][mine] = one.case.scenario.step_s
+            self._specs["step_count"][mine] = one.case.scenario.steps
+            for field, values_ in (("plan", one.plan), ("push", one.push)):
+                if values_ is not None:
+                    self._specs[field][mine] = values_.ctypes.data
+                    self._specs[f"{field}_rows"][mine] = len(values_)
+        self._table = table  # plans and pushes must live as long as the runs
+        self.results = np.zeros(count, dtype=self._library.result)
+        self._handle = ctypes.c_void_p()
+        message = ctypes.create_string_buffer(batch.MESSAGE_SIZE)
+        del method  # the library has one
+        started = self._library.start(
+            self._specs.ctypes.data, count, threads, self.results.ctypes.data, ctypes.byref(self._handle), message
+        )
+        if not started:
+            raise SimulationError("batch library", message.value.decode(), 0.0)
+
+    def wait(self, timeout_s: float) -> tuple[bool, int]:
+        """Whether all is done after at most ``timeout_s``, and how many runs are."""
+        progress: Any = batch._Progress()
+        done = bool(self._library.wait(self._handle, timeout_s, ctypes.byref(progress)))
+        return done, int(progress.runs_done)
+
+    def finish(self) -> None:
+        """Cancel what is not done and free the batch; no thread writes to the arrays any more."""
+        self._library.finish(self._handle)
+        self._handle = ctypes.c_void_p()

@@ -1,0 +1,112 @@
+"""Parts as tables: what a run had, what became of it, and what was measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from giveway import batch
+from giveway.errors import FileError
+
+if TYPE_CHECKING:
+    from giveway.study.runs import RunTable
+    from numpy.typing import NDArray
+
+__all__ = ["Outcomes", "part_table", "read_part", "result_columns"]
+
+NOT_CACHED = ("no memory", "cancelled")
+
+
+def result_columns() -> list[tuple[str, str]]:
+    """Name and unit of every number that the library gives back per run, in the order of a part."""
+    found = [("simulated", "s")]
+    for metric in batch.native_metrics():
+        found.append((metric.name, metric.unit))
+        if metric.has_truth:
+            found.append((f"{metric.name} (true)", metric.unit))
+    return found
+
+
+class Outcomes:
+    """What became of some runs: ``status`` and ``message`` (lists of n), ``numbers`` (n, `result_columns`)."""
+
+    def __init__(self, count: int) -> None:
+        self.status = ["cancelled"] * count
+        self.message = [""] * count
+        self.numbers = np.full((count, len(result_columns())), np.nan)
+
+    def refuse(self, index: int, message: str) -> None:
+        """Run ``index`` cannot be."""
+        self.status[index], self.message[index] = "refused", message
+        self.numbers[index, 0] = 0.0
+
+    def take_native(self, where: NDArray[np.int64], results: NDArray[Any]) -> None:
+        """Results of the library belong to the runs ``where``."""
+        columns = [results["time_s"]]
+        for index, metric in enumerate(batch.native_metrics()):
+            columns.append(results["metric"][:, index])
+            if metric.has_truth:
+                columns.append(results["truth"][:, index])
+        self.numbers[where] = np.stack(columns, axis=1)
+        for index, status, message in zip(where, results["status"].tolist(), results["message"].tolist(), strict=True):
+            self.status[index], self.message[index] = batch.STATUSES[status], message.decode()
+
+    def take_stored(self, where: NDArray[np.int64], path: Path, rows: NDArray[np.int64]) -> None:
+        """Rows of a stored part belong to the runs ``where``."""
+        names = [name for name, _ in result_columns()]
+        table = read_part(path, ["status", "message", *names]).take(rows)
+        self.numbers[where] = np.stack([table[name].to_numpy() for name in names], axis=1)
+        statuses, messages = table["status"].to_pylist(), table["message"].to_pylist()
+        for index, status, message in zip(where, statuses, messages, strict=True):
+            self.status[index], self.message[index] = status, message
+
+    def copy(self, where: NDArray[np.int64], source: NDArray[np.int64]) -> None:
+        """Runs ``where`` are the same as the runs ``source``."""
+        self.numbers[where] = self.numbers[source]
+        for index, other in zip(where, source, strict=True):
+            self.status[index], self.message[index] = self.status[other], self.message[other]
+
+
+def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcomes) -> Any:
+    """The pyarrow table of the runs from ``first`` on."""
+    import pyarrow
+
+    run = np.arange(first, first + len(keys))
+    design, sample, case = table.split(run)
+    names = [one.case.name for one in table.cases]
+    columns: dict[str, tuple[Any, str]] = {
+        "run": (run, ""),
+        "design": (design, ""),
+        "tolerance sample": (sample.astype(np.int32), ""),
+        "collision": (pyarrow.array(np.array(names)[case]).dictionary_encode(), ""),
+        "key": (pyarrow.array(keys, type=pyarrow.binary(len(keys[0]))), ""),
+        "status": (pyarrow.array(outcomes.status).dictionary_encode(), ""),
+        "message": (pyarrow.array(outcomes.message), ""),
+    }
+    for j, one in enumerate(table.varied):
+        values = table.designs[design, j]
+        text = [one.quantity.text(value) for value in values] if one.quantity.kind == "choice" else values
+        columns[one.quantity.name] = (text, one.quantity.unit)
+    for j, tolerance in enumerate(table.tolerances):
+        unit = "1" if tolerance.relative else tolerance.quantity.unit
+        columns[f"deviation of {tolerance.quantity.name}"] = (table.deviations[sample, j], unit)
+    for j, (name, unit) in enumerate(result_columns()):
+        columns[name] = (np.ascontiguousarray(outcomes.numbers[:, j]), unit)
+    arrays = [pyarrow.array(values) for values, _ in columns.values()]
+    fields = [
+        pyarrow.field(name, array.type, metadata={"units": unit})
+        for (name, (_, unit)), array in zip(columns.items(), arrays, strict=True)
+    ]
+    return pyarrow.table(arrays, schema=pyarrow.schema(fields, metadata={"schema_version": "1"}))
+
+
+def read_part(path: Path, columns: list[str]) -> Any:
+    """Some columns of a part as a pyarrow table; FileError if it cannot be read."""
+    import pyarrow
+    import pyarrow.parquet
+
+    try:
+        return pyarrow.parquet.read_table(path, columns=columns, memory_map=False)
+    except (OSError, pyarrow.ArrowException) as error:
+        raise FileError(path, f"cannot be read: {error}", "delete it; the same command makes it again") from None

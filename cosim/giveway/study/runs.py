@@ -1,0 +1,239 @@
+"""The runs of a study as tables: every parameter of both models in one row per run, made with arrays, not one by one.
+
+Run r belongs to design ``r // (samples * cases)``, tolerance sample and collision follow, the collision fastest. A row
+is all that decides a run besides its collision's plan, pushes and duration: its hash is the run's key.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from giveway.approach import Approaches, edge_middle, meet_many, outline_of
+from giveway.master import plan_table, push_table
+from giveway.study.distributions import Tolerance, Varied
+from giveway.study.quantities import REFERENCE_TEMPERATURE, Columns, columns
+from giveway.study.setup import Case, Hit, Setup
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["KEY_SIZE", "MAGNET_PER_KELVIN", "Rows", "RunTable"]
+
+KEY_SIZE = 16
+MAGNET_PER_KELVIN = -0.0024  # change of a magnet's force (physics.md, section 7)
+SLIDER = ("slider.direction", "slider.target_x", "slider.target_y", "slider.run_up", "slider.speed")
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Some runs of one collision.
+
+    Attributes:
+        values: of every parameter, shape (n, columns).
+        hit: per run, what the slider's start was computed from, by the names of `giveway.study.setup.Hit`.
+        refused: why a run cannot be, by its index here.
+    """
+
+    values: NDArray[np.float64]
+    hit: dict[str, NDArray[np.float64]]
+    refused: dict[int, str]
+
+
+class _CaseTable:
+    """One collision: what all its runs share."""
+
+    def __init__(self, case: Case, columns_: Columns) -> None:
+        self.case = case
+        scenario = case.scenario
+        self.base = columns_.start.copy()
+        self.set = np.zeros(len(self.base), dtype=bool)
+        for model in ("controller", "testbed"):
+            for name, value in scenario.parameters(model).items():
+                where = columns_.index[f"{model}.{name}"]
+                self.base[where], self.set[where] = float(value), True
+        self.plan = plan_table(scenario)
+        self.push = push_table(scenario)
+        self.outline = outline_of({name: float(v[0]) for name, v in columns_.testbed(self.base[None, :]).items()})
+
+    def context(self, shared: dict[str, Any]) -> bytes:
+        """Hash of all that decides a run besides its row."""
+        scenario = self.case.scenario
+        text = json.dumps({**shared, "step_s": scenario.step_s, "steps": scenario.steps}, sort_keys=True)
+        found = hashlib.blake2b(text.encode(), digest_size=32)
+        found.update(np.ascontiguousarray(self.plan).tobytes())
+        if self.push is not None:
+            found.update(b"push" + np.ascontiguousarray(self.push).tobytes())
+        return found.digest()
+
+
+class RunTable:
+    """All runs of ``setup`` over its ``designs`` (n, quantities) and ``deviations`` (samples, tolerances)."""
+
+    def __init__(self, setup: Setup, designs: NDArray[np.float64], deviations: NDArray[np.float64]) -> None:
+        self.columns = columns()
+        self.designs, self.deviations = designs, deviations
+        self.varied, self.tolerances = setup.varied, setup.tolerances
+        self.noise_seeds = setup.noise_seeds
+        self.cases = [_CaseTable(case, self.columns) for case in setup.cases]
+        self.samples = len(deviations)
+        self.per_design = self.samples * len(self.cases)
+        self.count = len(designs) * self.per_design
+        touched = [c for one in (*setup.varied, *setup.tolerances) for c in one.quantity.columns]
+        met = [self.columns.index[f"testbed.{name}"] for name in SLIDER] if setup.cases[0].hit is not None else []
+        named = {one.quantity.name for one in (*setup.varied, *setup.tolerances)}
+        if "temperature" in named:
+            touched.append(self.columns.index["testbed.bumper.latch_force"])
+        if setup.noise_seeds:
+            touched.append(self.columns.index["testbed.electronics.seed"])
+        used = np.any([case.set for case in self.cases], axis=0)
+        used[[*touched, *met]] = True
+        self.used = np.flatnonzero(used)
+        """Columns that are not at their start in some run."""
+
+    def split(self, run: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+        """Design, tolerance sample and collision of runs."""
+        design, rest = np.divmod(run, self.per_design)
+        sample, case = np.divmod(rest, len(self.cases))
+        return design, sample, case
+
+    def rows(self, design: NDArray[np.int64], sample: NDArray[np.int64], case: int) -> Rows:
+        """The parameters of runs of one collision."""
+        table = self.cases[case]
+        values = np.repeat(table.base[None, :], len(design), axis=0)
+        hit = _nominal_hit(table.case.hit, len(design))
+        temperature = np.full(len(design), REFERENCE_TEMPERATURE)
+        free = hit | {"temperature": temperature}
+        for j, one in enumerate(self.varied):
+            _write(values, free, one, self.designs[design, j])
+        for j, tolerance in enumerate(self.tolerances):
+            _deviate(values, free, tolerance, self.deviations[sample, j])
+        if self.noise_seeds:
+            values[:, self.columns.index["testbed.electronics.seed"]] += sample
+        latch = self.columns.index["testbed.bumper.latch_force"]
+        warmer = free.pop("temperature") - REFERENCE_TEMPERATURE
+        if warmer.any():
+            values[:, latch] *= 1.0 + MAGNET_PER_KELVIN * warmer
+        refused: dict[int, str] = {}
+        if table.case.hit is not None:
+            refused = self._meet(table, values, free)
+        values += 0.0  # no negative zeros: equal runs have equal rows
+        return Rows(values, free, refused)
+
+    def _meet(
+        self, table: _CaseTable, values: NDArray[np.float64], hit: dict[str, NDArray[np.float64]]
+    ) -> dict[int, str]:
+        """Write the slider's start that the hit needs; why runs cannot be met."""
+        case_hit = table.case.hit
+        assert case_hit is not None
+        refused: dict[int, str] = {}
+        points, straight = _points(table.outline, case_hit, hit, refused)
+        direction = np.radians(hit["direction"])
+        turned = hit["angle"] != 0.0
+        if turned.any():
+            direction = np.where(turned, straight + np.radians(hit["angle"]), direction)
+        testbed = self.columns.testbed(values)
+        controller = self.columns.index
+        tare = (
+            values[:, controller["controller.estimator.tare_ticks"]]
+            * values[:, controller["controller.controller.period"]]
+        )
+        with np.errstate(all="ignore"):
+            met, reasons = meet_many(
+                Approaches(points, hit["speed"], direction, None if case_hit.time_s is None else hit["time"]),
+                testbed,
+                table.case.scenario.plan,
+                tare,
+            )
+        for name, found in met.items():
+            values[:, self.columns.index[f"testbed.{name}"]] = found
+        names = {"point_m": "place", "speed_mps": "speed", "direction_rad": "direction"}
+        for index, error in reasons.items():
+            error.field = f"collision.{names.get(error.field, error.field)}"
+            refused.setdefault(index, str(error))
+        return refused
+
+    def keys(self, contexts: list[bytes], rows: Rows, case: int) -> list[bytes]:
+        """The key of each row: equal keys are equal runs."""
+        packed, size = np.ascontiguousarray(rows.values).tobytes(), rows.values.shape[1] * 8
+        base = hashlib.blake2b(contexts[case], digest_size=KEY_SIZE)
+        found = []
+        for start in range(0, len(packed), size):
+            digest = base.copy()
+            digest.update(packed[start : start + size])
+            found.append(digest.digest())
+        return found
+
+
+def _nominal_hit(hit: Hit | None, count: int) -> dict[str, NDArray[np.float64]]:
+    if hit is None:
+        return {}
+    nominal = {
+        "speed": hit.speed_mps,
+        "time": 0.0 if hit.time_s is None else hit.time_s,
+        "offset": hit.offset_m,
+        "around": math.nan,
+        "direction": math.nan if hit.direction_deg is None else hit.direction_deg,
+        "angle": 0.0,
+    }
+    return {name: np.full(count, value) for name, value in nominal.items()}
+
+
+def _write(
+    values: NDArray[np.float64], free: dict[str, NDArray[np.float64]], one: Varied, found: NDArray[np.float64]
+) -> None:
+    for column in one.quantity.columns:
+        values[:, column] = found
+    if not one.quantity.columns:
+        free[one.quantity.name.removeprefix("collision.")] = found.copy()
+
+
+def _deviate(
+    values: NDArray[np.float64], free: dict[str, NDArray[np.float64]], one: Tolerance, by: NDArray[np.float64]
+) -> None:
+    def deviated(nominal: NDArray[np.float64]) -> NDArray[np.float64]:
+        return nominal * (1.0 + by) if one.relative else nominal + by
+
+    for column in one.quantity.columns:
+        values[:, column] = deviated(values[:, column])
+    if not one.quantity.columns:
+        name = one.quantity.name.removeprefix("collision.")
+        free[name] = deviated(free[name])
+
+
+def _points(
+    outline: NDArray[np.float64], hit: Hit, free: dict[str, NDArray[np.float64]], refused: dict[int, str]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Contact points (n, 2), and the direction straight into the robot there, rad, seen from the resting robot."""
+    sides = np.roll(outline, -1, axis=0) - outline
+    lengths = np.hypot(*sides.T)
+    inward = np.arctan2(sides[:, 0], -sides[:, 1])  # of each side's normal
+    count = len(free["speed"])
+    if not np.isnan(free["around"]).all():
+        ends = np.concatenate([[0.0], np.cumsum(lengths)])
+        way = np.mod(free["around"], 1.0) * ends[-1]
+        side = np.clip(np.searchsorted(ends, way, side="right") - 1, 0, len(outline) - 1)
+        share = (way - ends[side]) / lengths[side]
+        return outline[side] + share[:, None] * sides[side], inward[side]
+    if hit.point_m is not None:
+        from giveway.approach import outward_normal
+
+        normal = outward_normal(outline, hit.point_m)
+        return np.tile(hit.point_m, (count, 1)), np.full(count, math.atan2(-normal[1], -normal[0]))
+    assert hit.edge is not None
+    half = 0.5 * float(lengths[hit.edge])
+    for index in np.flatnonzero(np.abs(free["offset"]) > half):
+        refused[int(index)] = (
+            f"collision.offset: {free['offset'][index]:g} is not allowed; allowed: a number from {-half:g} to {half:g} m"
+        )
+    offset = np.clip(free["offset"], -half, half)
+    if (offset == offset[:1]).all():
+        points = np.tile(edge_middle(outline, hit.edge, float(offset[0])) if count else (0.0, 0.0), (count, 1))
+    else:
+        middle = 0.5 * (outline[hit.edge] + outline[(hit.edge + 1) % len(outline)])
+        points = middle + sides[hit.edge] * (offset / lengths[hit.edge])[:, None]
+    return points, np.full(count, float(inward[hit.edge]))

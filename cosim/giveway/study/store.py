@@ -1,0 +1,187 @@
+"""The folder of a study: a manifest, and parts (Parquet) that are there as a whole or not at all.
+
+    DIR/manifest.json                what was asked for, versions, hashes, seeds
+    DIR/parts/HASH/part-A-B.parquet  the results of runs A to B - 1
+    DIR/robot.toml, designs.csv      copies of what the study file named
+
+HASH stands for everything that decides the results; a study that was changed since has another one, and what is the
+same in both is taken from the old parts. Studies whose folders lie side by side share their results in the same way.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+from giveway.errors import FileError
+from giveway.files import read_json, replace_file, write_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["MANIFEST_FILE", "SCHEMA_VERSION", "KeyIndex", "Store", "read_manifest"]
+
+SCHEMA_VERSION = 1
+KIND = "giveway study"
+MANIFEST_FILE, LOCK_FILE, PARTS = "manifest.json", ".lock", "parts"
+HINT = "give a folder that `giveway sweep` wrote"
+_PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
+MERGED_AT = 16
+
+
+def read_manifest(folder: Path) -> dict[str, Any]:
+    """The manifest of a study's folder."""
+    manifest = read_json(folder / MANIFEST_FILE, SCHEMA_VERSION, HINT)
+    if manifest.get("kind") != KIND:
+        raise FileError(folder / MANIFEST_FILE, "is not that of a study", HINT)
+    return manifest
+
+
+class Store:
+    """The folder of one study, locked against other processes as long as it is open."""
+
+    def __init__(self, folder: Path, fingerprint: str) -> None:
+        """Open ``folder``, made if it is not there; FileError if it holds something else or is in use."""
+        self.folder = folder
+        self._check(folder)
+        try:
+            self.parts_folder = folder / PARTS / fingerprint[:16]
+            self.parts_folder.mkdir(parents=True, exist_ok=True)
+            self._lock = self._take_lock()
+        except OSError as error:
+            raise FileError(folder, f"cannot be written: {error.strerror}") from None
+        for left in self.parts_folder.glob(".part-*"):  # of a process that was killed while it wrote
+            shutil.rmtree(left, ignore_errors=True)
+
+    @staticmethod
+    def _check(folder: Path) -> None:
+        if folder.exists() and not folder.is_dir():
+            raise FileError(folder, "is a file", "give a folder to write to")
+        if folder.is_dir() and any(path.name not in (LOCK_FILE, PARTS) for path in folder.iterdir()):
+            if not (folder / MANIFEST_FILE).is_file():
+                raise FileError(folder, "is not empty and holds no study", "give a new or an empty folder")
+            read_manifest(folder)
+
+    def _take_lock(self) -> IO[str]:
+        lock = (self.folder / LOCK_FILE).open("a+", encoding="utf-8")
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            lock.seek(0)
+            owner = lock.read().strip() or "unknown"
+            lock.close()
+            hint = "wait for it, or give another folder"
+            raise FileError(self.folder, f"is in use by another giveway process (pid {owner})", hint) from None
+        lock.truncate(0)
+        lock.write(f"{os.getpid()}\n")
+        lock.flush()
+        return lock
+
+    def close(self) -> None:
+        """Give the folder free."""
+        self._lock.close()
+
+    def write_manifest(self, manifest: dict[str, Any]) -> None:
+        """Write the manifest, atomically."""
+        text = json.dumps({"schema_version": SCHEMA_VERSION, "kind": KIND, **manifest}, indent=2, allow_nan=False)
+        write_text(self.folder / MANIFEST_FILE, text + "\n")
+
+    def parts(self) -> list[tuple[int, int, Path]]:
+        """First run, last run + 1 and file of each part of this study, in order."""
+        return list_parts(self.parts_folder)
+
+    def missing(self, count: int) -> list[tuple[int, int]]:
+        """Which of ``count`` runs are in no part, as ranges."""
+        gaps, at = [], 0
+        for first, end, _ in self.parts():
+            if first > at:
+                gaps.append((at, first))
+            at = max(at, end)
+        if at < count:
+            gaps.append((at, count))
+        return gaps
+
+    def write_part(self, first: int, table: Any) -> Path:
+        """Write the pyarrow ``table`` of the runs from ``first`` on; whatever happens, it is there as a whole or not."""
+        import pyarrow.parquet
+
+        path = self.parts_folder / f"part-{first:09d}-{first + table.num_rows:09d}.parquet"
+        with replace_file(path) as temporary:
+            pyarrow.parquet.write_table(table, temporary, compression="zstd")
+        handle = os.open(self.parts_folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+        return path
+
+    def all_parts(self) -> Iterator[Path]:
+        """Parts of this study, of what it was before it was changed, and of studies beside it."""
+        folders = [
+            self.folder,
+            *sorted(path.parent for path in self.folder.absolute().parent.glob(f"*/{MANIFEST_FILE}")),
+        ]
+        seen = set()
+        for folder in folders:
+            if folder.resolve() in seen:
+                continue
+            seen.add(folder.resolve())
+            for parts_folder in sorted((folder / PARTS).glob("*")):
+                yield from (path for _, _, path in list_parts(parts_folder))
+
+
+def list_parts(parts_folder: Path) -> list[tuple[int, int, Path]]:
+    """First run, last run + 1 and file of each part in a folder, in order."""
+    found = []
+    for path in parts_folder.glob("part-*.parquet"):
+        match = _PART.fullmatch(path.name)
+        if match:
+            found.append((int(match[1]), int(match[2]), path))
+    return sorted(found)
+
+
+class KeyIndex:
+    """Which stored run has which key: 16 bytes per run in memory."""
+
+    def __init__(self) -> None:
+        self.files: list[Path] = []
+        self._merged = _empty()
+        self._recent: list[NDArray[Any]] = []
+
+    def add(self, path: Path, keys: Sequence[bytes] | NDArray[Any]) -> None:
+        """Add the runs of the part ``path``, keys in the order of its rows; None or b"" stays out."""
+        halves = np.array([int.from_bytes(key[:8], "little") for key in keys], dtype=np.uint64)
+        entries = np.zeros(len(halves), dtype=_ENTRY)
+        entries["half"], entries["file"], entries["row"] = halves, len(self.files), np.arange(len(halves))
+        self.files.append(path)
+        self._recent.append(np.sort(entries[halves != 0], order="half"))
+        if len(self._recent) >= MERGED_AT:
+            joined = np.concatenate([self._merged, *self._recent])
+            self._merged = joined[np.argsort(joined["half"], kind="stable")]
+            self._recent = []
+
+    def find(self, keys: Sequence[bytes]) -> NDArray[np.int64]:
+        """File and row of each key, shape (n, 2); -1 where there is none. Only half of the key is compared."""
+        wanted = np.array([int.from_bytes(key[:8], "little") for key in keys], dtype=np.uint64)
+        found = np.full((len(wanted), 2), -1, dtype=np.int64)
+        for entries in (self._merged, *self._recent):
+            if not len(entries):
+                continue
+            at = np.minimum(np.searchsorted(entries["half"], wanted), len(entries) - 1)
+            hit = (entries["half"][at] == wanted) & (found[:, 0] < 0)
+            found[hit, 0], found[hit, 1] = entries["file"][at[hit]], entries["row"][at[hit]]
+        return found
+
+
+_ENTRY = np.dtype([("half", "u8"), ("file", "u4"), ("row", "u4")])
+
+
+def _empty() -> NDArray[Any]:
+    return np.zeros(0, dtype=_ENTRY)

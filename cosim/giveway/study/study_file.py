@@ -1,0 +1,455 @@
+"""Study files: TOML, checked so that a wrong one is refused with file, line and key before anything runs.
+
+`cosim/README.md` lists the keys. What a scenario file says at its top is the table ``[scenario]`` here, and its
+``[collision]`` is one of several ``[[collision]]``; ranges and names are checked where scenarios are.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from giveway.body_regions import body_region
+from giveway.checks import finite, whole
+from giveway.errors import GivewayError, InputFileError, UnknownNameError
+from giveway.scenario_file import scenario_of
+from giveway.study import designs as design_module
+from giveway.study.designs import DesignPlan
+from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
+from giveway.study.methods import METHODS
+from giveway.study.metrics import find_metric
+from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
+from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
+from giveway.study.units import factor
+from giveway.toml_sections import Section, lines_named, read_toml
+
+__all__ = ["check", "read"]
+
+SCHEMA_VERSION = 1
+_TOP = (
+    "schema_version", "name", "seed", "method", "part_runs", "scenario", "collision", "designs", "vary",
+    "tolerances", "tolerance", "objective", "constraint", "report",
+)  # fmt: skip
+_SCENARIO = ("duration", "bumper", "robot", "seed", "body_region", "plan", "push", "testbed", "controller")
+_COLLISION = ("name", "mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
+_SPREAD = ("low", "high", "mode", "mean", "sigma")
+_VARY = ("quantity", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
+_TOLERANCE = ("quantity", "unit", "relative", "absolute", "distribution")
+_GOAL = ("metric", "collisions", "tolerances")
+OVER_COLLISIONS, OVER_TOLERANCES = ("worst", "mean"), ("worst", "mean", "nominal")
+TOLERANCE_KINDS = ("sobol", "latin-hypercube", "corners")
+LEVELS_MAX, SAMPLES_MAX, PART_MAX, CHOSEN_MAX, CORNERS_MAX = 100_000, 1_000_000, 65_536, 20, 12
+LIMITS = {"transient limit": "peak_limit_n", "lasting limit": "lasting_limit_n"}
+
+
+def read(path: Path | str) -> Setup:
+    """The study in the file ``path``, checked.
+
+    Raises:
+        FileError: it, or a file it names, cannot be read.
+        InputFileError: it is no TOML, or something in it is wrong; names the line.
+    """
+    path = Path(path)
+    text, document = read_toml(path, "give the path of a study file (TOML)")
+    with lines_named(path, text):
+        return check(document, path.parent, path.stem, text, path)
+
+
+def check(
+    document: Mapping[str, Any], folder: Path, name: str = "study", text: str | None = None, path: Path | None = None
+) -> Setup:
+    """The study that ``document`` describes; paths in it are seen from ``folder``. Errors name its keys."""
+    top = Section("", dict(document), _TOP)
+    version = top.required("schema_version", "1")
+    if version != SCHEMA_VERSION:
+        raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+    cases = _cases(top, folder)
+    varied = tuple(_varied(Section(f"vary[{i}]", one, _VARY)) for i, one in enumerate(_list(top, "vary")))
+    _refuse_twice("vary", [one.quantity.name for one in varied])
+    tolerances = tuple(
+        _tolerance(Section(f"tolerance[{i}]", one, _TOLERANCE)) for i, one in enumerate(_list(top, "tolerance"))
+    )
+    _refuse_twice("tolerance", [one.quantity.name for one in tolerances])
+    plan, varied = _designs(top, varied, folder)
+    for i, one in enumerate(varied):
+        _fits_cases(f"vary[{i}].quantity", one.quantity, cases, [v.quantity.name for v in varied])
+    for i, tolerance in enumerate(tolerances):
+        _fits_cases(f"tolerance[{i}].quantity", tolerance.quantity, cases, [v.quantity.name for v in varied])
+    if plan.kind == "one-at-a-time":
+        varied = tuple(_with_nominal(i, one, cases) for i, one in enumerate(varied))
+    drawn = top.table("tolerances", ("kind", "samples", "noise_seeds")) or Section("tolerances", {}, None)
+    kind = drawn.choice("kind", TOLERANCE_KINDS, "sobol")
+    noise = drawn.flag("noise_seeds", False)
+    if kind == "corners" and len(tolerances) > CORNERS_MAX:
+        raise GivewayError("tolerances.kind", kind, f"at most {CORNERS_MAX} tolerances with corners, or sobol")
+    count = whole("tolerances.samples", drawn.values.get("samples", 16), 1, SAMPLES_MAX) if tolerances or noise else 0
+    report = top.table("report", ("chosen", "metrics")) or Section("report", {}, None)
+    region = cases[0].scenario.body_region
+    title = top.text("name", name)
+    if not 1 <= len(title) <= 80:
+        raise GivewayError("name", title, "1 to 80 characters")
+    return Setup(
+        name=title,
+        document=dict(document),
+        folder=folder,
+        method=top.choice("method", METHODS, METHODS[0]),
+        seed=whole("seed", top.values.get("seed", 1), 0, 2**31 - 1),
+        cases=cases,
+        varied=varied,
+        plan=plan,
+        tolerances=tolerances,
+        tolerance_kind=kind,
+        tolerance_count=count,
+        noise_seeds=noise,
+        objectives=tuple(_objective(f"objective[{i}]", one) for i, one in enumerate(_list(top, "objective"))),
+        constraints=tuple(
+            _constraint(f"constraint[{i}]", one, region) for i, one in enumerate(_list(top, "constraint"))
+        ),
+        shown=_shown(report),
+        chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
+        part_runs=whole("part_runs", top.values.get("part_runs", 0), 0, PART_MAX),
+        text=text,
+        path=path,
+    )
+
+
+def _list(top: Section, key: str) -> list[Any]:
+    found = top.values.get(key, [])
+    if not isinstance(found, list):
+        raise GivewayError(key, found, f"one or more [[{key}]]")
+    return found
+
+
+def _refuse_twice(table: str, names: Sequence[str]) -> None:
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise GivewayError(f"{table}[{index}].quantity", name, "a quantity that is not there already")
+
+
+def _cases(top: Section, folder: Path) -> tuple[Case, ...]:
+    shared = top.table("scenario", _SCENARIO) or Section("scenario", top.required("scenario", "a table"), _SCENARIO)
+    collisions = _list(top, "collision")
+    if not collisions:
+        return (_case("", dict(shared.values), None, folder),)
+    cases: list[Case] = []
+    for index, entry in enumerate(collisions):
+        section = Section(f"collision[{index}]", entry, _COLLISION)
+        name = section.text("name", f"collision {index + 1}")
+        if name in [case.name for case in cases]:
+            raise GivewayError(f"{section.name}.name", name, "a name of its own")
+        if not 1 <= len(name) <= 40:
+            raise GivewayError(f"{section.name}.name", name, "1 to 40 characters")
+        hit = {key: value for key, value in section.values.items() if key != "name"}
+        cases.append(_case(name, dict(shared.values), hit, folder, section.name))
+    return tuple(cases)
+
+
+def _case(name: str, shared: dict[str, Any], hit: dict[str, Any] | None, folder: Path, field: str = "") -> Case:
+    """One collision; errors in the names of the study file: ``scenario.duration``, ``collision[0].speed``."""
+    document = {"schema_version": 1, "name": name or "study", **shared}
+    if hit is not None:
+        document["collision"] = hit
+    try:
+        scenario = scenario_of(document, folder / "study.toml")
+    except GivewayError as error:
+        if error.field.startswith("collision.") or error.field == "collision":
+            error.field = error.field.replace("collision", field, 1)
+        elif error.field.split(".")[0].split("[")[0] in _SCENARIO:
+            error.field = f"scenario.{error.field}"
+        raise
+    if hit is None:
+        return Case("run", scenario, None, document)
+    section = Section(field, hit, None)
+    rope = section.flag("rope", False) and "time" not in hit
+    return Case(
+        name,
+        scenario,
+        Hit(
+            speed_mps=section.number("speed"),
+            time_s=None if rope else section.number("time", 0.5),
+            edge=hit.get("edge"),
+            offset_m=section.number("offset", 0.0),
+            point_m=None if "point" not in hit else section.pair("point"),
+            direction_deg=None if "direction" not in hit else section.number("direction"),
+        ),
+        document,
+    )
+
+
+def _scale(section: Section, unit: str) -> float:
+    return factor(section.full("unit"), section.text("unit"), unit) if "unit" in section.values else 1.0
+
+
+def _varied(section: Section) -> Varied:
+    quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
+    if "unit" in section.values and quantity.unit == "":
+        raise GivewayError(section.full("unit"), section.values["unit"], f"none: {quantity.name} has no unit")
+    scale = _scale(section, quantity.unit)
+    nominal = None
+    if "nominal" in section.values:
+        nominal = _value(section.full("nominal"), section.values["nominal"], quantity, scale)
+    if "values" in section.values:
+        for key in ("levels", "scale", "distribution", *_SPREAD):
+            if key in section.values:
+                raise GivewayError(section.full(key), section.values[key], "nothing: the values are listed")
+        values = section.values["values"]
+        if not isinstance(values, list) or not values:
+            raise GivewayError(section.full("values"), values, "a list with at least one value")
+        levels = tuple(_value(section.full("values"), value, quantity, scale) for value in values)
+        return Varied(quantity, nominal, levels)
+    kind = section.text("distribution", "loguniform" if _logarithmic(section) else "uniform")
+    given = {key: section.number(key) * scale for key in _SPREAD if key in section.values}
+    spread = check_spread(section.name, quantity, kind, given)
+    for key, value in (("low", spread.low), ("high", spread.high)):
+        where = section.full(key if key in section.values else "sigma")
+        _value(where, value, quantity, 1.0, whole_needed=False)
+    levels = ()
+    if "levels" in section.values:
+        count = whole(section.full("levels"), section.values["levels"], 2, LEVELS_MAX)
+        space = np.geomspace if kind == "loguniform" else np.linspace
+        found = space(spread.low, spread.high, count)
+        found = np.rint(found) if quantity.kind == "integer" else found
+        levels = tuple(float(value) for value in dict.fromkeys(found.tolist()))
+    return Varied(quantity, nominal, levels, spread)
+
+
+def _logarithmic(section: Section) -> bool:
+    if "scale" in section.values and "distribution" in section.values:
+        raise GivewayError(section.full("scale"), section.values["scale"], "nothing beside a distribution")
+    return section.choice("scale", ("linear", "log"), "linear") == "log"
+
+
+def _value(field: str, value: Any, quantity: Quantity, scale: float, whole_needed: bool = True) -> float:
+    """One value of a quantity, in its own unit."""
+    if quantity.kind == "choice":
+        if value not in quantity.choices:
+            raise UnknownNameError(field, str(value), quantity.choices)
+        return float(quantity.choices.index(value))
+    if quantity.kind == "boolean":
+        if not isinstance(value, bool):
+            raise GivewayError(field, value, quantity.allowed)
+        return float(value)
+    number = finite(field, value) * scale
+    fraction = quantity.kind == "integer" and whole_needed and number != round(number)
+    if fraction or not quantity.minimum <= number <= quantity.maximum:
+        raise GivewayError(field, value if scale == 1.0 else f"{value} (= {number:g})", quantity.allowed)
+    return number
+
+
+def _tolerance(section: Section) -> Tolerance:
+    quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
+    if quantity.kind != "real":
+        raise GivewayError(section.full("quantity"), quantity.name, "a quantity of real numbers")
+    keys = [key for key in ("relative", "absolute") if key in section.values]
+    if len(keys) != 1:
+        found = "both" if keys else "nothing"
+        raise GivewayError(
+            section.full("relative"), found, "one of relative and absolute: what may be added or missing"
+        )
+    relative = keys[0] == "relative"
+    scale = 1.0
+    if "unit" in section.values:
+        unit = section.text("unit")
+        scale = factor(section.full("unit"), "degC" if unit == "K" else unit, "1" if relative else quantity.unit)
+    half = finite(section.full(keys[0]), section.values[keys[0]] * scale if _is_number(section, keys[0]) else None)
+    if half <= 0.0 or (relative and half >= 1.0):
+        allowed = "above 0 and below 1 (0.3: by 30 %)" if relative else f"above 0 {quantity.unit}"
+        raise GivewayError(section.full(keys[0]), section.values[keys[0]], allowed)
+    kind = section.choice("distribution", ("uniform", "normal", "triangular"), "uniform")
+    # Of a normal distribution, the stated ends are three standard deviations away.
+    return Tolerance(quantity, relative, Spread(kind, -half, half, 0.0, 0.0, half / 3.0))
+
+
+def _is_number(section: Section, key: str) -> bool:
+    section.number(key)
+    return True
+
+
+def _designs(top: Section, varied: tuple[Varied, ...], folder: Path) -> tuple[DesignPlan, tuple[Varied, ...]]:
+    values = top.values.get("designs", {"kind": "factorial"})
+    kind = Section("designs", values, None).choice("kind", design_module.KINDS)
+    section = Section("designs", values, ("kind", *design_module.OPTIONS[kind]))
+    if kind == "csv":
+        if varied:
+            raise GivewayError("vary[0].quantity", varied[0].quantity.name, "no [[vary]] beside a CSV file of designs")
+        found, rows = _csv(folder / section.text("file"), section)
+        return DesignPlan(kind, rows=rows), found
+    if not varied:
+        if kind != "factorial":
+            raise GivewayError("designs.kind", kind, "at least one [[vary]]")
+        return DesignPlan("factorial"), ()
+    if kind in ("factorial", "one-at-a-time"):
+        for index, one in enumerate(varied):
+            if not one.levels:
+                raise GivewayError(f"vary[{index}].levels", "nothing", f"levels or values: {kind} needs them")
+    plan = DesignPlan(
+        kind,
+        count=whole("designs.count", section.required("count", "a whole number"), 2, design_module.COUNT_MAX)
+        if "count" in design_module.OPTIONS[kind]
+        else 0,
+        trajectories=whole("designs.trajectories", section.values.get("trajectories", 20), 2, 10_000),
+        grid=whole("designs.grid", section.values.get("grid", 4), 2, 100),
+    )
+    if plan.grid % 2:
+        raise GivewayError("designs.grid", plan.grid, "an even number of levels")
+    if kind in ("morris", "sobol-indices") and len(varied) < 2:
+        raise GivewayError("designs.kind", kind, "at least two [[vary]]")
+    if (size := plan.size(varied)) > design_module.COUNT_MAX:
+        key = "designs.count" if "count" in section.values else "designs.kind"
+        raise GivewayError(key, f"{size} designs", f"at most {design_module.COUNT_MAX}")
+    return plan, varied
+
+
+def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
+    """Quantities and designs of a CSV file: a line of names (``testbed.bumper.travel [mm]``), one line per design."""
+    if not path.is_file():
+        raise GivewayError(section.full("file"), section.values["file"], "a CSV file, its path seen from this file")
+    with path.open(encoding="utf-8-sig", newline="") as stream:
+        lines = [(number, row) for number, row in enumerate(csv.reader(stream), 1) if any(cell.strip() for cell in row)]
+    if len(lines) < 2:
+        raise InputFileError(path, 1, GivewayError("designs", f"{len(lines)} lines", "names, then designs"))
+    head_line, head = lines[0]
+    found: list[Varied] = []
+    scales: list[float] = []
+    try:
+        for cell in head:
+            name, _, unit = cell.strip().partition("[")
+            quantity = find(f"column {len(found) + 1}", name.strip())
+            found.append(Varied(quantity))
+            scales.append(factor(name.strip(), unit.strip(" ]"), quantity.unit) if unit else 1.0)
+        _refuse_twice("column", [one.quantity.name for one in found])
+    except GivewayError as error:
+        raise InputFileError(path, head_line, error) from None
+    rows = np.empty((len(lines) - 1, len(found)))
+    for index, (number, row) in enumerate(lines[1:]):
+        try:
+            if len(row) != len(found):
+                raise GivewayError("columns", len(row), f"{len(found)}, as in the first line")
+            rows[index] = [
+                _value(one.quantity.name, _cell(cell.strip(), one.quantity), one.quantity, scale)
+                for one, cell, scale in zip(found, row, scales, strict=True)
+            ]
+        except GivewayError as error:
+            raise InputFileError(path, number, error) from None
+    return tuple(found), rows
+
+
+def _cell(text: str, quantity: Quantity) -> Any:
+    if quantity.kind == "choice":
+        return text
+    if quantity.kind == "boolean":
+        return {"true": True, "1": True, "false": False, "0": False}.get(text.lower(), text)
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _fits_cases(field: str, quantity: Quantity, cases: Sequence[Case], varied: Sequence[str]) -> None:
+    """Refuse what the collisions have no use for."""
+    name = quantity.name
+    for case in cases:
+        hit = case.hit
+        if name.startswith("collision.") and hit is None:
+            raise GivewayError(field, name, "nothing of a collision without [[collision]]")
+        if hit is None:
+            continue
+        if name == "collision.offset" and (hit.edge is None or "collision.around" in varied):
+            raise GivewayError(field, name, f"an edge in every collision: {case.name} has none")
+        if name == "collision.time" and hit.time_s is None:
+            raise GivewayError(field, name, f"no rope: in {case.name}, the weight decides how long the run-up takes")
+        if name == "collision.height" and "height" not in case.document["collision"]:
+            raise GivewayError(field, name, f"a height in every collision: {case.name} has none, so it cannot tip")
+        if field.startswith("tolerance") and name == "collision.direction" and hit.direction_deg is None:
+            raise GivewayError(field, name, f"collision.angle: {case.name} states no direction")
+        if name == "collision.angle" and (hit.direction_deg is not None or "collision.direction" in varied):
+            raise GivewayError(field, name, f"no direction: {case.name} has one, and an angle is from straight ahead")
+        if name == "collision.around" and "collision.direction" not in varied and hit.direction_deg is not None:
+            raise GivewayError(field, name, f"no direction in {case.name}: it does not fit every side")
+
+
+def _with_nominal(index: int, one: Varied, cases: Sequence[Case]) -> Varied:
+    """What a quantity has in the scenario while another one varies."""
+    if one.nominal is not None:
+        return one
+    found = {_nominal(one.quantity, case) for case in cases}
+    if len(found) != 1 or None in found:
+        raise GivewayError(f"vary[{index}].nominal", "nothing", "its value while another quantity varies")
+    return Varied(one.quantity, found.pop(), one.levels, one.spread)
+
+
+def _nominal(quantity: Quantity, case: Case) -> float | None:
+    if quantity.name == "temperature":
+        return REFERENCE_TEMPERATURE
+    if quantity.columns:
+        name = columns().names[quantity.columns[0]]
+        model, _, variable = name.partition(".")
+        value = case.scenario.parameters(model).get(variable)
+        return float(columns().start[quantity.columns[0]] if value is None else value)
+    assert case.hit is not None
+    return {
+        "collision.speed": case.hit.speed_mps,
+        "collision.time": case.hit.time_s,
+        "collision.offset": case.hit.offset_m,
+        "collision.direction": case.hit.direction_deg,
+        "collision.angle": 0.0,
+    }.get(quantity.name)
+
+
+def _objective(field: str, entry: Any) -> Goal:
+    section = Section(field, entry, (*_GOAL, "goal", "weight"))
+    sense = 1 if section.choice("goal", ("minimise", "maximise"), "minimise") == "minimise" else -1
+    weight = finite(section.full("weight"), section.number("weight", 1.0), 0.0, 1e6)
+    return _goal(section, sense, weight)
+
+
+def _goal(section: Section, sense: int, weight: float = 1.0) -> Goal:
+    metric = find_metric(section.full("metric"), section.text("metric", section.values.get("metric", "")))
+    return Goal(
+        metric,
+        sense,
+        section.choice("collisions", OVER_COLLISIONS, "worst"),
+        section.choice("tolerances", OVER_TOLERANCES, "worst"),
+        weight,
+    )
+
+
+def _constraint(field: str, entry: Any, region: str | None) -> Constraint:
+    section = Section(field, entry, (*_GOAL, "minimum", "maximum", "unit"))
+    if ("minimum" in section.values) == ("maximum" in section.values):
+        raise GivewayError(
+            section.full("maximum"), "nothing or both", "one of minimum and maximum; else two constraints"
+        )
+    goal = _goal(section, 1 if "maximum" in section.values else -1)
+    key = "maximum" if "maximum" in section.values else "minimum"
+    value = section.values[key]
+    if isinstance(value, str):
+        if value not in LIMITS:
+            raise UnknownNameError(section.full(key), value, LIMITS)
+        if region is None:
+            raise GivewayError(section.full(key), value, "a number, or a body_region in [scenario]")
+        number = float(getattr(body_region(region), LIMITS[value]))
+    else:
+        number = section.number(key) * _scale(section, goal.metric.unit)
+    low, high = (-math.inf, number) if key == "maximum" else (number, math.inf)
+    return Constraint(goal, low, high)
+
+
+def _shown(report: Section) -> tuple[Goal, ...]:
+    names = report.values.get("metrics", [])
+    if not isinstance(names, list):
+        raise GivewayError("report.metrics", names, "a list of metrics")
+    return tuple(Goal(find_metric(f"report.metrics[{i}]", str(name)), 1) for i, name in enumerate(names))
+
+
+def with_line(setup: Setup, error: GivewayError) -> GivewayError:
+    """``error`` about a key of the study, with file and line if it came from a file."""
+    from giveway.toml_lines import line_of
+
+    if setup.text is None or setup.path is None:
+        return error
+    return InputFileError(setup.path, line_of(setup.text, error.field), error)
