@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from giveway.experiments import Experiment
     from giveway.master import Progress
     from giveway.result import Result
+    from giveway.study import Study
 
-__all__ = ["GivewayError", "Scenario", "__version__", "experiment", "load", "read_scenario", "run"]
+__all__ = ["GivewayError", "Scenario", "Study", "__version__", "experiment", "load", "read_scenario", "run"]
 
 try:
     __version__ = importlib.metadata.version("giveway")
@@ -71,4 +72,8 @@ def __getattr__(name: str) -> Any:
         from giveway.result import Result
 
         return Result
+    if name == "Study":
+        from giveway.study import Study
+
+        return Study
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from giveway.master import Progress
     from giveway.result import Result
     from giveway.scenario import Scenario
+    from giveway.study.answers import Answers
     from giveway.sweep import Sweep
 
 __all__ = ["app", "main"]
@@ -35,6 +36,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+study_app = typer.Typer(help="Look at a study, and take its designs away.", no_args_is_help=True)
+app.add_typer(study_app, name="study")
 
 SetOption = Annotated[
     list[str] | None,
@@ -327,6 +331,128 @@ def bench(
     typer.echo("\n".join(["Detected on another tick:", *lines] if lines else ["All detected on the same tick."]))
     title = "Integration methods on stiffer designs: 1 s of the testbed FMU alone at relative tolerance 1e-6"
     _print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
+
+
+@app.command("sweep")
+def sweep_designs(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/magnetic_latch.toml`.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Check the study and say how many runs it has; run nothing.")
+    ] = False,
+) -> None:
+    """Run a study of many designs, or go on with it; then tables, Pareto front, traces and a report in DIR."""
+    from giveway.study import answers, command, study_file
+    from giveway.study.engine import plan_runs
+    from giveway.study.engine import sweep as run_study
+
+    setup = study_file.read(study)
+    folder = Path("out/studies") / study.stem if out is None else out
+    if check:
+        typer.echo(command.sizes(setup, plan_runs(setup)))
+        return
+    with command.showing(setup.name) as progress:
+        outcome = run_study(setup, folder, threads=threads, progress=progress)
+    typer.echo(command.overview(setup, outcome))
+    if outcome.interrupted:
+        again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
+        typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    found = answers.load(folder)
+    written = command.write_all(found)
+    _print_answers(found)
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+@study_app.command("show")
+def study_show(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+) -> None:
+    """Show the first answers of a study, also while it runs or after it was interrupted; writes its report."""
+    from giveway.study import answers, command
+
+    found = answers.load(folder)
+    written = command.write_all(found, simulate_chosen=False)
+    _print_answers(found)
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+@study_app.command("run")
+def study_run(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    design: Annotated[int, typer.Option("--design", metavar="N", help="Number of the design.")],
+) -> None:
+    """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
+    from giveway.study import answers
+    from giveway.study.chosen import CHOSEN, simulate
+    from giveway.study.engine import plan_runs
+
+    found = answers.load(folder)
+    found.check_design(design)
+    results = simulate(found.setup, plan_runs(found.setup), folder, design)
+    for name, result in results.items():
+        _print_table(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
+    typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")
+
+
+@study_app.command("export")
+def study_export(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="FILE.ssv, FILE.toml (for `giveway run`) or FILE.csv.")
+    ],
+    design: Annotated[
+        int | None, typer.Option("--design", metavar="N", help="Without it: the table of all, as CSV.")
+    ] = None,
+    collision: Annotated[str | None, typer.Option("--collision", metavar="NAME", help="Without it: the first.")] = None,
+    model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
+) -> None:
+    """Take a design away: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
+    from giveway.study import answers
+    from giveway.study.export import export_design, export_table
+
+    found = answers.load(folder)
+    if design is None:
+        export_table(found, out)
+    else:
+        export_design(found, design, out, collision=collision, model=model)
+    typer.echo(f"Written: {out}")
+
+
+@study_app.command("gallery")
+def study_gallery(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the pictures.")] = Path("docs"),
+    studies: Annotated[Path, typer.Option("--studies", metavar="DIR", help="Folder for the runs.")] = Path(
+        "out/studies"
+    ),
+    examples: Annotated[Path, typer.Option("--examples", metavar="DIR", help="Where the study files are.")] = Path(
+        "examples"
+    ),
+) -> None:
+    """Run the example studies and draw the README's pictures of them."""
+    from giveway.study import command
+    from giveway.study.gallery import draw_all
+
+    for path, sentence in draw_all(examples, studies, out, command.showing):
+        typer.echo(f"{path}: {sentence}")
+
+
+def _print_answers(found: Answers) -> None:
+    from giveway.study import command
+
+    _print_columns(
+        f"{found.setup.name}: {command.counts(found)}", command.goal_header(found), command.design_rows(found)
+    )
+    rows = command.sensitivity_rows(found)
+    if rows:
+        _print_columns("What decides", command.sensitivity_header(found), rows)
 
 
 def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenario, str]:

@@ -17,7 +17,7 @@ from giveway.scenario import BUMPERS, Scenario
 from giveway.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.variables import Value, table
 
-__all__ = ["SET_BY", "read_scenario", "scenario_of"]
+__all__ = ["SET_BY", "read_scenario", "scalars", "scenario_of"]
 
 SCHEMA_VERSION = 1
 NAME_MAX = 80
@@ -163,7 +163,7 @@ def _overrides(top: Section, model: str) -> dict[str, Value]:
     if not isinstance(values, dict):
         raise GivewayError(model, values, "a table")
     found: dict[str, Value] = {}
-    for name, value in _scalars(values):
+    for name, value in scalars(values):
         if model == "testbed" and name in SET_BY:
             raise GivewayError(f"{model}.{name}", value, f"one place to set it: {SET_BY[name]}")
         try:
@@ -174,10 +174,11 @@ def _overrides(top: Section, model: str) -> dict[str, Value]:
     return found
 
 
-def _scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Names and values of nested tables: ``slider.friction``; lists as ``x[0]``, ``x[1]``."""
     for key, value in values.items():
         if isinstance(value, Mapping):
-            yield from _scalars(value, f"{prefix}{key}.")
+            yield from scalars(value, f"{prefix}{key}.")
         elif isinstance(value, list):
             yield from ((f"{prefix}{key}[{index}]", entry) for index, entry in enumerate(value))
         else:

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway.errors import GivewayError
 from giveway.study.distributions import Tolerance, Varied
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["KINDS", "DesignPlan", "deviations", "make", "problem"]
+__all__ = ["KINDS", "DesignPlan", "deviations", "make", "problem", "shares"]
 
 KINDS = ("factorial", "latin-hypercube", "sobol", "one-at-a-time", "morris", "sobol-indices", "csv")
 COUNT_MAX = 20_000_000
@@ -85,8 +86,8 @@ def make(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.fl
         return np.stack([axis.ravel() for axis in grid], axis=1)
     if plan.kind == "one-at-a-time":
         return _one_at_a_time(varied)
-    shares = _shares(plan, varied, seed)
-    return np.stack([one.at(shares[:, j]) for j, one in enumerate(varied)], axis=1)
+    points = shares(plan, varied, seed)
+    return np.stack([one.at(points[:, j]) for j, one in enumerate(varied)], axis=1)
 
 
 def _one_at_a_time(varied: Sequence[Varied]) -> NDArray[np.float64]:
@@ -101,7 +102,7 @@ def _one_at_a_time(varied: Sequence[Varied]) -> NDArray[np.float64]:
     return np.array(rows)
 
 
-def _shares(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.float64]:
+def shares(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.float64]:
     """Points of the unit cube, shape (designs, quantities)."""
     if plan.kind == "morris":
         from SALib.sample import morris

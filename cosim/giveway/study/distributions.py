@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway.checks import finite
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.study.quantities import Quantity
@@ -53,7 +54,7 @@ class Spread:
             cut = (self.low - self.mean) / self.sigma, (self.high - self.mean) / self.sigma
             distribution = stats.truncnorm(*cut, self.mean, self.sigma)
         # The inverse of a cut distribution may leave its range by a rounding error.
-        return np.clip(distribution.ppf(share), self.low, self.high)
+        return np.asarray(np.clip(distribution.ppf(share), self.low, self.high))
 
 
 @dataclass(frozen=True)
@@ -72,10 +73,11 @@ class Varied:
         """The values of the shares (0 to 1)."""
         if self.spread is None:
             last = len(self.levels) - 1
-            return np.array(self.levels)[np.minimum((share * len(self.levels)).astype(int), last)]
+            which = np.minimum((share * len(self.levels)).astype(np.intp), last)
+            return np.asarray(np.array(self.levels)[which])
         if self.quantity.kind == "real":
             return self.spread.at(share)
-        return np.rint(self.spread.at(share))
+        return np.asarray(np.rint(self.spread.at(share)))
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway.errors import FileError, GivewayError, InputFileError
 from giveway.study import designs as design_module
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
@@ -307,7 +308,7 @@ def _shared(setup: Setup) -> dict[str, Any]:
 def _fingerprint(table: RunTable, contexts: list[bytes]) -> str:
     """Hash of everything that decides the results of the study, and in which order they lie."""
     found = hashlib.sha256()
-    names = [one.quantity.name for one in (*table.varied, *table.tolerances)]
+    names = [one.quantity.name for one in table.varied] + [one.quantity.name for one in table.tolerances]
     found.update(json.dumps([names, [case.case.name for case in table.cases], table.noise_seeds]).encode())
     for part in (*contexts, table.designs.tobytes(), table.deviations.tobytes()):
         found.update(hashlib.sha256(part).digest())

@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway import batch
 from giveway.errors import SimulationError
 from giveway.study.runs import RunTable

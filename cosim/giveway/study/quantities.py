@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
+
 from giveway import native
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.scenario import BUMPERS

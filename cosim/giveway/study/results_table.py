@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway import batch
 from giveway.errors import FileError
 
 if TYPE_CHECKING:
-    from giveway.study.runs import RunTable
     from numpy.typing import NDArray
+
+    from giveway.study.runs import RunTable
 
 __all__ = ["Outcomes", "part_table", "read_part", "result_columns"]
 

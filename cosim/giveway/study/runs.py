@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway.approach import Approaches, edge_middle, meet_many, outline_of
 from giveway.master import plan_table, push_table
 from giveway.study.distributions import Tolerance, Varied
@@ -35,7 +36,8 @@ class Rows:
 
     Attributes:
         values: of every parameter, shape (n, columns).
-        hit: per run, what the slider's start was computed from, by the names of `giveway.study.setup.Hit`.
+        hit: per run, what the slider's start was computed from: speed, time, offset, around, direction, angle,
+            point_x, point_y; units of the study file.
         refused: why a run cannot be, by its index here.
     """
 
@@ -83,9 +85,10 @@ class RunTable:
         self.samples = len(deviations)
         self.per_design = self.samples * len(self.cases)
         self.count = len(designs) * self.per_design
-        touched = [c for one in (*setup.varied, *setup.tolerances) for c in one.quantity.columns]
+        quantities = [*(one.quantity for one in setup.varied), *(one.quantity for one in setup.tolerances)]
+        touched = [column for quantity in quantities for column in quantity.columns]
         met = [self.columns.index[f"testbed.{name}"] for name in SLIDER] if setup.cases[0].hit is not None else []
-        named = {one.quantity.name for one in (*setup.varied, *setup.tolerances)}
+        named = {quantity.name for quantity in quantities}
         if "temperature" in named:
             touched.append(self.columns.index["testbed.bumper.latch_force"])
         if setup.noise_seeds:
@@ -132,6 +135,7 @@ class RunTable:
         assert case_hit is not None
         refused: dict[int, str] = {}
         points, straight = _points(table.outline, case_hit, hit, refused)
+        hit["point_x"], hit["point_y"] = points.T
         direction = np.radians(hit["direction"])
         turned = hit["angle"] != 0.0
         if turned.any():
@@ -228,7 +232,7 @@ def _points(
     half = 0.5 * float(lengths[hit.edge])
     for index in np.flatnonzero(np.abs(free["offset"]) > half):
         refused[int(index)] = (
-            f"collision.offset: {free['offset'][index]:g} is not allowed; allowed: a number from {-half:g} to {half:g} m"
+            f"collision.offset: {free['offset'][index]:g} is not allowed; allowed: {-half:g} to {half:g} m"
         )
     offset = np.clip(free["offset"], -half, half)
     if (offset == offset[:1]).all():

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
+
 from giveway.errors import FileError
 from giveway.files import read_json, replace_file, write_text
 
@@ -109,7 +110,7 @@ class Store:
         return gaps
 
     def write_part(self, first: int, table: Any) -> Path:
-        """Write the pyarrow ``table`` of the runs from ``first`` on; whatever happens, it is there as a whole or not."""
+        """Write the pyarrow ``table`` of the runs from ``first`` on; it is there as a whole or not at all."""
         import pyarrow.parquet
 
         path = self.parts_folder / f"part-{first:09d}-{first + table.num_rows:09d}.parquet"

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from giveway.body_regions import body_region
 from giveway.checks import finite, whole
 from giveway.errors import GivewayError, InputFileError, UnknownNameError
@@ -247,9 +248,7 @@ def _tolerance(section: Section) -> Tolerance:
     keys = [key for key in ("relative", "absolute") if key in section.values]
     if len(keys) != 1:
         found = "both" if keys else "nothing"
-        raise GivewayError(
-            section.full("relative"), found, "one of relative and absolute: what may be added or missing"
-        )
+        raise GivewayError(section.full("relative"), found, "one of relative and absolute")
     relative = keys[0] == "relative"
     scale = 1.0
     if "unit" in section.values:
@@ -421,9 +420,7 @@ def _goal(section: Section, sense: int, weight: float = 1.0) -> Goal:
 def _constraint(field: str, entry: Any, region: str | None) -> Constraint:
     section = Section(field, entry, (*_GOAL, "minimum", "maximum", "unit"))
     if ("minimum" in section.values) == ("maximum" in section.values):
-        raise GivewayError(
-            section.full("maximum"), "nothing or both", "one of minimum and maximum; else two constraints"
-        )
+        raise GivewayError(section.full("maximum"), "nothing or both", "one of minimum and maximum")
     goal = _goal(section, 1 if "maximum" in section.values else -1)
     key = "maximum" if "maximum" in section.values else "minimum"
     value = section.values[key]

@@ -1,0 +1,253 @@
+"""First answers of a study: goals per design, constraints, the Pareto front, a ranking, sensitivities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.errors import GivewayError
+from giveway.study.engine import load_setup, plan_runs
+from giveway.study.pareto import front, scores
+from giveway.study.results_table import read_part
+from giveway.study.runs import RunTable
+from giveway.study.setup import Goal, Setup
+from giveway.study.store import PARTS, list_parts
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+__all__ = ["Answers", "Sensitivity", "load"]
+
+GIVEN_DATA_MIN = 64  # designs, for indices from a sample that was not made for them
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How much a quantity decides about a goal.
+
+    Attributes:
+        goal, quantity: which.
+        main: share of the variance that is its alone (S1); Morris: mean of the absolute elementary effects (mu*).
+        total: share that it has part in (ST); Morris: their standard deviation; None: not known from these designs.
+        interval: half width of the 95 % interval of ``main``.
+    """
+
+    goal: str
+    quantity: str
+    main: float
+    total: float | None
+    interval: float
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What came out, one row per design.
+
+    Attributes:
+        folder, setup, manifest: of the study.
+        designs: values of the varied quantities, shape (designs, quantities).
+        goals: objectives, then constraints, then what else is shown; the columns of ``values``.
+        values: shape (designs, goals); NaN: it did not happen in some run, or a run failed.
+        stored, failed: runs per design that are stored, and that failed.
+        reason: of the first run of a design that failed, by design.
+        feasible: all runs are there and none failed, and all constraints are met.
+        pareto: feasible, and no other design is better in all objectives.
+        order: designs, the best first; only feasible ones.
+    """
+
+    folder: Path
+    setup: Setup
+    manifest: dict[str, Any]
+    designs: NDArray[np.float64]
+    goals: tuple[Goal, ...]
+    values: NDArray[np.float64]
+    stored: NDArray[np.int64]
+    failed: NDArray[np.int64]
+    reason: dict[int, str]
+    feasible: NDArray[np.bool_]
+    pareto: NDArray[np.bool_]
+    order: NDArray[np.int64]
+
+    @property
+    def complete(self) -> bool:
+        """All runs are stored."""
+        return bool((self.stored == self.manifest["runs"] // max(1, len(self.designs))).all())
+
+    def goal_name(self, index: int) -> str:
+        """Name of the goal, with how it is taken over collisions and tolerances where there are several."""
+        goal = self.goals[index]
+        over = []
+        if len(self.setup.cases) > 1:
+            over.append(f"{goal.collisions} collision")
+        if self.manifest["tolerance_samples"] > 1:
+            over.append("nominal" if goal.tolerances == "nominal" else f"{goal.tolerances} of tolerances")
+        return goal.metric.name + (f", {', '.join(over)}" if over else "")
+
+    def check_design(self, design: int) -> int:
+        """``design``, if there is one of that number."""
+        if not 0 <= design < len(self.designs):
+            raise GivewayError("--design", design, f"a whole number from 0 to {len(self.designs) - 1}")
+        return design
+
+    def table(self) -> xarray.Dataset:
+        """Quantities, goals, ``feasible`` and ``pareto`` over the dimension ``design``, with units."""
+        import xarray
+
+        columns: dict[str, Any] = {}
+        for j, one in enumerate(self.setup.varied):
+            values: Any = self.designs[:, j]
+            if one.quantity.kind == "choice":
+                values = np.array([one.quantity.text(value) for value in values])
+            columns[one.quantity.name] = ("design", values, {"units": one.quantity.unit or "1"})
+        for j, goal in enumerate(self.goals):
+            columns.setdefault(self.goal_name(j), ("design", self.values[:, j], {"units": goal.metric.unit}))
+        columns["feasible"], columns["pareto"] = ("design", self.feasible), ("design", self.pareto)
+        return xarray.Dataset(columns, coords={"design": np.arange(len(self.designs))})
+
+    def sensitivities(self) -> list[Sensitivity]:
+        """Of the objectives, where the designs allow it; an objective that some design has not is left out."""
+        found: list[Sensitivity] = []
+        for index, goal in enumerate(self.goals[: len(self.setup.objectives)]):
+            found += _sensitivities(self.setup, self.designs, self.values[:, index], self.goal_name(index))
+            del goal
+        return found
+
+
+def load(folder: Path | str) -> Answers:
+    """The answers of the study in ``folder``, as far as it has been run.
+
+    Raises:
+        FileError: there is no study, or it was written by another version.
+    """
+    setup, manifest = load_setup(folder)
+    table = plan_runs(setup)
+    goals = (*setup.objectives, *(one.goal for one in setup.constraints), *setup.shown)
+    count = len(table.designs)
+    values = np.full((count, len(goals)), np.nan)
+    stored, failed = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
+    reason: dict[int, str] = {}
+    parts_folder = Path(folder) / PARTS / manifest["fingerprint"][:16]
+    for block in _designs_of(parts_folder, table, goals):
+        part = slice(block.first, block.first + len(block.stored))
+        values[part], stored[part], failed[part] = block.values, block.stored, block.failed
+        reason |= block.reason
+    feasible = (stored == table.per_design) & (failed == 0)
+    offset = len(setup.objectives)
+    for index, constraint in enumerate(setup.constraints):
+        column = values[:, offset + index]
+        feasible &= (column >= constraint.minimum) & (column <= constraint.maximum)  # NaN meets nothing
+    costs = values[:, :offset] * np.array([goal.sense for goal in setup.objectives])
+    feasible &= ~np.isnan(costs).any(axis=1)
+    costs[~feasible] = np.nan
+    on_front = front(costs) if offset else np.zeros(count, dtype=bool)
+    score = scores(costs, on_front, np.array([goal.weight for goal in setup.objectives]))
+    candidates = np.flatnonzero(feasible)
+    order = candidates[np.lexsort((score[candidates], ~on_front[candidates]))]
+    return Answers(
+        Path(folder), setup, manifest, table.designs, goals, values, stored, failed, reason, feasible, on_front, order
+    )
+
+
+@dataclass
+class _Block:
+    """Some designs that follow each other."""
+
+    first: int
+    values: NDArray[np.float64]
+    stored: NDArray[np.int64]
+    failed: NDArray[np.int64]
+    reason: dict[int, str]
+
+
+def _designs_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...]) -> Iterator[_Block]:
+    """The stored runs, design by design; a design may begin in one part and end in the next."""
+    names = sorted({name for goal in goals for name in goal.metric.columns})
+    pending: dict[str, Any] = {}
+    for _, _, path in list_parts(parts_folder):
+        part = read_part(path, ["run", "status", "message", *names])
+        found: dict[str, Any] = {name: part[name].to_numpy() for name in ("run", *names)}
+        found["ok"] = np.array(part["status"].to_pylist()) == "ok"
+        found["message"] = np.array(part["message"].to_pylist(), dtype=object)
+        pending = {name: np.concatenate([pending[name], found[name]]) for name in found} if pending else found
+        whole = int(pending["run"][-1] + 1) // table.per_design * table.per_design
+        done = int(np.searchsorted(pending["run"], whole))
+        if done:
+            yield from _blocks({name: column[:done] for name, column in pending.items()}, table, goals)
+        pending = {name: column[done:] for name, column in pending.items()}
+    if pending and len(pending["run"]):
+        yield from _blocks(pending, table, goals)
+
+
+def _blocks(runs: dict[str, Any], table: RunTable, goals: tuple[Goal, ...]) -> Iterator[_Block]:
+    size = table.per_design
+    first = int(runs["run"][0]) // size
+    count = int(runs["run"][-1]) // size - first + 1
+    where = runs["run"] - first * size
+    stored = np.bincount(where // size, minlength=count)
+    failed = np.bincount(where[~runs["ok"]] // size, minlength=count)
+    reason: dict[int, str] = {}
+    for index in np.flatnonzero(~runs["ok"]):
+        reason.setdefault(first + int(where[index]) // size, str(runs["message"][index]))
+    shape = (count, table.samples, len(table.cases))
+    values = np.full((count, len(goals)), np.nan)
+    for j, goal in enumerate(goals):
+        flat = np.full(count * size, np.nan)
+        flat[where] = goal.metric.of(runs)
+        values[:, j] = over_runs(goal, flat.reshape(shape))
+    yield _Block(first, values, stored, failed, reason)
+
+
+def over_runs(goal: Goal, runs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """One number per design from ``runs`` (designs, tolerance samples, collisions); NaN if one that counts is NaN.
+
+    The first sample is the nominal one: it counts among the worst, but not in the mean, which is the distribution's.
+    """
+    worst = np.max if goal.sense > 0 else np.min
+    found = worst(runs, axis=2) if goal.collisions == "worst" else runs.mean(axis=2)
+    if goal.tolerances == "nominal" or found.shape[1] == 1:
+        return np.asarray(found[:, 0])
+    return np.asarray(worst(found, axis=1) if goal.tolerances == "worst" else found[:, 1:].mean(axis=1))
+
+
+def _sensitivities(
+    setup: Setup, designs: NDArray[np.float64], values: NDArray[np.float64], goal: str
+) -> list[Sensitivity]:
+    from giveway.study.designs import problem, shares
+
+    if np.isnan(values).any() or len(setup.varied) < 2 or np.ptp(values) == 0.0:
+        return []
+    names = [one.quantity.name for one in setup.varied]
+    described = problem(setup.varied)
+    total: list[float | None]
+    if setup.plan.kind == "morris":
+        from SALib.analyze import morris
+
+        points = shares(setup.plan, setup.varied, setup.seed)
+        found = morris.analyze(described, points, values, num_levels=setup.plan.grid, seed=setup.seed)
+        main, interval, total = found["mu_star"], found["mu_star_conf"], list(found["sigma"])
+    elif setup.plan.kind == "sobol-indices":
+        from SALib.analyze import sobol
+
+        found = sobol.analyze(described, values, calc_second_order=False, seed=setup.seed)
+        main, interval, total = found["S1"], found["S1_conf"], list(found["ST"])
+    elif setup.plan.kind in ("latin-hypercube", "sobol") and len(values) >= GIVEN_DATA_MIN:
+        from SALib.analyze import rbd_fast
+
+        found = rbd_fast.analyze(described, designs, values, seed=setup.seed)
+        main, interval, total = found["S1"], found["S1_conf"], [None] * len(names)
+    else:
+        return []
+    return [
+        Sensitivity(goal, name, float(main[j]), None if one is None else float(one), _finite(float(interval[j])))
+        for j, (name, one) in enumerate(zip(names, total, strict=True))
+    ]
+
+
+def _finite(value: float) -> float:
+    return value if math.isfinite(value) else 0.0

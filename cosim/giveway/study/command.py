@@ -1,0 +1,177 @@
+"""What `giveway sweep` and `giveway study` say: progress, tables, where to go on."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from giveway.study.answers import Answers
+from giveway.study.engine import Outcome, Progress, Report
+
+if TYPE_CHECKING:
+    from giveway.study.runs import RunTable
+    from giveway.study.setup import Setup
+
+__all__ = [
+    "counts",
+    "design_rows",
+    "duration",
+    "goal_header",
+    "overview",
+    "sensitivity_header",
+    "sensitivity_rows",
+    "showing",
+    "sizes",
+    "write_all",
+]
+
+SHOWN = 12  # designs in the table
+SAY_EVERY_S = 5.0  # without a terminal
+
+
+@contextmanager
+def showing(name: str) -> Iterator[Report]:
+    """Progress on stderr with rate and time left: a bar at a terminal, else a line every few seconds."""
+    if not sys.stderr.isatty():
+        said = time.monotonic()
+
+        def say(progress: Progress) -> None:
+            nonlocal said
+            if progress.done == progress.runs or time.monotonic() - said >= SAY_EVERY_S:
+                said = time.monotonic()
+                print(f"{name}: {_words(progress)}", file=sys.stderr, flush=True)
+
+        yield say
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as Bars
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[words]}"))
+    with Bars(*columns, console=Console(stderr=True)) as bars:
+        task = bars.add_task(name, total=None, words="")
+
+        def draw(progress: Progress) -> None:
+            bars.update(task, completed=progress.done, total=progress.runs, words=_words(progress))
+
+        yield draw
+
+
+def _words(progress: Progress) -> str:
+    left = progress.left_s
+    words = f"{progress.done:,} of {progress.runs:,} runs"
+    if left is not None and progress.done < progress.runs:
+        words += f", {progress.rate:,.0f} per second, {duration(left)} left"
+    if progress.failed:
+        words += f", {progress.failed:,} failed"
+    return words
+
+
+def duration(seconds: float) -> str:
+    """Seconds in words that can be read at a glance."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def overview(setup: Setup, outcome: Outcome) -> str:
+    """One line about a sweep that has ended."""
+    words = f"{setup.name}: {outcome.stored:,} of {outcome.runs:,} runs are stored in {outcome.folder}"
+    words += f"; {outcome.ran:,} run now in {duration(outcome.wall_s)}"
+    if outcome.reused:
+        words += f", {outcome.reused:,} taken from equal runs"
+    return words + (f", {outcome.failed:,} of these failed" if outcome.failed else "")
+
+
+def sizes(setup: Setup, table: RunTable) -> str:
+    """One line about a study that has not been run."""
+    return (
+        f"{setup.name}: {len(table.designs):,} designs, {len(table.cases)} collisions, {table.samples} samples "
+        f"with the nominal one: {table.count:,} runs"
+    )
+
+
+def number(value: float) -> str:
+    """A value with four digits; "-" for what did not happen."""
+    return "-" if math.isnan(value) else f"{value:.4g}"
+
+
+def goal_header(answers: Answers) -> tuple[str, ...]:
+    """The first line of `design_rows`."""
+    quantities = [f"{one.quantity.name}{_unit(one.quantity.unit)}" for one in answers.setup.varied]
+    goals = [f"{answers.goal_name(j)}{_unit(goal.metric.unit)}" for j, goal in enumerate(answers.goals)]
+    return ("design", *quantities, *goals, "front")
+
+
+def _unit(unit: str) -> str:
+    return f", {unit}" if unit not in ("", "1") else ""
+
+
+def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
+    """The best designs, in the order of the ranking."""
+    rows = []
+    for design in answers.order[:count]:
+        pairs = zip(answers.setup.varied, answers.designs[design], strict=True)
+        values = [one.quantity.text(v) if one.quantity.kind != "real" else number(v) for one, v in pairs]
+        goals = [number(value) for value in answers.values[design]]
+        rows.append((str(design), *values, *goals, "yes" if answers.pareto[design] else ""))
+    return rows
+
+
+def sensitivity_rows(answers: Answers) -> list[tuple[str, ...]]:
+    """Every quantity's part in every objective, the largest first."""
+    found = sorted(answers.sensitivities(), key=lambda one: (one.goal, -one.main))
+    return [
+        (
+            one.goal,
+            one.quantity,
+            f"{one.main:.3g}",
+            f"{one.interval:.2g}",
+            "-" if one.total is None else f"{one.total:.3g}",
+        )
+        for one in found
+    ]
+
+
+def sensitivity_header(answers: Answers) -> tuple[str, ...]:
+    """The first line of `sensitivity_rows`."""
+    effects = answers.setup.plan.kind == "morris"
+    return ("objective", "quantity", *(("mu*", "+-", "sigma") if effects else ("S1", "+-", "ST")))
+
+
+def counts(answers: Answers) -> str:
+    """How many designs there are and what became of them, in one sentence."""
+    done = int((answers.stored > 0).sum())
+    words = f"{len(answers.designs):,} designs"
+    if not answers.complete:
+        words += f" ({done:,} begun; the study is not complete)"
+    words += (
+        f", {int(answers.feasible.sum()):,} meet all constraints, {int(answers.pareto.sum()):,} on the Pareto front"
+    )
+    failed = int((answers.failed > 0).sum())
+    if failed:
+        words += f", {failed:,} with failed runs"
+    return words
+
+
+def write_all(answers: Answers, simulate_chosen: bool = True) -> list[Path]:
+    """Simulate the best designs event-exact with traces; write report.html, designs table and figures."""
+    from giveway.study.chosen import simulate
+    from giveway.study.engine import plan_runs
+    from giveway.study.export import export_table
+    from giveway.study.report import write_report
+
+    results = {}
+    if simulate_chosen and answers.setup.chosen:
+        table = plan_runs(answers.setup)
+        for design in answers.order[: answers.setup.chosen].tolist():
+            results[design] = simulate(answers.setup, table, answers.folder, design)
+    table_file, report = answers.folder / "table.csv", answers.folder / "report.html"
+    export_table(answers, table_file)
+    write_report(report, answers, results)
+    return [report, table_file]

@@ -1,0 +1,130 @@
+"""The summary of a study: one HTML file that opens without a network."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from giveway.files import write_text
+from giveway.report.figures import NamedFigure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from giveway.result import Result
+    from giveway.study.answers import Answers
+    from giveway.study.distributions import Tolerance, Varied
+    from giveway.study.setup import Constraint
+
+__all__ = ["write_report"]
+
+REASONS_MAX, DESIGNS_MAX = 8, 25
+
+
+def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> None:
+    """Write the summary of ``answers`` to ``path``; ``results``: the chosen designs by number and collision."""
+    import jinja2
+
+    from giveway.study.command import counts, design_rows, goal_header, sensitivity_header, sensitivity_rows
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    style = (files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8")
+    setup = answers.setup
+    reasons: dict[str, list[int]] = {}
+    for design, reason in answers.reason.items():
+        reasons.setdefault(reason, []).append(design)
+    text = environment.get_template("study.html.j2").render(
+        title=setup.name,
+        counts=counts(answers),
+        complete=answers.complete,
+        manifest=answers.manifest,
+        created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        header=goal_header(answers),
+        rows=design_rows(answers, DESIGNS_MAX),
+        ranked=len(answers.order),
+        figures=_figures(answers, results),
+        sensitivity_header=sensitivity_header(answers),
+        sensitivities=sensitivity_rows(answers),
+        varied=[(one.quantity.name, _range(one)) for one in setup.varied],
+        tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
+        collisions=[(case.name, _hit(case.document.get("collision", {}))) for case in setup.cases],
+        constraints=[_constraint(one) for one in setup.constraints],
+        reasons=sorted(reasons.items(), key=lambda item: -len(item[1]))[:REASONS_MAX],
+        style=style,
+    )
+    write_text(path, text)
+
+
+def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> list[NamedFigure]:
+    from matplotlib.style import context
+
+    from giveway.report.inline_svg import inline_svg
+    from giveway.report.style import STYLE
+    from giveway.study import figures
+
+    found: list[NamedFigure] = []
+
+    def add(title: str, caption: str, figure: Figure | None) -> None:
+        if figure is not None:
+            found.append(NamedFigure(title, caption, inline_svg(figure, f"s{len(found)}-")))
+
+    known = bool((answers.stored > 0).any())
+    with context(STYLE):
+        if known and len(answers.setup.objectives) >= 2:
+            caption = "One point per design. Those on the front are beaten by no other one; numbers: the best ranked."
+            add("Trade-off", caption, figures.trade_off(answers))
+        if known and answers.setup.objectives and answers.setup.varied:
+            add(
+                "What each quantity does",
+                "One point per design; grey: a constraint is not met.",
+                figures.effects(answers),
+            )
+        if known:
+            add("What decides", _sensitivity_caption(answers), figures.sensitivities(answers))
+        if results:
+            caption = "The best ranked designs, event-exact at their nominal values. Dashed: the moment of detection."
+            add("Chosen designs", caption, figures.traces(results))
+    return found
+
+
+def _sensitivity_caption(answers: Answers) -> str:
+    if answers.setup.plan.kind == "morris":
+        return "Elementary effects (Morris) in the objective's unit: mean of the absolute values, and spread."
+    return "Share of the variance of each objective that a quantity alone explains, and in which it has part."
+
+
+def _range(one: Varied) -> str:
+    quantity = one.quantity
+    unit = f" {quantity.unit}" if quantity.unit not in ("", "1") else ""
+    if one.levels and one.spread is None:
+        return (
+            ", ".join(quantity.text(value) for value in one.levels[:12])
+            + unit
+            + (", ..." if len(one.levels) > 12 else "")
+        )
+    if one.spread is None:
+        return "from the file"
+    levels = f", {len(one.levels)} levels" if one.levels else ""
+    return f"{one.spread.low:g} to {one.spread.high:g}{unit}, {one.spread.kind}{levels}"
+
+
+def _tolerance(one: Tolerance) -> str:
+    if one.relative:
+        return f"+-{100.0 * one.spread.high:g} %, {one.spread.kind}"
+    return f"+-{one.spread.high:g} {one.quantity.unit}, {one.spread.kind}"
+
+
+def _hit(values: Mapping[str, object]) -> str:
+    return ", ".join(f"{key} = {value}" for key, value in values.items())
+
+
+def _constraint(one: Constraint) -> str:
+    low, high = one.minimum, one.maximum
+    unit = f" {one.goal.metric.unit}" if one.goal.metric.unit not in ("", "1") else ""
+    return f"{one.goal.metric.name}: " + (f"at most {high:g}{unit}" if math.isinf(low) else f"at least {low:g}{unit}")
