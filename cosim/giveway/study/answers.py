@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import GivewayError
+from giveway.study.designs import DesignPlan
+from giveway.study.distributions import Varied
 from giveway.study.engine import load_setup, plan_runs
 from giveway.study.pareto import front, scores
 from giveway.study.results_table import read_part
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["Answers", "Sensitivity", "load"]
+__all__ = ["Answers", "Sensitivity", "load", "over_runs", "sensitivities_of"]
 
 GIVEN_DATA_MIN = 64  # designs, for indices from a sample that was not made for them
 
@@ -113,9 +115,9 @@ class Answers:
     def sensitivities(self) -> list[Sensitivity]:
         """Of the objectives, where the designs allow it; an objective that some design has not is left out."""
         found: list[Sensitivity] = []
-        for index, goal in enumerate(self.goals[: len(self.setup.objectives)]):
-            found += _sensitivities(self.setup, self.designs, self.values[:, index], self.goal_name(index))
-            del goal
+        for index in range(len(self.setup.objectives)):
+            values, name = self.values[:, index], self.goal_name(index)
+            found += sensitivities_of(self.setup.plan, self.setup.varied, self.setup.seed, self.designs, values, name)
         return found
 
 
@@ -215,31 +217,37 @@ def over_runs(goal: Goal, runs: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(worst(found, axis=1) if goal.tolerances == "worst" else found[:, 1:].mean(axis=1))
 
 
-def _sensitivities(
-    setup: Setup, designs: NDArray[np.float64], values: NDArray[np.float64], goal: str
+def sensitivities_of(
+    plan: DesignPlan,
+    varied: Sequence[Varied],
+    seed: int,
+    designs: NDArray[np.float64],
+    values: NDArray[np.float64],
+    goal: str,
 ) -> list[Sensitivity]:
+    """How much each quantity decides about ``values``, one per design; nothing where the designs do not tell."""
     from giveway.study.designs import problem, shares
 
-    if np.isnan(values).any() or len(setup.varied) < 2 or np.ptp(values) == 0.0:
+    if np.isnan(values).any() or len(varied) < 2 or np.ptp(values) == 0.0:
         return []
-    names = [one.quantity.name for one in setup.varied]
-    described = problem(setup.varied)
+    names = [one.quantity.name for one in varied]
+    described = problem(varied)
     total: list[float | None]
-    if setup.plan.kind == "morris":
+    if plan.kind == "morris":
         from SALib.analyze import morris
 
-        points = shares(setup.plan, setup.varied, setup.seed)
-        found = morris.analyze(described, points, values, num_levels=setup.plan.grid, seed=setup.seed)
+        points = shares(plan, varied, seed)
+        found = morris.analyze(described, points, values, num_levels=plan.grid, seed=seed)
         main, interval, total = found["mu_star"], found["mu_star_conf"], list(found["sigma"])
-    elif setup.plan.kind == "sobol-indices":
+    elif plan.kind == "sobol-indices":
         from SALib.analyze import sobol
 
-        found = sobol.analyze(described, values, calc_second_order=False, seed=setup.seed)
+        found = sobol.analyze(described, values, calc_second_order=False, seed=seed)
         main, interval, total = found["S1"], found["S1_conf"], list(found["ST"])
-    elif setup.plan.kind in ("latin-hypercube", "sobol") and len(values) >= GIVEN_DATA_MIN:
+    elif plan.kind in ("latin-hypercube", "sobol") and len(values) >= GIVEN_DATA_MIN:
         from SALib.analyze import rbd_fast
 
-        found = rbd_fast.analyze(described, designs, values, seed=setup.seed)
+        found = rbd_fast.analyze(described, designs, values, seed=seed)
         main, interval, total = found["S1"], found["S1_conf"], [None] * len(names)
     else:
         return []

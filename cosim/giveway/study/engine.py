@@ -178,6 +178,8 @@ class _Runner:
         except KeyboardInterrupt:
             interrupted = True
         wall_s = time.perf_counter() - self._started
+        # Ctrl-C may have come between the last part and its being counted.
+        self._stored = self._table.count - sum(end - first for first, end in self._store.missing(self._table.count))
         found = (self._table.count, self._stored, self._ran, self._reused, self._failed)
         return Outcome(self._store.folder, *found, wall_s, interrupted)
 

@@ -58,7 +58,7 @@ def trade_off(answers: Answers) -> Figure:
     axes.plot(x[on_front], y[on_front], f"o{line}", color=FRONT_COLOUR, ms=4, lw=1.2, label="Pareto front")
     for rank, design in enumerate(answers.order[: answers.setup.chosen].tolist()):
         axes.annotate(
-            f"{design}", (x[design], y[design]), xytext=(5, 5 + 3 * rank), textcoords="offset points", fontsize=9
+            f"{design}", (x[design], y[design]), xytext=(6, 6 + 12 * rank), textcoords="offset points", fontsize=9
         )
     for set_label, index in ((axes.set_xlabel, 0), (axes.set_ylabel, 1)):
         goal = answers.goals[index]

@@ -1,0 +1,35 @@
+"""A small study that several test files share: cheap runs of real collisions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet
+from giveway.study import Study
+from giveway.study.store import PARTS, list_parts, read_manifest
+
+LATCH, SPRING = "testbed.bumper.latch_force", "testbed.bumper.spring_rate"
+
+
+def small_study(**changes: Any) -> Study:
+    """Four latch forces with a collision of 0.1 s each, and no objectives; ``changes`` replace tables."""
+    study = Study("small", duration=0.2, bumper="magnetic")
+    study.collision("front", speed=0.5, mass=9.08, edge=0, time=0.12)
+    study.vary(LATCH, values=[0.0, 20.0, 40.0, 60.0])
+    study.document.update(changes)
+    return study
+
+
+def part_files(folder: Path) -> list[Path]:
+    """Every part of the study in ``folder``, whatever it was when they were written."""
+    return [path for parts in sorted((folder / PARTS).glob("*")) for _, _, path in list_parts(parts)]
+
+
+def stored_runs(folder: Path) -> dict[str, np.ndarray]:
+    """All stored runs of the study in ``folder``, in their order, by column."""
+    parts = list_parts(folder / PARTS / read_manifest(folder)["fingerprint"][:16])
+    tables = [pyarrow.parquet.read_table(path) for _, _, path in parts]
+    names = tables[0].column_names
+    return {name: np.concatenate([np.array(table[name].to_pylist()) for table in tables]) for name in names}

@@ -1,0 +1,162 @@
+"""Study files: the examples are read, and a wrong one is refused with its line and key before anything runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import giveway
+import pytest
+from giveway.errors import GivewayError
+from giveway.study import study_file
+from study_helpers import LATCH, small_study
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+GOOD = """\
+schema_version = 1
+name = "wrong on purpose"
+
+[scenario]
+duration = 0.3
+bumper = "magnetic"
+
+[[collision]]
+name = "front"
+speed = 0.5
+edge = 0
+
+[designs]
+kind = "sobol"
+count = 8
+
+[[vary]]
+quantity = "testbed.bumper.latch_force"
+low = 0.0
+high = 90.0
+unit = "N"
+
+[[tolerance]]
+quantity = "testbed.bumper.spring_rate"
+relative = 0.1
+
+[[objective]]
+metric = "peak contact force"
+
+[[constraint]]
+metric = "bumper travel"
+maximum = 110
+unit = "mm"
+"""
+WRONG = {  # what is replaced, by what, the line, and words of the message
+    "unknown quantity": ("testbed.bumper.latch_force", "testbed.bumper.latch_forse", 18,
+        ("vary[0].quantity", "latch_force")),
+    "unknown robot number": ("testbed.bumper.spring_rate", "robot.base.mas", 24,
+        ("tolerance[0].quantity", "robot.base.mass")),
+    "unit of another kind": ('unit = "N"', 'unit = "N/m"', 21,
+        ("vary[0].unit", "N/m", "N, or a unit of the same kind")),
+    "unit of a metric": ('unit = "mm"', 'unit = "ms"', 33, ("constraint[0].unit", "mm")),
+    "empty range": ("high = 90.0", "high = 0.0", 20, ("vary[0].high", "range is empty")),
+    "out of the variable's range": ("high = 90.0", "high = 90000.0", 20, ("vary[0].high", "from 0 to 10000 N")),
+    "levels are missing": ('"sobol"\ncount = 8', '"factorial"', 16, ("vary[0].levels", "factorial needs them")),
+    "count is missing": ("count = 8", "", 13, ("designs.count", "nothing")),
+    "option of another kind": ("count = 8", "trajectories = 8", 15, ("designs.trajectories", "unknown")),
+    "unknown kind of design": ('"sobol"', '"soboll"', 14, ("designs.kind", "sobol")),
+    "unknown metric": ('"peak contact force"', '"peak contact farce"', 28,
+        ("objective[0].metric", "peak contact force")),
+    "unknown method": ('name = "wrong', 'method = "exact"\nname = "wrong', 2, ("method", "event-exact")),
+    "unknown key": ("edge = 0", "edge = 0\nheigth = 0.3", 12, ("collision[0].heigth", "height")),
+    "no such side": ("edge = 0", "edge = 7", 11, ("collision[0].edge", "from 0 to 2")),
+    "scenario out of range": ("duration = 0.3", "duration = -1.0", 5, ("scenario.duration", "0 to 3600")),
+    "relative above one": ("relative = 0.1", "relative = 1.5", 25, ("tolerance[0].relative", "below 1")),
+    "tolerance twice": ('relative = 0.1', 'relative = 0.1\nabsolute = 3.0', 25, ("tolerance[0].relative", "one of")),
+    "set by the collision": ("testbed.bumper.latch_force", "testbed.slider.mass", 18,
+        ("vary[0].quantity", "collision.mass")),
+    "nothing but a limit of nobody": ("maximum = 110", 'maximum = "lasting limit"', 32,
+        ("constraint[0].maximum", "body_region")),
+    "offset without a side": ("edge = 0", "point = [0.088046, 0.1525]", 18, ("vary[0].quantity", "edge")),
+    "too many designs": ("count = 8", "count = 2000000000", 15, ("designs.count", "2 to 20000000")),
+}  # fmt: skip
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "wrong.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_file_is_right_as_it_is(tmp_path: Path) -> None:
+    setup = study_file.read(written(tmp_path, GOOD))
+    assert [one.quantity.name for one in setup.varied] == [LATCH]
+    assert setup.plan.count == 8
+    assert setup.constraints[0].maximum == 110.0
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_file_is_refused_with_line_and_key(name: str, tmp_path: Path) -> None:
+    old, new, line, words = WRONG[name]
+    text = GOOD.replace("testbed.bumper.latch_force", "collision.offset") if name == "offset without a side" else GOOD
+    text = text.replace('unit = "N"\n', "").replace("high = 90.0", "high = 0.1") if "collision.offset" in text else text
+    assert old in text
+    path = written(tmp_path, text.replace(old, new))
+    with pytest.raises(GivewayError) as caught:
+        study_file.read(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}:{line}: "), message
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+def test_more_runs_than_the_disk_holds_are_refused_before_any(tmp_path: Path) -> None:
+    from giveway.study.engine import sweep
+
+    text = GOOD.replace("count = 8", "count = 20000000").replace(
+        "relative = 0.1", "relative = 0.1\n\n[tolerances]\nsamples = 1000000\n"
+    )
+    path = written(tmp_path, text)
+    with pytest.raises(GivewayError, match=r"wrong\.toml:15: designs\.count: .* runs .* GB of free space"):
+        sweep(study_file.read(path), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_is_a_scenario_or_a_study(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    if "[scenario]" in text:
+        assert study_file.read(path).objectives
+    else:
+        assert giveway.read_scenario(path).duration_s > 0.0
+
+
+def test_designs_come_from_a_csv_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.csv").write_text(
+        "bumper, testbed.bumper.spring_rate [N/mm]\nspring, 0.5\nmagnetic, 1.5\n", encoding="utf-8"
+    )
+    study = small_study(vary=[], designs={"kind": "csv", "file": "mine.csv"})
+    setup = study.setup(tmp_path)
+    assert setup.plan.rows is not None
+    np_rows = setup.plan.rows.tolist()
+    assert np_rows == [[1.0, 500.0], [2.0, 1500.0]]
+
+
+@pytest.mark.parametrize(("text", "line", "word"), [
+    ("testbed.bumper.latch_forse\n1\n", 1, "latch_force"),
+    ("testbed.bumper.latch_force\n1\n-5\n", 3, "from 0 to 10000 N"),
+    ("testbed.bumper.latch_force,bumper\n1,spring\n2\n", 3, "2, as in the first line"),
+    ("testbed.bumper.latch_force [m]\n1\n", 1, "N, or a unit of the same kind"),
+    ("testbed.bumper.latch_force\nsome\n", 2, "finite number"),
+])  # fmt: skip
+def test_a_wrong_csv_file_is_refused_with_its_line(text: str, line: int, word: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(GivewayError) as caught:
+        small_study(vary=[], designs={"kind": "csv", "file": "mine.csv"}).setup(tmp_path)
+    assert str(caught.value).startswith(f"{path}:{line}: ")
+    assert word in str(caught.value)
+
+
+def test_a_limit_of_a_body_region_is_its_number() -> None:
+    study = small_study().constraint("peak contact force", maximum="transient limit")
+    study.document["scenario"]["body_region"] = "lower leg"
+    from giveway.body_regions import body_region
+
+    assert study.setup().constraints[0].maximum == body_region("lower leg").peak_limit_n

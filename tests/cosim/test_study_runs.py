@@ -1,0 +1,176 @@
+"""The table of runs: a row is what a scenario of the same values would be, bit for bit, and as fast as it must be."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from giveway import batch
+from giveway.approach import Approach, edge_middle, meet, outline_of
+from giveway.plan import Rest, Straight
+from giveway.scenario import Scenario
+from giveway.study.chosen import scenario_of_run
+from giveway.study.engine import plan_runs
+from giveway.study.native_part import NativePart
+from giveway.study.runs import RunTable
+from giveway.variables import table
+from study_helpers import LATCH, small_study
+
+VARIED = {
+    "testbed.bumper.spring_rate": {"low": 500.0, "high": 2000.0},
+    "robot.drivetrain.stiffness": {"low": 500.0, "high": 900.0},
+    "controller.detector.impulse_threshold": {"low": 1.0, "high": 2.0},
+    "testbed.roller.model": {"values": [0, 1]},
+    "bumper": {"values": ["none", "spring", "magnetic"]},
+    "temperature": {"low": -20.0, "high": 60.0},
+    "collision.speed": {"low": 0.2, "high": 0.6},
+    "collision.mass": {"low": 5.0, "high": 20.0},
+    "collision.offset": {"low": -0.2, "high": 0.2},
+    "collision.angle": {"low": -30.0, "high": 30.0},
+}
+"""One of every kind of quantity."""
+
+
+def varied_table(count: int = 6) -> tuple[RunTable, object]:
+    study = small_study(vary=[]).collision("rope", speed=0.3, edge=1, rope=True)
+    for quantity, keys in VARIED.items():
+        study.vary(quantity, **keys)
+    study.tolerance(LATCH, relative=0.3).tolerance("testbed.base.mass", absolute=2.0, distribution="normal")
+    study.tolerances(samples=2, noise_seeds=True).designs("latin-hypercube", count=count)
+    setup = study.setup()
+    return plan_runs(setup), setup
+
+
+def run_natively(runs: RunTable, which: np.ndarray) -> np.ndarray:
+    design, sample, case = runs.split(which)
+    values = np.empty((len(which), len(runs.columns.names)))
+    for number in range(len(runs.cases)):
+        mine = case == number
+        rows = runs.rows(design[mine], sample[mine], number)
+        assert not rows.refused
+        values[mine] = rows.values
+    part = NativePart(runs, values, case, 2, "event-exact")
+    while not part.wait(0.1)[0]:
+        pass
+    part.finish()
+    return part.results
+
+
+def test_a_row_runs_as_its_scenario_does() -> None:
+    runs, setup = varied_table()
+    which = np.arange(0, runs.count, 7)
+    results = run_natively(runs, which)
+    assert (results["status"] == 0).all(), results["message"]
+    scenarios = [
+        scenario_of_run(setup, runs, *(int(i) for i in index)) for index in zip(*runs.split(which), strict=True)
+    ]  # type: ignore[arg-type]
+    expected = batch.run_many(scenarios, threads=2)
+    for index, metric in enumerate(batch.native_metrics()):
+        np.testing.assert_array_equal(results["metric"][:, index], expected[metric.name].values, metric.name)
+
+
+def test_values_end_up_where_they_belong() -> None:
+    runs, _ = varied_table()
+    at = runs.columns.index
+    names = list(VARIED)
+    design = np.array([3])
+    value = dict(zip(names, runs.designs[3], strict=True))
+    nominal = runs.rows(design, np.array([0]), 0).values[0]
+    other = runs.rows(design, np.array([2]), 0).values[0]
+    for name in ("testbed.drivetrain.stiffness", "controller.estimator.drivetrain_stiffness"):
+        assert nominal[at[name]] == value["robot.drivetrain.stiffness"]
+    assert nominal[at["testbed.slider.mass"]] == value["collision.mass"]
+    assert nominal[at["testbed.bumper.kind"]] == value["bumper"]
+    start = runs.columns.start[at[LATCH]]
+    warm = 1.0 - 0.0024 * (value["temperature"] - 20.0)
+    assert nominal[at[LATCH]] == pytest.approx(start * warm, rel=1e-15)
+    by = runs.deviations[2]
+    assert other[at[LATCH]] == pytest.approx(start * (1.0 + by[0]) * warm, rel=1e-15)
+    # The load is on the robot; the controller does not know it.
+    assert other[at["testbed.base.mass"]] == nominal[at["testbed.base.mass"]] + by[1]
+    assert other[at["controller.base.mass"]] == nominal[at["controller.base.mass"]]
+    assert other[at["testbed.electronics.seed"]] == nominal[at["testbed.electronics.seed"]] + 2
+    # A hit from 20 deg beside straight comes from there, and with the asked speed after the rail's friction.
+    side = runs.cases[0].outline[1] - runs.cases[0].outline[0]
+    inward = math.atan2(side[0], -side[1])
+    turned = nominal[at["testbed.slider.direction"]] - inward - math.radians(value["collision.angle"])
+    assert math.remainder(turned, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("plan", [Rest(0.3, -0.2, 0.4), Straight(0.2, 0.5, theta_rad=0.1)], ids=["rest", "moving"])
+@pytest.mark.parametrize("rope", [False, True])
+def test_many_approaches_are_as_one_by_one(plan: object, rope: bool) -> None:
+    from giveway.approach import Approaches, meet_many
+
+    testbed = {v.name: v.start for v in table("testbed").select("parameter") if v.start is not None} | {
+        "bumper.kind": 0
+    }
+    outline = outline_of(testbed)
+    offsets, speeds = np.linspace(-0.2, 0.2, 7), np.linspace(0.2, 0.6, 7)
+    masses = np.linspace(5.0, 15.0, 7)
+    points = np.array([edge_middle(outline, 0, float(offset)) for offset in offsets])
+    time_s = None if rope else np.full(7, 0.6)
+    many, refused = meet_many(
+        Approaches(points, speeds, np.full(7, np.nan), time_s),
+        {**testbed, "slider.mass": masses},
+        plan,
+        np.full(7, 0.1),
+    )
+    assert not refused
+    for i in range(7):
+        one = Approach(tuple(points[i]), float(speeds[i]), None, None if rope else 0.6, rope)
+        alone = meet(one, {**testbed, "slider.mass": float(masses[i])}, plan, 0.1)
+        for name, values in many.items():
+            assert values[i] == alone[name], name
+
+
+def test_a_hit_anywhere_around_comes_straight_in() -> None:
+    study = small_study(vary=[]).vary("collision.around", values=[0.05, 0.3, 0.45, 0.7, 0.95])
+    study.document["scenario"] = {"duration": 0.3, "bumper": "none"}
+    runs = plan_runs(study.setup())
+    results = run_natively(runs, np.arange(5))
+    metrics = {metric.name: results["metric"][:, i] for i, metric in enumerate(batch.native_metrics())}
+    truth = {metric.name: results["truth"][:, i] for i, metric in enumerate(batch.native_metrics())}
+    assert (results["status"] == 0).all()
+    # 0.5 m/s at the contact, less a step of friction.
+    assert metrics["contact speed"] == pytest.approx(np.full(5, 0.5), abs=5e-3)
+    rows = runs.rows(np.arange(5), np.zeros(5, dtype=int), 0)
+    found = 1e-3 * np.stack([truth["contact point x"], truth["contact point y"]], axis=1)
+    expected = np.stack([rows.hit["point_x"], rows.hit["point_y"]], axis=1)
+    np.testing.assert_allclose(found, expected, atol=2e-3)  # the base gives way under the nose until detection
+
+
+def test_a_place_beside_the_side_is_refused_with_its_reason() -> None:
+    study = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.5])
+    rows = plan_runs(study.setup()).rows(np.array([0, 1]), np.array([0, 0]), 0)
+    assert list(rows.refused) == [1]
+    assert "collision.offset: 0.5 is not allowed" in rows.refused[1]
+
+
+def test_keys_are_those_of_the_values() -> None:
+    runs, _ = varied_table(4)
+    contexts = [case.context({"code": 1}) for case in runs.cases]
+    design, sample, case = runs.split(np.arange(runs.count))
+    keys = []
+    for number in range(2):
+        mine = case == number
+        keys += runs.keys(contexts, runs.rows(design[mine], sample[mine], number), number)
+    assert len(set(keys)) == runs.count
+    again = runs.keys(contexts, runs.rows(np.array([2]), np.array([1]), 1), 1)[0]
+    assert again in keys
+    other_code = [case.context({"code": 2}) for case in runs.cases]
+    assert runs.keys(other_code, runs.rows(np.array([2]), np.array([1]), 1), 1)[0] not in keys
+
+
+def test_the_scenario_of_a_run_has_its_values() -> None:
+    runs, setup = varied_table(4)
+    scenario = scenario_of_run(setup, runs, 2, 1, 1)  # type: ignore[arg-type]
+    assert isinstance(scenario, Scenario)
+    values = runs.rows(np.array([2]), np.array([1]), 1).values[0]
+    for model in ("controller", "testbed"):
+        known = scenario.parameters(model)
+        for name, column in runs.columns.index.items():
+            if name.startswith(f"{model}."):
+                short = name.partition(".")[2]
+                assert float(known.get(short, runs.columns.start[column])) == values[column], name
