@@ -392,11 +392,10 @@ def study_run(
     """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
     from giveway.study import answers
     from giveway.study.chosen import CHOSEN, simulate
-    from giveway.study.engine import plan_runs
 
     found = answers.load(folder)
     found.check_design(design)
-    results = simulate(found.setup, plan_runs(found.setup), folder, design)
+    results = simulate(found.setup, found.runs, folder, design)
     for name, result in results.items():
         _print_table(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
     typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")

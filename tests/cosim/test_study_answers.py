@@ -13,7 +13,6 @@ from giveway.study.answers import over_runs
 from giveway.study.chosen import simulate
 from giveway.study.designs import DesignPlan, make
 from giveway.study.distributions import Spread, Varied
-from giveway.study.engine import plan_runs
 from giveway.study.metrics import Metric
 from giveway.study.pareto import front, scores
 from giveway.study.quantities import find
@@ -92,7 +91,7 @@ def test_chosen_designs_run_again_as_they_did(tmp_path: Path) -> None:
     study = small_study().objective("peak contact force")
     found = study.run(tmp_path / "study", threads=2)
     design = int(found.order[0])
-    result = simulate(found.setup, plan_runs(found.setup), tmp_path / "study", design)["front"]
+    result = simulate(found.setup, found.runs, tmp_path / "study", design)["front"]
     stored = stored_runs(tmp_path / "study")
     for metric in result.metrics:
         # The same run over the traces, in Python: the sums are in another order.

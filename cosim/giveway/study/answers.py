@@ -13,7 +13,7 @@ import numpy as np
 from giveway.errors import GivewayError
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Varied
-from giveway.study.engine import load_setup, plan_runs
+from giveway.study.engine import load_runs
 from giveway.study.pareto import front, scores
 from giveway.study.results_table import read_part
 from giveway.study.runs import RunTable
@@ -52,8 +52,7 @@ class Answers:
     """What came out, one row per design.
 
     Attributes:
-        folder, setup, manifest: of the study.
-        designs: values of the varied quantities, shape (designs, quantities).
+        folder, setup, runs, manifest: of the study.
         goals: objectives, then constraints, then what else is shown; the columns of ``values``.
         values: shape (designs, goals); NaN: it did not happen in some run, or a run failed.
         stored, failed: runs per design that are stored, and that failed.
@@ -65,8 +64,8 @@ class Answers:
 
     folder: Path
     setup: Setup
+    runs: RunTable
     manifest: dict[str, Any]
-    designs: NDArray[np.float64]
     goals: tuple[Goal, ...]
     values: NDArray[np.float64]
     stored: NDArray[np.int64]
@@ -75,6 +74,11 @@ class Answers:
     feasible: NDArray[np.bool_]
     pareto: NDArray[np.bool_]
     order: NDArray[np.int64]
+
+    @property
+    def designs(self) -> NDArray[np.float64]:
+        """Values of the varied quantities, shape (designs, quantities)."""
+        return self.runs.designs
 
     @property
     def complete(self) -> bool:
@@ -127,8 +131,7 @@ def load(folder: Path | str) -> Answers:
     Raises:
         FileError: there is no study, or it was written by another version.
     """
-    setup, manifest = load_setup(folder)
-    table = plan_runs(setup)
+    setup, table, manifest = load_runs(folder)
     goals = (*setup.objectives, *(one.goal for one in setup.constraints), *setup.shown)
     count = len(table.designs)
     values = np.full((count, len(goals)), np.nan)
@@ -152,7 +155,7 @@ def load(folder: Path | str) -> Answers:
     candidates = np.flatnonzero(feasible)
     order = candidates[np.lexsort((score[candidates], ~on_front[candidates]))]
     return Answers(
-        Path(folder), setup, manifest, table.designs, goals, values, stored, failed, reason, feasible, on_front, order
+        Path(folder), setup, table, manifest, goals, values, stored, failed, reason, feasible, on_front, order
     )
 
 

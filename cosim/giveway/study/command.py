@@ -162,15 +162,13 @@ def counts(answers: Answers) -> str:
 def write_all(answers: Answers, simulate_chosen: bool = True) -> list[Path]:
     """Simulate the best designs event-exact with traces; write report.html, designs table and figures."""
     from giveway.study.chosen import simulate
-    from giveway.study.engine import plan_runs
     from giveway.study.export import export_table
     from giveway.study.report import write_report
 
     results = {}
     if simulate_chosen and answers.setup.chosen:
-        table = plan_runs(answers.setup)
         for design in answers.order[: answers.setup.chosen].tolist():
-            results[design] = simulate(answers.setup, table, answers.folder, design)
+            results[design] = simulate(answers.setup, answers.runs, answers.folder, design)
     table_file, report = answers.folder / "table.csv", answers.folder / "report.html"
     export_table(answers, table_file)
     write_report(report, answers, results)

@@ -24,7 +24,7 @@ from giveway.study.store import KeyIndex, Store
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Outcome", "Progress", "Report", "plan_runs", "sweep"]
+__all__ = ["Outcome", "Progress", "Report", "load_runs", "plan_runs", "sweep"]
 
 PART_S = 5.0  # of work in one part: what a kill may lose
 PART_FIRST, PART_MAX = 32, 8192
@@ -130,6 +130,7 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
     try:
         manifest = _manifest(setup, table, shared, fingerprint)
         _keep_inputs(setup, store.folder)
+        store.write_designs(table.designs, table.deviations)
         store.write_manifest({**manifest, "complete": not store.missing(table.count)})
         runner = _Runner(setup, table, contexts, store, threads, progress)
         outcome = runner.run()
@@ -372,16 +373,17 @@ def _input_files(setup: Setup) -> Iterator[tuple[Path, str]]:
         yield setup.folder / setup.document["designs"]["file"], "designs.csv"
 
 
-def load_setup(folder: Path | str) -> tuple[Setup, dict[str, Any]]:
-    """The study in a folder that `sweep` wrote, and its manifest."""
-    from giveway.study.store import MANIFEST_FILE, read_manifest
+def load_runs(folder: Path | str) -> tuple[Setup, RunTable, dict[str, Any]]:
+    """The study in a folder that `sweep` wrote, its runs, and its manifest."""
+    from giveway.study.store import MANIFEST_FILE, PARTS, read_designs, read_manifest
     from giveway.study.study_file import check
 
     folder = Path(folder)
     manifest = read_manifest(folder)
     try:
-        return check(manifest["study"], folder, manifest["name"]), manifest
+        setup = check(manifest["study"], folder, manifest["name"])
     except FileError:
         raise
     except GivewayError as error:
         raise FileError(folder / MANIFEST_FILE, f"is of another version of giveway: {error}") from None
+    return setup, RunTable(setup, *read_designs(folder / PARTS / manifest["fingerprint"][:16])), manifest

@@ -12,7 +12,6 @@ from xml.etree import ElementTree
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.files import check_file, write_text
 from giveway.study.chosen import hit_of, settings_of_run
-from giveway.study.engine import plan_runs
 from giveway.variables import table as variable_table
 
 if TYPE_CHECKING:
@@ -88,7 +87,7 @@ def _truth(value: object) -> str:
 
 
 def _settings(answers: Answers, design: int, case: int) -> dict[str, dict[str, Value]]:
-    return settings_of_run(plan_runs(answers.setup), design, 0, case)
+    return settings_of_run(answers.runs, design, 0, case)
 
 
 def _csv(answers: Answers, design: int, _case: int, _model: str) -> str:
@@ -104,7 +103,7 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
     """The scenario file of one run at nominal values: what the study's own file says, and the design's values."""
     import tomlkit
 
-    study, table = answers.setup.cases[case], plan_runs(answers.setup)
+    study, table = answers.setup.cases[case], answers.runs
     document: dict[str, Any] = {**study.document, "name": f"{answers.setup.name}, design {design}"[:80]}
     settings, hit = settings_of_run(table, design, 0, case), hit_of(table, design, 0, case)
     quantities = [one.quantity for one in answers.setup.varied]

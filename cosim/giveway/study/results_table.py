@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from giveway.study.runs import RunTable
 
-__all__ = ["Outcomes", "part_table", "read_part", "result_columns"]
+__all__ = ["Outcomes", "part_table", "read_part", "read_runs", "result_columns"]
 
 NOT_CACHED = ("no memory", "cancelled")
 
@@ -101,6 +101,15 @@ def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcome
         for (name, (_, unit)), array in zip(columns.items(), arrays, strict=True)
     ]
     return pyarrow.table(arrays, schema=pyarrow.schema(fields, metadata={"schema_version": "1"}))
+
+
+def read_runs(folder: Path, names: list[str]) -> dict[str, NDArray[np.float64]]:
+    """Numbers of all stored runs of the study in ``folder``, in their order, by column."""
+    from giveway.study.store import PARTS, list_parts, read_manifest
+
+    parts = list_parts(folder / PARTS / read_manifest(folder)["fingerprint"][:16])
+    tables = [read_part(path, names) for _, _, path in parts]
+    return {name: np.concatenate([table[name].to_numpy() for table in tables]) for name in names}
 
 
 def read_part(path: Path, columns: list[str]) -> Any:

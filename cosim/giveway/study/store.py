@@ -1,6 +1,7 @@
 """The folder of a study: a manifest, and parts (Parquet) that are there as a whole or not at all.
 
     DIR/manifest.json                what was asked for, versions, hashes, seeds
+    DIR/parts/HASH/designs.npz       values of all designs, deviations of all tolerance samples
     DIR/parts/HASH/part-A-B.parquet  the results of runs A to B - 1
     DIR/robot.toml, designs.csv      copies of what the study file named
 
@@ -27,11 +28,20 @@ from giveway.files import read_json, replace_file, write_text
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["MANIFEST_FILE", "SCHEMA_VERSION", "KeyIndex", "Store", "read_manifest"]
+__all__ = [
+    "MANIFEST_FILE",
+    "PARTS",
+    "SCHEMA_VERSION",
+    "KeyIndex",
+    "Store",
+    "list_parts",
+    "read_designs",
+    "read_manifest",
+]
 
 SCHEMA_VERSION = 1
 KIND = "giveway study"
-MANIFEST_FILE, LOCK_FILE, PARTS = "manifest.json", ".lock", "parts"
+MANIFEST_FILE, LOCK_FILE, PARTS, DESIGNS_FILE = "manifest.json", ".lock", "parts", "designs.npz"
 HINT = "give a folder that `giveway sweep` wrote"
 _PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
 MERGED_AT = 16
@@ -58,7 +68,7 @@ class Store:
             self._lock = self._take_lock()
         except OSError as error:
             raise FileError(folder, f"cannot be written: {error.strerror}") from None
-        for left in self.parts_folder.glob(".part-*"):  # of a process that was killed while it wrote
+        for left in self.parts_folder.glob(".*"):  # of a process that was killed while it wrote
             shutil.rmtree(left, ignore_errors=True)
 
     @staticmethod
@@ -93,6 +103,13 @@ class Store:
         """Write the manifest, atomically."""
         text = json.dumps({"schema_version": SCHEMA_VERSION, "kind": KIND, **manifest}, indent=2, allow_nan=False)
         write_text(self.folder / MANIFEST_FILE, text + "\n")
+
+    def write_designs(self, designs: NDArray[np.float64], deviations: NDArray[np.float64]) -> None:
+        """Keep what was sampled: another version of the samplers may do it otherwise."""
+        path = self.parts_folder / DESIGNS_FILE
+        if not path.is_file():
+            with replace_file(path) as temporary:
+                np.savez(temporary, designs=designs, deviations=deviations)
 
     def parts(self) -> list[tuple[int, int, Path]]:
         """First run, last run + 1 and file of each part of this study, in order."""
@@ -136,6 +153,16 @@ class Store:
             seen.add(folder.resolve())
             for parts_folder in sorted((folder / PARTS).glob("*")):
                 yield from (path for _, _, path in list_parts(parts_folder))
+
+
+def read_designs(parts_folder: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Designs and deviations that `Store.write_designs` kept."""
+    path = parts_folder / DESIGNS_FILE
+    try:
+        with np.load(path) as kept:
+            return kept["designs"], kept["deviations"]
+    except (OSError, ValueError, KeyError) as error:
+        raise FileError(path, f"cannot be read: {error}", HINT) from None
 
 
 def list_parts(parts_folder: Path) -> list[tuple[int, int, Path]]:

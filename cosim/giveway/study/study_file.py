@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -38,8 +39,8 @@ _TOP = (
 _SCENARIO = ("duration", "bumper", "robot", "seed", "body_region", "plan", "push", "testbed", "controller")
 _COLLISION = ("name", "mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _SPREAD = ("low", "high", "mode", "mean", "sigma")
-_VARY = ("quantity", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
-_TOLERANCE = ("quantity", "unit", "relative", "absolute", "distribution")
+_VARY = ("quantity", "also", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
+_TOLERANCE = ("quantity", "also", "unit", "relative", "absolute", "distribution")
 _GOAL = ("metric", "collisions", "tolerances")
 OVER_COLLISIONS, OVER_TOLERANCES = ("worst", "mean"), ("worst", "mean", "nominal")
 TOLERANCE_KINDS = ("sobol", "latin-hypercube", "corners")
@@ -181,12 +182,32 @@ def _case(name: str, shared: dict[str, Any], hit: dict[str, Any] | None, folder:
     )
 
 
+def _quantity(section: Section) -> Quantity:
+    """The quantity of a table, and those that ``also`` have its value."""
+    quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
+    others = section.values.get("also", [])
+    if not isinstance(others, list):
+        raise GivewayError(section.full("also"), others, "a list of quantities")
+    for index, name in enumerate(others):
+        field = f"{section.full('also')}[{index}]"
+        other = find(field, str(name))
+        if not (quantity.columns and other.columns) or (other.kind, other.unit) != (quantity.kind, quantity.unit):
+            raise GivewayError(field, name, f"a parameter of the same kind and unit as {quantity.name}")
+        quantity = dataclasses.replace(
+            quantity,
+            minimum=max(quantity.minimum, other.minimum),
+            maximum=min(quantity.maximum, other.maximum),
+            columns=(*quantity.columns, *other.columns),
+        )
+    return quantity
+
+
 def _scale(section: Section, unit: str) -> float:
     return factor(section.full("unit"), section.text("unit"), unit) if "unit" in section.values else 1.0
 
 
 def _varied(section: Section) -> Varied:
-    quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
+    quantity = _quantity(section)
     if "unit" in section.values and quantity.unit == "":
         raise GivewayError(section.full("unit"), section.values["unit"], f"none: {quantity.name} has no unit")
     scale = _scale(section, quantity.unit)
@@ -242,7 +263,7 @@ def _value(field: str, value: Any, quantity: Quantity, scale: float, whole_neede
 
 
 def _tolerance(section: Section) -> Tolerance:
-    quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
+    quantity = _quantity(section)
     if quantity.kind != "real":
         raise GivewayError(section.full("quantity"), quantity.name, "a quantity of real numbers")
     keys = [key for key in ("relative", "absolute") if key in section.values]

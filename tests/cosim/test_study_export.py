@@ -1,0 +1,120 @@
+"""A design taken away does what it did in the study: as parameters of the FMU, as a scenario, as a list."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from xml.etree import ElementTree
+
+import fmpy.ssp
+import giveway
+import numpy as np
+import pytest
+from giveway import batch
+from giveway.errors import GivewayError
+from giveway.study.answers import Answers
+from giveway.study.export import SSV, export_design, export_table
+from lxml import etree
+from study_helpers import LATCH, SPRING, small_study, stored_runs
+
+DESIGN = 5
+SCHEMA = Path(fmpy.ssp.__file__).parent / "schema" / "SystemStructureParameterValues.xsd"
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+    """Eight designs in which everything varies that an export must carry."""
+    study = small_study(vary=[]).collision("side", speed=0.4, edge=1, offset=0.05, time=0.12, height=0.5)
+    study.vary(LATCH, low=10.0, high=60.0).vary(SPRING, low=500.0, high=2000.0)
+    study.vary("bumper", values=["spring", "magnetic"]).vary("robot.base.mass", low=30.0, high=40.0)
+    study.vary("collision.around", low=0.0, high=1.0).vary("collision.angle", low=-20.0, high=20.0)
+    study.vary("collision.speed", low=0.3, high=0.6).vary("temperature", low=-10.0, high=50.0)
+    study.vary("controller.detector.kind", values=[0, 1]).vary("testbed.electronics.seed", low=1, high=1000)
+    study.vary("collision.mass", low=5.0, high=15.0)
+    study.designs("latin-hypercube", count=8).objective("peak contact force")
+    return study.run(tmp_path_factory.mktemp("export") / "study", threads=2)
+
+
+def stored(answers: Answers, collision: str) -> dict[str, float]:
+    runs = stored_runs(answers.folder)
+    row = np.flatnonzero((runs["design"] == DESIGN) & (runs["collision"] == collision))[0]
+    assert runs["status"][row] == "ok"
+    return {
+        name: runs[name][row] for name in ("peak contact force", "bumper travel", "contact impulse", "contact speed")
+    }
+
+
+def test_an_ssv_is_valid_and_gives_the_fmu_the_design(answers: Answers, tmp_path: Path) -> None:
+    values: dict[str, dict[str, object]] = {}
+    schema = etree.XMLSchema(etree.parse(SCHEMA))
+    for model in ("testbed", "controller"):
+        export_design(answers, DESIGN, tmp_path / f"{model}.ssv", model=model)
+        schema.assertValid(etree.parse(tmp_path / f"{model}.ssv"))
+        values[model] = {}
+        for parameter in ElementTree.parse(tmp_path / f"{model}.ssv").iter(f"{{{SSV}}}Parameter"):
+            (entry,) = parameter
+            values[model][parameter.attrib["name"]] = entry.attrib["value"]
+    # The FMUs themselves, over FMPy, with nothing but the file's values.
+    bumper = ("none", "spring", "magnetic")[int(str(values["testbed"].pop("bumper.kind")))]
+    scenario = giveway.Scenario("taken away", 0.2, bumper=bumper, **values)  # type: ignore[arg-type]
+    result = giveway.run(scenario)
+    expected = stored(answers, "front")
+    assert result.metric("peak contact force").value == pytest.approx(expected["peak contact force"], rel=1e-12)
+    assert result.metric("bumper travel").value == pytest.approx(expected["bumper travel"], rel=1e-12)
+
+
+def test_an_ssv_for_the_bumper_fmu_holds_the_bumper(answers: Answers, tmp_path: Path) -> None:
+    export_design(answers, DESIGN, tmp_path / "bumper.ssv", model="bumper")
+    root = ElementTree.parse(tmp_path / "bumper.ssv").getroot()
+    names = {parameter.attrib["name"] for parameter in root.iter(f"{{{SSV}}}Parameter")}
+    assert names == {"bumper.kind", "bumper.spring_rate", "bumper.latch_force"}
+    units = {one.attrib["name"] for one in root.iter("{http://ssp-standard.org/SSP1/SystemStructureCommon}Unit")}
+    assert units == {"N", "N/m"}
+
+
+@pytest.mark.parametrize("collision", ["front", "side"])
+def test_a_scenario_file_runs_as_in_the_study(answers: Answers, collision: str, tmp_path: Path) -> None:
+    export_design(answers, DESIGN, tmp_path / "design.toml", collision=collision)
+    result = batch.run(giveway.read_scenario(tmp_path / "design.toml"))
+    expected = stored(answers, collision)
+    for name in ("peak contact force", "bumper travel", "contact speed"):
+        # Degrees and back, and the place from its coordinates: the slider's start differs in its last digits.
+        assert result.metric(name).value == pytest.approx(expected[name], rel=1e-9), name
+
+
+def test_a_list_of_the_design_is_one_of_designs(answers: Answers, tmp_path: Path) -> None:
+    export_design(answers, DESIGN, tmp_path / "design.csv")
+    with (tmp_path / "design.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [row["quantity"] for row in rows] == [one.quantity.name for one in answers.setup.varied]
+    (tmp_path / "again.csv").write_text(
+        ",".join(row["quantity"] for row in rows) + "\n" + ",".join(row["value"] for row in rows) + "\n",
+        encoding="utf-8",
+    )
+    again = small_study(vary=[], designs={"kind": "csv", "file": "again.csv"}).setup(tmp_path)
+    assert again.plan.rows is not None
+    np.testing.assert_array_equal(again.plan.rows[0], answers.designs[DESIGN])
+
+
+def test_the_table_has_every_design_and_goal(answers: Answers, tmp_path: Path) -> None:
+    export_table(answers, tmp_path / "all.csv")
+    with (tmp_path / "all.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == len(answers.designs)
+    peaks = [float(row["peak contact force, worst collision [N]"] or math.nan) for row in rows]
+    np.testing.assert_array_equal(peaks, answers.values[:, 0])
+
+
+@pytest.mark.parametrize(("design", "name", "keys", "words"), [
+    (8, "a.csv", {}, "--design: 8 .* from 0 to 7"),
+    (0, "a.txt", {}, r"\.ssv, \.toml or \.csv"),
+    (0, "a.toml", {"collision": "frnt"}, "front"),
+    (0, "a.ssv", {"model": "drivetrain"}, "--model: drivetrain is unknown"),
+])  # fmt: skip
+def test_what_cannot_be_exported_is_said(
+    answers: Answers, design: int, name: str, keys: dict[str, str], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(GivewayError, match=words):
+        export_design(answers, design, tmp_path / name, **keys)
+    assert not list(tmp_path.iterdir())
