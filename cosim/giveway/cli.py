@@ -365,8 +365,12 @@ def sweep_designs(
         again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
         typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
         raise typer.Exit(INTERRUPTED)
-    found = answers.load(folder)
-    written = command.write_all(found)
+    try:
+        found = answers.load(folder)
+        written = command.write_all(found)
+    except KeyboardInterrupt:
+        typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
+        raise typer.Exit(INTERRUPTED) from None
     _print_answers(found)
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from cosim_helpers import Cli
+from giveway.cli import _main
 
 STUDY = """
 schema_version = 1
@@ -48,12 +49,10 @@ metrics = ["bumper travel"]
 """
 
 
-def test_from_the_file_to_the_chosen_bumper(cli: Cli, tmp_path: Path) -> None:
+def test_from_the_file_to_the_chosen_bumper(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "mine.toml").write_text(STUDY, encoding="utf-8")
-    checked = cli("sweep", "mine.toml", "--check")
-    assert checked.returncode == 0, checked.stderr
-    assert "9 designs, 1 collision" in checked.stdout
-    assert not (tmp_path / "out").exists()
     swept = cli("sweep", "mine.toml")
     assert swept.returncode == 0, swept.stderr
     folder = tmp_path / "out" / "studies" / "mine"
@@ -66,17 +65,32 @@ def test_from_the_file_to_the_chosen_bumper(cli: Cli, tmp_path: Path) -> None:
     best = re.search(r"^ *(\d+) .* yes *$", swept.stdout, flags=re.MULTILINE)
     assert best is not None
     assert (folder / "chosen" / f"design-{best[1]}" / "front" / "traces.parquet").is_file()
-    shown = cli("study", "show", str(folder))
-    assert shown.returncode == 0, shown.stderr
-    assert best[0] in shown.stdout
+    # In this process from here on: what is tested is what the commands do, and imports take seconds.
+    monkeypatch.chdir(tmp_path)
+
+    def say(*arguments: str) -> str:
+        capsys.readouterr()
+        assert _main(list(arguments)) == 0, capsys.readouterr().err
+        return capsys.readouterr().out
+
+    assert best[0] in say("study", "show", str(folder))
     for file in ("bumper.ssv", "bumper.toml", "bumper.csv"):
-        exported = cli("study", "export", str(folder), "--design", best[1], "--out", file)
-        assert exported.returncode == 0, exported.stderr
+        say("study", "export", str(folder), "--design", best[1], "--out", file)
         assert (tmp_path / file).stat().st_size > 0
-    again = cli("run", "bumper.toml", "--out", "run")
-    assert again.returncode == 0, again.stderr
-    simulated = cli("study", "run", str(folder), "--design", "0")
-    assert "peak contact force" in simulated.stdout
+    say("study", "export", str(folder), "--out", "all.csv")
+    assert (tmp_path / "all.csv").read_text(encoding="utf-8").count("\n") == 10
+    assert "peak contact force" in say("run", "bumper.toml", "--out", "run")
+    assert "peak contact force" in say("study", "run", str(folder), "--design", "0")
+
+
+def test_a_file_can_be_checked_without_a_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.toml").write_text(STUDY, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert _main(["sweep", "mine.toml", "--check"]) == 0
+    assert "9 designs, 1 collision" in capsys.readouterr().out
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
@@ -87,12 +101,17 @@ def test_from_the_file_to_the_chosen_bumper(cli: Cli, tmp_path: Path) -> None:
     (("sweep", "mine.toml", "--threads", "0"), "threads: 0 is not allowed"),
 ])  # fmt: skip
 def test_wrong_input_is_one_line_and_writes_nothing(
-    arguments: tuple[str, ...], words: str, cli: Cli, tmp_path: Path
+    arguments: tuple[str, ...],
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     (tmp_path / "mine.toml").write_text(STUDY, encoding="utf-8")
     (tmp_path / "wrong.toml").write_text(STUDY.replace("bumper.spring_rate", "bumper.spring_rat"), encoding="utf-8")
-    found = cli(*arguments)
-    assert found.returncode == 2
-    assert found.stderr.count("\n") == 1
-    assert words in found.stderr
+    monkeypatch.chdir(tmp_path)
+    assert _main(list(arguments)) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert words in said
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.toml", "wrong.toml"]

@@ -50,7 +50,8 @@ def run_natively(runs: RunTable, which: np.ndarray) -> np.ndarray:
         rows = runs.rows(design[mine], sample[mine], number)
         assert not rows.refused
         values[mine] = rows.values
-    part = NativePart(runs, values, case, 2, "event-exact")
+    part = NativePart(runs, values, case)
+    part.start(2, "event-exact")
     while not part.wait(0.1)[0]:
         pass
     part.finish()

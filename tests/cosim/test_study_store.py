@@ -71,7 +71,7 @@ def test_twenty_kills_at_random_moments_change_nothing(tmp_path: Path) -> None:
     last = swept(study, killed)
     assert last.ran == count - 4 * len(seen), "a stored part was run again"
     same_runs(whole, killed)
-    assert not list(killed.rglob(".*-*")), "left by a kill"
+    assert not [path.name for path in killed.rglob(".*-*")], "left by a kill"
 
 
 def test_a_finished_study_is_not_run_again(tmp_path: Path) -> None:
@@ -159,6 +159,13 @@ def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="holds no study"):
         swept(small_study(), tmp_path / "mine")
     assert [path.name for path in (tmp_path / "mine").iterdir()] == ["letter.txt"]
+
+
+def test_a_kill_while_the_first_manifest_is_written_is_no_matter(tmp_path: Path) -> None:
+    (tmp_path / "study" / "parts").mkdir(parents=True)
+    (tmp_path / "study" / ".manifest.json-abc").write_text("{", encoding="utf-8")
+    assert swept(small_study(), tmp_path / "study").ran == 4
+    assert not list((tmp_path / "study").glob(".manifest*"))
 
 
 def test_the_manifest_says_where_it_comes_from(tmp_path: Path) -> None:

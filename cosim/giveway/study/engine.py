@@ -19,7 +19,7 @@ from giveway.study import designs as design_module
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
 from giveway.study.runs import RunTable
 from giveway.study.setup import Setup
-from giveway.study.store import KeyIndex, Store
+from giveway.study.store import INPUT_FILES, KeyIndex, Store
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,9 +129,10 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
     store = Store(folder, fingerprint)
     try:
         manifest = _manifest(setup, table, shared, fingerprint)
-        _keep_inputs(setup, store.folder)
         store.write_designs(table.designs, table.deviations)
+        # First the manifest: without one, a folder with files in it is taken for somebody else's.
         store.write_manifest({**manifest, "complete": not store.missing(table.count)})
+        _keep_inputs(setup, store.folder)
         runner = _Runner(setup, table, contexts, store, threads, progress)
         outcome = runner.run()
         if not outcome.interrupted:
@@ -158,6 +159,7 @@ class _Runner:
         self._index = KeyIndex()
         self._stored = self._ran = self._reused = self._failed = 0
         self._started = time.perf_counter()
+        self._before = 0  # runs that were stored when this began
         self._rate = 0.0
         self._said = 0.0
 
@@ -167,6 +169,7 @@ class _Runner:
             self._load_keys()
             gaps = self._store.missing(self._table.count)
             self._stored = self._table.count - sum(end - first for first, end in gaps)
+            self._before, self._started = self._stored, time.perf_counter()
             prepared = None
             for first, end in gaps:
                 while first < end:
@@ -269,8 +272,9 @@ class _Runner:
         if not where.size:
             return None
         started = time.perf_counter()
-        running = NativePart(self._table, part.values[where], part.case[where], self._threads, self._setup.method)
+        running = NativePart(self._table, part.values[where], part.case[where])
         try:
+            running.start(self._threads, self._setup.method)
             prepared = self._prepare(*following) if following is not None else None
             done = False
             while not done:
@@ -287,8 +291,8 @@ class _Runner:
         if self._progress is None or (now - self._said < WAIT_S and not force):
             return
         self._said = now
-        rate = (self._ran + under_way) / max(now - self._started, 1e-6)
         done = self._stored + under_way
+        rate = (done - self._before) / max(now - self._started, 1e-6)
         self._progress(Progress(done, self._table.count, self._reused, self._failed, rate))
 
 
@@ -348,9 +352,9 @@ def _portable(setup: Setup) -> dict[str, Any]:
     """The document of the study, with its paths into the study's folder."""
     document = json.loads(json.dumps(setup.document))
     if "robot" in document.get("scenario", {}):
-        document["scenario"]["robot"] = "robot.toml"
+        document["scenario"]["robot"] = INPUT_FILES[0]
     if document.get("designs", {}).get("kind") == "csv":
-        document["designs"]["file"] = "designs.csv"
+        document["designs"]["file"] = INPUT_FILES[1]
     assert isinstance(document, dict)
     return document
 
@@ -368,9 +372,9 @@ def _keep_inputs(setup: Setup, folder: Path) -> None:
 def _input_files(setup: Setup) -> Iterator[tuple[Path, str]]:
     robot = setup.cases[0].scenario.robot
     if robot is not None:
-        yield Path(robot), "robot.toml"
+        yield Path(robot), INPUT_FILES[0]
     if setup.plan.kind == "csv":
-        yield setup.folder / setup.document["designs"]["file"], "designs.csv"
+        yield setup.folder / setup.document["designs"]["file"], INPUT_FILES[1]
 
 
 def load_runs(folder: Path | str) -> tuple[Setup, RunTable, dict[str, Any]]:

@@ -9,12 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
+import numpy as np
+
 from giveway.errors import GivewayError, UnknownNameError
-from giveway.files import check_file, write_text
+from giveway.files import check_file, replace_file, write_text
 from giveway.study.chosen import hit_of, settings_of_run
 from giveway.variables import table as variable_table
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from giveway.study.answers import Answers
     from giveway.variables import Value
 
@@ -68,18 +72,35 @@ def export_table(answers: Answers, path: Path) -> None:
     check_file(path)
     if path.suffix != ".csv":
         raise GivewayError("--out", path, "a file that ends in .csv; other kinds need --design")
-    setup, text = answers.setup, io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    quantities = [one.quantity for one in setup.varied]
-    head = [f"{one.name} [{one.unit}]" if one.unit not in ("", "1") else one.name for one in quantities]
-    goals = [f"{answers.goal_name(j)} [{goal.metric.unit}]" for j, goal in enumerate(answers.goals)]
-    writer.writerow(["design", *head, *goals, "feasible", "pareto", "failed runs", "reason"])
-    for design, (values, found) in enumerate(zip(answers.designs, answers.values, strict=True)):
-        cells = [one.text(value) for one, value in zip(quantities, values, strict=True)]
-        numbers = ["" if math.isnan(value) else repr(float(value)) for value in found]
-        state = [_truth(answers.feasible[design]), _truth(answers.pareto[design]), int(answers.failed[design])]
-        writer.writerow([design, *cells, *numbers, *state, answers.reason.get(design, "")])
-    write_text(path, text.getvalue())
+    import pyarrow
+    import pyarrow.csv
+
+    columns: dict[str, Any] = {"design": np.arange(len(answers.designs))}
+    for j, one in enumerate(answers.setup.varied):
+        quantity, values = one.quantity, answers.designs[:, j]
+        if quantity.kind == "choice":
+            columns[quantity.name] = np.array(quantity.choices)[values.astype(np.intp)]
+        else:
+            columns[_named(quantity.name, quantity.unit)] = _typed(quantity.kind, values)
+    for j, goal in enumerate(answers.goals):
+        columns.setdefault(_named(answers.goal_name(j), goal.metric.unit), answers.values[:, j])
+    columns |= {"feasible": answers.feasible, "pareto": answers.pareto, "failed runs": answers.failed}
+    reasons = np.full(len(answers.designs), "", dtype=object)
+    for design, reason in answers.reason.items():
+        reasons[design] = reason
+    columns["reason"] = reasons
+    with replace_file(path) as temporary:
+        # NaN (it did not happen) becomes an empty cell.
+        arrays = {name: pyarrow.array(values, from_pandas=True) for name, values in columns.items()}
+        pyarrow.csv.write_csv(pyarrow.table(arrays), temporary)
+
+
+def _named(name: str, unit: str) -> str:
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def _typed(kind: str, values: NDArray[np.float64]) -> NDArray[Any]:
+    return values if kind == "real" else values.astype(np.bool_ if kind == "boolean" else np.int64)
 
 
 def _truth(value: object) -> str:

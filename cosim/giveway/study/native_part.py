@@ -24,11 +24,9 @@ def default_threads() -> int:
 
 
 class NativePart:
-    """Runs that were started and are under way. ``values`` has shape (runs, columns), ``case`` shape (runs,)."""
+    """Runs of one part. ``values`` has shape (runs, columns), ``case`` shape (runs,)."""
 
-    def __init__(
-        self, table: RunTable, values: NDArray[np.float64], case: NDArray[np.int64], threads: int, method: str
-    ) -> None:
+    def __init__(self, table: RunTable, values: NDArray[np.float64], case: NDArray[np.int64]) -> None:
         self._library = batch._library()
         count, used = len(values), table.used
         self._settings = np.zeros((count, len(used)), dtype=batch._SETTING)
@@ -49,10 +47,18 @@ class NativePart:
         self._table = table  # plans and pushes must live as long as the runs
         self.results = np.zeros(count, dtype=self._library.result)
         self._handle = ctypes.c_void_p()
+
+    def start(self, threads: int, method: str) -> None:
+        """Begin; `finish` must follow, whatever happens. A call of its own, so that Ctrl-C cannot lose the handle."""
         message = ctypes.create_string_buffer(batch.MESSAGE_SIZE)
         del method  # the library has one
         started = self._library.start(
-            self._specs.ctypes.data, count, threads, self.results.ctypes.data, ctypes.byref(self._handle), message
+            self._specs.ctypes.data,
+            len(self._specs),
+            threads,
+            self.results.ctypes.data,
+            ctypes.byref(self._handle),
+            message,
         )
         if not started:
             raise SimulationError("batch library", message.value.decode(), 0.0)

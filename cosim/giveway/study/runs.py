@@ -65,7 +65,8 @@ class _CaseTable:
     def context(self, shared: dict[str, Any]) -> bytes:
         """Hash of all that decides a run besides its row."""
         scenario = self.case.scenario
-        text = json.dumps({**shared, "step_s": scenario.step_s, "steps": scenario.steps}, sort_keys=True)
+        own = {"step_s": scenario.step_s, "steps": scenario.steps, "body_region": scenario.body_region}
+        text = json.dumps({**shared, **own}, sort_keys=True)
         found = hashlib.blake2b(text.encode(), digest_size=32)
         found.update(np.ascontiguousarray(self.plan).tobytes())
         if self.push is not None:

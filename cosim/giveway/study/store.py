@@ -42,6 +42,7 @@ __all__ = [
 SCHEMA_VERSION = 1
 KIND = "giveway study"
 MANIFEST_FILE, LOCK_FILE, PARTS, DESIGNS_FILE = "manifest.json", ".lock", "parts", "designs.npz"
+INPUT_FILES = ("robot.toml", "designs.csv")
 HINT = "give a folder that `giveway sweep` wrote"
 _PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
 MERGED_AT = 16
@@ -68,14 +69,21 @@ class Store:
             self._lock = self._take_lock()
         except OSError as error:
             raise FileError(folder, f"cannot be written: {error.strerror}") from None
-        for left in self.parts_folder.glob(".*"):  # of a process that was killed while it wrote
+        self._remove_leftovers()
+
+    def _remove_leftovers(self) -> None:
+        """What a process that was killed while it wrote has left."""
+        for left in self.parts_folder.glob(".*"):
             shutil.rmtree(left, ignore_errors=True)
+        for name in (MANIFEST_FILE, *INPUT_FILES):
+            for left in self.folder.glob(f".{name}-*"):
+                left.unlink(missing_ok=True)
 
     @staticmethod
     def _check(folder: Path) -> None:
         if folder.exists() and not folder.is_dir():
             raise FileError(folder, "is a file", "give a folder to write to")
-        if folder.is_dir() and any(path.name not in (LOCK_FILE, PARTS) for path in folder.iterdir()):
+        if folder.is_dir() and any(path.name[0] != "." and path.name != PARTS for path in folder.iterdir()):
             if not (folder / MANIFEST_FILE).is_file():
                 raise FileError(folder, "is not empty and holds no study", "give a new or an empty folder")
             read_manifest(folder)
@@ -131,8 +139,12 @@ class Store:
         import pyarrow.parquet
 
         path = self.parts_folder / f"part-{first:09d}-{first + table.num_rows:09d}.parquet"
-        with replace_file(path) as temporary:
-            pyarrow.parquet.write_table(table, temporary, compression="zstd")
+        try:
+            with replace_file(path) as temporary:
+                pyarrow.parquet.write_table(table, temporary, compression="zstd")
+        except OSError as error:
+            hint = "all parts before it are kept; the same command goes on"
+            raise FileError(path, f"cannot be written: {error.strerror or error}", hint) from None
         handle = os.open(self.parts_folder, os.O_RDONLY)
         try:
             os.fsync(handle)
@@ -183,9 +195,9 @@ class KeyIndex:
         self._merged = _empty()
         self._recent: list[NDArray[Any]] = []
 
-    def add(self, path: Path, keys: Sequence[bytes] | NDArray[Any]) -> None:
-        """Add the runs of the part ``path``, keys in the order of its rows; None or b"" stays out."""
-        halves = np.array([int.from_bytes(key[:8], "little") for key in keys], dtype=np.uint64)
+    def add(self, path: Path, keys: Sequence[bytes]) -> None:
+        """Add the runs of the part ``path``, keys in the order of its rows; b"" stays out."""
+        halves = _halves(keys)
         entries = np.zeros(len(halves), dtype=_ENTRY)
         entries["half"], entries["file"], entries["row"] = halves, len(self.files), np.arange(len(halves))
         self.files.append(path)
@@ -197,7 +209,7 @@ class KeyIndex:
 
     def find(self, keys: Sequence[bytes]) -> NDArray[np.int64]:
         """File and row of each key, shape (n, 2); -1 where there is none. Only half of the key is compared."""
-        wanted = np.array([int.from_bytes(key[:8], "little") for key in keys], dtype=np.uint64)
+        wanted = _halves(keys)
         found = np.full((len(wanted), 2), -1, dtype=np.int64)
         for entries in (self._merged, *self._recent):
             if not len(entries):
@@ -209,6 +221,11 @@ class KeyIndex:
 
 
 _ENTRY = np.dtype([("half", "u8"), ("file", "u4"), ("row", "u4")])
+
+
+def _halves(keys: Sequence[bytes]) -> NDArray[np.uint64]:
+    """The first eight bytes of each key as a number; 0 for no key."""
+    return np.frombuffer(b"".join(key[:8] or bytes(8) for key in keys), dtype=np.uint64)
 
 
 def _empty() -> NDArray[Any]:
