@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import copy
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from giveway.study import study_file
-from giveway.study.answers import load
+from giveway.study.answers import Answers, load
 from giveway.study.engine import sweep
 from giveway.study.gallery import LatchClaim, SensorTrade, latch_claim, sensor_trade
 from PIL import Image
@@ -90,3 +91,14 @@ def test_the_readme_says_what_its_pictures_found(name: str) -> None:
         finding = picture.info["Description"]
     text = " ".join((ROOT / "cosim" / "README.md").read_text(encoding="utf-8").split())
     assert finding in text
+
+
+def test_the_readme_s_ten_lines_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (ROOT / "cosim" / "README.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n([^`]*giveway\.Study[^`]*)```", text)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Answers] = {}
+    exec(block.replace("count=512", "count=2").replace("duration=1.0", "duration=0.6"), names)
+    # The slider comes at 0.5 s without a time of its own: 0.1 s of the collision are enough here.
+    assert names["answers"].complete
+    assert (tmp_path / "out" / "studies" / "latch" / "manifest.json").is_file()

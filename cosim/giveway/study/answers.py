@@ -95,6 +95,12 @@ class Answers:
             over.append("nominal" if goal.tolerances == "nominal" else f"{goal.tolerances} of tolerances")
         return goal.metric.name + (f", {', '.join(over)}" if over else "")
 
+    @property
+    def columns(self) -> list[int]:
+        """Which goals a table shows: an objective that is a constraint, too, once."""
+        names = [self.goal_name(index) for index in range(len(self.goals))]
+        return [index for index, name in enumerate(names) if name not in names[:index]]
+
     def check_design(self, design: int) -> int:
         """``design``, if there is one of that number."""
         if not 0 <= design < len(self.designs):
@@ -111,13 +117,13 @@ class Answers:
             if one.quantity.kind == "choice":
                 values = np.array([one.quantity.text(value) for value in values])
             columns[one.quantity.name] = ("design", values, {"units": one.quantity.unit or "1"})
-        for j, goal in enumerate(self.goals):
-            columns.setdefault(self.goal_name(j), ("design", self.values[:, j], {"units": goal.metric.unit}))
+        for j in self.columns:
+            columns[self.goal_name(j)] = ("design", self.values[:, j], {"units": self.goals[j].metric.unit})
         columns["feasible"], columns["pareto"] = ("design", self.feasible), ("design", self.pareto)
         return xarray.Dataset(columns, coords={"design": np.arange(len(self.designs))})
 
     def sensitivities(self) -> list[Sensitivity]:
-        """Of the objectives, where the designs allow it; an objective that some design has not is left out."""
+        """Of the objectives, where the designs allow it: Morris and Sobol indices need a value of every design."""
         found: list[Sensitivity] = []
         for index in range(len(self.setup.objectives)):
             values, name = self.values[:, index], self.goal_name(index)
@@ -231,7 +237,12 @@ def sensitivities_of(
     """How much each quantity decides about ``values``, one per design; nothing where the designs do not tell."""
     from giveway.study.designs import problem, shares
 
-    if np.isnan(values).any() or len(varied) < 2 or np.ptp(values) == 0.0:
+    known = ~np.isnan(values)
+    if plan.kind in ("latin-hypercube", "sobol"):  # any of these designs will do
+        designs, values = designs[known], values[known]
+    elif not known.all():
+        return []
+    if len(values) < 2 or len(varied) < 2 or np.ptp(values) == 0.0:
         return []
     names = [one.quantity.name for one in varied]
     described = problem(varied)

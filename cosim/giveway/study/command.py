@@ -85,7 +85,7 @@ def overview(setup: Setup, outcome: Outcome) -> str:
     words += f"; {outcome.ran:,} run now in {duration(outcome.wall_s)}"
     if outcome.reused:
         words += f", {outcome.reused:,} taken from equal runs"
-    return words + (f", {outcome.failed:,} of these failed" if outcome.failed else "")
+    return words + (f", {outcome.failed:,} failed" if outcome.failed else "")
 
 
 def sizes(setup: Setup, table: RunTable) -> str:
@@ -104,7 +104,7 @@ def number(value: float) -> str:
 def goal_header(answers: Answers) -> tuple[str, ...]:
     """The first line of `design_rows`."""
     quantities = [f"{one.quantity.name}{_unit(one.quantity.unit)}" for one in answers.setup.varied]
-    goals = [f"{answers.goal_name(j)}{_unit(goal.metric.unit)}" for j, goal in enumerate(answers.goals)]
+    goals = [f"{answers.goal_name(j)}{_unit(answers.goals[j].metric.unit)}" for j in answers.columns]
     return ("design", *quantities, *goals, "front")
 
 
@@ -118,7 +118,7 @@ def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
     for design in answers.order[:count]:
         pairs = zip(answers.setup.varied, answers.designs[design], strict=True)
         values = [one.quantity.text(v) if one.quantity.kind != "real" else number(v) for one, v in pairs]
-        goals = [number(value) for value in answers.values[design]]
+        goals = [number(value) for value in answers.values[design, answers.columns]]
         rows.append((str(design), *values, *goals, "yes" if answers.pareto[design] else ""))
     return rows
 

@@ -82,8 +82,8 @@ def export_table(answers: Answers, path: Path) -> None:
             columns[quantity.name] = np.array(quantity.choices)[values.astype(np.intp)]
         else:
             columns[_named(quantity.name, quantity.unit)] = _typed(quantity.kind, values)
-    for j, goal in enumerate(answers.goals):
-        columns.setdefault(_named(answers.goal_name(j), goal.metric.unit), answers.values[:, j])
+    for j in answers.columns:
+        columns[_named(answers.goal_name(j), answers.goals[j].metric.unit)] = answers.values[:, j]
     columns |= {"feasible": answers.feasible, "pareto": answers.pareto, "failed runs": answers.failed}
     reasons = np.full(len(answers.designs), "", dtype=object)
     for design, reason in answers.reason.items():

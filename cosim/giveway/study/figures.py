@@ -80,8 +80,12 @@ def effects(answers: Answers) -> Figure:
             axes: Axes = grid[i, j]
             for which, colour in ((bad, INFEASIBLE_COLOUR), (good, DESIGN_COLOUR)):
                 axes.scatter(answers.designs[which, j], answers.values[which, i], s=8, color=colour, alpha=0.6, lw=0)
-            if _logarithmic(answers, j):
+            spread = answers.setup.varied[j].spread
+            if spread is not None and spread.kind == "loguniform":
                 axes.set_xscale("log")
+                axes.minorticks_off()
+                ticks = np.geomspace(spread.low, spread.high, 3)
+                axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
             if quantity.kind == "choice":
                 axes.set_xticks(range(len(quantity.choices)), quantity.choices)
             if i == rows - 1:
@@ -89,11 +93,6 @@ def effects(answers: Answers) -> Figure:
             if j == 0:
                 axes.set_ylabel(axis_label(answers.goals[i].metric.name, answers.goals[i].metric.unit))
     return figure
-
-
-def _logarithmic(answers: Answers, index: int) -> bool:
-    spread = answers.setup.varied[index].spread
-    return spread is not None and spread.kind == "loguniform"
 
 
 def sensitivities(answers: Answers) -> Figure | None:

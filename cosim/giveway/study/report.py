@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+import re
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
@@ -13,6 +14,7 @@ from giveway.files import write_text
 from giveway.report.figures import NamedFigure
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
     from giveway.result import Result
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["write_report"]
 
 REASONS_MAX, DESIGNS_MAX = 8, 25
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
 def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> None:
@@ -36,16 +39,13 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     )
     style = (files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8")
     setup = answers.setup
-    reasons: dict[str, list[int]] = {}
-    for design, reason in answers.reason.items():
-        reasons.setdefault(reason, []).append(design)
     text = environment.get_template("study.html.j2").render(
         title=setup.name,
         counts=counts(answers),
         complete=answers.complete,
         manifest=answers.manifest,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        header=goal_header(answers),
+        header=[_breakable(name) for name in goal_header(answers)],
         rows=design_rows(answers, DESIGNS_MAX),
         ranked=len(answers.order),
         figures=_figures(answers, results),
@@ -55,10 +55,25 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
         collisions=[(case.name, _hit(case.document.get("collision", {}))) for case in setup.cases],
         constraints=[_constraint(one) for one in setup.constraints],
-        reasons=sorted(reasons.items(), key=lambda item: -len(item[1]))[:REASONS_MAX],
+        reasons=_reasons(answers.reason),
         style=style,
     )
     write_text(path, text)
+
+
+def _reasons(reason: Mapping[int, str]) -> list[tuple[str, list[int]]]:
+    """The most frequent reasons, each in the words of its first design; those that differ in numbers are one."""
+    found: dict[str, tuple[str, list[int]]] = {}
+    for design, text in reason.items():
+        found.setdefault(_NUMBER.sub("#", text), (text, []))[1].append(design)
+    return sorted(found.values(), key=lambda item: -len(item[1]))[:REASONS_MAX]
+
+
+def _breakable(name: str) -> Markup:
+    """A name that a narrow column may break where a reader would."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub(r"([._])(?=\w)", r"\1<wbr>", str(escape(name))))
 
 
 def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> list[NamedFigure]:
