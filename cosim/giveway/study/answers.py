@@ -54,7 +54,8 @@ class Answers:
     Attributes:
         folder, setup, runs, manifest: of the study.
         goals: objectives, then constraints, then what else is shown; the columns of ``values``.
-        values: shape (designs, goals); NaN: it did not happen in some run, or a run failed.
+        values: shape (designs, goals); NaN: it did not happen in some run, or a run failed; infinite: a share of a
+            limit that allows nothing.
         stored, failed: runs per design that are stored, and that failed.
         reason: of the first run of a design that failed, by design.
         feasible: all runs are there and none failed, and all constraints are met.
@@ -154,7 +155,7 @@ def load(folder: Path | str) -> Answers:
         column = values[:, offset + index]
         feasible &= (column >= constraint.minimum) & (column <= constraint.maximum)  # NaN meets nothing
     costs = values[:, :offset] * np.array([goal.sense for goal in setup.objectives])
-    feasible &= ~np.isnan(costs).any(axis=1)
+    feasible &= np.isfinite(costs).all(axis=1)
     costs[~feasible] = np.nan
     on_front = front(costs) if offset else np.zeros(count, dtype=bool)
     score = scores(costs, on_front, np.array([goal.weight for goal in setup.objectives]))
@@ -237,7 +238,7 @@ def sensitivities_of(
     """How much each quantity decides about ``values``, one per design; nothing where the designs do not tell."""
     from giveway.study.designs import problem, shares
 
-    known = ~np.isnan(values)
+    known = np.isfinite(values)
     if plan.kind in ("latin-hypercube", "sobol"):  # any of these designs will do
         designs, values = designs[known], values[known]
     elif not known.all():

@@ -33,7 +33,7 @@ def axis_label(name: str, unit: str) -> str:
 
 def _drawn(answers: Answers) -> NDArray[np.int64]:
     """Which designs are drawn: all, or a sample that is the same every time."""
-    known = np.flatnonzero(~np.isnan(answers.values[:, : len(answers.setup.objectives)]).any(axis=1))
+    known = np.flatnonzero(np.isfinite(answers.values[:, : len(answers.setup.objectives)]).all(axis=1))
     if len(known) > POINTS_MAX:
         known = np.random.default_rng(1).choice(known, POINTS_MAX, replace=False)
     return known
@@ -85,7 +85,7 @@ def effects(answers: Answers) -> Figure:
                 axes.set_xscale("log")
                 axes.minorticks_off()
                 ticks = np.geomspace(spread.low, spread.high, 3)
-                axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
+                axes.set_xticks(ticks, [f"{tick:.4g}" for tick in ticks])
             if quantity.kind == "choice":
                 axes.set_xticks(range(len(quantity.choices)), quantity.choices)
             if i == rows - 1:
