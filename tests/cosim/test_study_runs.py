@@ -51,7 +51,7 @@ def run_natively(runs: RunTable, which: np.ndarray) -> np.ndarray:
         assert not rows.refused
         values[mine] = rows.values
     part = NativePart(runs, values, case)
-    part.start(2, "event-exact")
+    part.start(2, "event-exact", None)
     while not part.wait(0.1)[0]:
         pass
     part.finish()

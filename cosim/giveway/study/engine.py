@@ -274,7 +274,7 @@ class _Runner:
         started = time.perf_counter()
         running = NativePart(self._table, part.values[where], part.case[where])
         try:
-            running.start(self._threads, self._setup.method)
+            running.start(self._threads, self._setup.method, self._setup.plant_step_s)
             prepared = self._prepare(*following) if following is not None else None
             done = False
             while not done:
@@ -308,6 +308,7 @@ def _shared(setup: Setup) -> dict[str, Any]:
         "library_sha256": model.sha256,
         "tokens": {name: one.token for name, one in library.models.items()},
         "method": setup.method,
+        "plant_step_s": setup.plant_step_s,
         "metrics": [name for name, _ in result_columns()],
     }
 
@@ -337,6 +338,7 @@ def _manifest(setup: Setup, table: RunTable, shared: dict[str, Any], fingerprint
         "runs": table.count,
         "seed": setup.seed,
         "method": setup.method,
+        "plant_step_s": setup.plant_step_s,
         "designs_sha256": hashlib.sha256(table.designs.tobytes()).hexdigest(),
         "library": {key: value for key, value in shared.items() if key != "metrics"},
         "versions": {

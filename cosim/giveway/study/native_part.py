@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway import batch
+from giveway.body_regions import body_region
 from giveway.errors import SimulationError
 from giveway.study.runs import RunTable
 
@@ -40,6 +41,10 @@ class NativePart:
             mine = case == index
             self._specs["step_s"][mine] = one.case.scenario.step_s
             self._specs["step_count"][mine] = one.case.scenario.steps
+            if one.case.scenario.body_region is not None:
+                region = body_region(one.case.scenario.body_region)
+                self._specs["transient_limit_n"][mine] = region.peak_limit_n
+                self._specs["lasting_limit_n"][mine] = region.lasting_limit_n
             for field, values_ in (("plan", one.plan), ("push", one.push)):
                 if values_ is not None:
                     self._specs[field][mine] = values_.ctypes.data
@@ -48,14 +53,14 @@ class NativePart:
         self.results = np.zeros(count, dtype=self._library.result)
         self._handle = ctypes.c_void_p()
 
-    def start(self, threads: int, method: str) -> None:
+    def start(self, threads: int, method: str, plant_step_s: float | None) -> None:
         """Begin; `finish` must follow, whatever happens. A call of its own, so that Ctrl-C cannot lose the handle."""
         message = ctypes.create_string_buffer(batch.MESSAGE_SIZE)
-        del method  # the library has one
+        options = ctypes.byref(batch._options(threads, method, None, plant_step_s))
         started = self._library.start(
             self._specs.ctypes.data,
             len(self._specs),
-            threads,
+            options,
             self.results.ctypes.data,
             ctypes.byref(self._handle),
             message,

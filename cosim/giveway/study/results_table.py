@@ -21,8 +21,11 @@ NOT_CACHED = ("no memory", "cancelled")
 
 
 def result_columns() -> list[tuple[str, str]]:
-    """Name and unit of every number that the library gives back per run, in the order of a part."""
-    found = [("simulated", "s")]
+    """Name and unit of every number that the library gives back per run, in the order of a part.
+
+    A plant step of 0: that run was done event-exact, whatever the study's method.
+    """
+    found = [("simulated", "s"), ("plant step", "s")]
     for metric in batch.native_metrics():
         found.append((metric.name, metric.unit))
         if metric.has_truth:
@@ -41,11 +44,11 @@ class Outcomes:
     def refuse(self, index: int, message: str) -> None:
         """Run ``index`` cannot be."""
         self.status[index], self.message[index] = "refused", message
-        self.numbers[index, 0] = 0.0
+        self.numbers[index, :2] = 0.0
 
     def take_native(self, where: NDArray[np.int64], results: NDArray[Any]) -> None:
         """Results of the library belong to the runs ``where``."""
-        columns = [results["time_s"]]
+        columns = [results["time_s"], results["plant_step_s"]]
         for index, metric in enumerate(batch.native_metrics()):
             columns.append(results["metric"][:, index])
             if metric.has_truth:

@@ -89,7 +89,7 @@ class Setup:
         name: of the study.
         document: what it was made from: the tables of the study file.
         folder: that paths in it are seen from.
-        method: "event-exact" or another of `giveway.study.methods`.
+        method, plant_step_s: one of `giveway.batch.METHODS`, and the step of the plant; None: as each run needs.
         seed: of the samplers.
         cases: collisions.
         varied: quantities that differ between designs.
@@ -107,6 +107,7 @@ class Setup:
     document: dict[str, Any]
     folder: Path
     method: str
+    plant_step_s: float | None
     seed: int
     cases: tuple[Case, ...]
     varied: tuple[Varied, ...]

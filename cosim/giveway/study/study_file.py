@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from giveway.batch import METHODS, PLANT_STEP_RANGE_S
 from giveway.body_regions import body_region
 from giveway.checks import finite, whole
 from giveway.errors import GivewayError, InputFileError, UnknownNameError
@@ -22,7 +23,6 @@ from giveway.scenario_file import scenario_of
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
-from giveway.study.methods import METHODS
 from giveway.study.metrics import find_metric
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
@@ -33,7 +33,7 @@ __all__ = ["check", "read"]
 
 SCHEMA_VERSION = 1
 _TOP = (
-    "schema_version", "name", "seed", "method", "part_runs", "scenario", "collision", "designs", "vary",
+    "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
     "tolerances", "tolerance", "objective", "constraint", "report",
 )  # fmt: skip
 _SCENARIO = ("duration", "bumper", "robot", "seed", "body_region", "plan", "push", "testbed", "controller")
@@ -69,6 +69,7 @@ def check(
     version = top.required("schema_version", "1")
     if version != SCHEMA_VERSION:
         raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+    method = top.choice("method", METHODS, METHODS[0])
     cases = _cases(top, folder)
     varied = tuple(_varied(Section(f"vary[{i}]", one, _VARY)) for i, one in enumerate(_list(top, "vary")))
     _refuse_twice("vary", [one.quantity.name for one in varied])
@@ -98,7 +99,8 @@ def check(
         name=title,
         document=dict(document),
         folder=folder,
-        method=top.choice("method", METHODS, METHODS[0]),
+        method=method,
+        plant_step_s=_plant_step(top, method),
         seed=whole("seed", top.values.get("seed", 1), 0, 2**31 - 1),
         cases=cases,
         varied=varied,
@@ -117,6 +119,14 @@ def check(
         text=text,
         path=path,
     )
+
+
+def _plant_step(top: Section, method: str) -> float | None:
+    if "plant_step" not in top.values:
+        return None
+    if method == METHODS[0]:
+        raise GivewayError("plant_step", top.values["plant_step"], f"none with the method {method}")
+    return finite("plant_step", top.values["plant_step"], *PLANT_STEP_RANGE_S, "s")
 
 
 def _list(top: Section, key: str) -> list[Any]:
