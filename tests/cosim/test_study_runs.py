@@ -142,6 +142,25 @@ def test_a_hit_anywhere_around_comes_straight_in() -> None:
     np.testing.assert_allclose(found, expected, atol=2e-3)  # the base gives way under the nose until detection
 
 
+def test_the_hit_has_its_tolerances() -> None:
+    study = small_study(vary=[]).tolerance("collision.speed", relative=0.1).tolerance("collision.angle", absolute=5.0)
+    study.tolerance("collision.offset", absolute=10, unit="mm").tolerance("collision.mass", relative=0.05)
+    runs = plan_runs(study.tolerances(kind="corners").setup())
+    assert runs.count == 17
+    rows = runs.rows(np.zeros(17, dtype=int), np.arange(17), 0)
+    assert not rows.refused
+    by = runs.deviations
+    np.testing.assert_allclose(rows.hit["speed"], 0.5 * (1.0 + by[:, 0]), rtol=1e-15)
+    straight = rows.values[0, runs.columns.index["testbed.slider.direction"]]
+    turned = np.degrees(rows.values[:, runs.columns.index["testbed.slider.direction"]] - straight)
+    np.testing.assert_allclose(turned, by[:, 1], atol=1e-12)
+    middle = np.array([rows.hit["point_x"][0], rows.hit["point_y"][0]])
+    away = np.hypot(rows.hit["point_x"] - middle[0], rows.hit["point_y"] - middle[1])
+    np.testing.assert_allclose(away, np.abs(by[:, 2]), atol=1e-15)
+    assert set(np.abs(by[1:, 2])) == {0.01}
+    np.testing.assert_allclose(rows.values[:, runs.columns.index["testbed.slider.mass"]], 9.08 * (1.0 + by[:, 3]))
+
+
 def test_a_place_beside_the_side_is_refused_with_its_reason() -> None:
     study = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.5])
     rows = plan_runs(study.setup()).rows(np.array([0, 1]), np.array([0, 0]), 0)

@@ -187,6 +187,12 @@ def test_a_broken_part_is_named(tmp_path: Path) -> None:
         swept(small_study(), tmp_path / "study")
 
 
+def test_a_broken_part_beside_it_is_no_matter(tmp_path: Path) -> None:
+    swept(small_study(), tmp_path / "one")
+    part_files(tmp_path / "one")[0].write_bytes(b"PAR1")
+    assert swept(small_study(), tmp_path / "two").ran == 4
+
+
 def test_keys_are_found_before_and_after_they_are_merged() -> None:
     index, keys = KeyIndex(), [os.urandom(16) for _ in range(2000)]
     for first in range(0, 2000, 50):

@@ -189,7 +189,12 @@ class _Runner:
 
     def _load_keys(self) -> None:
         for path in self._store.all_parts():
-            part = read_part(path, ["key", "status"])
+            try:
+                part = read_part(path, ["key", "status"])
+            except FileError:
+                if path.is_relative_to(self._store.parts_folder):
+                    raise
+                continue  # another study's: it is not needed
             keys, statuses = part["key"].to_pylist(), part["status"].to_pylist()
             self._index.add(path, [b"" if s in NOT_CACHED else key for key, s in zip(keys, statuses, strict=True)])
 
@@ -258,9 +263,14 @@ class _Runner:
             where = where[[int(index) not in part.refused for index in where]]
             path, rows = self._index.files[int(number)], found[where, 1]
             # The index compares halves of keys.
-            keys = read_part(path, ["key"])["key"].take(rows).to_pylist()
-            same = np.array([part.keys[i] == key for i, key in zip(where, keys, strict=True)], dtype=bool)
-            outcomes.take_stored(where[same], path, rows[same])
+            try:
+                keys = read_part(path, ["key"])["key"].take(rows).to_pylist()
+                same = np.array([part.keys[i] == key for i, key in zip(where, keys, strict=True)], dtype=bool)
+                outcomes.take_stored(where[same], path, rows[same])
+            except FileError:
+                if path.is_relative_to(self._store.parts_folder):
+                    raise
+                continue  # another study was deleted meanwhile
             taken.update(where[same].tolist())
         return taken
 
