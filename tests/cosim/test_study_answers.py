@@ -85,6 +85,8 @@ def test_a_design_with_a_failed_run_is_not_among_the_answers(tmp_path: Path) -> 
     assert found.failed.tolist() == [0, 1]
     assert "0.9 is not allowed" in found.reason[1]
     assert found.order.tolist() == [0]
+    without = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).run(tmp_path / "study", threads=2)
+    assert without.feasible.tolist() == [True, False]  # whatever is asked for
 
 
 def test_chosen_designs_run_again_as_they_did(tmp_path: Path) -> None:

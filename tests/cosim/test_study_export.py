@@ -83,6 +83,13 @@ def test_a_scenario_file_runs_as_in_the_study(answers: Answers, collision: str, 
         assert result.metric(name).value == pytest.approx(expected[name], rel=1e-9), name
 
 
+def test_a_warm_magnet_is_exported_as_weak_as_it_is(tmp_path: Path) -> None:
+    answers = small_study(vary=[]).vary("temperature", values=[70.0]).run(tmp_path / "study", threads=2)
+    export_design(answers, 0, tmp_path / "warm.toml")
+    scenario = giveway.read_scenario(tmp_path / "warm.toml")
+    assert scenario.testbed["bumper.latch_force"] == pytest.approx(45.8 * (1.0 - 0.0024 * 50.0), rel=1e-12)
+
+
 def test_a_list_of_the_design_is_one_of_designs(answers: Answers, tmp_path: Path) -> None:
     export_design(answers, DESIGN, tmp_path / "design.csv")
     with (tmp_path / "design.csv").open(encoding="utf-8", newline="") as stream:

@@ -10,6 +10,7 @@ from giveway import batch
 from giveway.approach import Approach, edge_middle, meet, outline_of
 from giveway.plan import Rest, Straight
 from giveway.scenario import Scenario
+from giveway.study import Study
 from giveway.study.chosen import scenario_of_run
 from giveway.study.engine import plan_runs
 from giveway.study.native_part import NativePart
@@ -181,6 +182,23 @@ def test_keys_are_those_of_the_values() -> None:
     assert again in keys
     other_code = [case.context({"code": 2}) for case in runs.cases]
     assert runs.keys(other_code, runs.rows(np.array([2]), np.array([1]), 1), 1)[0] not in keys
+
+
+def test_another_plan_or_push_is_another_run() -> None:
+    keys = set()
+    push = {"force": 30.0, "direction": 0.0, "point": [0.088, 0.1525], "start": 0.1, "duration": 0.1}
+    for scenario in (
+        {"duration": 0.2, "plan": {"kind": "straight", "speed": 0.1}},
+        {"duration": 0.2, "plan": {"kind": "straight", "speed": 0.2}},
+        {"duration": 0.3, "plan": {"kind": "straight", "speed": 0.2}},
+        {"duration": 0.2, "plan": {"kind": "straight", "speed": 0.2}, "push": [push]},
+        {"duration": 0.2, "plan": {"kind": "straight", "speed": 0.2}, "push": [{**push, "force": 31.0}]},
+    ):
+        runs = plan_runs(Study("no collision", **scenario).setup())
+        (case,) = runs.cases
+        rows = runs.rows(np.array([0]), np.array([0]), 0)
+        keys.add(runs.keys([case.context({})], rows, 0)[0])
+    assert len(keys) == 5
 
 
 def test_the_scenario_of_a_run_has_its_values() -> None:

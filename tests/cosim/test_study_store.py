@@ -16,6 +16,7 @@ import pytest
 from giveway.errors import FileError
 from giveway.study import Study
 from giveway.study.engine import Outcome, sweep
+from giveway.study.native_part import NativePart
 from giveway.study.store import KeyIndex, Store, read_manifest
 from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
 
@@ -136,6 +137,28 @@ def test_failed_designs_are_kept_with_their_reason(tmp_path: Path) -> None:
     assert "travel" in message[0, 1]
     assert np.isnan(runs["peak contact force"].reshape(3, 3)[1]).all()
     assert outcome.failed == 5
+
+
+def test_what_cannot_be_is_not_taken_for_what_can(tmp_path: Path) -> None:
+    # 0.9 m is beside the side, whose end is at 0.305 m: the slider of the first is never placed.
+    study = small_study(vary=[], part_runs=1).vary("collision.offset", values=[0.9, 0.305])
+    swept(study, tmp_path / "study")
+    assert stored_runs(tmp_path / "study")["status"].tolist() == ["refused", "ok"]
+
+
+def test_an_interrupted_batch_is_freed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[NativePart] = []
+
+    def interrupted(part: NativePart, _timeout_s: float) -> tuple[bool, int]:
+        started.append(part)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(NativePart, "wait", interrupted)
+    outcome = swept(small_study(), tmp_path / "study")
+    assert outcome.interrupted
+    assert (outcome.stored, outcome.ran) == (0, 0)
+    assert not started[0]._handle, "the library's threads may still write"
+    assert not part_files(tmp_path / "study")
 
 
 def test_two_processes_do_not_share_a_folder(tmp_path: Path) -> None:
