@@ -37,7 +37,8 @@ def test_limits_of_the_body_region_reach_the_library(tmp_path: Path) -> None:
     sweep(study.setup(), tmp_path / "study", threads=2)
     runs = stored_runs(tmp_path / "study")
     share = runs["peak contact force"] / body_region("lower leg").peak_limit_n
-    np.testing.assert_allclose(runs["transient force share"], share, rtol=0.05)  # of the rows' 1 ms, not of the integrator's
+    # The share's force is that of the rows, every 1 ms; the peak is the integrator's.
+    np.testing.assert_allclose(runs["transient force share"], share, rtol=0.05)
 
 
 @pytest.mark.parametrize(("keys", "words"), [
