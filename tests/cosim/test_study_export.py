@@ -11,9 +11,11 @@ import fmpy.ssp
 import giveway
 import numpy as np
 import pytest
-from giveway import batch
+from giveway import batch, native
 from giveway.errors import GivewayError
-from giveway.study.answers import Answers
+from giveway.robot_changes import NewValue, changed_robot
+from giveway.study.answers import Answers, load
+from giveway.study.engine import sweep
 from giveway.study.export import SSV, export_design, export_table
 from lxml import etree
 from study_helpers import LATCH, SPRING, small_study, stored_runs
@@ -88,6 +90,26 @@ def test_a_warm_magnet_is_exported_as_weak_as_it_is(tmp_path: Path) -> None:
     export_design(answers, 0, tmp_path / "warm.toml")
     scenario = giveway.read_scenario(tmp_path / "warm.toml")
     assert scenario.testbed["bumper.latch_force"] == pytest.approx(45.8 * (1.0 - 0.0024 * 50.0), rel=1e-12)
+
+
+def test_a_folder_says_all_by_itself(tmp_path: Path) -> None:
+    """Robot file and designs may be gone: the study keeps copies."""
+    (tmp_path / "from").mkdir()
+    robot, designs = tmp_path / "from" / "heavy.toml", tmp_path / "from" / "mine.csv"
+    text = changed_robot(native.robot(), {"base.mass": NewValue(50.0, "a test", "assumed")})
+    robot.write_text(text, encoding="utf-8")
+    designs.write_text(f"{LATCH}\n30\n", encoding="utf-8")
+    study = small_study(vary=[], designs={"kind": "csv", "file": "mine.csv"})
+    study.document["scenario"]["robot"] = "heavy.toml"
+    sweep(study.setup(tmp_path / "from"), tmp_path / "study", threads=2)
+    robot.unlink()
+    designs.unlink()
+    answers = load(tmp_path / "study")
+    export_design(answers, 0, tmp_path / "design.toml")
+    scenario = giveway.read_scenario(tmp_path / "design.toml")
+    assert scenario.parameters("testbed")["base.mass"] == 50.0
+    peak = batch.run(scenario).metric("peak contact force").value
+    assert stored_runs(tmp_path / "study")["peak contact force"][0] == pytest.approx(peak, rel=1e-12)
 
 
 def test_a_list_of_the_design_is_one_of_designs(answers: Answers, tmp_path: Path) -> None:

@@ -154,6 +154,12 @@ def test_a_wrong_csv_file_is_refused_with_its_line(text: str, line: int, word: s
     assert word in str(caught.value)
 
 
+def test_a_file_that_is_no_csv_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "mine.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(GivewayError, match=r"mine\.csv: cannot be read"):
+        small_study(vary=[], designs={"kind": "csv", "file": "mine.csv"}).setup(tmp_path)
+
+
 def test_a_limit_of_a_body_region_is_its_number() -> None:
     study = small_study().constraint("peak contact force", maximum="transient limit")
     study.document["scenario"]["body_region"] = "lower leg"

@@ -18,7 +18,7 @@ import numpy as np
 from giveway.batch import METHODS, PLANT_STEP_RANGE_S
 from giveway.body_regions import body_region
 from giveway.checks import finite, whole
-from giveway.errors import GivewayError, InputFileError, UnknownNameError
+from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
 from giveway.scenario_file import scenario_of
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
@@ -338,8 +338,12 @@ def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
     """Quantities and designs of a CSV file: a line of names (``testbed.bumper.travel [mm]``), one line per design."""
     if not path.is_file():
         raise GivewayError(section.full("file"), section.values["file"], "a CSV file, its path seen from this file")
-    with path.open(encoding="utf-8-sig", newline="") as stream:
-        lines = [(number, row) for number, row in enumerate(csv.reader(stream), 1) if any(cell.strip() for cell in row)]
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            rows_read = list(enumerate(csv.reader(stream), 1))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise FileError(path, f"cannot be read: {error}") from None
+    lines = [(number, row) for number, row in rows_read if any(cell.strip() for cell in row)]
     if len(lines) < 2:
         raise InputFileError(path, 1, GivewayError("designs", f"{len(lines)} lines", "names, then designs"))
     head_line, head = lines[0]
