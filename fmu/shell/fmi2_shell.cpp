@@ -1,4 +1,5 @@
 // FMI 2.0 entry points: Co-Simulation and, for models with equations, Model Exchange.
+#include "handles.hpp"
 #include "instance.hpp"
 
 #include <fmi2Functions.h>
@@ -49,7 +50,12 @@ struct Fmi2Instance {
     ~Fmi2Instance() { delete[] name; }
 };
 
-Fmi2Instance *unwrap(fmi2Component component) { return static_cast<Fmi2Instance *>(component); }
+giveway::Handles instances;
+
+// Null if there is no such instance (any more): then nobody is left to tell but the caller.
+Fmi2Instance *unwrap(fmi2Component component) {
+    return static_cast<Fmi2Instance *>(instances.find(component));
+}
 
 fmi2Status status(bool ok) { return ok ? fmi2OK : fmi2Error; }
 
@@ -69,15 +75,25 @@ fmi2Component refuse_instance(const fmi2CallbackFunctions *functions, const char
 
 // FMI 2 knows the state of a step only as something to ask for afterwards.
 bool allow_status(Fmi2Instance &self, const char *function) {
-    return self.instance.allow(function, State::step_mode | State::terminated | State::failed);
+    return self.instance.allow_stepping(function, State::step_mode | State::terminated | State::failed);
 }
 
-fmi2Status no_strings(fmi2Component component, const char *function, size_t count) {
+fmi2Status no_strings(fmi2Component component, const char *function, giveway::States states, size_t count) {
     Fmi2Instance *self = unwrap(component);
-    if (self == nullptr) {
+    if (self == nullptr || !self->instance.allow(function, states)) {
         return fmi2Error;
     }
     return status(count == 0 || self->instance.refuse(function, "no variable is of type String"));
+}
+
+// Asynchronous steps have a status where a step can be over; this FMU has none to give.
+fmi2Status no_step_status(fmi2Component component, const char *function) {
+    Fmi2Instance *self = unwrap(component);
+    if (self == nullptr || !allow_status(*self, function)) {
+        return fmi2Error;
+    }
+    self->instance.unsupported(function, "asynchronous steps");
+    return fmi2Discard;
 }
 
 } // namespace
@@ -114,6 +130,10 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (name == nullptr || name[0] == '\0') {
         return refuse_instance(functions, name, "fmi2Instantiate: the instance name is missing");
     }
+    if (type != fmi2ModelExchange && type != fmi2CoSimulation) {
+        return refuse_instance(functions, name,
+                               "fmi2Instantiate: the type is neither Model Exchange nor Co-Simulation");
+    }
     if (type == fmi2ModelExchange && giveway::model_info().state_count == 0) {
         return refuse_instance(functions, name,
                                "fmi2Instantiate: this FMU does not support Model Exchange");
@@ -133,7 +153,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                          type == fmi2ModelExchange ? giveway::Interface::model_exchange
                                                    : giveway::Interface::co_simulation);
         if (self != nullptr) {
-            return self;
+            fmi2Component handle = instances.add(self);
+            if (handle == nullptr) {
+                delete self;
+                return refuse_instance(functions, name, "fmi2Instantiate: out of memory");
+            }
+            return handle;
         }
     }
     delete model;
@@ -141,7 +166,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return refuse_instance(functions, name, "fmi2Instantiate: out of memory");
 }
 
-void fmi2FreeInstance(fmi2Component component) { delete unwrap(component); }
+void fmi2FreeInstance(fmi2Component component) {
+    delete static_cast<Fmi2Instance *>(instances.remove(component));
+}
 
 fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined,
                                fmi2Real tolerance, fmi2Real start_time, fmi2Boolean stop_time_defined,
@@ -217,21 +244,8 @@ fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference refe
 fmi2Status fmi2GetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
                           fmi2Boolean values[]) {
     Fmi2Instance *self = unwrap(component);
-    if (self == nullptr) {
-        return fmi2Error;
-    }
-    if (count > 0 && (references == nullptr || values == nullptr)) {
-        return status(self->instance.refuse("fmi2GetBoolean",
-                                            "value references or values are a null pointer"));
-    }
-    for (size_t i = 0; i < count; ++i) {
-        bool value = false;
-        if (!self->instance.get_boolean("fmi2GetBoolean", &references[i], 1, &value)) {
-            return fmi2Error;
-        }
-        values[i] = value ? fmi2True : fmi2False;
-    }
-    return status(self->instance.get_boolean("fmi2GetBoolean", references, 0, nullptr));
+    return status(self != nullptr &&
+                  self->instance.get_boolean("fmi2GetBoolean", references, count, values));
 }
 
 fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
@@ -251,33 +265,18 @@ fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference refe
 fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
                           const fmi2Boolean values[]) {
     Fmi2Instance *self = unwrap(component);
-    if (self == nullptr) {
-        return fmi2Error;
-    }
-    if (count > 0 && (references == nullptr || values == nullptr)) {
-        return status(self->instance.refuse("fmi2SetBoolean",
-                                            "value references or values are a null pointer"));
-    }
-    bool *converted = new (std::nothrow) bool[count + 1];
-    if (converted == nullptr) {
-        return status(self->instance.refuse("fmi2SetBoolean", "out of memory"));
-    }
-    for (size_t i = 0; i < count; ++i) {
-        converted[i] = values[i] != fmi2False;
-    }
-    const bool ok = self->instance.set_boolean("fmi2SetBoolean", references, count, converted);
-    delete[] converted;
-    return status(ok);
+    return status(self != nullptr &&
+                  self->instance.set_boolean("fmi2SetBoolean", references, count, values));
 }
 
 fmi2Status fmi2GetString(fmi2Component component, const fmi2ValueReference[], size_t count,
                          fmi2String[]) {
-    return no_strings(component, "fmi2GetString", count);
+    return no_strings(component, "fmi2GetString", giveway::readable, count);
 }
 
 fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference[], size_t count,
                          const fmi2String[]) {
-    return no_strings(component, "fmi2SetString", count);
+    return no_strings(component, "fmi2SetString", giveway::writable, count);
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component component, const fmi2StatusKind kind, fmi2Real *value) {
@@ -285,7 +284,10 @@ fmi2Status fmi2GetRealStatus(fmi2Component component, const fmi2StatusKind kind,
     if (self == nullptr || !allow_status(*self, "fmi2GetRealStatus")) {
         return fmi2Error;
     }
-    if (kind != fmi2LastSuccessfulTime || value == nullptr) {
+    if (value == nullptr) {
+        return status(self->instance.refuse("fmi2GetRealStatus", "the result is a null pointer"));
+    }
+    if (kind != fmi2LastSuccessfulTime) {
         self->instance.unsupported("fmi2GetRealStatus", "anything but fmi2LastSuccessfulTime");
         return fmi2Discard;
     }
@@ -299,7 +301,10 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind ki
     if (self == nullptr || !allow_status(*self, "fmi2GetBooleanStatus")) {
         return fmi2Error;
     }
-    if (kind != fmi2Terminated || value == nullptr) {
+    if (value == nullptr) {
+        return status(self->instance.refuse("fmi2GetBooleanStatus", "the result is a null pointer"));
+    }
+    if (kind != fmi2Terminated) {
         self->instance.unsupported("fmi2GetBooleanStatus", "anything but fmi2Terminated");
         return fmi2Discard;
     }
@@ -310,18 +315,15 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind ki
 // What the model description does not offer.
 
 fmi2Status fmi2GetStatus(fmi2Component component, const fmi2StatusKind, fmi2Status *) {
-    unsupported(component, "fmi2GetStatus", "asynchronous steps");
-    return component == nullptr ? fmi2Error : fmi2Discard;
+    return no_step_status(component, "fmi2GetStatus");
 }
 
 fmi2Status fmi2GetIntegerStatus(fmi2Component component, const fmi2StatusKind, fmi2Integer *) {
-    unsupported(component, "fmi2GetIntegerStatus", "asynchronous steps");
-    return component == nullptr ? fmi2Error : fmi2Discard;
+    return no_step_status(component, "fmi2GetIntegerStatus");
 }
 
 fmi2Status fmi2GetStringStatus(fmi2Component component, const fmi2StatusKind, fmi2String *) {
-    unsupported(component, "fmi2GetStringStatus", "asynchronous steps");
-    return component == nullptr ? fmi2Error : fmi2Discard;
+    return no_step_status(component, "fmi2GetStringStatus");
 }
 
 fmi2Status fmi2CancelStep(fmi2Component component) {
@@ -382,23 +384,28 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component component, const fmi2Value
 
 fmi2Status fmi2EnterEventMode(fmi2Component component) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr && self->instance.enter_event_mode("fmi2EnterEventMode"));
+    return status(self != nullptr && self->instance.enter_event_mode("fmi2EnterEventMode", giveway::exchange_modes));
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
     Fmi2Instance *self = unwrap(component);
     giveway::EventUpdate update{};
-    if (self == nullptr || !self->instance.update_events("fmi2NewDiscreteStates", update)) {
+    if (self == nullptr ||
+        !self->instance.allow_exchange("fmi2NewDiscreteStates", only(State::event_mode))) {
         return fmi2Error;
     }
-    if (info != nullptr) {
-        info->newDiscreteStatesNeeded = update.again;
-        info->terminateSimulation = fmi2False;
-        info->nominalsOfContinuousStatesChanged = fmi2False;
-        info->valuesOfContinuousStatesChanged = update.states_changed;
-        info->nextEventTimeDefined = update.has_next_time;
-        info->nextEventTime = update.next_time_s;
+    if (info == nullptr) { // without it the importer could not know that another update is needed
+        return status(self->instance.refuse("fmi2NewDiscreteStates", "the event info is a null pointer"));
     }
+    if (!self->instance.update_events("fmi2NewDiscreteStates", update)) {
+        return fmi2Error;
+    }
+    info->newDiscreteStatesNeeded = update.again;
+    info->terminateSimulation = fmi2False;
+    info->nominalsOfContinuousStatesChanged = fmi2False;
+    info->valuesOfContinuousStatesChanged = update.states_changed;
+    info->nextEventTimeDefined = update.has_next_time;
+    info->nextEventTime = update.next_time_s;
     return fmi2OK;
 }
 
@@ -459,7 +466,8 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real n
                                              size_t count) {
     Fmi2Instance *self = unwrap(component);
     return status(self != nullptr &&
-                  self->instance.get_nominals("fmi2GetNominalsOfContinuousStates", nominals, count));
+                  self->instance.get_nominals("fmi2GetNominalsOfContinuousStates",
+                                              giveway::evaluable | State::instantiated, nominals, count));
 }
 
 } // extern "C"

@@ -1,4 +1,5 @@
 // FMI 3.0 entry points: Co-Simulation and, for models with equations, Model Exchange.
+#include "handles.hpp"
 #include "instance.hpp"
 
 #include <fmi3Functions.h>
@@ -32,8 +33,12 @@ struct Fmi3Instance {
           instance(model, interface, true, log, this) {}
 };
 
+giveway::Handles instances;
+
+// Null if there is no such instance (any more): then nobody is left to tell but the caller.
 Instance *unwrap(fmi3Instance instance) {
-    return instance == nullptr ? nullptr : &static_cast<Fmi3Instance *>(instance)->instance;
+    auto *self = static_cast<Fmi3Instance *>(instances.find(instance));
+    return self == nullptr ? nullptr : &self->instance;
 }
 
 fmi3Status status(bool ok) { return ok ? fmi3OK : fmi3Error; }
@@ -74,7 +79,12 @@ fmi3Instance make_instance(const char *function, fmi3String name, fmi3String tok
         Fmi3Instance *self =
             new (std::nothrow) Fmi3Instance(environment, log_message, model, interface);
         if (self != nullptr) {
-            return self;
+            fmi3Instance handle = instances.add(self);
+            if (handle == nullptr) {
+                delete self;
+                return refuse_instance(environment, log_message, function, "out of memory");
+            }
+            return handle;
         }
         delete model;
     }
@@ -87,9 +97,10 @@ bool check_count(Instance &self, const char *function, size_t references, size_t
            self.refuse(function, "%zu value references but %zu values", references, values);
 }
 
-fmi3Status no_such_type(fmi3Instance instance, const char *function, size_t count, const char *type) {
+fmi3Status no_such_type(fmi3Instance instance, const char *function, giveway::States states, size_t count,
+                        const char *type) {
     Instance *self = unwrap(instance);
-    if (self == nullptr) {
+    if (self == nullptr || !self->allow(function, states)) {
         return fmi3Error;
     }
     return status(count == 0 || self->refuse(function, "no variable is of type %s", type));
@@ -170,7 +181,9 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                          giveway::Interface::co_simulation);
 }
 
-void fmi3FreeInstance(fmi3Instance instance) { delete static_cast<Fmi3Instance *>(instance); }
+void fmi3FreeInstance(fmi3Instance instance) {
+    delete static_cast<Fmi3Instance *>(instances.remove(instance));
+}
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined,
                                        fmi3Float64 tolerance, fmi3Float64 start_time,
@@ -272,11 +285,11 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference refere
 #define GIVEWAY_NO_TYPE(Type)                                                                          \
     fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count,          \
                              fmi3##Type[], size_t) {                                                   \
-        return no_such_type(instance, "fmi3Get" #Type, count, #Type);                                  \
+        return no_such_type(instance, "fmi3Get" #Type, giveway::readable, count, #Type);               \
     }                                                                                                  \
     fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count,          \
                              const fmi3##Type[], size_t) {                                             \
-        return no_such_type(instance, "fmi3Set" #Type, count, #Type);                                  \
+        return no_such_type(instance, "fmi3Set" #Type, giveway::writable, count, #Type);               \
     }
 GIVEWAY_NO_TYPE(Float32)
 GIVEWAY_NO_TYPE(Int8)
@@ -291,21 +304,21 @@ GIVEWAY_NO_TYPE(String)
 
 fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count, size_t[],
                          fmi3Binary[], size_t) {
-    return no_such_type(instance, "fmi3GetBinary", count, "Binary");
+    return no_such_type(instance, "fmi3GetBinary", giveway::readable, count, "Binary");
 }
 
 fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count,
                          const size_t[], const fmi3Binary[], size_t) {
-    return no_such_type(instance, "fmi3SetBinary", count, "Binary");
+    return no_such_type(instance, "fmi3SetBinary", giveway::writable, count, "Binary");
 }
 
 fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference[], size_t count, fmi3Clock[]) {
-    return no_such_type(instance, "fmi3GetClock", count, "Clock");
+    return no_such_type(instance, "fmi3GetClock", giveway::readable, count, "Clock");
 }
 
 fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference[], size_t count,
                         const fmi3Clock[]) {
-    return no_such_type(instance, "fmi3SetClock", count, "Clock");
+    return no_such_type(instance, "fmi3SetClock", giveway::writable, count, "Clock");
 }
 
 // What the model description does not offer.
@@ -434,7 +447,7 @@ fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference,
 
 fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
     Instance *self = unwrap(instance);
-    return status(self != nullptr && self->enter_event_mode("fmi3EnterEventMode"));
+    return status(self != nullptr && self->enter_event_mode("fmi3EnterEventMode", only(State::continuous_time_mode)));
 }
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *update_needed,
@@ -512,7 +525,7 @@ fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 values[], 
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 values[], size_t count) {
     Instance *self = unwrap(instance);
-    return status(self != nullptr && self->get_nominals("fmi3GetNominalsOfContinuousStates", values, count));
+    return status(self != nullptr && self->get_nominals("fmi3GetNominalsOfContinuousStates", giveway::evaluable, values, count));
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *count) {

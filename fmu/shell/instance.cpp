@@ -1,5 +1,6 @@
 #include "instance.hpp"
 
+#include "handles.hpp"
 #include "saved_state.hpp"
 #include "state_archive.hpp"
 
@@ -13,14 +14,8 @@
 namespace giveway {
 namespace {
 
-constexpr States exchange_modes = State::event_mode | State::continuous_time_mode;
-constexpr States readable = State::initialisation_mode | State::step_mode | State::terminated |
-                            State::failed | State::event_mode | State::continuous_time_mode;
-// Where equations can be evaluated: a model that failed may not have come that far.
-constexpr States evaluable =
-    State::initialisation_mode | State::terminated | State::event_mode | State::continuous_time_mode;
-constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode |
-                            State::event_mode | State::continuous_time_mode;
+// Of the saved states; one for all instances, which may take over each other's states.
+Handles saved_states;
 
 // Communication points are sums of step sizes; how far they may be off what we expect, as a share of
 // the step (an importer's sum over a million steps is off by less than 1e-9 of a step).
@@ -88,7 +83,8 @@ bool Instance::allow(const char *function, States states) {
 }
 
 bool Instance::unsupported(const char *function, const char *what) {
-    return refuse(function, "this FMU does not support %s", what);
+    return refuse(function, "this FMU does not support %s (in state '%s', as in any)", what,
+                  state_name(state_));
 }
 
 bool Instance::fail(const char *function, Message &message) {
@@ -142,7 +138,7 @@ bool Instance::exit_initialisation(const char *function) {
 }
 
 bool Instance::step(const char *function, double time, double step_size) {
-    if (!allow(function, only(State::step_mode))) {
+    if (!allow_stepping(function, only(State::step_mode))) {
         return false;
     }
     if (!(step_size > 0.0) || !std::isfinite(step_size)) {
@@ -179,13 +175,24 @@ bool Instance::allow_exchange(const char *function, States states) {
         return unsupported(function, "Model Exchange");
     }
     if (equations_ == nullptr) {
-        return refuse(function, "this instance was made for Co-Simulation, not for Model Exchange");
+        return refuse(function,
+                      "this instance, in state '%s', was made for Co-Simulation, not for Model Exchange",
+                      state_name(state_));
     }
     return allow(function, states);
 }
 
-bool Instance::enter_event_mode(const char *function) {
-    if (!allow_exchange(function, exchange_modes)) {
+bool Instance::allow_stepping(const char *function, States states) {
+    if (interface_ != Interface::co_simulation) {
+        return refuse(function,
+                      "this instance, in state '%s', was made for Model Exchange, not for Co-Simulation",
+                      state_name(state_));
+    }
+    return allow(function, states);
+}
+
+bool Instance::enter_event_mode(const char *function, States states) {
+    if (!allow_exchange(function, states)) {
         return false;
     }
     state_ = State::event_mode;
@@ -211,7 +218,9 @@ bool Instance::enter_continuous_time_mode(const char *function) {
         return false;
     }
     if (update_pending_) {
-        return refuse(function, "the last update of discrete states asked for another one");
+        return refuse(function,
+                      "not allowed in state '%s' before another update of discrete states, which the last one asked for",
+                      state_name(state_));
     }
     state_ = State::continuous_time_mode;
     return true;
@@ -312,8 +321,8 @@ bool Instance::get_indicators(const char *function, double *values, std::size_t 
     return true;
 }
 
-bool Instance::get_nominals(const char *function, double *values, std::size_t count) {
-    if (!allow_exchange(function, evaluable) ||
+bool Instance::get_nominals(const char *function, States states, double *values, std::size_t count) {
+    if (!allow_exchange(function, states) ||
         !check_array(function, values, count, model_info().state_count, "continuous states")) {
         return false;
     }
@@ -347,6 +356,15 @@ bool Instance::reset(const char *function) {
     return true;
 }
 
+const SavedState *Instance::find_state(const char *function, const void *saved) {
+    const auto *state = static_cast<const SavedState *>(saved_states.find(saved));
+    if (state == nullptr) {
+        refuse(function, saved == nullptr ? "the saved state is a null pointer"
+                                          : "there is no such saved state, or it was freed");
+    }
+    return state;
+}
+
 bool Instance::get_state(const char *function, void **saved) {
     if (saved == nullptr) {
         return refuse(function, "the state's address is a null pointer");
@@ -355,39 +373,52 @@ bool Instance::get_state(const char *function, void **saved) {
     archive(counter);
     const std::size_t own = counter.size();
     const std::size_t size = own + model_->save_state(nullptr);
-    auto *state = static_cast<SavedState *>(*saved);
-    const bool is_new = state == nullptr;
-    if (is_new) {
-        state = new (std::nothrow) SavedState;
-    }
     std::unique_ptr<unsigned char[]> bytes(new (std::nothrow)
                                                unsigned char[sizeof(StateHeader) + size]);
-    if (state == nullptr || bytes == nullptr) {
-        if (is_new) {
-            delete state;
-        }
+    if (bytes == nullptr) {
         return refuse(function, "out of memory");
     }
     StateWriter writer(bytes.get() + sizeof(StateHeader));
     archive(writer);
     (void)model_->save_state(bytes.get() + sizeof(StateHeader) + own);
     seal(bytes.get(), size);
-    state->bytes = std::move(bytes);
-    state->size = sizeof(StateHeader) + size;
-    *saved = state;
+    return keep_state(function, std::move(bytes), sizeof(StateHeader) + size, saved);
+}
+
+// Fills the state that *saved stands for, or a new one if that is null.
+bool Instance::keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes,
+                          std::size_t size, void **saved) {
+    if (*saved != nullptr) {
+        auto *old = static_cast<SavedState *>(saved_states.find(*saved));
+        if (old == nullptr) {
+            return refuse(function, "there is no such saved state to fill, or it was freed");
+        }
+        *old = SavedState{std::move(bytes), size};
+        return true;
+    }
+    std::unique_ptr<SavedState> state(new (std::nothrow) SavedState{std::move(bytes), size});
+    void *handle = state == nullptr ? nullptr : saved_states.add(state.get());
+    if (handle == nullptr) {
+        return refuse(function, "out of memory");
+    }
+    (void)state.release(); // the handle's
+    *saved = handle;
     return true;
 }
 
 bool Instance::set_state(const char *function, const void *saved) {
-    if (saved == nullptr) {
-        return refuse(function, "the state is a null pointer");
+    const SavedState *state = find_state(function, saved);
+    if (state == nullptr) {
+        return false;
     }
-    const auto &state = *static_cast<const SavedState *>(saved);
     StateWriter counter(nullptr);
     archive(counter);
     const std::size_t own = counter.size();
+    if (state->size < sizeof(StateHeader) + own) {
+        return refuse(function, "the saved state is too short for this FMU");
+    }
     const Interface interface = interface_;
-    StateReader reader(state.bytes.get() + sizeof(StateHeader), own);
+    StateReader reader(state->bytes.get() + sizeof(StateHeader), own);
     archive(reader);
     if (interface_ != interface) {
         interface_ = interface;
@@ -397,39 +428,51 @@ bool Instance::set_state(const char *function, const void *saved) {
     }
     Message message{};
     const std::size_t before = sizeof(StateHeader) + own;
-    if (model_->load_state(state.bytes.get() + before, state.size - before, message) !=
+    if (model_->load_state(state->bytes.get() + before, state->size - before, message) !=
         Status::ok) {
         return fail(function, message);
     }
     return true;
 }
 
-bool Instance::free_state(const char *, void **saved) {
-    if (saved != nullptr) {
-        delete static_cast<SavedState *>(*saved);
-        *saved = nullptr;
+bool Instance::free_state(const char *function, void **saved) {
+    if (saved == nullptr || *saved == nullptr) {
+        return true; // nothing to free, as the standard has it
     }
+    auto *state = static_cast<SavedState *>(saved_states.remove(*saved));
+    if (state == nullptr) {
+        return refuse(function, "there is no such saved state, or it was freed");
+    }
+    delete state;
+    *saved = nullptr;
     return true;
 }
 
 bool Instance::serialised_size(const char *function, const void *saved, std::size_t *size) {
-    if (saved == nullptr || size == nullptr) {
-        return refuse(function, "the state or the size is a null pointer");
+    const SavedState *state = find_state(function, saved);
+    if (state == nullptr) {
+        return false;
     }
-    *size = static_cast<const SavedState *>(saved)->size;
+    if (size == nullptr) {
+        return refuse(function, "the size is a null pointer");
+    }
+    *size = state->size;
     return true;
 }
 
 bool Instance::serialise(const char *function, const void *saved, unsigned char *bytes,
                          std::size_t size) {
-    if (saved == nullptr || bytes == nullptr) {
-        return refuse(function, "the state or the bytes are a null pointer");
+    const SavedState *state = find_state(function, saved);
+    if (state == nullptr) {
+        return false;
     }
-    const auto &state = *static_cast<const SavedState *>(saved);
-    if (size < state.size) {
-        return refuse(function, "room for %zu bytes, but the state has %zu", size, state.size);
+    if (bytes == nullptr) {
+        return refuse(function, "the bytes are a null pointer");
     }
-    std::memcpy(bytes, state.bytes.get(), state.size);
+    if (size < state->size) {
+        return refuse(function, "room for %zu bytes, but the state has %zu", size, state->size);
+    }
+    std::memcpy(bytes, state->bytes.get(), state->size);
     return true;
 }
 
@@ -442,31 +485,33 @@ bool Instance::deserialise(const char *function, const unsigned char *bytes, std
     if (fault != nullptr) {
         return refuse(function, "the state cannot be used: %s", fault);
     }
-    auto *state = new (std::nothrow) SavedState;
-    if (state != nullptr) {
-        state->bytes.reset(new (std::nothrow) unsigned char[size]);
-    }
-    if (state == nullptr || state->bytes == nullptr) {
-        delete state;
+    std::unique_ptr<unsigned char[]> copy(new (std::nothrow) unsigned char[size]);
+    if (copy == nullptr) {
         return refuse(function, "out of memory");
     }
-    std::memcpy(state->bytes.get(), bytes, size);
-    state->size = size;
-    *saved = state;
-    return true;
+    std::memcpy(copy.get(), bytes, size);
+    *saved = nullptr; // an importer need not have set it
+    return keep_state(function, std::move(copy), size, saved);
 }
 
 const VariableInfo *Instance::find(const char *function, std::uint32_t reference,
-                                   VariableType type) {
+                                   VariableType type, const VariableInfo *previous) {
     const ModelInfo &info = model_info();
     std::size_t first = 0;
-    std::size_t last = info.variable_count;
-    while (first < last) {
-        const std::size_t middle = first + (last - first) / 2;
-        if (info.variables[middle].reference < reference) {
-            first = middle + 1;
-        } else {
-            last = middle;
+    // Importers ask for variables in the order of the table more often than not.
+    const std::size_t next =
+        previous == nullptr ? 0 : static_cast<std::size_t>(previous - info.variables) + 1;
+    if (next < info.variable_count && info.variables[next].reference == reference) {
+        first = next;
+    } else {
+        std::size_t last = info.variable_count;
+        while (first < last) {
+            const std::size_t middle = first + (last - first) / 2;
+            if (info.variables[middle].reference < reference) {
+                first = middle + 1;
+            } else {
+                last = middle;
+            }
         }
     }
     if (first == info.variable_count || info.variables[first].reference != reference) {
@@ -493,7 +538,20 @@ bool Instance::check_settable(const char *function, const VariableInfo &variable
         return refuse(function, "variable %s is a fixed parameter and cannot be set in state '%s'",
                       variable.name, state_name(state_));
     }
+    // In continuous time the standards allow continuous inputs only. FMPy 0.3.32 hands over all of them there, so a discrete one
+    // is taken, and waits for the next event.
     return true;
+}
+
+// An importer that gives a wrong count would have us read what is not its own.
+bool Instance::check_references(const char *function, const std::uint32_t *references,
+                                std::size_t count, const void *values) {
+    const std::size_t all = model_info().variable_count + (has_time_variable_ ? 1 : 0);
+    if (count > all) {
+        return refuse(function, "%zu value references, but this FMU has %zu variables", count, all);
+    }
+    return count == 0 || (references != nullptr && values != nullptr) ||
+           refuse(function, "value references or values are a null pointer");
 }
 
 bool Instance::check_value(const char *function, const VariableInfo &variable, double value) {
@@ -508,18 +566,17 @@ bool Instance::check_value(const char *function, const VariableInfo &variable, d
                   variable.name, value, variable.minimum, variable.maximum);
 }
 
-template <typename T>
+// T is the variables' type, Theirs the importer's: FMI 2 has booleans as int.
+template <typename T, typename Theirs>
 bool Instance::get(const char *function, VariableType type, const std::uint32_t *references,
-                   std::size_t count, T *values) {
-    if (!allow(function, readable)) {
+                   std::size_t count, Theirs *values) {
+    if (!allow(function, readable) || !check_references(function, references, count, values)) {
         return false;
-    }
-    if (count > 0 && (references == nullptr || values == nullptr)) {
-        return refuse(function, "value references or values are a null pointer");
     }
     const unsigned char *data = static_cast<const unsigned char *>(model_->variables());
     bool locals_fresh = false;
     bool outputs_fresh = false;
+    const VariableInfo *variable = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
         if constexpr (sizeof(T) == sizeof(double)) {
             if (has_time_variable_ && references[i] == 0) {
@@ -527,7 +584,7 @@ bool Instance::get(const char *function, VariableType type, const std::uint32_t 
                 continue;
             }
         }
-        const VariableInfo *variable = find(function, references[i], type);
+        variable = find(function, references[i], type, variable);
         if (variable == nullptr) {
             return false;
         }
@@ -542,31 +599,33 @@ bool Instance::get(const char *function, VariableType type, const std::uint32_t 
             }
             fresh = true;
         }
-        std::memcpy(&values[i], data + variable->offset, sizeof(T));
+        T value;
+        std::memcpy(&value, data + variable->offset, sizeof(T));
+        values[i] = static_cast<Theirs>(value);
     }
     return true;
 }
 
-template <typename T>
+template <typename T, typename Theirs>
 bool Instance::set(const char *function, VariableType type, const std::uint32_t *references,
-                   std::size_t count, const T *values) {
-    if (!allow(function, writable)) {
+                   std::size_t count, const Theirs *values) {
+    if (!allow(function, writable) || !check_references(function, references, count, values)) {
         return false;
     }
-    if (count > 0 && (references == nullptr || values == nullptr)) {
-        return refuse(function, "value references or values are a null pointer");
-    }
+    const VariableInfo *variable = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
-        const VariableInfo *variable = find(function, references[i], type);
+        variable = find(function, references[i], type, variable);
         if (variable == nullptr || !check_settable(function, *variable) ||
-            !check_value(function, *variable, static_cast<double>(values[i]))) {
+            !check_value(function, *variable, static_cast<double>(static_cast<T>(values[i])))) {
             return false;
         }
     }
     unsigned char *data = static_cast<unsigned char *>(model_->variables());
+    variable = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
-        const VariableInfo *variable = find(function, references[i], type);
-        std::memcpy(data + variable->offset, &values[i], sizeof(T));
+        variable = find(function, references[i], type, variable);
+        const T value = static_cast<T>(values[i]);
+        std::memcpy(data + variable->offset, &value, sizeof(T));
     }
     initialised_ = false;
     outputs_fresh_ = false;
@@ -574,33 +633,43 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
 }
 
 bool Instance::get_real(const char *function, const std::uint32_t *references, std::size_t count,
-                        double *values) {
-    return get(function, VariableType::real, references, count, values);
+                double *values) {
+    return get<double>(function, VariableType::real, references, count, values);
 }
 
 bool Instance::get_integer(const char *function, const std::uint32_t *references, std::size_t count,
-                           std::int32_t *values) {
-    return get(function, VariableType::integer, references, count, values);
+                std::int32_t *values) {
+    return get<std::int32_t>(function, VariableType::integer, references, count, values);
 }
 
 bool Instance::get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                           bool *values) {
-    return get(function, VariableType::boolean, references, count, values);
+                bool *values) {
+    return get<bool>(function, VariableType::boolean, references, count, values);
+}
+
+bool Instance::get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
+                int *values) {
+    return get<bool>(function, VariableType::boolean, references, count, values);
 }
 
 bool Instance::set_real(const char *function, const std::uint32_t *references, std::size_t count,
-                        const double *values) {
-    return set(function, VariableType::real, references, count, values);
+                const double *values) {
+    return set<double>(function, VariableType::real, references, count, values);
 }
 
 bool Instance::set_integer(const char *function, const std::uint32_t *references, std::size_t count,
-                           const std::int32_t *values) {
-    return set(function, VariableType::integer, references, count, values);
+                const std::int32_t *values) {
+    return set<std::int32_t>(function, VariableType::integer, references, count, values);
 }
 
 bool Instance::set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                           const bool *values) {
-    return set(function, VariableType::boolean, references, count, values);
+                const bool *values) {
+    return set<bool>(function, VariableType::boolean, references, count, values);
+}
+
+bool Instance::set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
+                const int *values) {
+    return set<bool>(function, VariableType::boolean, references, count, values);
 }
 
 } // namespace giveway

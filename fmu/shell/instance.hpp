@@ -9,8 +9,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 namespace giveway {
+
+struct SavedState;
 
 enum class State : unsigned {
     instantiated = 1u << 0,
@@ -30,6 +33,16 @@ constexpr States operator|(State a, State b) {
 constexpr States operator|(States a, State b) { return a | static_cast<States>(b); }
 constexpr States any_state = ~0u;
 constexpr States only(State state) { return static_cast<States>(state); }
+
+// What the standards allow where; both versions alike but where an entry point says otherwise.
+constexpr States exchange_modes = State::event_mode | State::continuous_time_mode;
+constexpr States readable = State::initialisation_mode | State::step_mode | State::terminated |
+                            State::failed | State::event_mode | State::continuous_time_mode;
+// Where equations can be evaluated: a model that failed may not have come that far.
+constexpr States evaluable =
+    State::initialisation_mode | State::terminated | State::event_mode | State::continuous_time_mode;
+constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode |
+                            State::event_mode | State::continuous_time_mode;
 
 // Where messages go; `context` is the entry points' own object.
 using LogFunction = void (*)(void *context, const char *text);
@@ -61,7 +74,7 @@ public:
     bool terminate(const char *function);
     bool reset(const char *function);
 
-    // The whole state. What *saved holds before is replaced; FMI's handle of a state is a SavedState.
+    // The whole state. `saved` is a handle: one that was freed, or never given out, is refused. A state that *saved stands for before is replaced.
     bool get_state(const char *function, void **saved);
     bool set_state(const char *function, const void *saved);
     bool free_state(const char *function, void **saved);
@@ -70,9 +83,12 @@ public:
     bool deserialise(const char *function, const unsigned char *bytes, std::size_t size,
                      void **saved);
 
+    // As allow, for what only Co-Simulation has.
+    bool allow_stepping(const char *function, States states);
+
     // Model Exchange. Counts are those of the arrays that the importer hands over.
     bool allow_exchange(const char *function, States states);
-    bool enter_event_mode(const char *function);
+    bool enter_event_mode(const char *function, States states);
     bool update_events(const char *function, EventUpdate &update);
     bool enter_continuous_time_mode(const char *function);
     // `event_needed`: the step went past an event that no root finder stopped at.
@@ -82,7 +98,7 @@ public:
     bool get_states(const char *function, double *values, std::size_t count);
     bool get_derivatives(const char *function, double *values, std::size_t count);
     bool get_indicators(const char *function, double *values, std::size_t count);
-    bool get_nominals(const char *function, double *values, std::size_t count);
+    bool get_nominals(const char *function, States states, double *values, std::size_t count);
 
     bool get_real(const char *function, const std::uint32_t *references, std::size_t count,
                   double *values);
@@ -90,6 +106,8 @@ public:
                      std::int32_t *values);
     bool get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
                      bool *values);
+    bool get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
+                     int *values);
     // All of them are set or, if one is refused, none.
     bool set_real(const char *function, const std::uint32_t *references, std::size_t count,
                   const double *values);
@@ -97,6 +115,8 @@ public:
                      const std::int32_t *values);
     bool set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
                      const bool *values);
+    bool set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
+                     const int *values);
 
     double time() const { return time_; }
     State state() const { return state_; }
@@ -111,13 +131,20 @@ private:
         a(outputs_fresh_);
         a(update_pending_);
     }
-    template <typename T>
+    template <typename T, typename Theirs>
     bool get(const char *function, VariableType type, const std::uint32_t *references,
-             std::size_t count, T *values);
-    template <typename T>
+             std::size_t count, Theirs *values);
+    template <typename T, typename Theirs>
     bool set(const char *function, VariableType type, const std::uint32_t *references,
-             std::size_t count, const T *values);
-    const VariableInfo *find(const char *function, std::uint32_t reference, VariableType type);
+             std::size_t count, const Theirs *values);
+    // `previous`: what the last call gave, null if there was none.
+    const VariableInfo *find(const char *function, std::uint32_t reference, VariableType type,
+                             const VariableInfo *previous);
+    bool check_references(const char *function, const std::uint32_t *references, std::size_t count,
+                          const void *values);
+    const SavedState *find_state(const char *function, const void *saved);
+    bool keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes, std::size_t size,
+                    void **saved);
     bool check_settable(const char *function, const VariableInfo &variable);
     bool check_value(const char *function, const VariableInfo &variable, double value);
     bool check_array(const char *function, const void *values, std::size_t count,

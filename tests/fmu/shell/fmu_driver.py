@@ -5,6 +5,7 @@ FMPy hides the status codes behind exceptions and takes care of the call order; 
 
 from __future__ import annotations
 
+import copy
 import ctypes
 import math
 import os
@@ -80,6 +81,12 @@ class Fmu:
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.messages: list[str] = []
         self.instance: int | None = None
+
+    def twin(self) -> Fmu:
+        """The same binary, for another instance of it."""
+        other = copy.copy(self)
+        other.messages, other.instance = [], None
+        return other
 
     def _log(self, *arguments: object) -> None:
         text = arguments[-1]

@@ -1,18 +1,9 @@
-"""The state machine: every call in every state, and what remains possible after the model failed."""
+"""The state machine in use: wrong times, failures of the model, reset. Every call in every state: test_every_call.py."""
 
-import ctypes
 import math
 
 import pytest
 from fmu_driver import ERROR, OK, Fmu
-
-STATES = {
-    "instantiated": lambda fmu: None,
-    "initialisation mode": lambda fmu: fmu.setup(),
-    "step mode": lambda fmu: (fmu.setup(), fmu.exit_initialisation()),
-    "terminated": lambda fmu: (fmu.setup(), fmu.exit_initialisation(), fmu.call("Terminate")),
-    "failed": lambda fmu: (fmu.set("lag.limit", 0.0), fmu.setup(), fmu.exit_initialisation()),
-}
 
 CALLS = {
     "EnterInitializationMode": lambda fmu: fmu.setup(),
@@ -23,30 +14,6 @@ CALLS = {
     "Get": lambda fmu: fmu.get_references("real", [10])[0],
     "Set": lambda fmu: fmu.set_references("real", [10], [1.0]),
 }
-
-LEGAL = {
-    "instantiated": {"EnterInitializationMode", "Set", "Reset"},
-    "initialisation mode": {"ExitInitializationMode", "Get", "Set", "Reset"},
-    "step mode": {"DoStep", "Terminate", "Get", "Set", "Reset"},
-    "terminated": {"Get", "Reset"},
-    "failed": {"Get", "Reset"},
-}
-
-
-@pytest.mark.parametrize("call", CALLS)
-@pytest.mark.parametrize("state", STATES)
-def test_every_call_in_every_state(lag: Fmu, state: str, call: str) -> None:
-    assert lag.instantiate()
-    STATES[state](lag)
-    lag.messages.clear()
-    status = CALLS[call](lag)
-    if call in LEGAL[state]:
-        assert (status, lag.messages) == (OK, [])
-        return
-    assert status == ERROR
-    first = "SetupExperiment" if call == "EnterInitializationMode" and lag.version == 2 else call
-    assert lag.last_message.startswith(f"fmi{lag.version}{first}")
-    assert lag.last_message.endswith(f": not allowed in state '{state}'")
 
 
 def test_a_refused_call_changes_nothing(lag: Fmu) -> None:
@@ -180,29 +147,3 @@ def test_instances_that_cannot_be(lag: Fmu) -> None:
         lag.messages.clear()
         assert not lag.instantiate(**change)
         assert "this FMU" in lag.last_message
-
-
-# Called with nothing but zeros: what an FMU does not offer, it refuses before it looks at its arguments.
-UNSUPPORTED = {
-    2: """GetStatus GetIntegerStatus GetStringStatus CancelStep
-        GetDirectionalDerivative SetRealInputDerivatives
-        GetRealOutputDerivatives EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep
-        SetTime SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates
-        GetNominalsOfContinuousStates""",
-    3: """EnterConfigurationMode ExitConfigurationMode EnterEventMode EnterStepMode EvaluateDiscreteStates
-        UpdateDiscreteStates GetNumberOfVariableDependencies GetVariableDependencies GetDirectionalDerivative
-        GetAdjointDerivative GetOutputDerivatives GetIntervalDecimal GetIntervalFraction GetShiftDecimal
-        GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
-        ActivateModelPartition EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
-        GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
-        GetNumberOfEventIndicators GetNumberOfContinuousStates""",
-}
-
-
-def test_what_the_fmu_does_not_offer_is_refused_by_name(lag: Fmu) -> None:
-    lag.start()
-    zeros = [ctypes.c_size_t(0)] * 9
-    for name in UNSUPPORTED[lag.version].split():
-        assert lag.call(name, *zeros) != OK
-        assert lag.last_message.startswith(f"fmi{lag.version}{name}: this FMU does not support")
-    assert lag.step(0.0, 0.1) == OK

@@ -24,7 +24,9 @@ def make(tmp_path: Path, version: int):
     made: list[StatefulFmu] = []
 
     def make_one(model: str) -> StatefulFmu:
-        fmu = StatefulFmu(model, version, tmp_path / f"{model}{len(made)}")
+        # States pass between instances of one binary: a second instance is not a second copy of the library.
+        first = next((fmu for fmu in made if fmu.model == model), None)
+        fmu = StatefulFmu(model, version, tmp_path / model) if first is None else first.twin()
         made.append(fmu)
         return fmu
 
