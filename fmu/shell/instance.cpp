@@ -60,7 +60,8 @@ bool in(State state, States states) { return (static_cast<States>(state) & state
 Instance::Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log,
                    void *log_context)
     : model_(model), equations_(interface == Interface::model_exchange ? model->equations() : nullptr),
-      interface_(interface), has_time_variable_(has_time_variable), log_(log), log_context_(log_context) {}
+      interface_(interface), has_time_variable_(has_time_variable),
+      end_(model_info().variables + model_info().variable_count), log_(log), log_context_(log_context) {}
 
 Instance::~Instance() { delete model_; }
 
@@ -494,38 +495,37 @@ bool Instance::deserialise(const char *function, const unsigned char *bytes, std
     return keep_state(function, std::move(copy), size, saved);
 }
 
-const VariableInfo *Instance::find(const char *function, std::uint32_t reference,
-                                   VariableType type, const VariableInfo *previous) {
-    const ModelInfo &info = model_info();
-    std::size_t first = 0;
+inline const VariableInfo *Instance::find(const char *function, std::uint32_t reference,
+                                          VariableType type, const VariableInfo *previous) {
     // Importers ask for variables in the order of the table more often than not.
-    const std::size_t next =
-        previous == nullptr ? 0 : static_cast<std::size_t>(previous - info.variables) + 1;
-    if (next < info.variable_count && info.variables[next].reference == reference) {
-        first = next;
-    } else {
-        std::size_t last = info.variable_count;
-        while (first < last) {
-            const std::size_t middle = first + (last - first) / 2;
-            if (info.variables[middle].reference < reference) {
-                first = middle + 1;
-            } else {
-                last = middle;
-            }
-        }
+    if (previous != nullptr && previous + 1 < end_ && previous[1].reference == reference &&
+        previous[1].type == type) {
+        return previous + 1;
     }
-    if (first == info.variable_count || info.variables[first].reference != reference) {
+    return search(function, reference, type);
+}
+
+const VariableInfo *Instance::search(const char *function, std::uint32_t reference,
+                                     VariableType type) {
+    const VariableInfo *first = model_info().variables;
+    std::size_t count = model_info().variable_count;
+    while (count > 0) {
+        const std::size_t half = count / 2;
+        const bool above = first[half].reference < reference;
+        first = above ? first + half + 1 : first;
+        count = above ? count - half - 1 : half;
+    }
+    if (first == end_ || first->reference != reference) {
         refuse(function, "there is no variable with value reference %u",
                static_cast<unsigned>(reference));
         return nullptr;
     }
-    const VariableInfo &variable = info.variables[first];
-    if (variable.type != type) {
-        refuse(function, "variable %s is %s, not %s", variable.name, type_name(variable.type),
+    if (first->type != type) {
+        refuse(function, "variable %s is %s, not %s", first->name, type_name(first->type),
                type_name(type));
         return nullptr;
     }
-    return &variable;
+    return first;
 }
 
 bool Instance::check_settable(const char *function, const VariableInfo &variable) {
@@ -612,6 +612,9 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
     if (!allow(function, writable) || !check_references(function, references, count, values)) {
         return false;
     }
+    // All are checked before the first is written. Few enough at a time are remembered, not looked up again.
+    constexpr std::size_t remembered = 16;
+    std::size_t offsets[remembered];
     const VariableInfo *variable = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
         variable = find(function, references[i], type, variable);
@@ -619,13 +622,17 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
             !check_value(function, *variable, static_cast<double>(static_cast<T>(values[i])))) {
             return false;
         }
+        if (i < remembered) {
+            offsets[i] = variable->offset;
+        }
     }
     unsigned char *data = static_cast<unsigned char *>(model_->variables());
-    variable = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
-        variable = find(function, references[i], type, variable);
+        if (i >= remembered) {
+            variable = find(function, references[i], type, i == remembered ? nullptr : variable);
+        }
         const T value = static_cast<T>(values[i]);
-        std::memcpy(data + variable->offset, &value, sizeof(T));
+        std::memcpy(data + (i < remembered ? offsets[i] : variable->offset), &value, sizeof(T));
     }
     initialised_ = false;
     outputs_fresh_ = false;

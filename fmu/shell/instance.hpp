@@ -140,6 +140,7 @@ private:
     // `previous`: what the last call gave, null if there was none.
     const VariableInfo *find(const char *function, std::uint32_t reference, VariableType type,
                              const VariableInfo *previous);
+    const VariableInfo *search(const char *function, std::uint32_t reference, VariableType type);
     bool check_references(const char *function, const std::uint32_t *references, std::size_t count,
                           const void *values);
     const SavedState *find_state(const char *function, const void *saved);
@@ -160,6 +161,7 @@ private:
     Equations *equations_; // of a Model Exchange instance, else nullptr
     Interface interface_;
     bool has_time_variable_;
+    const VariableInfo *end_; // of the variable table
     LogFunction log_;
     void *log_context_;
     State state_ = State::instantiated;

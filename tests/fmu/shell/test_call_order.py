@@ -1,4 +1,4 @@
-"""The state machine in use: wrong times, failures of the model, reset. Every call in every state: test_every_call.py."""
+"""The state machine in use: wrong times, a failing model, reset. Every call in every state: test_every_call.py."""
 
 import math
 

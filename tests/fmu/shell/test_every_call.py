@@ -1,4 +1,4 @@
-"""Every function in every state, of all FMUs, versions and interfaces: allowed, or refused with a message and no effect."""
+"""Every function in every state, of all FMUs and interfaces: allowed, or refused with a message and no effect."""
 
 from __future__ import annotations
 
