@@ -13,6 +13,7 @@ import typer
 
 from giveway import __version__
 from giveway.errors import GivewayError, SimulationError, UnknownNameError, one_line
+from giveway.fmu_commands import fmu_app
 from giveway.scenario import BUMPERS
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from giveway.study.answers import Answers
     from giveway.sweep import Sweep
 
-__all__ = ["app", "main"]
+__all__ = ["app", "main", "print_columns", "progress_bar"]
 
 FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 DEFAULT_BUMPER = "magnetic"
@@ -39,6 +40,7 @@ app = typer.Typer(
 
 study_app = typer.Typer(help="Look at a study, and take its designs away.", no_args_is_help=True)
 app.add_typer(study_app, name="study")
+app.add_typer(fmu_app)
 
 SetOption = Annotated[
     list[str] | None,
@@ -171,7 +173,7 @@ def reproduce(
     with replace_folder(out) as folder:
         write_table(folder / "table.json", found)
         write_report(folder / "report.html", found)
-    _print_columns("The paper, reproduced", HEADER, table_rows(found))
+    print_columns("The paper, reproduced", HEADER, table_rows(found))
     for chapter, row in found.rows():
         if row.met is False:
             typer.echo(f"MISS {chapter.experiment.name}: {row.quantity}: {row.reason or 'reason not yet known'}")
@@ -205,7 +207,7 @@ def variables(
     wanted = grep.lower()
     chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
     rows = [(v.name, v.causality, "" if v.start is None else f"{v.start}", v.allowed, v.description) for v in chosen]
-    _print_columns(f"{len(chosen)} variables of {model}", ("name", "kind", "start", "allowed", "meaning"), rows)
+    print_columns(f"{len(chosen)} variables of {model}", ("name", "kind", "start", "allowed", "meaning"), rows)
 
 
 @app.command()
@@ -238,10 +240,10 @@ def drivetrain(
 
         sweeps = measure_all(analysis, model.gear_friction(robot))
     title = model.describe(robot, load, *found)
-    _print_columns(title, ("", *analysis.cases), table_rows(analysis))
+    print_columns(title, ("", *analysis.cases), table_rows(analysis))
     if sweep:
         header = ("", "points", "largest in gain", "in phase")
-        _print_columns("Deviation of the FMU from the linear model", header, deviations(analysis, sweeps))
+        print_columns("Deviation of the FMU from the linear model", header, deviations(analysis, sweeps))
     if out is not None:
         written = write_results(out, title, analysis, sweeps)
         typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
@@ -279,8 +281,8 @@ def fit(
     with replace_file(out) as new_robot, replace_file(residuals) as new_residuals:
         new_robot.write_text(text, encoding="utf-8")
         new_residuals.write_text(json.dumps(record.record(found, command), indent=2) + "\n", encoding="utf-8")
-    _print_columns("Targets; residuals in tolerances", record.TARGET_HEADER, record.target_rows(found))
-    _print_columns("Parameters; deviations in factors", record.PARAMETER_HEADER, record.parameter_rows(found))
+    print_columns("Targets; residuals in tolerances", record.TARGET_HEADER, record.target_rows(found))
+    print_columns("Parameters; deviations in factors", record.PARAMETER_HEADER, record.parameter_rows(found))
     typer.echo(f"Singular values: {', '.join(f'{value:.2f}' for value in found.singular_values)}")
     typer.echo(f"Written: {out} and {residuals}")
 
@@ -298,7 +300,7 @@ def calibrate(
 
     calibration, written = calibrate_robot(logs, robot, out)
     title = f"Roller friction (28) from {', '.join(log.name for log in calibration.logs)}"
-    _print_columns(title, ("", "value", "95 % interval", "unit"), table_rows(calibration))
+    print_columns(title, ("", "value", "95 % interval", "unit"), table_rows(calibration))
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
@@ -319,18 +321,18 @@ def bench(
     whole("--repeats", repeats, 1, 100)
     if scale:
         title = "Random collisions of 0.6 s over fixed steps, all threads"
-        _print_columns(title, bench_batch.SCALE_HEADER, bench_batch.scale(bench_batch.SCALE_COUNTS))
+        print_columns(title, bench_batch.SCALE_HEADER, bench_batch.scale(bench_batch.SCALE_COUNTS))
         return
     rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
-    _print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
+    print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
     title = f"Collisions of {bench_batch.SIMULATED_S:g} s with metrics, best and median of {repeats}"
-    _print_columns(title, bench_batch.HEADER, bench_batch.measure(repeats))
+    print_columns(title, bench_batch.HEADER, bench_batch.measure(repeats))
     found, lines = bench_batch.accuracy()
-    _print_columns("Fixed steps against event-exact, random collisions", bench_batch.ACCURACY_HEADER, found)
+    print_columns("Fixed steps against event-exact, random collisions", bench_batch.ACCURACY_HEADER, found)
     typer.echo("\n".join(["Detected on another tick:", *lines] if lines else ["All detected on the same tick."]))
     title = "Integration methods on stiffer designs: 1 s of the testbed FMU alone at relative tolerance 1e-6"
-    _print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
+    print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
 
 
 @app.command("sweep")
@@ -450,12 +452,12 @@ def study_gallery(
 def _print_answers(found: Answers) -> None:
     from giveway.study import command
 
-    _print_columns(
+    print_columns(
         f"{found.setup.name}: {command.counts(found)}", command.goal_header(found), command.design_rows(found)
     )
     rows = command.sensitivity_rows(found)
     if rows:
-        _print_columns("What decides", command.sensitivity_header(found), rows)
+        print_columns("What decides", command.sensitivity_header(found), rows)
 
 
 def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenario, str]:
@@ -507,13 +509,23 @@ def _progress(duration_s: float) -> Iterator[Progress | None]:
     if duration_s < LONG_RUN_S or not sys.stderr.isatty():
         yield None
         return
+    with progress_bar("simulating") as progress:
+        yield progress
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Progress | None]:
+    """A bar on stderr at a terminal, for (simulated time, duration) in s; nothing elsewhere."""
+    if not sys.stderr.isatty():
+        yield None
+        return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = (BarColumn(), TextColumn("{task.completed:.1f} of {task.total:.0f} s"), TimeRemainingColumn())
+    columns = (BarColumn(), TextColumn("{task.completed:.2f} of {task.total:g} s"), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("simulating", total=duration_s)
-        yield lambda now_s, _duration_s: bar.update(task, completed=now_s)
+        task = bar.add_task(title, total=None)
+        yield lambda now_s, duration_s: bar.update(task, completed=now_s, total=duration_s)
 
 
 @contextmanager
@@ -552,10 +564,11 @@ def _print_table(name: str, results: dict[str, Result]) -> None:
     from giveway.summary import table_rows
 
     header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
-    _print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
+    print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
 
 
-def _print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
+def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
+    """A table on stdout."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from giveway import experiments, native
 from giveway.fmu import open_fmu
 from giveway.master import simulate

@@ -1,0 +1,156 @@
+"""The shared libraries: there, for the right machine, exporting FMI and needing nothing but the C library."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from giveway.errors import FileError
+from giveway.fmu_check.common import FAULT, NOTE, Found, TestedFile
+from giveway.fmu_description import Description
+
+if TYPE_CHECKING:
+    from giveway.fmu_binaries import Binary
+
+__all__ = ["exports", "imports", "machines", "platforms"]
+
+
+def _binary_names(file: TestedFile) -> dict[str, list[str]]:
+    """Files below binaries/PLATFORM/, by platform."""
+    found: dict[str, list[str]] = {}
+    for name in file.names:
+        parts = name.split("/")
+        if parts[0] == "binaries" and len(parts) > 2:
+            found.setdefault(parts[1], []).append(name)
+    return found
+
+
+def platforms(file: TestedFile) -> Found:
+    from giveway.fmu_binaries import PLATFORMS
+
+    description = file.described()
+    found = _binary_names(file)
+    identifiers = sorted({a.get("modelIdentifier", "") for a in description.interfaces.values()})
+    if not found and not any(name.startswith("sources/") for name in file.names):
+        yield FAULT, "there is neither a binary nor source code"
+    known = PLATFORMS[description.version]
+    for platform, names in found.items():
+        if platform not in known:
+            yield NOTE, f"binaries/{platform} is no platform that FMI {description.version} names"
+            continue
+        for identifier in identifiers:
+            wanted = f"binaries/{platform}/{identifier}{known[platform][2]}"
+            if wanted not in names:
+                yield FAULT, f"{wanted} is missing: an importer looks for the model identifier"
+
+
+def _each_binary(file: TestedFile) -> Iterator[tuple[str, str, Binary | FileError]]:
+    """(name, platform, what was read of it) for the model's binary of every known platform."""
+    from giveway.fmu_binaries import PLATFORMS, read_binary
+
+    description = file.described()
+    known = PLATFORMS[description.version]
+    identifiers = {a.get("modelIdentifier", "") for a in description.interfaces.values()}
+    for platform, names in _binary_names(file).items():
+        for name in names:
+            if platform in known and PurePosixPath(name).stem in identifiers and name.endswith(known[platform][2]):
+                path = file.folder / f"{platform}{known[platform][2]}"  # not the name, which may lead anywhere
+                try:
+                    path.write_bytes(file.archive.read(name))
+                    found: Binary | FileError = read_binary(path)
+                except (zipfile.BadZipFile, RuntimeError, NotImplementedError):
+                    continue  # cannot be unpacked, which another check says
+                except FileError as error:
+                    found = error
+                yield name, platform, found
+
+
+def machines(file: TestedFile) -> Found:
+    from giveway.fmu_binaries import PLATFORMS
+
+    known = PLATFORMS[file.described().version]
+    for name, platform, binary in _each_binary(file):
+        machine, system, _ = known[platform]
+        if isinstance(binary, FileError):
+            yield FAULT, f"{name} {binary.value}"
+        elif binary.system != system or machine not in binary.machines:
+            yield FAULT, f"{name} is for {binary.system} on {', '.join(sorted(binary.machines))}, not for {platform}"
+
+
+def exports(file: TestedFile) -> Found:
+    from giveway.fmu_binaries import fmi_functions
+
+    description = file.described()
+    needed = _needed_functions(description)
+    every = fmi_functions(2) | fmi_functions(3)
+    for name, _, binary in _each_binary(file):
+        if isinstance(binary, FileError):
+            continue
+        for function in sorted(needed - binary.exported):
+            yield FAULT, f"{name} does not export {function}"
+        strangers = sorted(s for s in binary.exported - every if not s.startswith(("_init", "_fini")))
+        if strangers:
+            some = ", ".join(strangers[:3])
+            yield (
+                NOTE,
+                f"{name} exports {len(strangers)} symbols that are not FMI's ({some}); another FMU's may clash",
+            )
+
+
+# What belongs to one interface alone; an FMU without it need not export it.
+_ONLY_EXCHANGE = (
+    "EnterContinuousTimeMode",
+    "CompletedIntegratorStep",
+    "SetTime",
+    "SetContinuousStates",
+    "GetDerivatives",
+    "GetContinuousStateDerivatives",
+    "GetEventIndicators",
+    "GetContinuousStates",
+    "GetNominalsOfContinuousStates",
+    "GetNumberOfEventIndicators",
+    "GetNumberOfContinuousStates",
+    "NewDiscreteStates",
+)
+_ONLY_STEPPING = (
+    "DoStep",
+    "CancelStep",
+    "GetStatus",
+    "GetRealStatus",
+    "GetIntegerStatus",
+    "GetBooleanStatus",
+    "GetStringStatus",
+    "SetRealInputDerivatives",
+    "GetRealOutputDerivatives",
+    "GetOutputDerivatives",
+    "EnterStepMode",
+)
+
+
+def _needed_functions(description: Description) -> frozenset[str]:
+    """What an importer may look up: FMI 2 has all functions of an interface; FMI 3 all functions whatsoever."""
+    from giveway.fmu_binaries import fmi_functions
+
+    every = fmi_functions(description.version)
+    if description.version == 3:
+        return every
+    needed = set(every)
+    if "ModelExchange" not in description.interfaces:
+        needed -= {f"fmi2{name}" for name in (*_ONLY_EXCHANGE, "EnterEventMode")}
+    if "CoSimulation" not in description.interfaces:
+        needed -= {f"fmi2{name}" for name in _ONLY_STEPPING}
+    return frozenset(needed)
+
+
+def imports(file: TestedFile) -> Found:
+    from giveway.fmu_binaries import is_of_the_system
+
+    for name, platform, binary in _each_binary(file):
+        if isinstance(binary, FileError):
+            continue
+        beside = {PurePosixPath(n).name for n in _binary_names(file)[platform]}
+        for library in binary.needed:
+            if not is_of_the_system(binary.system, library) and PurePosixPath(library).name not in beside:
+                yield FAULT, f"{name} needs {library}, which not every machine has and the FMU does not bring"
