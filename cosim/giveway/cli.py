@@ -335,6 +335,22 @@ def bench(
     print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
 
 
+@app.command()
+def ssp(
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.ssp", help="File to write.")],
+    robot: RobotOption = None,
+    sequential: Annotated[
+        bool, typer.Option("--sequential", help="For a tool that exchanges in our order: keeps the command delay.")
+    ] = False,
+) -> None:
+    """Write controller and testbed as a System Structure Package (SSP 1.0), with a parameter set for each bumper."""
+    from giveway.robot import read_robot
+    from giveway.ssp import write_ssp
+
+    write_ssp(out, None if robot is None else read_robot(robot), sequential=sequential)
+    typer.echo(f"Written: {out}")
+
+
 @app.command("sweep")
 def sweep_designs(
     study: Annotated[
