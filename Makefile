@@ -13,7 +13,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 PLATFORMS := x86_64-linux aarch64-linux x86_64-windows x86_64-darwin aarch64-darwin
 PLATFORM_BUILDS := $(PLATFORMS:%=build/platforms/%/built)
 
-.PHONY: help demo reproduce test verify fuzz mutate bench bench-scale fit fmus build lint lock clean platforms $(PLATFORM_BUILDS)
+.PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint lock clean platforms $(PLATFORM_BUILDS)
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -37,6 +37,9 @@ fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness 
 
 mutate: build ## every mutant of c_core; `make verify` tries 500
 	$(BIN)/python -m verify.mutation
+
+importers: build build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
+	$(BIN)/python -m importers
 
 bench: build build/bench/tools-installed ## how fast runs and steps are, and how exact; other engines beside them
 	GIVEWAY_BENCH_TOOLS=$(CURDIR)/bench $(BIN)/giveway bench
@@ -83,7 +86,7 @@ lint: .venv/packages-installed ## ruff and mypy
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 
-LOCKS := requirements verify/requirements bench/requirements fmu/platforms/requirements
+LOCKS := requirements verify/requirements bench/requirements importers/requirements fmu/platforms/requirements
 
 lock: $(LOCKS:=.in) ## new requirements.lock files (needs uv)
 	@for name in $(LOCKS); do \
@@ -132,4 +135,11 @@ build/platforms/tools-installed: fmu/platforms/requirements.lock .venv/packages-
 	@mkdir -p $(@D)
 	$(PYTHON) -m venv build/platforms/tools
 	build/platforms/tools/bin/pip install --quiet --require-hashes -r fmu/platforms/requirements.lock
+	@touch $@
+
+build/importers/tools-installed: importers/requirements.lock importers/system_packages.sh cmake/packages.sh
+	bash importers/system_packages.sh
+	@mkdir -p $(@D)
+	$(PYTHON) -m venv build/importers/tools
+	build/importers/tools/bin/pip install --quiet --require-hashes -r importers/requirements.lock
 	@touch $@

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from report import STEP_S, stage, write_trace
 
-REALS = {"sensors": "sensor.torque[0] sensor.torque[1] sensor.torque[2]".split(),
+REALS = {"sensors": ["sensor.torque[0]", "sensor.torque[1]", "sensor.torque[2]"],
          "commands": [f"command.{w}[{i}]" for w in ("wheel_angle", "wheel_speed") for i in range(3)]}  # fmt: skip
 INTEGERS = {"sensors": [*(f"sensor.encoder[{i}]" for i in range(3)), "sensor.counter"], "commands": []}
 BOOLEANS = {"sensors": ["sensor.present"], "commands": ["command.enable"]}
@@ -28,6 +28,7 @@ class Fmu(Protocol):
     def set(self, kind: str, references: list[int], values: list[Any]) -> None: ...
     def step(self, time_s: float, step_s: float) -> None: ...
     def finish(self) -> None: ...
+
     # Model Exchange.
     state_count: int
 
@@ -105,7 +106,7 @@ def _answer(testbed: Fmu, controller: Fmu, k: int) -> None:
 
 
 class _Exchange:
-    """Runge-Kutta of fourth order at 50 us between the testbed's time events; an event that a step went past follows it."""
+    """Runge-Kutta of fourth order at 50 us between time events; an event that a step went past comes after it."""
 
     def __init__(self, fmu: Fmu) -> None:
         self.fmu, self.time_s = fmu, 0.0
@@ -140,5 +141,7 @@ class _Exchange:
         k2 = self._slope(t + h / 2, [a + h / 2 * b for a, b in zip(x, k1, strict=True)])
         k3 = self._slope(t + h / 2, [a + h / 2 * b for a, b in zip(x, k2, strict=True)])
         k4 = self._slope(end_s, [a + h * b for a, b in zip(x, k3, strict=True)])
-        self.fmu.set_states([a + h / 6 * (b + 2 * c + 2 * d + e) for a, b, c, d, e in zip(x, k1, k2, k3, k4, strict=True)])
+        self.fmu.set_states(
+            [a + h / 6 * (b + 2 * c + 2 * d + e) for a, b, c, d, e in zip(x, k1, k2, k3, k4, strict=True)]
+        )
         self.time_s = end_s

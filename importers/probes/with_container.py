@@ -12,7 +12,6 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-import fmpy
 from raw_loop import BOOLEANS, INTEGERS, REALS
 from report import STEP_S, stage, write_trace
 from with_fmpy import FmpyFmu
@@ -34,7 +33,8 @@ def main(job: dict[str, Any]) -> None:
         for model in ("controller", "testbed"):
             shutil.copy(job[model], folder / f"{model}.fmu")
         starts = [
-            [f"{name.partition('.')[0]}.fmu", name.partition(".")[2], value] for name, value in job["parameters"].items()
+            [f"{name.partition('.')[0]}.fmu", name.partition(".")[2], value]
+            for name, value in job["parameters"].items()
         ]
         layout = {
             "name": "coupled.fmu", "mt": False, "profiling": False, "sequential": True, "auto_link": False,

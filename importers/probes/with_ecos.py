@@ -1,6 +1,6 @@
 """ecos: both FMUs and their connections, stepped together.
 
-It exchanges before each step, both models at once (Jacobi): the command of a cycle reaches the testbed one cycle later than in our
+It exchanges before each step, both models at once (Jacobi): a command reaches the testbed one cycle later than in our
 order. A command delay of none inside the testbed, instead of one cycle, makes it the same loop.
 """
 

@@ -29,7 +29,12 @@ class FmpyFmu:
     def instantiate(self, exchange: bool) -> None:
         interface = self.description.modelExchange if exchange else self.description.coSimulation
         token = self.description.guid if self.version == 2 else self.description.instantiationToken
-        kinds = {(2, False): fmi2.FMU2Slave, (2, True): fmi2.FMU2Model, (3, False): fmi3.FMU3Slave, (3, True): fmi3.FMU3Model}
+        kinds = {
+            (2, False): fmi2.FMU2Slave,
+            (2, True): fmi2.FMU2Model,
+            (3, False): fmi3.FMU3Slave,
+            (3, True): fmi3.FMU3Model,
+        }
         self.fmu = kinds[self.version, exchange](
             guid=token, unzipDirectory=self.folder, modelIdentifier=interface.modelIdentifier, instanceName="probe"
         )

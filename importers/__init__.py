@@ -1,0 +1,1 @@
+"""The FMUs in importers that others wrote: `make importers`."""
