@@ -20,7 +20,7 @@ def test_the_readme_has_the_committed_results() -> None:
     results = read_results(ROOT / "importers/results.json")
     assert markdown(results) in README
     assert put_into(README, results) == README
-    assert put_into(README.replace("same bits", "other bits"), results) == README, "the planted fault"
+    assert put_into(README.replace("| all; same bits", "| all"), results) == README, "the planted fault"
 
 
 def test_the_results_are_of_these_importers_and_as_expected() -> None:
