@@ -41,9 +41,10 @@ mutate: build ## every mutant of c_core; `make verify` tries 500
 importers: build build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
 	$(BIN)/python -m importers
 
-bench: build build/bench/tools-installed ## how fast runs and steps are, and how exact; other engines beside them
+bench: build build/bench/tools-installed build/importers/tools-installed ## how fast runs and steps are, and how exact; other engines beside them
 	GIVEWAY_BENCH_TOOLS=$(CURDIR)/bench $(BIN)/giveway bench
 	$(BIN)/python -m verify.step_cost
+	$(BIN)/python -m importers.bench
 
 bench-scale: build ## does the cost of a batch grow with its designs, up to a million? (minutes)
 	$(BIN)/giveway bench --scale
