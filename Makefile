@@ -58,8 +58,9 @@ fmus: $(PLATFORM_BUILDS)
 	@$(BIN)/cmake --install build/platforms/x86_64-linux --component native --prefix build/platforms/install > /dev/null
 	@mkdir -p out/fmus && cp -p build/platforms/install/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
 else
-fmus: build ## the FMUs, with their variable tables and the robot file, in out/fmus; ALL=1: for every platform
+fmus: build ## the FMUs, with tables, robot file, batch library and the SSP, in out/fmus; ALL=1: for every platform
 	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
+	@$(BIN)/giveway ssp --out out/fmus/giveway.ssp
 endif
 
 # One tree for each platform, built with zig; its cache is beside them.

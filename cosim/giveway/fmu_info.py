@@ -6,6 +6,7 @@ import zipfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from giveway.errors import FileError
@@ -33,9 +34,7 @@ def describe(path: Path) -> list[tuple[str, str]]:
     description = read_for_use(path)
     with zipfile.ZipFile(path) as archive:
         infos = archive.infolist()
-    platforms = sorted(
-        {i.filename.split("/")[1] for i in infos if i.filename.startswith("binaries/") and not i.is_dir()}
-    )
+        platforms = _platforms(archive)
     sources = sum(i.filename.startswith("sources/") and not i.is_dir() for i in infos)
     interfaces = {
         "Co-Simulation": description.coSimulation,
@@ -60,6 +59,29 @@ def describe(path: Path) -> list[tuple[str, str]]:
         times = f"from {experiment.startTime or 0} s to {experiment.stopTime or '?'} s"
         rows.append(("default experiment", times + (f" at {experiment.stepSize} s" if experiment.stepSize else "")))
     return rows
+
+
+def _platforms(archive: zipfile.ZipFile) -> list[str]:
+    """Folders below binaries/, for Linux with the oldest GNU C library that will do."""
+    from giveway.fmu_binaries import read_binary
+
+    found: dict[str, str] = {}
+    for name in archive.namelist():
+        parts = name.split("/")
+        if parts[0] != "binaries" or len(parts) != 3 or not parts[2]:
+            continue
+        found.setdefault(parts[1], "")
+        if parts[2].endswith(".so"):
+            with TemporaryDirectory() as folder:
+                copy = Path(folder) / "library.so"
+                copy.write_bytes(archive.read(name))
+                try:
+                    newest = read_binary(copy).newest_glibc
+                except FileError:
+                    newest = None
+            if newest is not None:
+                found[parts[1]] = f" (glibc {'.'.join(str(number) for number in newest)} or newer)"
+    return sorted(platform + note for platform, note in found.items())
 
 
 def variable_rows(path: Path, grep: str = "") -> list[tuple[str, ...]]:

@@ -59,7 +59,7 @@ def test_it_is_what_the_fmu_does_by_itself() -> None:
     ],
 )
 def test_wrong_input_is_named(arguments: dict, text: str) -> None:
-    with pytest.raises(GivewayError, match="") as caught:
+    with pytest.raises(GivewayError) as caught:
         run_fmu(native.fmu("bumper", 2), **arguments)
     assert text in str(caught.value)
 
@@ -79,5 +79,11 @@ def test_an_ending_that_means_nothing_is_refused(tmp_path: Path, capsys: pytest.
 def test_info_says_what_it_is(capsys: pytest.CaptureFixture[str]) -> None:
     assert _main(["fmu", "info", str(native.fmu("testbed", 3)), "--grep", "bumper.preload"]) == 0
     said = capsys.readouterr().out
-    for words in ("Co-Simulation, Model Exchange", "x86_64-linux", "1 variables", "0.0 to 10000.0", "giveway testbed"):
+    for words in (
+        "Co-Simulation, Model Exchange",
+        "x86_64-linux (glibc 2.",
+        "1 variables",
+        "0.0 to 10000.0",
+        "giveway testbed",
+    ):
         assert words in said
