@@ -220,7 +220,7 @@ bool Instance::enter_continuous_time_mode(const char *function) {
     }
     if (update_pending_) {
         return refuse(function,
-                      "not allowed in state '%s' before another update of discrete states, which the last one asked for",
+                      "not allowed in state '%s': the last update of discrete states asked for another one",
                       state_name(state_));
     }
     state_ = State::continuous_time_mode;

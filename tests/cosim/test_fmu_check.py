@@ -343,6 +343,16 @@ def test_each_check_of_binaries_finds_its_fault(
     assert any(words in finding.text and finding.fault == fault for finding in found), [str(f) for f in found]
 
 
+def test_a_source_file_that_another_includes_need_not_be_listed(tmp_path: Path) -> None:
+    draft = Draft(3)
+    with_sources(draft)
+    draft.files["sources/part.cpp"] = b"int y;"
+    noted = [f.text for f in check_fmu(draft.write(tmp_path / "noted.fmu"))]
+    assert noted == ["sources/part.cpp is in no list of source files"]
+    draft.files["sources/all.c"] = b'  # include "part.cpp"\nint x;'
+    assert check_fmu(draft.write(tmp_path / "fine.fmu")) == []
+
+
 def test_every_check_has_a_planted_fault() -> None:
     planted = {check for check, *_ in FAULTS} | {"exported symbols", "imported libraries"}
     assert planted == set(CHECKS) | {"XML", "FMI version"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from giveway.fmu_check.common import DESCRIPTION, FAULT, NOTE, Found, TestedFile
@@ -64,7 +65,16 @@ def build_description(file: TestedFile) -> Found:
         yield FAULT, "there is a folder sources/, but no sources/buildDescription.xml"
     compiled = {name for name in sources if name.endswith((".c", ".cpp", ".cc"))}
     if named:
-        for name in sorted(compiled - named):
+        for name in sorted(compiled - named - _included(file, sources)):
             yield NOTE, f"sources/{name} is in no list of source files"
     elif compiled and description.version == 2:
         yield FAULT, "there are sources, but no interface names its source files"
+
+
+def _included(file: TestedFile, sources: set[str]) -> set[str]:
+    """Files that a source file includes: they are compiled with it."""
+    found: set[str] = set()
+    for name in sources:
+        text = file.archive.read(f"sources/{name}").decode("utf-8", "replace")
+        found |= set(re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE))
+    return found

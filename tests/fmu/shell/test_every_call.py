@@ -194,6 +194,24 @@ def test_a_saved_state_that_was_freed_is_gone(fmu: Fmu, model: str, version: int
     fmu.free()
 
 
+@every_kind
+def test_parameters_are_fixed_and_results_are_not_settable(fmu: Fmu, model: str, version: int, interface: str) -> None:
+    first = {v.causality: v for v in fmu.variables.values() if v.name != "time" and fmu.kind(v.name) == "real"}
+    for state in STATES[interface]:
+        enter(fmu, interface, state)
+        for causality, variable in first.items():
+            if causality == "input":
+                continue  # in the table of all calls
+            value = float(variable.start or 0.0)
+            if causality == "parameter" and state in (INSTANTIATED, "initialisation mode"):
+                assert fmu.set(variable.name, value) == OK, fmu.last_message
+            else:
+                assert fmu.set(variable.name, value) == ERROR
+                said = fmu.last_message
+                assert f"variable {variable.name} is" in said or f"state '{state}'" in said
+        fmu.free()
+
+
 def beyond(variable: object, kind: str) -> list[tuple[float, bool]]:
     """Values at and just outside the bounds of a variable: (value, allowed)."""
     tried: list[tuple[float, bool]] = []
