@@ -15,7 +15,7 @@ from typing import Any
 
 from giveway.errors import FileError
 from giveway.fmu_check import archive, binaries, description, documents, structure, units
-from giveway.fmu_check.common import DESCRIPTION, Found, TestedFile
+from giveway.fmu_check.common import DESCRIPTION, UNREADABLE, Found, TestedFile
 from giveway.fmu_description import read_description
 
 __all__ = ["CHECKS", "Finding", "check_fmu"]
@@ -78,7 +78,7 @@ def _parse(archive: zipfile.ZipFile, names: tuple[str, ...]) -> tuple[dict[str, 
         parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False)
         try:
             parsed[name] = etree.ElementTree(etree.fromstring(archive.read(name), parser))
-        except (etree.XMLSyntaxError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
+        except (etree.XMLSyntaxError, ValueError, *UNREADABLE) as error:
             broken.append(f"{name}: {error}")
     return parsed, broken
 

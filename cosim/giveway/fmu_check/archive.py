@@ -8,7 +8,7 @@ from collections import Counter
 from itertools import pairwise
 from pathlib import PurePosixPath
 
-from giveway.fmu_check.common import DESCRIPTION, FAULT, NOTE, Found, TestedFile
+from giveway.fmu_check.common import DESCRIPTION, FAULT, NOTE, UNREADABLE, Found, TestedFile
 
 __all__ = ["layout", "zip_method", "zip_names", "zip_order"]
 
@@ -28,7 +28,7 @@ def zip_method(file: TestedFile) -> Found:
             )
     try:
         damaged = file.archive.testzip()
-    except (RuntimeError, NotImplementedError, zipfile.BadZipFile) as error:
+    except UNREADABLE as error:
         yield FAULT, f"cannot be unpacked: {error}"
     else:
         if damaged is not None:

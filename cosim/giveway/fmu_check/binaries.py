@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -57,11 +56,9 @@ def _each_binary(file: TestedFile) -> Iterator[tuple[str, str, Binary | FileErro
         for name in names:
             if platform in known and PurePosixPath(name).stem in identifiers and name.endswith(known[platform][2]):
                 path = file.folder / f"{platform}{known[platform][2]}"  # not the name, which may lead anywhere
+                path.write_bytes(file.read(name))
                 try:
-                    path.write_bytes(file.archive.read(name))
                     found: Binary | FileError = read_binary(path)
-                except (zipfile.BadZipFile, RuntimeError, NotImplementedError):
-                    continue  # cannot be unpacked, which another check says
                 except FileError as error:
                     found = error
                 yield name, platform, found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +11,24 @@ from typing import Any
 
 from giveway.fmu_description import Description, VariableEntry
 
-__all__ = ["DESCRIPTION", "FAULT", "NOTE", "REALS", "Found", "TestedFile", "effective", "number", "state_of"]
+__all__ = [
+    "DESCRIPTION",
+    "FAULT",
+    "NOTE",
+    "REALS",
+    "UNREADABLE",
+    "Found",
+    "TestedFile",
+    "effective",
+    "number",
+    "state_of",
+]
 
 DESCRIPTION = "modelDescription.xml"
 REALS = ("Real", "Float32", "Float64")
 FAULT, NOTE = True, False
+UNREADABLE = (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError)
+"""What zipfile raises for a file that cannot be unpacked."""
 Found = Iterator[tuple[bool, str]]
 """(fault or note, text)."""
 
@@ -35,6 +49,13 @@ class TestedFile:
     documents: Mapping[str, Any]
     description: Description | None
     folder: Path
+
+    def read(self, name: str) -> bytes:
+        """The content of a file; nothing if it cannot be unpacked, which the check of the zip file says."""
+        try:
+            return self.archive.read(name)
+        except UNREADABLE:
+            return b""
 
     def described(self) -> Description:
         assert self.description is not None

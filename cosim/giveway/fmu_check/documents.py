@@ -75,6 +75,6 @@ def _included(file: TestedFile, sources: set[str]) -> set[str]:
     """Files that a source file includes: they are compiled with it."""
     found: set[str] = set()
     for name in sources:
-        text = file.archive.read(f"sources/{name}").decode("utf-8", "replace")
+        text = file.read(f"sources/{name}").decode("utf-8", "replace")
         found |= set(re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE))
     return found
