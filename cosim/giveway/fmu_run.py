@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import math
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -79,26 +81,30 @@ def run_fmu(
     kind = _interface(description, interface)
     start_s, stop, step = _times(description, stop_s, step_s)
     values = _assigned(description, assignments or [])
-    words: list[str] = []
+    printed = io.StringIO()
 
-    def log(*arguments: object) -> None:
-        status, text = (arguments[1], arguments[3]) if len(arguments) == 4 else (arguments[2], arguments[4])
-        message = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
+    def log(_environment: object, status: int, _category: bytes, text: bytes) -> None:
+        message = text.decode("utf-8", "replace")
         _log.log(logging.WARNING if status else logging.DEBUG, "%s: %s", path.name, message)
-        words.append(message)
+        print(message)
 
     def stepped(time_s: float, _recorder: object) -> bool:
         if progress is not None:
             progress(time_s, stop)
         return True
 
+    # FMPy's proxy for the messages of FMI 2 keeps a pointer to the last logger that was registered, of any instance, also
+    # after that logger is gone. So none is registered: FMPy then prints what it is told, and that is caught here.
+    logger = log if str(description.fmiVersion).startswith("3") else None
     try:
-        traces = fmpy.simulate_fmu(
-            str(path), validate=False, start_time=start_s, stop_time=stop, output_interval=step, fmi_type=kind,
-            start_values=values, logger=log, step_finished=stepped, model_description=description,
-        )  # fmt: skip
+        with redirect_stdout(printed):
+            traces = fmpy.simulate_fmu(
+                str(path), validate=False, start_time=start_s, stop_time=stop, output_interval=step, fmi_type=kind,
+                start_values=values, logger=logger, step_finished=stepped, model_description=description,
+            )  # fmt: skip
     except Exception as error:  # FMPy raises its own and plain Exceptions
-        raise SimulationError(path.name, one_line(" ".join([str(error), *words[-3:]])), start_s) from None
+        words = printed.getvalue().splitlines()[-3:]
+        raise SimulationError(path.name, one_line(" ".join([str(error), *words])), start_s) from None
     named = {variable.name: variable for variable in description.modelVariables}
     units = {n: (named[n].unit or "") if n in named else "" for n in traces.dtype.names if n != "time"}
     return FmuRun(path, kind, step, traces, units, description.description or description.modelName)

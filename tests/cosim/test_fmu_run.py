@@ -10,7 +10,9 @@ import pytest
 from giveway import native
 from giveway.cli import _main
 from giveway.errors import GivewayError, SimulationError
+from giveway.fmu import Instance, open_fmu
 from giveway.fmu_run import run_fmu
+from giveway.variables import table as variable_table
 
 DRIVE = ["carrier.velocity=0.2", "bumper.kind=1"]  # the carrier's face moves into the plate's
 
@@ -64,10 +66,17 @@ def test_wrong_input_is_named(arguments: dict, text: str) -> None:
     assert text in str(caught.value)
 
 
-def test_an_fmu_that_refuses_says_why() -> None:
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_fmu_that_refuses_says_why(version: int) -> None:
     """Each value is within its bounds; together they are not, and the FMU's own words come through."""
-    with pytest.raises(SimulationError, match="each of 0, 1 and 2 exactly once"):
-        run_fmu(native.fmu("controller", 3), None, 0.1, None, ["geometry.wheel_slot[0]=1"])
+    for _ in range(2):
+        with pytest.raises(SimulationError, match="each of 0, 1 and 2 exactly once"):
+            run_fmu(native.fmu("controller", version), None, 0.1, None, ["geometry.wheel_slot[0]=1"])
+    # Nor does it take the messages of an instance of ours, before or after.
+    table = variable_table("controller")
+    with Instance(open_fmu(native.fmu("controller", version)), "controller") as instance:
+        with pytest.raises(SimulationError, match="each of 0, 1 and 2 exactly once"):
+            instance.initialise({"geometry.wheel_slot[0]": 1}, table)
 
 
 def test_an_ending_that_means_nothing_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
