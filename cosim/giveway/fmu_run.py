@@ -93,8 +93,8 @@ def run_fmu(
             progress(time_s, stop)
         return True
 
-    # FMPy's proxy for the messages of FMI 2 keeps a pointer to the last logger that was registered, of any instance, also
-    # after that logger is gone. So none is registered: FMPy then prints what it is told, and that is caught here.
+    # FMPy's proxy for the messages of FMI 2 keeps a pointer to the last logger that was registered, of any instance,
+    # also after that logger is gone. So none is registered: FMPy then prints what it is told, and that is caught here.
     logger = log if str(description.fmiVersion).startswith("3") else None
     try:
         with redirect_stdout(printed):

@@ -74,9 +74,11 @@ def test_an_fmu_that_refuses_says_why(version: int) -> None:
             run_fmu(native.fmu("controller", version), None, 0.1, None, ["geometry.wheel_slot[0]=1"])
     # Nor does it take the messages of an instance of ours, before or after.
     table = variable_table("controller")
-    with Instance(open_fmu(native.fmu("controller", version)), "controller") as instance:
-        with pytest.raises(SimulationError, match="each of 0, 1 and 2 exactly once"):
-            instance.initialise({"geometry.wheel_slot[0]": 1}, table)
+    with (
+        Instance(open_fmu(native.fmu("controller", version)), "controller") as instance,
+        pytest.raises(SimulationError, match="each of 0, 1 and 2 exactly once"),
+    ):
+        instance.initialise({"geometry.wheel_slot[0]": 1}, table)
 
 
 def test_an_ending_that_means_nothing_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
