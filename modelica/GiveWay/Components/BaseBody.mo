@@ -1,0 +1,36 @@
+within GiveWay.Components;
+model BaseBody "Rigid body that moves in the plane"
+  import Modelica.Units.SI;
+  parameter SI.Mass m "Mass, wheels included";
+  parameter SI.Inertia I "Yaw inertia, wheels included";
+  parameter SI.Position x_start=0 "Position at the start, world frame";
+  parameter SI.Position y_start=0 "Position at the start, world frame";
+  parameter SI.Angle theta_start=0 "Heading at the start";
+  parameter SI.Velocity v_x_start=0 "Velocity at the start, world frame";
+  parameter SI.Velocity v_y_start=0 "Velocity at the start, world frame";
+  parameter SI.AngularVelocity omega_start=0 "Yaw rate at the start";
+  Interfaces.PlanarFrame frame "Centre of the body";
+  SI.Position x(start=x_start, fixed=true) "Position, world frame";
+  SI.Position y(start=y_start, fixed=true) "Position, world frame";
+  SI.Angle theta(start=theta_start, fixed=true) "Heading";
+  SI.Velocity v_x(start=v_x_start, fixed=true) "Velocity, world frame";
+  SI.Velocity v_y(start=v_y_start, fixed=true) "Velocity, world frame";
+  SI.AngularVelocity omega(start=omega_start, fixed=true) "Yaw rate";
+equation
+  frame.x = x;
+  frame.y = y;
+  frame.theta = theta;
+  der(x) = v_x;
+  der(y) = v_y;
+  der(theta) = omega;
+  m*der(v_x) = frame.f_x;
+  m*der(v_y) = frame.f_y;
+  I*der(omega) = frame.tau;
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>The first rows of (22) and (24): M x&#776; = forces of wheels and environment.</p>
+</html>"));
+end BaseBody;

@@ -1,0 +1,41 @@
+within GiveWay.Components;
+block JointServo "Position servo of one drive: sampled PD on encoder counts"
+  import Modelica.Units.SI;
+  parameter SI.RotationalSpringConstant k_p "Gain on the angle";
+  parameter SI.RotationalDampingConstant k_d "Gain on the speed";
+  parameter SI.Torque limit "Largest torque";
+  parameter SI.Frequency cutoff "Of the filter of the measured speed";
+  parameter Integer counts "Encoder counts per turn";
+  parameter Boolean enabled=true "Drives powered";
+  parameter SI.Time period=0.0005 "Sample period; the reference is new every other sample";
+  constant Real turn(unit="rad")=6.283185307179586 "A turn";
+  final parameter SI.Angle count_angle=turn/counts "Angle of a count";
+  final parameter Real gain(unit="1")=1 - exp(-turn*cutoff*period) "Of the filter, per sample";
+  Interfaces.AngleInput phi_m "Angle of the motor";
+  Interfaces.AngleInput phi_ref "Wanted angle";
+  Interfaces.AngularVelocityInput w_ref "Wanted speed";
+  Interfaces.TorqueOutput tau_m "Torque of the motor";
+  discrete Integer tick(start=-1, fixed=true) "Samples taken";
+  discrete Real count(start=0, fixed=true, unit="1") "Encoder count";
+  discrete SI.AngularVelocity w(start=0, fixed=true) "Filtered speed";
+  discrete SI.Angle wanted(start=0, fixed=true) "Wanted angle, moved on between references";
+  discrete SI.Torque tau(start=0, fixed=true) "Torque held until the next sample";
+equation
+  when sample(0, period) then
+    tick = pre(tick) + 1;
+    count = floor(phi_m/turn*counts);
+    w = if pre(tick) < 0 then 0 else pre(w) + gain*((count - pre(count))*count_angle/period - pre(w));
+    wanted = if mod(tick, 2) == 0 then phi_ref else pre(wanted) + w_ref*period;
+    tau = if enabled then max(-limit, min(limit, k_p*(wanted - count*count_angle) + k_d*(w_ref - w))) else 0;
+  end when;
+  tau_m = tau;
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Rectangle(extent={{-90,90},{90,-90}}, lineColor={0,0,127}, fillColor={255,255,255}, fillPattern=FillPattern.Solid),
+      Line(points={{-70,-40},{-40,-40},{-40,0},{-10,0},{-10,40},{20,40},{20,10},{60,10}}, color={0,0,127}),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>&tau;<sub>m</sub> = k<sub>p</sub>(&phi;<sub>ref</sub> &minus; &phi;) + k<sub>d</sub>(&omega;<sub>ref</sub> &minus; &omega;), limited, 2000 times a second. &phi; is that of the
+encoder, &omega; its difference quotient through a first-order filter. Every other sample brings a new reference; between them it moves on with its speed.</p>
+</html>"));
+end JointServo;

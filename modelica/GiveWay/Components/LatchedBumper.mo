@@ -1,0 +1,32 @@
+within GiveWay.Components;
+model LatchedBumper "Spring bumper with an ideal latch: latched or released"
+  import Modelica.Units.SI;
+  extends Interfaces.PartialSpringBumper;
+  parameter SI.Force f_latch "Force at which the latch lets go, beyond the preload";
+  Boolean latched(start=true, fixed=true) "The plate is held at full extension";
+initial equation
+  c = 0;
+  u = 0;
+equation
+  f = if latched then f_lock else f_spring + f_bottom;
+  der(c) = u;
+  m_reduced*der(u) = if latched then 0 else f_lock - f;
+  when pre(latched) and f_lock > f_latch + f_pre then
+    latched = false;
+  elsewhen not pre(latched) and c < 0 then
+    latched = true;
+    reinit(c, 0);
+    reinit(u, 0);
+  end when;
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Rectangle(extent={{-90,60},{-70,-60}}, lineColor={64,64,64}, fillColor={128,128,128}, fillPattern=FillPattern.Solid),
+      Line(points={{-70,0},{-50,0},{-38,30},{-14,-30},{10,30},{34,-30},{46,0},{70,0}}, color={64,64,64}, thickness=0.5),
+      Rectangle(extent={{70,60},{90,-60}}, lineColor={140,60,0}, fillColor={240,190,140}, fillPattern=FillPattern.Solid),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>The latch as two modes. Latched, plate and carriage are one body, and the inner force is F<sub>lock</sub>. It lets go when that exceeds F<sub>L</sub> + F<sub>pre</sub>, and takes hold again
+when the plate comes back to full extension: a plastic impact, in which the common momentum is kept and &mu;c&#775;<sup>2</sup>/2 is lost.</p>
+<p>Since c&#775; and the velocity of the common centre of mass are the coordinates (<code>Components.Slider</code>), the impact is no more than c&#775; := 0.</p>
+</html>"));
+end LatchedBumper;

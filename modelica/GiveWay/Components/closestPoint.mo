@@ -1,0 +1,65 @@
+within GiveWay.Components;
+function closestPoint "Point of a convex polygon that is closest to a point"
+  import Modelica.Units.SI;
+  input SI.Position q_x "The point";
+  input SI.Position q_y "The point";
+  input SI.Position x[:] "Corners, counter-clockwise";
+  input SI.Position y[size(x, 1)] "Corners, counter-clockwise";
+  output SI.Position distance "Signed distance: negative inside";
+  output Real n_x(unit="1") "Outward unit normal";
+  output Real n_y(unit="1") "Outward unit normal";
+protected
+  Integer n=size(x, 1) "Number of corners";
+  Integer j "The next corner";
+  SI.Length length "Of an edge";
+  Real t_x(unit="1") "Unit vector along an edge";
+  Real t_y(unit="1") "Unit vector along an edge";
+  SI.Position height "Over the line of an edge";
+  SI.Position along "Nearest point of an edge, from its first corner";
+  SI.Position o_x "From there to the point";
+  SI.Position o_y "From there to the point";
+  SI.Distance offset "Length of that";
+  SI.Position highest "Over any line of an edge";
+  SI.Distance nearest "To any edge";
+  Real m_x(unit="1") "Normal of the highest line";
+  Real m_y(unit="1") "Normal of the highest line";
+algorithm
+  highest := -1e300;
+  nearest := 1e300;
+  n_x := 1;
+  n_y := 0;
+  m_x := 1;
+  m_y := 0;
+  for i in 1:n loop
+    j := if i == n then 1 else i + 1;
+    length := sqrt((x[j] - x[i])^2 + (y[j] - y[i])^2);
+    t_x := (x[j] - x[i])/length;
+    t_y := (y[j] - y[i])/length;
+    height := (q_x - x[i])*t_y - (q_y - y[i])*t_x;
+    if height > highest then
+      highest := height;
+      m_x := t_y;
+      m_y := -t_x;
+    end if;
+    along := max(0, min(length, (q_x - x[i])*t_x + (q_y - y[i])*t_y));
+    o_x := q_x - x[i] - along*t_x;
+    o_y := q_y - y[i] - along*t_y;
+    offset := sqrt(o_x^2 + o_y^2);
+    if offset < nearest then
+      nearest := offset;
+      n_x := o_x/max(offset, 1e-12);
+      n_y := o_y/max(offset, 1e-12);
+    end if;
+  end for;
+  if highest > 0 then
+    distance := nearest;
+  else
+    distance := highest;
+    n_x := m_x;
+    n_y := m_y;
+  end if;
+  annotation (
+    Documentation(info="<html>
+<p>Outside, the nearest point of any edge; inside, that of the nearest edge's line. The closest point itself is q &minus; distance&middot;n.</p>
+</html>"));
+end closestPoint;

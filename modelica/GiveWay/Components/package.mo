@@ -1,0 +1,9 @@
+within GiveWay;
+package Components "Parts of robot and testbed"
+  extends Modelica.Icons.Package;
+  annotation (
+    Documentation(info="<html>
+<p>From the drivetrain of Fig. 6 to the assembled testbed. Frictions, contacts and latches are written out here: each is one law that the paper or its
+literature states, with its events.</p>
+</html>"));
+end Components;

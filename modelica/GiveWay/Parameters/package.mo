@@ -1,0 +1,8 @@
+within GiveWay;
+package Parameters "Numbers of robots"
+  extends Modelica.Icons.Package;
+  annotation (
+    Documentation(info="<html>
+<p>Records made from the robot files that every part of this project reads.</p>
+</html>"));
+end Parameters;
