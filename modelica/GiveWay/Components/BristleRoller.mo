@@ -2,10 +2,10 @@ within GiveWay.Components;
 model BristleRoller "Roller friction with presliding: an elasto-plastic bristle"
   import Modelica.Units.SI;
   extends Interfaces.PartialRollerFriction;
-  parameter SI.TranslationalSpringConstant sigma_0 "Presliding stiffness";
-  parameter SI.TranslationalDampingConstant sigma_1 "Presliding damping";
-  parameter SI.Velocity v_stribeck "Speed over which stiction gives way to (28)";
-  parameter Real rho_ba(unit="1") "Share of the sliding deflection that is purely elastic";
+  parameter SI.TranslationalSpringConstant sigma_0=robot.roller_presliding_stiffness "Presliding stiffness";
+  parameter SI.TranslationalDampingConstant sigma_1=robot.roller_presliding_damping "Presliding damping";
+  parameter SI.Velocity v_stribeck=robot.roller_stribeck_speed "Speed over which stiction gives way to (28)";
+  parameter Real rho_ba(unit="1")=robot.roller_elastic_fraction "Share of the sliding deflection that is purely elastic";
   final parameter Real w_start(unit="1")=exp(-(v_start/v_stribeck)^2) "Share of stiction in the sliding level at the start";
   final parameter SI.Position z_start=sign(v_start)*coulomb/r_r*(w_start + (1 - w_start)*tanh(slope*abs(v_start)/r_r))/sigma_0
     "Deflection in steady motion at the start";

@@ -1,8 +1,9 @@
 within GiveWay.Components;
 model DiscContact "Cover contact of a disc on a rail with the base's outline"
   import Modelica.Units.SI;
-  parameter SI.TranslationalSpringConstant k "Stiffness of the cover";
-  parameter Real e(unit="s/m") "Damping of the cover (Hunt and Crossley)";
+  parameter Parameters.Trikey robot "Numbers of cover and outline";
+  parameter SI.TranslationalSpringConstant k=robot.contact_stiffness "Stiffness of the cover";
+  parameter Real e(unit="s/m")=robot.contact_damping "Damping of the cover (Hunt and Crossley)";
   parameter Real mu(unit="1")=0 "Tangential friction";
   parameter SI.Velocity v_mu=0.005 "Speed over which the tangential friction turns";
   parameter SI.Radius r_n=0.02 "Radius of the nose";
@@ -10,8 +11,8 @@ model DiscContact "Cover contact of a disc on a rail with the base's outline"
   parameter SI.Position x_target "Where the nose's tip is after run_up, world frame";
   parameter SI.Position y_target "Where the nose's tip is after run_up, world frame";
   parameter SI.Length run_up "Travel of the nose until its tip is at the target";
-  parameter SI.Position outline_x[:] "Corners of the outline, base frame, counter-clockwise";
-  parameter SI.Position outline_y[size(outline_x, 1)] "Corners of the outline, base frame, counter-clockwise";
+  parameter SI.Position outline_x[:]=robot.outline_x "Corners of the outline, base frame, counter-clockwise";
+  parameter SI.Position outline_y[:]=robot.outline_y "Corners of the outline, base frame, counter-clockwise";
   Interfaces.PlanarFrame base "Centre of the base";
   Interfaces.LinearFlange nose "Nose of the slider";
   SI.Velocity v_x "Velocity of the base in its axes";
@@ -45,7 +46,7 @@ equation
   t_y = sin(psi - base.theta);
   q_x = cos(base.theta)*(x_target - base.x) + sin(base.theta)*(y_target - base.y) + (nose.s - run_up - r_n)*t_x;
   q_y = -sin(base.theta)*(x_target - base.x) + cos(base.theta)*(y_target - base.y) + (nose.s - run_up - r_n)*t_y;
-  (distance, n_x, n_y) = closestPoint(q_x, q_y, outline_x, outline_y);
+  (distance, n_x, n_y) = Functions.closestPoint(q_x, q_y, outline_x, outline_y);
   p_x = q_x - distance*n_x;
   p_y = q_y - distance*n_y;
   depth = r_n - distance;

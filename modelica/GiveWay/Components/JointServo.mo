@@ -6,27 +6,30 @@ block JointServo "Position servo of one drive: sampled PD on encoder counts"
   parameter SI.Torque limit "Largest torque";
   parameter SI.Frequency cutoff "Of the filter of the measured speed";
   parameter Integer counts "Encoder counts per turn";
-  parameter Boolean enabled=true "Drives powered";
+  parameter SI.Angle phi_start=0 "Wanted angle that is on the bus at the start";
+  parameter SI.AngularVelocity w_start=0 "Wanted speed that is on the bus at the start";
   parameter SI.Time period=0.0005 "Sample period; the reference is new every other sample";
-  constant Real turn(unit="rad")=6.283185307179586 "A turn";
+  constant SI.Angle turn=6.283185307179586 "A turn";
   final parameter SI.Angle count_angle=turn/counts "Angle of a count";
   final parameter Real gain(unit="1")=1 - exp(-turn*cutoff*period) "Of the filter, per sample";
   Interfaces.AngleInput phi_m "Angle of the motor";
-  Interfaces.AngleInput phi_ref "Wanted angle";
-  Interfaces.AngularVelocityInput w_ref "Wanted speed";
+  Interfaces.AngleInput phi_ref "Wanted angle, from the bus";
+  Interfaces.AngularVelocityInput w_ref "Wanted speed, from the bus";
   Interfaces.TorqueOutput tau_m "Torque of the motor";
   discrete Integer tick(start=-1, fixed=true) "Samples taken";
   discrete Real count(start=0, fixed=true, unit="1") "Encoder count";
   discrete SI.AngularVelocity w(start=0, fixed=true) "Filtered speed";
   discrete SI.Angle wanted(start=0, fixed=true) "Wanted angle, moved on between references";
+  discrete SI.AngularVelocity w_wanted(start=0, fixed=true) "Wanted speed";
   discrete SI.Torque tau(start=0, fixed=true) "Torque held until the next sample";
 equation
   when sample(0, period) then
     tick = pre(tick) + 1;
     count = floor(phi_m/turn*counts);
-    w = if pre(tick) < 0 then 0 else pre(w) + gain*((count - pre(count))*count_angle/period - pre(w));
-    wanted = if mod(tick, 2) == 0 then phi_ref else pre(wanted) + w_ref*period;
-    tau = if enabled then max(-limit, min(limit, k_p*(wanted - count*count_angle) + k_d*(w_ref - w))) else 0;
+    w = if tick == 0 then 0 else pre(w) + gain*((count - pre(count))*count_angle/period - pre(w));
+    w_wanted = if mod(tick, 2) == 1 then pre(w_wanted) else if tick == 0 then w_start else pre(w_ref);
+    wanted = if mod(tick, 2) == 1 then pre(wanted) + w_wanted*period else if tick == 0 then phi_start else pre(phi_ref);
+    tau = max(-limit, min(limit, k_p*(wanted - count*count_angle) + k_d*(w_wanted - w)));
   end when;
   tau_m = tau;
   annotation (
@@ -37,5 +40,6 @@ equation
     Documentation(info="<html>
 <p>&tau;<sub>m</sub> = k<sub>p</sub>(&phi;<sub>ref</sub> &minus; &phi;) + k<sub>d</sub>(&omega;<sub>ref</sub> &minus; &omega;), limited, 2000 times a second. &phi; is that of the
 encoder, &omega; its difference quotient through a first-order filter. Every other sample brings a new reference; between them it moves on with its speed.</p>
+<p>The bus takes one cycle of 1 ms: what arrives with a sample is what the controller had put out before it (<code>pre</code>).</p>
 </html>"));
 end JointServo;

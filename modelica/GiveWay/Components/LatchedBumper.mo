@@ -2,8 +2,10 @@ within GiveWay.Components;
 model LatchedBumper "Spring bumper with an ideal latch: latched or released"
   import Modelica.Units.SI;
   extends Interfaces.PartialSpringBumper;
-  parameter SI.Force f_latch "Force at which the latch lets go, beyond the preload";
+  parameter SI.Force f_latch=robot.bumper_latch_force "Force at which the latch lets go, beyond the preload";
   Boolean latched(start=true, fixed=true) "The plate is held at full extension";
+  discrete SI.Time t_release(start=-1, fixed=true) "When the latch let go last, -1 before";
+  discrete SI.Time t_latch(start=-1, fixed=true) "When it took hold last, -1 before";
 initial equation
   c = 0;
   u = 0;
@@ -13,8 +15,12 @@ equation
   m_reduced*der(u) = if latched then 0 else f_lock - f;
   when pre(latched) and f_lock > f_latch + f_pre then
     latched = false;
+    t_release = time;
+    t_latch = pre(t_latch);
   elsewhen not pre(latched) and c < 0 then
     latched = true;
+    t_release = pre(t_release);
+    t_latch = time;
     reinit(c, 0);
     reinit(u, 0);
   end when;

@@ -2,8 +2,8 @@ within GiveWay.Components;
 model MagneticBumper "Spring bumper with a magnetic latch whose force follows the gap"
   import Modelica.Units.SI;
   extends Interfaces.PartialSpringBumper;
-  parameter SI.Force f_latch "Force of the latch at full extension";
-  parameter SI.Length g_0 "Gap at which a quarter of it is left";
+  parameter SI.Force f_latch=robot.bumper_latch_force "Force of the latch at full extension";
+  parameter SI.Length g_0=robot.bumper_latch_gap "Gap at which a quarter of it is left";
   SI.Force f_end "Force of the end stop";
   SI.Force f_magnet "Force of the magnet, which extends";
 initial equation

@@ -11,10 +11,8 @@ model Omniwheel "Omnidirectional wheel that rolls on the floor (9)-(30)"
   parameter SI.Velocity v_n_start=0 "Speed along the axle at the start";
   Interfaces.PlanarFrame base "Centre of the base";
   Interfaces.RotaryFlange axle "Axle of the wheel";
-  replaceable BristleRoller roller(coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, r_r=r_r, v_start=v_n_start, sigma_0=robot.roller_presliding_stiffness,
-      sigma_1=robot.roller_presliding_damping, v_stribeck=robot.roller_stribeck_speed, rho_ba=robot.roller_elastic_fraction)
-    constrainedby Interfaces.PartialRollerFriction(coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, r_r=r_r, v_start=v_n_start)
-    "Friction of the rollers";
+  replaceable model Roller = BristleRoller constrainedby Interfaces.PartialRollerFriction "Friction of the rollers";
+  Roller roller(robot=robot, r_r=r_r, v_start=v_n_start, v=v_n) "Rollers";
   SI.Angle direction "Of the axle, world frame";
   SI.Velocity v_t "Speed along the rolling direction, without the base's turning";
   SI.Velocity v_n "Speed along the axle, outwards";
@@ -33,7 +31,6 @@ equation
   axle.phi = q_w;
   I_w*der(w_w) = axle.tau - r_w*f_t;
   I_r*der(w_r) = r_r*(f_n - roller.f);
-  roller.v = v_n;
   base.f_x = sin(direction)*f_t + cos(direction)*f_n;
   base.f_y = -cos(direction)*f_t + sin(direction)*f_n;
   base.tau = -R*f_t;

@@ -10,9 +10,8 @@ model Slider "Collision dummy: a slider on a rail with a bumper at its nose"
   parameter SI.Velocity v_start=0 "Speed at the start";
   Interfaces.LinearFlange rope "Where the rope pulls";
   Interfaces.LinearFlange nose "Nose, in front of the bumper";
-  replaceable MagneticBumper bumper(m_reduced=m_p*(m - m_p)/m, k=robot.bumper_spring_rate, f_pre=robot.bumper_preload, d=robot.bumper_damping, f_guide=robot.bumper_guide_friction,
-      travel=robot.bumper_travel, f_latch=robot.bumper_latch_force, g_0=robot.bumper_latch_gap)
-    constrainedby Interfaces.PartialBumper(m_reduced=m_p*(m - m_p)/m) "Bumper between carriage and plate";
+  replaceable model Bumper = MagneticBumper constrainedby Interfaces.PartialBumper "Kind of bumper";
+  Bumper bumper(robot=robot, m_reduced=m_p*(m - m_p)/m, f_lock=m_p/m*f_drive + (m - m_p)/m*f_contact) "Bumper between carriage and plate";
   SI.Position s(start=0, fixed=true) "Travel of the carriage";
   SI.Velocity v_mean(start=v_start, fixed=true) "Speed of the common centre of mass";
   SI.Velocity v "Speed of the carriage";
@@ -26,7 +25,6 @@ equation
   f_contact = -nose.f;
   f_drive = rope.f - coulomb*tanh(v/v_c) - viscous*v;
   m*der(v_mean) = f_drive - f_contact;
-  bumper.f_lock = m_p/m*f_drive + (m - m_p)/m*f_contact;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
       Rectangle(extent={{-70,40},{60,-10}}, lineColor={64,64,64}, fillColor={192,192,192}, fillPattern=FillPattern.Solid),

@@ -9,8 +9,9 @@ equation
   drivetrain.tau_m = if time < 0.05 then 2 else if time < 0.25 then 5 else if time < 0.5 then -4 else 0;
   load.tau_ext = 0;
   annotation (
-    experiment(StopTime=0.8, Tolerance=1e-9, Interval=0.001),
+    experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
-x
+<p>The first torque is below the stiction and moves nothing; the second breaks away; the third reverses, through a standstill; with the last the gear comes to rest and holds the load's
+oscillation on the sensor's spring.</p>
 </html>"));
 end DrivetrainStep;

@@ -1,8 +1,9 @@
 within GiveWay.Interfaces;
 partial model PartialBumper "Compression of a bumper between carriage and plate"
   import Modelica.Units.SI;
+  parameter Parameters.Trikey robot "Numbers of the bumper";
   parameter SI.Mass m_reduced "Reduced mass of plate and carriage";
-  SI.Force f_lock "Compressing force that would keep plate and carriage together";
+  input SI.Force f_lock "Compressing force that would keep plate and carriage together";
   SI.Position c "Compression, 0 at full extension";
   SI.Velocity u "Rate of compression";
   SI.Force f "Force that drives plate and carriage apart";

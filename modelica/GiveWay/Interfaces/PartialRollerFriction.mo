@@ -1,11 +1,12 @@
 within GiveWay.Interfaces;
 partial model PartialRollerFriction "Friction of the rollers of one wheel on the floor"
   import Modelica.Units.SI;
-  parameter SI.Torque coulomb "Sliding torque B_r of one roller (28)";
-  parameter Real slope(unit="s/rad") "Softening alpha of (28)";
-  parameter SI.Radius r_r "Radius of a roller";
+  parameter Parameters.Trikey robot "The robot's numbers";
+  parameter SI.Torque coulomb=robot.roller_coulomb_torque "Sliding torque B_r of one roller (28)";
+  parameter Real slope(unit="s/rad")=robot.roller_tanh_slope "Softening alpha of (28)";
+  parameter SI.Radius r_r=robot.roller_radius "Radius of a roller";
   parameter SI.Velocity v_start=0 "Speed of steady motion at the start";
-  SI.Velocity v "Speed of the wheel along its axle";
+  input SI.Velocity v "Speed of the wheel along its axle";
   SI.Force f "Force of the floor against that motion";
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={

@@ -2,12 +2,12 @@ within GiveWay.Interfaces;
 partial model PartialSpringBumper "Spring, guide and bottom stop that all bumpers with a plate share"
   import Modelica.Units.SI;
   extends PartialBumper;
-  parameter SI.TranslationalSpringConstant k "Rate of the spring";
-  parameter SI.Force f_pre "Preload of the spring at full extension";
-  parameter SI.TranslationalDampingConstant d "Damping";
-  parameter SI.Force f_guide "Coulomb friction of the guide";
+  parameter SI.TranslationalSpringConstant k=robot.bumper_spring_rate "Rate of the spring";
+  parameter SI.Force f_pre=robot.bumper_preload "Preload of the spring at full extension";
+  parameter SI.TranslationalDampingConstant d=robot.bumper_damping "Damping";
+  parameter SI.Force f_guide=robot.bumper_guide_friction "Coulomb friction of the guide";
   parameter SI.Velocity u_guide=0.005 "Speed over which the guide's friction turns";
-  parameter SI.Length travel "Compression at which it bottoms";
+  parameter SI.Length travel=robot.bumper_travel "Compression at which it bottoms";
   parameter SI.TranslationalSpringConstant k_stop=2e5 "Stiffness of the stops";
   parameter Real e_stop(unit="s/m")=1 "Damping of the stops (Hunt and Crossley)";
   SI.Force f_spring "Spring, damping and friction of the guide";

@@ -1,8 +1,8 @@
 within GiveWay;
-package Sensors "x"
-  extends Modelica.Icons.Package;
+package Sensors "What is read from the models"
+  extends Modelica.Icons.SensorsPackage;
   annotation (
     Documentation(info="<html>
-x
+<p>Ideal sensors: they take nothing from what they read.</p>
 </html>"));
 end Sensors;

@@ -1,8 +1,8 @@
 within GiveWay;
-package Sources "x"
-  extends Modelica.Icons.Package;
+package Sources "Plans, waves and pushes"
+  extends Modelica.Icons.SourcesPackage;
   annotation (
     Documentation(info="<html>
-x
+<p>What the robot is asked to do, and what is done to it.</p>
 </html>"));
 end Sources;

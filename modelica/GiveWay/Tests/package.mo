@@ -1,8 +1,8 @@
 within GiveWay;
-package Tests "x"
+package Tests "Models that check themselves"
   extends Modelica.Icons.Package;
   annotation (
     Documentation(info="<html>
-x
+<p>Each has a <code>residual</code> that is zero but for the solver's tolerance, and an assertion of that.</p>
 </html>"));
 end Tests;

@@ -1,8 +1,8 @@
 within GiveWay;
-package UsersGuide "x"
-  extends Modelica.Icons.Package;
+package UsersGuide "What this package is, and where it comes from"
+  extends Modelica.Icons.Information;
   annotation (
     Documentation(info="<html>
-x
+<p>Concept, equations, literature, contact.</p>
 </html>"));
 end UsersGuide;

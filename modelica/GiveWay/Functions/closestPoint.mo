@@ -1,6 +1,7 @@
-within GiveWay.Components;
+within GiveWay.Functions;
 function closestPoint "Point of a convex polygon that is closest to a point"
   import Modelica.Units.SI;
+  extends Modelica.Icons.Function;
   input SI.Position q_x "The point";
   input SI.Position q_y "The point";
   input SI.Position x[:] "Corners, counter-clockwise";

@@ -1,0 +1,45 @@
+within GiveWay.Components;
+model ControlledRobot "Robot with its servos and the sampled controller"
+  import Modelica.Units.SI;
+  extends Interfaces.PartialRobot;
+  parameter Integer counts=data.drivetrain_encoder_counts "Encoder counts per turn";
+  parameter SI.Torque resolution=data.drivetrain_torque_sensor_resolution "Of the torque sensors";
+  parameter Integer tare_ticks=100 "Samples of the tare at the start; 0: none, and the robot moves along its plan from the start";
+  replaceable model Plan = Sources.Standstill constrainedby Interfaces.PartialPlan "Kind of plan";
+  Plan plan(t=controller.path_time) "Planned motion";
+  SampledController controller(robot=data, counts=counts, resolution=resolution, tare_ticks=tare_ticks, phi_start=tau_start/data.drivetrain_stiffness, w_start=w_start, tau_start=tau_start,
+    plan_x={plan.x, plan.y}, plan_v={plan.v_x, plan.v_y}, plan_a={plan.a_x, plan.a_y}, plan_theta=plan.theta)
+    "Estimator, detector and admittance";
+  JointServo servo0(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
+    phi_start=-w_start[1]*0.001, w_start=w_start[1]) "Servo of wheel 0";
+  JointServo servo1(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
+    phi_start=-w_start[2]*0.001, w_start=w_start[2]) "Servo of wheel 1";
+  JointServo servo2(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
+    phi_start=-w_start[3]*0.001, w_start=w_start[3]) "Servo of wheel 2";
+equation
+  servo0.phi_m = phi_m[1];
+  servo0.phi_ref = controller.phi_ref[1];
+  servo0.w_ref = controller.w_ref[1];
+  tau_m[1] = servo0.tau_m;
+  controller.tau_s[1] = tau_s[1];
+  controller.phi_m[1] = phi_m[1];
+  servo1.phi_m = phi_m[2];
+  servo1.phi_ref = controller.phi_ref[2];
+  servo1.w_ref = controller.w_ref[2];
+  tau_m[2] = servo1.tau_m;
+  controller.tau_s[2] = tau_s[2];
+  controller.phi_m[2] = phi_m[2];
+  servo2.phi_m = phi_m[3];
+  servo2.phi_ref = controller.phi_ref[3];
+  servo2.w_ref = controller.w_ref[3];
+  tau_m[3] = servo2.tau_m;
+  controller.tau_s[3] = tau_s[3];
+  controller.phi_m[3] = phi_m[3];
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>The closed loop of Fig. 3 and Fig. 4: three drives with a 2 kHz servo each, the controller at 1 kHz, and a bus that takes one millisecond each way.</p>
+</html>"));
+end ControlledRobot;

@@ -1,0 +1,16 @@
+within GiveWay.Components;
+model Gravity "Constant pull on a slider on a vertical rail"
+  import Modelica.Units.SI;
+  parameter SI.Force f "Pull along the rail";
+  Interfaces.LinearFlange flange "What is pulled";
+equation
+  flange.f = -f;
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Line(points={{-90,60},{40,60},{40,0}}, color={64,64,64}, thickness=0.5),
+      Rectangle(extent={{10,0},{70,-70}}, lineColor={64,64,64}, fillColor={160,160,160}, fillPattern=FillPattern.Solid),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>f = m g.</p>
+</html>"));
+end Gravity;

@@ -1,0 +1,16 @@
+within GiveWay.Examples;
+model LatchRelease "An ideal latch lets go in a collision and takes hold again"
+  extends Modelica.Icons.Example;
+  parameter Parameters.Trikey data "Numbers of robot and dummy";
+  Components.Robot robot(data=data) "Robot, not powered";
+  Components.LatchedDummy dummy(robot=data) "Dummy with an ideal latch";
+equation
+  connect(robot.frame, dummy.frame);
+  robot.tau_ref = zeros(3);
+  annotation (
+    experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
+    Documentation(info="<html>
+<p>The dummy hits the unpowered robot; the latch breaks away at F<sub>L</sub>, the bumper strokes, and when the rebounding plate is back at full extension the latch takes hold of it in a
+plastic impact: <code>dummy.slider.bumper.t_release</code>, <code>t_latch</code>.</p>
+</html>"));
+end LatchRelease;

@@ -1,0 +1,15 @@
+within GiveWay.Examples;
+model MotionlessSpring "The dummy with a spring bumper hits the standing robot (5.2)"
+  import Modelica.Units.SI;
+  extends Modelica.Icons.Example;
+  Components.Testbed testbed(redeclare Components.SpringDummy dummy) "Robot and dummy";
+  Sensors.FirstContact first(touching=testbed.dummy.contact.touching) "First contact";
+  SI.Time detection_time "From the first contact to the controller's decision, -1 before";
+equation
+  detection_time = if testbed.robot.controller.hits > 0 then testbed.robot.controller.hit_tick*testbed.robot.controller.period - first.t else -1;
+  annotation (
+    experiment(StopTime=0.6, Tolerance=1e-7, Interval=0.001),
+    Documentation(info="<html>
+<p>5.2 with the spring bumper: the paper notices it after 95 ms.</p><p>The controller notices the impulse, and the robot gives way by 0.5 m with a time constant of 1.25 s; the example ends before.</p>
+</html>"));
+end MotionlessSpring;

@@ -1,0 +1,51 @@
+within GiveWay.Interfaces;
+partial model PartialRobot "Base with three drivetrains, whose motors are somebody else's"
+  import Modelica.Units.SI;
+  parameter Parameters.Trikey data "The robot's numbers";
+  parameter SI.Position x_start=0 "Position of the base at the start, world frame";
+  parameter SI.Position y_start=0 "Position of the base at the start, world frame";
+  parameter SI.Angle theta_start=0 "Heading of the base at the start";
+  parameter SI.Velocity v_x_start=0 "Velocity of the base at the start, world frame";
+  parameter SI.Velocity v_y_start=0 "Velocity of the base at the start, world frame";
+  parameter SI.AngularVelocity omega_start=0 "Yaw rate of the base at the start";
+  constant SI.Angle third=2.0943951023931953 "A third of a turn";
+  final parameter SI.Velocity v_n[3]={cos(theta_start + i*third)*v_x_start + sin(theta_start + i*third)*v_y_start for i in 0:2} "Speeds along the axles at the start";
+  final parameter SI.AngularVelocity w_start[3]={(-sin(theta_start + i*third)*v_x_start + cos(theta_start + i*third)*v_y_start + data.wheel_distance*omega_start)/data.wheel_radius for i in 0:2}
+    "Wheel speeds at the start";
+  final parameter Real stick[3](each unit="1")={exp(-(v_n[i]/data.roller_stribeck_speed)^2) for i in 1:3} "Share of stiction in the rollers at the start";
+  final parameter SI.Force f_start[3]={sign(v_n[i])*data.roller_coulomb_torque/data.roller_radius*(stick[i] + (1 - stick[i])*tanh(data.roller_tanh_slope*abs(v_n[i])/data.roller_radius)) for i in 1:3}
+    "Roller friction of the steady motion at the start";
+  final parameter SI.Force drag_x=f_start[1] + cos(third)*f_start[2] + cos(2*third)*f_start[3] "Of the rollers, base axes";
+  final parameter SI.Force drag_y=sin(third)*f_start[2] + sin(2*third)*f_start[3] "Of the rollers, base axes";
+  final parameter SI.Torque tau_start[3]={2/3*data.wheel_radius*(cos(i*third)*drag_y - sin(i*third)*drag_x) for i in 0:2} "Torques that carry it";
+  SI.Torque tau_m[3] "Wanted motor torques";
+  Interfaces.TorqueOutput tau_s[3] "Sensed torques";
+  Interfaces.AngleOutput phi_m[3] "Motor angles";
+  Interfaces.PlanarFrame frame "Centre of the base";
+  Components.OmniBase base(robot=data, x_start=x_start, y_start=y_start, theta_start=theta_start, v_x_start=v_x_start, v_y_start=v_y_start, omega_start=omega_start)
+    "Base on three wheels";
+  Components.Drivetrain drive0(robot=data, phi_start=tau_start[1]/data.drivetrain_stiffness, w_start=w_start[1]) "Drivetrain of wheel 0";
+  Components.Drivetrain drive1(robot=data, phi_start=tau_start[2]/data.drivetrain_stiffness, w_start=w_start[2]) "Drivetrain of wheel 1";
+  Components.Drivetrain drive2(robot=data, phi_start=tau_start[3]/data.drivetrain_stiffness, w_start=w_start[3]) "Drivetrain of wheel 2";
+equation
+  connect(base.frame, frame);
+  connect(drive0.wheel, base.axle0);
+  drive0.tau_m = tau_m[1];
+  tau_s[1] = drive0.tau_s;
+  phi_m[1] = drive0.phi_m;
+  connect(drive1.wheel, base.axle1);
+  drive1.tau_m = tau_m[2];
+  tau_s[2] = drive1.tau_s;
+  phi_m[2] = drive1.phi_m;
+  connect(drive2.wheel, base.axle2);
+  drive2.tau_m = tau_m[3];
+  tau_s[3] = drive2.tau_s;
+  phi_m[3] = drive2.phi_m;
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>The robot without its electronics. It starts at rest, or in steady motion with rollers that already slide and drivetrains that carry what the rollers pull. Who extends it says what the motors do.</p>
+</html>"));
+end PartialRobot;

@@ -1,0 +1,21 @@
+within GiveWay.Sensors;
+model PlanarPosition "How far a body is from where it started"
+  import Modelica.Units.SI;
+  Interfaces.PlanarFrame frame "The body";
+  SI.Distance distance "From where it started";
+  parameter SI.Position x_start=0 "Where it started, world frame";
+  parameter SI.Position y_start=0 "Where it started, world frame";
+equation
+  frame.f_x = 0;
+  frame.f_y = 0;
+  frame.tau = 0;
+  distance = sqrt((frame.x - x_start)^2 + (frame.y - y_start)^2);
+  annotation (
+    Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
+      Ellipse(extent={{-70,70},{70,-70}}, lineColor={64,64,64}, fillColor={255,255,255}, fillPattern=FillPattern.Solid),
+      Line(points={{0,0},{40,40}}, color={0,0,0}, thickness=0.5),
+      Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
+    Documentation(info="<html>
+<p>The escape distance of 5.2 is the last value of <code>distance</code>.</p>
+</html>"));
+end PlanarPosition;

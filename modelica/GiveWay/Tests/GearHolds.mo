@@ -1,0 +1,20 @@
+within GiveWay.Tests;
+model GearHolds "A stuck gear holds a static load without creeping"
+  import Modelica.Units.SI;
+  extends Modelica.Icons.Example;
+  parameter Parameters.Trikey robot "The robot's numbers";
+  Components.Drivetrain drivetrain(robot=robot) "Drivetrain";
+  Components.Load load(J=0.15, viscous=0.3) "Load";
+  SI.Angle residual "What the motor moves";
+equation
+  connect(drivetrain.wheel, load.axle);
+  drivetrain.tau_m = 0;
+  load.tau_ext = 1.17;
+  residual = drivetrain.phi_m;
+  assert(abs(residual) < 1e-9, "the gear creeps");
+  annotation (
+    experiment(StopTime=1, Tolerance=1e-7, Interval=0.001),
+    Documentation(info="<html>
+<p>1.17 N m is the most that 10 N can make at a wheel in 5.1.</p>
+</html>"));
+end GearHolds;

@@ -1,0 +1,19 @@
+within GiveWay.Tests;
+model RollingMass "The base's mass grows by its wheels and rollers"
+  import Modelica.Units.SI;
+  extends Modelica.Icons.Example;
+  parameter Parameters.Trikey robot(roller_coulomb_torque=0) "No roller friction";
+  Components.OmniBase base(robot=robot, redeclare model Wheel = Components.TanhWheel) "Base";
+  Sources.Push push(f_x=10) "Push through the centre";
+  parameter SI.Mass m_t=robot.base_mass + 1.5*robot.wheel_inertia/robot.wheel_radius^2 + 1.5*robot.roller_inertia/robot.roller_radius^2 "M_t";
+  SI.Velocity residual "Speed less that of the mass M_t";
+equation
+  connect(push.frame, base.frame);
+  residual = base.body.v_x - 10/m_t*time;
+  assert(abs(residual) < 1e-7, "the moving mass is not M_t");
+  annotation (
+    experiment(StopTime=0.5, Tolerance=1e-7, Interval=0.001),
+    Documentation(info="<html>
+<p>M<sub>t</sub> = M + 1.5 I<sub>w</sub>/r<sub>w</sub><sup>2</sup> + 1.5 I<sub>r</sub>/r<sub>r</sub><sup>2</sup>.</p>
+</html>"));
+end RollingMass;
