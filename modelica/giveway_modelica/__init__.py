@@ -1,1 +1,1 @@
-"""Tools around the Modelica package: its parameter record, its lint, its check of units, its comparison with the FMUs."""
+"""Tools around the Modelica package: its parameter record, lint, check of units, and comparison with the FMUs."""

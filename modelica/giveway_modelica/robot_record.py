@@ -66,7 +66,8 @@ def record(robot: Path) -> str:
         + "".join(declaration(key, entry) for key, entry in numbers(table))
         + '  annotation (\n    Documentation(info="<html>\n'
         f"<p>Made from robots/{robot.name} by <code>python -m giveway_modelica record</code>: not to be edited.\n"
-        "Given: printed in the paper; sourced: found elsewhere; fitted: to the paper's results; assumed: estimated.</p>\n"
+        "Given: printed in the paper; sourced: found elsewhere; fitted: to the paper's results; assumed: estimated."
+        "</p>\n"
         '<table border=\\"1\\">\n<tr><th>number</th><th>unit</th><th>provenance</th><th>source</th></tr>\n'
         f"{rows}</table>\n"
         f'</html>"));\nend {name};\n'

@@ -9,7 +9,11 @@ from importlib.resources import files
 from pathlib import Path
 
 PARTS = ("Units", "Icons")
-PACKAGE = 'within ;\npackage Modelica "Units and Icons of the Modelica Standard Library"\n  annotation (version="4.0.0");\nend Modelica;\n'
+PACKAGE = """within ;
+package Modelica "Units and Icons of the Modelica Standard Library"
+  annotation (version="4.0.0");
+end Modelica;
+"""
 
 
 def standard_library(folder: Path) -> Path:

@@ -1,7 +1,7 @@
 """Is a trajectory within a tube in time and value around a reference?
 
-A pointwise difference fails wherever a jump or a steep flank comes a few microseconds earlier: there a tolerance in time
-is what is meant.
+A pointwise difference fails wherever a jump or a steep flank comes a few microseconds earlier: there a tolerance in
+time is what is meant.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Excess:
 
     Attributes:
         time_s: when.
-        value: by how much it is outside, over the reference's largest magnitude; negative: inside.
+        value: by how much it is outside, in its unit; negative: inside.
     """
 
     time_s: float
@@ -30,12 +30,13 @@ class Excess:
 def excess(time_s: Array, values: Array, reference_s: Array, reference: Array, width_s: float, height: float) -> Excess:
     """How far ``values`` leave the tube around ``reference``.
 
-    The tube at t spans the reference over [t - width_s, t + width_s], widened by ``height`` times its largest magnitude.
+    The tube at t spans the reference over [t - width_s, t + width_s], widened by ``height`` to either side.
 
     Args:
         time_s, values: shape (n,); reference_s, reference: shape (m,), times rising.
+        width_s: in s.
+        height: in the unit of ``reference``.
     """
-    scale = float(np.abs(reference).max()) or 1.0
     ends = [np.interp(time_s + side, reference_s, reference) for side in (-width_s, 0.0, width_s)]
     lowest, highest = np.minimum.reduce(ends), np.maximum.reduce(ends)
     first = np.searchsorted(reference_s, time_s - width_s)
@@ -43,7 +44,7 @@ def excess(time_s: Array, values: Array, reference_s: Array, reference: Array, w
     for k in np.flatnonzero(last > first):
         lowest[k] = min(lowest[k], reference[first[k] : last[k]].min())
         highest[k] = max(highest[k], reference[first[k] : last[k]].max())
-    outside = np.maximum(lowest - values, values - highest) / scale - height
+    outside = np.maximum(lowest - values, values - highest) - height
     worst = int(outside.argmax())
     return Excess(float(time_s[worst]), float(outside[worst]))
 

@@ -15,7 +15,7 @@ SELF_CHECKING = [name for name in ALL if name.startswith("GiveWay.Tests.")]
 RESIDUALS = {"FreeBaseEnergy": 1e-6, "RollingMass": 1e-7, "RollerSteady": 1e-9, "GearHolds": 1e-12, "LatchImpact": 1e-6}
 
 
-# rumoca has no past of an input from outside, which these read with pre(): they are compiled where something drives them.
+# rumoca has no past of an input from outside, which these read with pre(): they are compiled inside what drives them.
 DRIVEN_IN = {
     "GiveWay.Components.JointServo": "GiveWay.Components.ControlledRobot",
     "GiveWay.Components.SampledController": "GiveWay.Components.ControlledRobot",

@@ -1,0 +1,187 @@
+"""The examples of the Modelica package as runs of the FMUs, with the same settings.
+
+Noise is off. The quantisers of encoders and torque sensors are in both, at their finest: a count that flips one sample
+earlier in one of the two would otherwise kick a motor by 2 N m for half a millisecond.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import giveway
+import numpy as np
+from giveway import batch, native
+from giveway.fmu import Instance, open_fmu
+from giveway.plan import Circle, Plan, Straight
+from giveway.variables import Value, table
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Inputs = Callable[[float], Mapping[str, float]]
+
+COUNTS, RESOLUTION_NM = 1_000_000, 1e-9
+FINEST = f"counts={COUNTS}, resolution={RESOLUTION_NM}"  # the same as a modification of ControlledRobot
+TIGHT: Mapping[str, Value] = {"solver.relative_tolerance": 1e-9, "solver.absolute_scale": 1e-3}
+TESTBED: Mapping[str, Value] = {
+    **TIGHT,
+    "electronics.torque_noise": 0.0,
+    "electronics.encoder_counts": COUNTS,
+    "electronics.torque_resolution": RESOLUTION_NM,
+}
+CONTROLLER: Mapping[str, Value] = {
+    "supervisor.after_settled": 0,
+    "estimator.encoder_counts": COUNTS,
+    "sensor_check.encoder_jump": COUNTS,
+}
+SIDE_RAD = math.pi / 3.0
+HALF_TICK_S = 2.5e-4  # switches between two ticks, wherever rounding puts them
+MOVING_WAY_M = 0.22 * (0.5 * 0.5 * math.pi * 0.22 / 0.6 + 0.3)
+
+
+@dataclass(frozen=True)
+class Alone:
+    """One FMU, stepped through piecewise constant inputs.
+
+    Attributes:
+        outputs: what is read at every communication point.
+    """
+
+    model: str
+    parameters: Mapping[str, Value]
+    inputs: Inputs
+    outputs: Sequence[str]
+
+    def run(self, stop_s: float, step_s: float = 1e-3) -> dict[str, Array]:
+        variables = table(self.model)
+        with Instance(open_fmu(native.fmu(self.model, 3)), self.model) as instance:
+            instance.initialise(dict(self.parameters), variables)
+            step = instance.stepper()
+
+            def exchange(verb: str, name: str, value: float = 0.0) -> float:
+                variable = variables[name]
+                buffer = np.array([value], dtype=instance.dtype(variable.type))
+                port = instance.setter if verb == "set" else instance.getter
+                instance.check(port(variable.type, [variable.reference])(buffer.ctypes.data), 0.0)
+                return float(buffer[0])
+
+            rows = []
+            steps = round(stop_s / step_s)
+            for k in range(steps + 1):
+                for name, value in self.inputs(k * step_s).items():
+                    exchange("set", name, value)
+                rows.append([exchange("get", name) for name in self.outputs])
+                if k < steps:
+                    instance.check(step(k * step_s, step_s), k * step_s)
+        found = dict(zip(self.outputs, np.array(rows).T, strict=True))
+        return {**found, "time": np.arange(steps + 1) * step_s}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Controller and testbed FMU, co-simulated; traces are named "testbed.truth.x"."""
+
+    bumper: str = "magnetic"
+    testbed: Mapping[str, Value] = field(default_factory=dict)
+    plan: Plan = field(default_factory=giveway.plan.Rest)
+    push: Callable[[Array], Array] | None = None
+
+    def run(self, stop_s: float) -> dict[str, Array]:
+        scenario = giveway.Scenario(
+            "beside",
+            stop_s,
+            bumper=self.bumper,
+            testbed={**TESTBED, **self.testbed},
+            controller=CONTROLLER,
+            plan=self.plan,
+            push=self.push,
+        )
+        traces = batch.run(scenario).traces
+        found = {str(name): np.asarray(trace.values, float) for name, trace in traces.items()}
+        return {**found, "time": np.asarray(traces["time"].values, float)}
+
+
+def _steps(*levels: tuple[float, float]) -> Callable[[float], float]:
+    """A staircase: each (from this time, this value)."""
+    return lambda t: [value for since, value in levels if t >= since - HALF_TICK_S][-1]
+
+
+_motor = _steps((0.0, 2.0), (0.05, 5.0), (0.25, -4.0), (0.5, 0.0))
+_pushed = _steps((0.0, 0.0), (0.1, 1.0))
+
+
+def _wave(t: float) -> Mapping[str, float]:
+    omega = 2.0 * math.pi * 0.5
+    return {
+        "command.wheel_angle[0]": 1.5 * (1.0 - math.cos(omega * t)),
+        "command.wheel_speed[0]": 1.5 * omega * math.sin(omega * t),
+    }
+
+
+def _two_pushes(t: Array) -> Array:
+    def on(begin: float, end: float, *push: float) -> Array:
+        inside = (t >= begin - HALF_TICK_S) & (t < end - HALF_TICK_S)
+        return inside[:, None] * np.array(push)
+
+    return on(0.8, 1.0, -20.0, -34.0, 0.088046, 0.1525) + on(1.4, 1.6, 30.0, 0.0, -0.176092, 0.0)
+
+
+def _truth(*names: str) -> tuple[str, ...]:
+    return tuple(f"truth.{name}" for name in names)
+
+
+_BASE = ("x", "y", "theta", "wheel_torque[0]", "wheel_torque[1]", "wheel_torque[2]")
+
+RUNS: Mapping[str, Alone | Pair] = {
+    "DrivetrainStep": Alone(
+        "drivetrain",
+        {**TIGHT, "load.inertia": 0.15, "load.coulomb": 0.2, "load.viscous": 0.02},
+        lambda t: {"motor.torque": _motor(t)},
+        ("sensor.torque", "motor.angle", "motor.speed", "load.angle", "load.speed", "gear.stuck"),
+    ),
+    "RollerWaves": Alone(
+        "testbed",
+        {**TESTBED, "slider.present": False, "electronics.command_delay": 0},
+        _wave,
+        _truth(*_BASE),
+    ),
+    "StaticPush": Alone(
+        "testbed",
+        {**TESTBED, "slider.present": False},
+        lambda t: {
+            "command.enable": 0.0,
+            "push.force_x": -5.0 * _pushed(t),
+            "push.force_y": -8.660254037844386 * _pushed(t),
+            "push.point_x": 0.088046,
+            "push.point_y": 0.1525,
+        },
+        _truth(*_BASE, "roller_force[0]", "roller_force[1]"),
+    ),
+    "LatchRelease": Alone(
+        "testbed",
+        {**TESTBED, "bumper.latch_model": 1},
+        lambda t: {"command.enable": 0.0},
+        (*_truth(*_BASE, "slider_position", "bumper_compression", "contact_force", "latched"), "last_event_time"),
+    ),
+    "MotionlessNoBumper": Pair("none"),
+    "MotionlessSpring": Pair("spring"),
+    "MotionlessMagnetic": Pair("magnetic"),
+    "MovingCollision": Pair(
+        "magnetic",
+        {
+            "slider.mass": 13.62,
+            "rope.attached": False,
+            "slider.run_up": 0.0,
+            "slider.target_x": 0.088046 + MOVING_WAY_M * math.cos(SIDE_RAD),
+            "slider.target_y": 0.1525 + MOVING_WAY_M * math.sin(SIDE_RAD),
+        },
+        Straight(0.22, SIDE_RAD, acceleration_mps2=0.6),
+    ),
+    "CirclePushed": Pair(
+        "none",
+        {"slider.present": False},
+        Circle(1.5, 0.16, centre_y_m=0.75, start_rad=-0.5 * math.pi, acceleration_mps2=0.6),
+        _two_pushes,
+    ),
+}
