@@ -1,10 +1,11 @@
 within GiveWay.Components;
 model Gravity "Constant pull on a slider on a vertical rail"
   import Modelica.Units.SI;
-  parameter SI.Force f "Pull along the rail";
+  parameter SI.Mass m "Mass";
+  constant SI.Acceleration g=9.81 "Gravity, as everywhere in this model";
   Interfaces.LinearFlange flange "What is pulled";
 equation
-  flange.f = -f;
+  flange.f = -m*g;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
       Line(points={{-90,60},{40,60},{40,0}}, color={64,64,64}, thickness=0.5),

@@ -22,6 +22,7 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   parameter SI.Velocity finish_speed=0.01 "Slowest before the end of the escape";
   parameter SI.Acceleration plan_acceleration=1.5 "Limit of the reference along the plan";
   parameter Real follow(unit="1/s")=2 "Gain towards the plan";
+  parameter SI.Velocity follow_free=0.001 "Correction towards the plan that does not matter";
   parameter SI.Angle phi_start[3]=zeros(3) "Motor angles at the start";
   parameter SI.AngularVelocity w_start[3]=zeros(3) "Wheel speeds at the start";
   parameter SI.Torque tau_start[3]=zeros(3) "Sensed torques at the start";
@@ -173,7 +174,7 @@ equation
     plan_error = {pre(plan_x[1]) - pre(x[1]) - period/2*(pre(v[1]) + pre(plan_v[1])), pre(plan_x[2]) - pre(x[2]) - period/2*(pre(v[2]) + pre(plan_v[2]))};
     v_wanted = Functions.limitLength({pre(plan_v[1]) + follow*plan_error[1], pre(plan_v[2]) + follow*plan_error[2]}, robot.admittance_speed_limit);
     v_change = Functions.limitLength(v_wanted - pre(v), plan_acceleration*period);
-    free = follow*sqrt(plan_error[1]^2 + plan_error[2]^2) <= 0.001 and sqrt((v_wanted[1] - pre(v[1]))^2 + (v_wanted[2] - pre(v[2]))^2) <= plan_acceleration*period;
+    free = follow*sqrt(plan_error[1]^2 + plan_error[2]^2) <= follow_free and sqrt((v_wanted[1] - pre(v[1]))^2 + (v_wanted[2] - pre(v[2]))^2) <= plan_acceleration*period;
     v = if escaping then escape_step[1:2] else if following then pre(v) + v_change else if placing and tare_ticks == 0 then {pre(plan_v[1]), pre(plan_v[2])} else zeros(2);
     a = if following and free or placing and tare_ticks == 0 then {pre(plan_a[1]), pre(plan_a[2])} else if placing then zeros(2) else (v - pre(v))/period;
     way = if escaping then escape_step[3:4]*period else if placing then zeros(2) else period/2*(pre(v) + v);

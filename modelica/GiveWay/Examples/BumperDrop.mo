@@ -5,7 +5,7 @@ model BumperDrop "A mass falls onto the floor with its magnetic spring bumper ah
   parameter Parameters.Trikey robot "Numbers of dummy and bumper";
   parameter SI.Length height=0.02 "Of the fall";
   Components.Slider slider(robot=robot, coulomb=0) "Falling mass";
-  Components.Gravity gravity(f=9.81*robot.slider_mass) "Its weight";
+  Components.Gravity gravity(m=robot.slider_mass) "Its weight";
   Components.Floor floor(k=robot.contact_stiffness, e=robot.contact_damping, s_0=height) "Floor";
 equation
   connect(gravity.flange, slider.rope);

@@ -4,9 +4,10 @@ model DrivetrainStep "Steps of motor torque on a drivetrain with its wheel"
   parameter Parameters.Trikey robot "The robot's numbers";
   Components.Drivetrain drivetrain(robot=robot) "Drivetrain";
   Components.Load load(J=0.15, coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, viscous=0.02) "A third of the base, as the wheel feels it";
+  Sources.TorqueSteps steps "Wanted torque";
 equation
   connect(drivetrain.wheel, load.axle);
-  drivetrain.tau_m = if time < 0.05 then 2 else if time < 0.25 then 5 else if time < 0.5 then -4 else 0;
+  connect(steps.tau, drivetrain.tau_m);
   load.tau_ext = 0;
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),

@@ -6,7 +6,7 @@ model MotionlessNoBumper "The dummy with a hard cover hits the standing robot (5
   Sensors.FirstContact first(touching=testbed.dummy.contact.touching) "First contact";
   SI.Time detection_time "From the first contact to the controller's decision, -1 before";
 equation
-  detection_time = if testbed.robot.controller.hits > 0 then testbed.robot.controller.hit_tick*testbed.robot.controller.period - first.t else -1;
+  detection_time = if testbed.robot.controller.hits > 0 then testbed.robot.controller.hit_tick*testbed.robot.controller.period - first.t else first.never;
   annotation (
     experiment(StopTime=0.6, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>

@@ -3,14 +3,19 @@ model MovingCollision "The robot runs into the resting dummy (5.3)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
   constant SI.Angle side=1.0471975511965976 "Direction in which it moves: the side between wheels 0 and 1 ahead";
-  parameter SI.Length way=0.22*(0.5759586531581288/2 + 0.3) "Until they meet: the ramp of the plan, and 0.3 s at speed";
+  parameter SI.Time steady=0.3 "At speed before they meet";
+  parameter SI.Velocity speed=0.22 "Speed of the plan";
+  parameter SI.Time ramp=0.5759586531581288 "Of the plan, until it is at speed";
+  parameter SI.Length way=speed*(ramp/2 + steady) "Until they meet";
+  parameter SI.Position x_side=0.088046 "Middle of the side of the robot at the start";
+  parameter SI.Position y_side=0.1525 "Middle of the side of the robot at the start";
   Components.ControlledRobot robot(redeclare model Plan = Sources.Straight) "Robot";
-  Components.Dummy dummy(m=13.62, roped=false, run_up=0, x_target=0.088046 + way*cos(side), y_target=0.1525 + way*sin(side)) "Dummy at rest, without the rope";
+  Components.Dummy dummy(m=13.62, roped=false, run_up=0, x_target=x_side + way*cos(side), y_target=y_side + way*sin(side)) "Dummy at rest, without the rope";
   Sensors.FirstContact first(touching=dummy.contact.touching) "First contact";
   SI.Time detection_time "From the first contact to the controller's decision, -1 before";
 equation
   connect(robot.frame, dummy.frame);
-  detection_time = if robot.controller.hits > 0 then robot.controller.hit_tick*robot.controller.period - first.t else -1;
+  detection_time = if robot.controller.hits > 0 then robot.controller.hit_tick*robot.controller.period - first.t else first.never;
   annotation (
     experiment(StopTime=1.3, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>

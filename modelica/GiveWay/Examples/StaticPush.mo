@@ -4,14 +4,16 @@ model StaticPush "A steady push on the unpowered robot (5.1)"
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey data "The robot's numbers";
   Components.Robot robot(data=data) "Robot, not powered";
-  Sources.Push push(f_x=-5, f_y=-8.660254037844386, p_x=0.088046, p_y=0.1525, t_on=0.1) "10 N at the middle of a side, at right angles";
+  parameter SI.Force f=10 "Force of the push";
+  constant SI.Angle side=1.0471975511965976 "Of the side that is pushed";
+  Sources.Push push(f_x=-f*cos(side), f_y=-f*sin(side), p_x=0.088046, p_y=0.1525, t_on=0.1) "At the middle of a side, at right angles";
   SI.Force sensed[2] "Force that the torques show, base axes";
   Real share(unit="1") "Sensed force over true force";
 equation
   connect(push.frame, robot.frame);
   robot.tau_ref = zeros(3);
   sensed = -Functions.forceOfTorques(robot.tau_s, data.wheel_radius);
-  share = sqrt(sensed[1]^2 + sensed[2]^2)/10;
+  share = sqrt(sensed[1]^2 + sensed[2]^2)/f;
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>

@@ -2,6 +2,7 @@ within GiveWay.Sensors;
 block FirstContact "Time of the first contact"
   import Modelica.Units.SI;
   input Boolean touching "Contact";
+  constant SI.Time never=-1 "Stands for the time of what has not happened";
   discrete SI.Time t(start=-1, fixed=true) "Of the first contact, -1 before";
 equation
   when touching then

@@ -5,11 +5,12 @@ model GearHolds "A stuck gear holds a static load without creeping"
   parameter Parameters.Trikey robot "The robot's numbers";
   Components.Drivetrain drivetrain(robot=robot) "Drivetrain";
   Components.Load load(J=0.15, viscous=0.3) "Load";
+  parameter SI.Torque tau_ext=1.17 "Load of the push";
   SI.Angle residual "What the motor moves";
 equation
   connect(drivetrain.wheel, load.axle);
   drivetrain.tau_m = 0;
-  load.tau_ext = 1.17;
+  load.tau_ext = tau_ext;
   residual = drivetrain.phi_m;
   assert(abs(residual) < 1e-9, "the gear creeps");
   annotation (

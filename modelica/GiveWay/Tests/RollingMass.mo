@@ -4,12 +4,13 @@ model RollingMass "The base's mass grows by its wheels and rollers"
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot(roller_coulomb_torque=0) "No roller friction";
   Components.OmniBase base(robot=robot, redeclare model Wheel = Components.TanhWheel) "Base";
-  Sources.Push push(f_x=10) "Push through the centre";
+  parameter SI.Force f=10 "Force of the push";
+  Sources.Push push(f_x=f) "Push through the centre";
   parameter SI.Mass m_t=robot.base_mass + 1.5*robot.wheel_inertia/robot.wheel_radius^2 + 1.5*robot.roller_inertia/robot.roller_radius^2 "M_t";
   SI.Velocity residual "Speed less that of the mass M_t";
 equation
   connect(push.frame, base.frame);
-  residual = base.body.v_x - 10/m_t*time;
+  residual = base.body.v_x - f/m_t*time;
   assert(abs(residual) < 1e-7, "the moving mass is not M_t");
   annotation (
     experiment(StopTime=0.5, Tolerance=1e-7, Interval=0.001),
