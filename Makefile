@@ -29,7 +29,7 @@ test: build lint ## every test
 	$(BIN)/ctest --test-dir build --output-on-failure -j $(JOBS)
 	$(BIN)/pytest
 
-verify: build build/verify/tools-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
+verify: build build/verify/tools-installed build/verify/modelica-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
 	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
 
 fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness and real type; `make verify` does it for a minute
@@ -88,11 +88,13 @@ lint: .venv/packages-installed ## ruff and mypy
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 
-LOCKS := requirements verify/requirements bench/requirements importers/requirements fmu/platforms/requirements
+LOCKS := requirements verify/requirements verify/modelica/requirements bench/requirements importers/requirements \
+    fmu/platforms/requirements
 
 lock: $(LOCKS:=.in) ## new requirements.lock files (needs uv)
 	@for name in $(LOCKS); do \
-	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate --no-header --upgrade \
+	    case $$name in verify/modelica/*) python=3.12;; *) python=3.11;; esac; \
+	    uv pip compile --universal --python-version $$python --generate-hashes --no-annotate --no-header --upgrade \
 	        --no-emit-index-url --no-emit-find-links --quiet $$name.in --output-file $$name.lock && \
 	    sed -i "1i # Made by \`make lock\` from $$name.in; do not edit." $$name.lock || exit 1; \
 	done
@@ -144,4 +146,12 @@ build/importers/tools-installed: importers/requirements.lock importers/system_pa
 	@mkdir -p $(@D)
 	$(PYTHON) -m venv build/importers/tools
 	build/importers/tools/bin/pip install --quiet --require-hashes -r importers/requirements.lock
+	@touch $@
+
+# A second Modelica tool; it needs Python 3.12.
+build/verify/modelica-installed: verify/modelica/requirements.lock verify/modelica/python312.sh build/verify/tools-installed
+	"$$(bash verify/modelica/python312.sh)" -m venv build/verify/modelica
+	build/verify/modelica/bin/pip install --quiet --require-hashes -r verify/modelica/requirements.lock
+	printf '#!/bin/sh\nexec "%s" "$$@"\n' "$(CURDIR)/build/verify/modelica/bin/python" > build/verify/tools/bin/modelica-python
+	chmod +x build/verify/tools/bin/modelica-python
 	@touch $@
