@@ -1,4 +1,4 @@
-"""Does the package keep the conventions of the Modelica Standard Library? Our own short script: no tool at hand tells."""
+"""Does the package keep the conventions of the Modelica Standard Library? No tool at hand tells."""
 
 from __future__ import annotations
 

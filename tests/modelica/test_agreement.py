@@ -13,7 +13,7 @@ from giveway_modelica.tube import at, excess
 
 # Without a sampled controller both are limited by their solvers, which run at 1e-9.
 SMOOTH = 1e-5
-# With it by the controller's single precision and by counts of the encoder that flip (6e-6 rad, felt as 0.015 N m).
+# With it by the controller's single precision and by encoder counts that flip (6e-6 rad, felt as 0.015 N m).
 SAMPLED = 1e-4
 # The controller's single precision moves its reference by 1e-7 of a turn, a sixth of the finest count. A count that flips
 # one sample earlier in one of the two kicks a motor by 0.015 N m for 0.5 ms, which rings on the sensor's spring with

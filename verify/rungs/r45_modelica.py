@@ -1,4 +1,4 @@
-"""The equations of modelica/GiveWay, turned into C by a second Modelica tool, are those of fmu/plant at random states."""
+"""The equations of modelica/GiveWay, as C by a second Modelica tool, are those of fmu/plant at random states."""
 
 from __future__ import annotations
 
@@ -45,9 +45,8 @@ def _compared(context: Context, models: Path) -> dict[str, float]:
     """Worst difference by right-hand side, and the number of states; `RungFailed` if one is too large."""
     out = context.work / f"out_{models.name}"
     out.mkdir()
-    context.run(
-        context.which(PYTHON), models / "emit.py", out, *(models / f"{model}.mo" for model in MODELS), memory_gib=None
-    )
+    sources = [models / f"{model}.mo" for model in MODELS]
+    context.run(context.which(PYTHON), models / "emit.py", out, *sources, memory_gib=None)
     for model in MODELS:
         context.run(context.which(CC), "-O2", "-ffp-contract=off", "-c", out / f"{model}.c", "-o", out / f"{model}.o")
     program = out / "compare"
@@ -59,9 +58,8 @@ def _compared(context: Context, models: Path) -> dict[str, float]:
     found = {name: float(value) for name, value in re.findall(r"(\w+) (\S+)", answer)}
     wrong = {name: value for name, value in found.items() if name != "states" and not value <= LARGEST}
     if wrong or len(found) != len(MODELS) + 1:
-        raise RungFailed(
-            "\n".join(f"{name} differs by {value:.3e}, allowed {LARGEST:.0e}" for name, value in wrong.items())
-        )
+        lines = [f"{name} differs by {value:.3e}, allowed {LARGEST:.0e}" for name, value in wrong.items()]
+        raise RungFailed("\n".join(lines or [answer]))
     return found
 
 
