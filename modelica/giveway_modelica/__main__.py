@@ -4,20 +4,38 @@ from __future__ import annotations
 
 import argparse
 import sys
+import tempfile
 from pathlib import Path
 
+from giveway_modelica import reference_results
+from giveway_modelica.compiler import PACKAGE, Compiler
+from giveway_modelica.lint import findings
 from giveway_modelica.robot_record import record
+from giveway_modelica.standard_library import standard_library
 
-ROOT = Path(__file__).parents[2]
-RECORD = ROOT / "modelica" / "GiveWay" / "Parameters" / "Trikey.mo"
+ROBOT = PACKAGE.parents[1] / "robots" / "trikey.toml"
+RECORD = PACKAGE / "Parameters" / "Trikey.mo"
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="giveway_modelica", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    commands.add_parser("record", help=f"the robot's numbers: {RECORD.relative_to(ROOT)}")
-    parser.parse_args()
-    RECORD.write_text(record(ROOT / "robots" / "trikey.toml"))
+    commands.add_parser("record", help="the robot's numbers: GiveWay/Parameters/Trikey.mo")
+    commands.add_parser("results", help="reference results of every example: ReferenceResults/")
+    commands.add_parser("lint", help="does the package keep the conventions?")
+    command = parser.parse_args().command
+    if command == "record":
+        RECORD.write_text(record(ROBOT))
+    elif command == "results":
+        with tempfile.TemporaryDirectory() as folder:
+            compiler = Compiler(standard_library(Path(folder) / "library"), Path(folder) / "variants")
+            for path, text in reference_results.texts(compiler):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+    else:
+        found = list(findings())
+        print("\n".join(found) or "no finding")
+        return 1 if found else 0
     return 0
 
 
