@@ -16,8 +16,8 @@ SMOOTH = 1e-5
 # With it by the controller's single precision and by encoder counts that flip (6e-6 rad, felt as 0.015 N m).
 SAMPLED = 1e-4
 # The controller works in single precision: its reference is off by 1e-7 of a turn, a sixth of a count. A count that
-# flips one sample earlier in one of the two kicks a motor by 0.015 N m for 0.5 ms, which rings on the sensor's spring with
-# 1e-3 N m. Over 1.65 s of motion two or three of these are in the air at a time: 2.7e-3 N m, of a peak of 12 N m.
+# flips one sample earlier in one of the two kicks a motor by 0.015 N m for 0.5 ms, which rings on the sensor's spring
+# with 1e-3 N m. Over 1.65 s two or three of these are in the air at a time: 2.7e-3 N m, of a peak of 12 N m.
 KICKED = {"CirclePushed": ("robot.tau_s", 3e-4)}
 EVENT_S = 1e-6  # of locating an event; both solvers find it to some 1e-8 s
 TUBE_S = 1e-4  # a tenth of a sample of the controller
