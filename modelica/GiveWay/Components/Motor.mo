@@ -35,5 +35,6 @@ equation
 5.1 without creeping. Sliding and stuck are two modes with their own equations:</p>
 <p>sliding: J &omega;&#775; = &tau;<sub>m</sub> &minus; &tau;<sub>s</sub> &minus; B1<sub>c</sub> sgn(&omega;) &minus; b &omega;, &nbsp; stuck: &omega;&#775; = 0.</p>
 <p>It breaks away when |&tau;<sub>m</sub> &minus; &tau;<sub>s</sub>| exceeds the stiction, and sticks when its speed comes to zero while the stiction can hold it.</p>
+<p>A gear that starts stuck must not start overloaded: breaking away is an event, which a torque that is too large from the very start does not cause.</p>
 </html>"));
 end Motor;
