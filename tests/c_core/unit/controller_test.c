@@ -143,6 +143,46 @@ static void live_force_yields_while_it_is_pushed(void)
     rig_ticks(5U);
     CHECK(rig_output.mode == GW_MODE_SETTLED);
     CHECK(gw_abs(rig_output.reference_twist.vx_mps) < rig_config.supervisor.settled_speed_mps);
+    const gw_real_t speed_mps = gw_abs(rig_output.reference_twist.vx_mps);
+    rig_push(R(60.0)); /* more than is forgiven, too short for a hit: only a reaction feels it */
+    rig_ticks(4U);
+    CHECK(rig_output.mode == GW_MODE_SETTLED);
+    CHECK(gw_abs(rig_output.reference_twist.vx_mps) <= speed_mps);
+}
+
+/* An escape that has come to its end under a push that stays is not over: it is hit again instead. */
+static void a_push_that_stays_keeps_it_from_settling(void)
+{
+    rig_set_up();
+    rig_config.estimator.rest_ticks = 10000U; /* no new zero, which would take the push for one */
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(50.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    for (uint32_t i = 0U; i < 5000U; i++) {
+        rig_tick(GW_STATUS_OK);
+        CHECK(rig_output.mode == GW_MODE_REACTING);
+    }
+    CHECK(rig_output.detection_count > 1U);
+}
+
+/* At the right place with the wrong yaw it is not back on its path yet. */
+static void a_path_is_rejoined_in_yaw_too(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    rig_push(GW_ZERO);
+    rig_until(GW_MODE_REJOINING, 20000U);
+    rig_input.plan.pose.x_m = rig_output.reference_pose.x_m;
+    rig_input.plan.pose.y_m = rig_output.reference_pose.y_m;
+    rig_input.plan.pose.theta_rad = R(0.2);
+    rig_tick(GW_STATUS_OK);
+    CHECK(rig_output.mode == GW_MODE_REJOINING);
+    rig_until(GW_MODE_TRACKING, 5000U);
+    CHECK_NEAR(rig_output.reference_pose.theta_rad, R(0.2), rig_config.supervisor.rejoin_angle_rad);
 }
 
 /* The reference brakes within its limits, and afterwards the path is rejoined. */
@@ -342,6 +382,8 @@ void suite_controller(void)
     unit_run("a_second_push_on_the_way_is_a_hit_too", a_second_push_on_the_way_is_a_hit_too);
     unit_run("settled_can_mean_to_stay", settled_can_mean_to_stay);
     unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
+    unit_run("a_push_that_stays_keeps_it_from_settling", a_push_that_stays_keeps_it_from_settling);
+    unit_run("a_path_is_rejoined_in_yaw_too", a_path_is_rejoined_in_yaw_too);
     unit_run("a_stop_request_stops_it", a_stop_request_stops_it);
     unit_run("a_stopped_escape_is_not_resumed", a_stopped_escape_is_not_resumed);
     unit_run("a_tare_is_granted_to_a_robot_that_stands", a_tare_is_granted_to_a_robot_that_stands);

@@ -31,8 +31,8 @@ static void a_stiffness_of_nearly_nothing_is_rigid(void)
 /* count + by for by > 0, as a counter does that wraps. */
 static int32_t advanced(int32_t count, int32_t by)
 {
-    const int32_t left = INT32_MAX - count;
-    return ((count < 0) || (by <= left)) ? (count + by) : (INT32_MIN + ((by - left) - 1));
+    const int32_t left = INT32_MAX - ((count < 0) ? 0 : count);
+    return (by <= left) ? (count + by) : (INT32_MIN + ((by - left) - 1));
 }
 
 /* Two counts per tick, across the wrap of the counter: 2 * 2 pi/8000/0.001 rad/s after many time constants. */
