@@ -77,6 +77,18 @@ template <int N> struct Lanes {
     friend Lanes operator/(Lanes a, Lanes b) { return of(a.value / b.value); }
 };
 
+template <int N> struct LaneDivisor {
+    Lanes<N> value, inverse;
+
+    LaneDivisor() : LaneDivisor(Lanes<N>(1.0)) {}
+    LaneDivisor(Lanes<N> a) : value(a), inverse(Lanes<N>(1.0) / a) {}
+    operator Lanes<N>() const { return value; }
+    friend Lanes<N> operator/(Lanes<N> a, const LaneDivisor& b) { return a * b.inverse; }
+};
+template <int N> struct DivisorOf<Lanes<N>> {
+    using Type = LaneDivisor<N>;
+};
+
 template <int N> LaneMask<N> less(Lanes<N> a, Lanes<N> b) { return {a.value < b.value}; }
 template <int N> Lanes<N> select(LaneMask<N> mask, Lanes<N> if_true, Lanes<N> if_false) {
     return Lanes<N>::of(mask.bits ? if_true.value : if_false.value);

@@ -30,6 +30,12 @@ inline double exp2_integer(double k) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(static_cast<std::int64_t>(k) + 1023) << 52U);
 }
 
+// What a constant that others are divided by is kept as: lanes keep its inverse, which costs a fraction.
+template <class T> struct DivisorOf {
+    using Type = T;
+};
+template <class T> using Divisor = typename DivisorOf<T>::Type;
+
 template <class T> T clamp(T a, T low, T high) { return max(low, min(a, high)); }
 
 // -1, 0 or +1.

@@ -1,7 +1,7 @@
 // Inertia of the base with its rolling wheels and rollers, and the 3x3 solve for its acceleration.
 #pragma once
 
-#include "state.hpp"
+#include "parameters.hpp"
 #include "vector2.hpp"
 
 namespace giveway::plant {
@@ -28,6 +28,20 @@ template <class T> Planar3<T> roller_row(const Parameters<T>& p, int wheel) {
     return {T(wheel_cos[wheel]) / p.roller_radius, T(wheel_sin[wheel]) / p.roller_radius, T(0.0)};
 }
 
+// L D L^T of a symmetric and positive definite matrix, without pivoting.
+template <class T> struct Factors3 {
+    math::Divisor<T> d1, d2, d3;
+    T l21, l31, l32;
+
+    [[nodiscard]] Planar3<T> solve(Planar3<T> f) const {
+        const T y2 = f.y - l21 * f.x;
+        const T y3 = f.z - l31 * f.x - l32 * y2;
+        const T z = y3 / d3;
+        const T y = y2 / d2 - l32 * z;
+        return {f.x / d1 - l21 * y - l31 * z, y, z};
+    }
+};
+
 template <class T> struct Inertia3 {
     T xx, xy, xz, yy, yz, zz;
 
@@ -40,19 +54,16 @@ template <class T> struct Inertia3 {
         zz = zz + weight * u.z * u.z;
     }
 
-    // Symmetric and positive definite: L D L^T without pivoting.
-    [[nodiscard]] Planar3<T> solve(Planar3<T> f) const {
-        const T l21 = xy / xx;
-        const T l31 = xz / xx;
-        const T d2 = yy - l21 * xy;
+    [[nodiscard]] Factors3<T> factors() const {
+        const math::Divisor<T> d1 = xx;
+        const T l21 = xy / d1;
+        const T l31 = xz / d1;
+        const math::Divisor<T> d2 = yy - l21 * xy;
         const T l32 = (yz - l31 * xy) / d2;
-        const T d3 = zz - l31 * xz - l32 * (yz - l31 * xy);
-        const T y2 = f.y - l21 * f.x;
-        const T y3 = f.z - l31 * f.x - l32 * y2;
-        const T z = y3 / d3;
-        const T y = y2 / d2 - l32 * z;
-        return {f.x / xx - l21 * y - l31 * z, y, z};
+        return {d1, d2, zz - l31 * xz - l32 * (yz - l31 * xy), l21, l31, l32};
     }
+
+    [[nodiscard]] Planar3<T> solve(Planar3<T> f) const { return factors().solve(f); }
 };
 
 // Body, wheels and rollers, without a bumper plate.

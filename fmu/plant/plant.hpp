@@ -100,7 +100,6 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
     T loss = T(0.0);
     T work = dot(push, e.velocity + omega * turned(push_point));
 
-    Inertia3<T> inertia = base_inertia(p);
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
     for (int i = 0; i < wheel_count; ++i) {
         const Vector2<T> radial{T(wheel_cos[i]), T(wheel_sin[i])};
@@ -152,6 +151,7 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
         const Planar3<T> along = wrench_direction(outward, plate);
         const Planar3<T> across = wrench_direction(turned(outward), plate);
         const T centripetal = omega * omega;
+        Inertia3<T> inertia = base_inertia(p);
         inertia.add(p.plate_mass, across);
         inertia.add(lock * p.plate_mass, along);
         const T across_turning = T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[compression_rate];
@@ -164,7 +164,7 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
         e.rate[compression_rate] = free * (guide - (pull + e.bumper.force) / p.plate_mass);
         e.internal_force = free * e.bumper.force + lock * (p.plate_mass * guide - pull);
     } else {
-        acceleration = inertia.solve(wrench);
+        acceleration = d.base_inertia.solve(wrench);
     }
 
     const Vector2<T> acceleration_world = to_world(e.heading, Vector2<T>{acceleration.x, acceleration.y});
@@ -280,7 +280,7 @@ void planar_transition(const Evaluation<T, N>& e, std::array<T, N>& x, Modes<T>&
         impulse = p.plate_mass * (dot(along, change) + rate);
     } else {
         x[slider_speed] = x[slider_speed] - p.plate_mass / p.slider_mass * rate;
-        impulse = p.plate_mass * d.carriage_mass / p.slider_mass * rate;
+        impulse = T(p.plate_mass) * d.carriage_mass / p.slider_mass * rate;
     }
     x[dissipated] = x[dissipated] + T(0.5) * impulse * rate;
     x[compression] = math::select(now, T(0.0), x[compression]);

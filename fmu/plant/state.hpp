@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "parameters.hpp"
+#include "derived.hpp"
 
 namespace giveway::plant {
 

@@ -1,0 +1,48 @@
+// What the equations need again and again and that never changes during a run.
+#pragma once
+
+#include "base.hpp"
+
+namespace giveway::plant {
+
+template <class T> struct Derived {
+    T rail_x, rail_y;     // unit vector of travel, world frame
+    T origin_x, origin_y; // nose centre at s = 0, c = 0, world frame
+    T plate_x, plate_y;   // unit outward vector of a robot-mounted plate, base frame
+    math::Divisor<T> carriage_mass; // slider without a plate that moves on its own
+    T rope_pretension_length; // ext0
+    T tip_rate;               // of tipping over the line between two wheels, 1/s
+    T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
+    Factors3<T> base_inertia; // without a bumper plate
+    std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
+};
+
+template <class T> Derived<T> derive(const Parameters<T>& p) {
+    Derived<T> d{};
+    const auto rail = math::sincos(p.rail_direction);
+    d.rail_x = rail.cos;
+    d.rail_y = rail.sin;
+    d.origin_x = p.target_x - rail.cos * (p.run_up + p.nose_radius);
+    d.origin_y = p.target_y - rail.sin * (p.run_up + p.nose_radius);
+    const auto mount = math::sincos(p.mount_azimuth);
+    d.plate_x = mount.cos;
+    d.plate_y = mount.sin;
+    const T slider_mass = p.slider_mass;
+    d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.plate_mass : slider_mass;
+    d.rope_pretension_length = T(p.hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
+    const T tipping_inertia = p.tilt_inertia + p.mass * (math::square(p.com_height) + math::square(T(0.5) * p.wheel_distance));
+    d.tip_rate = math::sqrt(p.mass * T(gravity_mps2) * p.com_height / tipping_inertia);
+    d.wheel_half_length = math::sqrt(math::max(T(0.0), math::square(T(p.wheel_radius)) - math::square(p.contact_height - p.wheel_radius)));
+    d.base_inertia = base_inertia(p).factors();
+    for (int i = 0; i < p.outline_count; ++i) {
+        const int next = (i + 1 == p.outline_count) ? 0 : i + 1;
+        const T dx = p.outline_x[next] - p.outline_x[i];
+        const T dy = p.outline_y[next] - p.outline_y[i];
+        d.edge_length[i] = math::sqrt(dx * dx + dy * dy);
+        d.edge_x[i] = dx / d.edge_length[i];
+        d.edge_y[i] = dy / d.edge_length[i];
+    }
+    return d;
+}
+
+} // namespace giveway::plant
