@@ -91,8 +91,8 @@ private:
 // Designs side by side, from their start to the end of the last of them.
 class Group {
 public:
-    Group(LanePlant& plant, std::unique_ptr<Lane>* lanes, std::size_t count)
-        : plant_(plant), width_(static_cast<std::size_t>(plant.lanes())), lanes_(lanes), count_(count) {}
+    Group(LanePlant& plant, std::array<SampleRoom, widest>& rooms, std::unique_ptr<Lane>* lanes, std::size_t count)
+        : plant_(plant), rooms_(rooms), width_(static_cast<std::size_t>(plant.lanes())), lanes_(lanes), count_(count) {}
 
     void go() {
         std::array<LaneStart, widest> starts;
@@ -101,7 +101,7 @@ public:
         }
         plant_.start(starts.data());
         each([&](Lane& lane, std::size_t i) {
-            if (!lane.run().begin()) {
+            if (!lane.run().begin(rooms_[i])) {
                 stop(lane);
                 return;
             }
@@ -220,6 +220,7 @@ private:
     }
 
     LanePlant& plant_;
+    std::array<SampleRoom, widest>& rooms_;
     std::size_t width_;
     std::unique_ptr<Lane>* lanes_;
     std::size_t count_;
@@ -271,12 +272,13 @@ void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep&
         listener.done();
     }
     std::stable_sort(lanes.get(), lanes.get() + fitting, [](const auto& a, const auto& b) { return a->key() < b->key(); });
+    std::array<SampleRoom, widest> rooms;
     for (std::size_t first = 0; first < fitting;) {
         std::size_t last = first + 1;
         while (last < fitting && last - first < static_cast<std::size_t>(how.lanes) && lanes[last]->key() == lanes[first]->key()) {
             ++last;
         }
-        Group(*plant, &lanes[first], last - first).go();
+        Group(*plant, rooms, &lanes[first], last - first).go();
         for (; first < last; ++first) {
             lanes[first].reset();
             listener.done();

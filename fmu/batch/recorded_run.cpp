@@ -198,8 +198,8 @@ bool RecordedRun::start_controller() {
     return controller_->initialise(0.0, message) == Status::ok || model_failed(GWB_REFUSED, GWB_CONTROLLER, message);
 }
 
-bool RecordedRun::begin() {
-    samples_.reset(new (std::nothrow) Sample[spec_.step_count + 1]);
+bool RecordedRun::begin(SampleRoom& room) {
+    samples_ = room.of(std::size_t{spec_.step_count} + 1);
     return samples_ != nullptr || end(GWB_NO_MEMORY, "no memory for a run of %u steps", static_cast<unsigned>(spec_.step_count));
 }
 
@@ -298,8 +298,7 @@ void RecordedRun::judge() {
                                           static_cast<double>(c.estimator_average_window) * c.controller_period,
                                           t.bumper_kind != 0, t.bumper_travel, t.base_tipping, t.base_mass, t.base_com_height, t.contact_height,
                                           t.push_height, spec_.transient_limit_n, spec_.lasting_limit_n};
-    evaluate(samples_.get(), result_.rows, parameters, result_.metric, result_.truth);
-    samples_.reset();
+    evaluate(samples_, result_.rows, parameters, result_.metric, result_.truth);
 }
 
 void RecordedRun::report(std::uint32_t step) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <new>
 
 #include "metrics.hpp"
 #include "models.hpp"
@@ -12,6 +13,23 @@ namespace giveway::batch {
 
 // Writes all of `result`, as of a run that has not started.
 void clear(gwb_result_t& result);
+
+// Memory for the samples of one run after the other: fresh pages for each would cost a twentieth of a run over fixed steps.
+class SampleRoom {
+public:
+    // Null when memory is short.
+    Sample* of(std::size_t count) {
+        if (count > count_) {
+            samples_.reset(new (std::nothrow) Sample[count]);
+            count_ = samples_ != nullptr ? count : 0;
+        }
+        return samples_.get();
+    }
+
+private:
+    std::unique_ptr<Sample[]> samples_;
+    std::size_t count_ = 0;
+};
 
 class RecordedRun {
 public:
@@ -24,8 +42,8 @@ public:
     // Checks the spec, makes the controller and applies the settings to it and to the testbed's variables.
     bool prepare(testbed::Variables& testbed);
     bool start_controller();
-    // Makes room for what is recorded.
-    bool begin();
+    // What is recorded lies in `room`, which is this run's alone until judge().
+    bool begin(SampleRoom& room);
     // At every step 0 .. step_count: sensors, plan, controller, commands, push, record.
     bool exchange(std::uint32_t step);
     // After a step of the plant to `step`.
@@ -65,7 +83,7 @@ private:
     gwb_result_t& result_;
     std::unique_ptr<Model> controller_;
     std::array<unsigned char*, GWB_MODEL_COUNT> variables_{};
-    std::unique_ptr<Sample[]> samples_;
+    Sample* samples_ = nullptr;
     std::unique_ptr<Recorder[]> recorders_;
     std::uint32_t path_row_ = 0;
     std::uint32_t reported_ = 0; // steps counted as done

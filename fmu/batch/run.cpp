@@ -22,7 +22,8 @@ void run(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) {
         recorded.model_failed(GWB_REFUSED, GWB_TESTBED, message);
         return;
     }
-    if (!recorded.begin()) {
+    SampleRoom room;
+    if (!recorded.begin(room)) {
         return;
     }
     for (std::uint32_t k = 0; recorded.exchange(k); ++k) {
