@@ -16,3 +16,9 @@ endfunction()
 # itself (vfmsubadd), whatever -ffp-contract says: it must not do that here.
 set(GIVEWAY_LANES_4 -mavx2 -fno-tree-slp-vectorize)
 set(GIVEWAY_LANES_8 -mavx512f -mavx512dq -mavx512vl -fno-tree-slp-vectorize)
+# gcc copies and clears a state of lanes (2 kB) with `rep`, whose start alone takes as long as a vector loop.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  foreach(_lanes GIVEWAY_LANES_4 GIVEWAY_LANES_8)
+    list(APPEND ${_lanes} -mmemcpy-strategy=vector_loop:-1:noalign -mmemset-strategy=vector_loop:-1:noalign)
+  endforeach()
+endif()
