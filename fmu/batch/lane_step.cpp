@@ -11,7 +11,7 @@ namespace {
 
 // Of a step: a vibration turns by at most this angle, and what decays on its own does so by at most this exponent. The classic Runge-Kutta method is
 // stable up to 2.8; these are its accuracy's bounds, from the comparison with the event-exact method (README.md).
-constexpr double greatest_angle = 0.4;
+constexpr double greatest_angle = 0.2;
 constexpr double greatest_decay = 0.6;
 
 // The stiffest of several elements.
