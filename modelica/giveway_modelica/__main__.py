@@ -1,4 +1,4 @@
-"""`python -m giveway_modelica COMMAND`: makes the files of modelica/ that are generated."""
+"""`python -m giveway_modelica COMMAND`: makes the files of modelica/ that are generated, and checks it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from giveway_modelica import reference_results
+from giveway_modelica import agreement, reference_results
 from giveway_modelica.compiler import PACKAGE, Compiler
 from giveway_modelica.lint import findings
 from giveway_modelica.robot_record import record
@@ -23,12 +23,16 @@ def main() -> int:
     commands.add_parser("record", help="the robot's numbers: GiveWay/Parameters/Trikey.mo")
     commands.add_parser("results", help="reference results of every example: ReferenceResults/")
     commands.add_parser("lint", help="does the package keep the conventions?")
+    commands.add_parser("agreement", help="prints how far every example is from the FMUs")
     command = parser.parse_args().command
     if command == "record":
         RECORD.write_text(record(ROBOT))
-    elif command == "results":
+    elif command in ("results", "agreement"):
         with tempfile.TemporaryDirectory() as folder:
             compiler = Compiler(standard_library(Path(folder) / "library"), Path(folder) / "variants")
+            if command == "agreement":
+                print(agreement.table(compiler), end="")
+                return 0
             for path, text in reference_results.texts(compiler):
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text)

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from fmu_beside import TIGHT
 from giveway import native
 from giveway.fmu import Instance, open_fmu
 from giveway.variables import table
 from giveway_modelica.compiler import Compiler
+from giveway_modelica.fmu_runs import TIGHT
 
 STEP_S = 1e-6  # the FMU moves its faces on by one step: they start behind where they shall be
 SETS = ("carrier.position", "carrier.velocity", "plate.position", "plate.velocity")

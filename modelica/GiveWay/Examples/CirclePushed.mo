@@ -10,7 +10,7 @@ equation
   connect(second.frame, robot.frame);
   connect(position.frame, robot.frame);
   annotation (
-    experiment(StopTime=1.65, Tolerance=1e-7, Interval=0.001),
+    experiment(StopTime=1.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
 <p>5.4 and Fig. 12: each push is noticed, and the robot moves away along it. After the first the plan's clock stands still.</p>
 </html>"));

@@ -119,10 +119,13 @@ def _wave(t: float) -> Mapping[str, float]:
     }
 
 
-def _two_pushes(t: Array) -> Array:
+def two_pushes(t: Array) -> Array:
+    """Force and point of the two pushes of `CirclePushed` at times ``t`` in s, shape (n, 4)."""
+
     def on(begin: float, end: float, *push: float) -> Array:
         inside = (t >= begin - HALF_TICK_S) & (t < end - HALF_TICK_S)
-        return inside[:, None] * np.array(push)
+        forces: Array = inside[:, None] * np.array(push)
+        return forces
 
     return on(0.8, 1.0, -20.0, -34.0, 0.088046, 0.1525) + on(1.4, 1.6, 30.0, 0.0, -0.176092, 0.0)
 
@@ -182,6 +185,6 @@ RUNS: Mapping[str, Alone | Pair] = {
         "none",
         {"slider.present": False},
         Circle(1.5, 0.16, centre_y_m=0.75, start_rad=-0.5 * math.pi, acceleration_mps2=0.6),
-        _two_pushes,
+        two_pushes,
     ),
 }
