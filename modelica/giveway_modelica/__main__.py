@@ -8,12 +8,12 @@ import tempfile
 from pathlib import Path
 
 from giveway_modelica import agreement, reference_results
+from giveway_modelica.bench import ROBOT
 from giveway_modelica.compiler import PACKAGE, Compiler
 from giveway_modelica.lint import findings
 from giveway_modelica.robot_record import record
 from giveway_modelica.standard_library import standard_library
 
-ROBOT = PACKAGE.parents[1] / "robots" / "trikey.toml"
 RECORD = PACKAGE / "Parameters" / "Trikey.mo"
 
 

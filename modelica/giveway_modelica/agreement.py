@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from giveway_modelica.bench import Bench
 from giveway_modelica.compiler import Compiler, classes
 from giveway_modelica.fmu_runs import FINEST, RUNS, Alone, Array, Pair
 from giveway_modelica.tube import at, excess
@@ -58,6 +59,12 @@ _DRIVETRAIN = (
     Signal("load.phi", "load.angle", "load angle"),
     Signal("load.w", "load.speed", "load speed"),
 )
+_BENCH = (
+    Signal("slider.s", "carrier.position", "carriage's travel"),
+    Signal("slider.v", "carrier.velocity", "carriage's speed"),
+    Signal("slider.bumper.c", "compression", "compression"),
+    Signal("slider.bumper.f", "plate.force", "bumper force"),
+)
 _BASE = (
     Signal("base.body.x", "x", "base position"),
     Signal("base.body.y", "y", "base position"),
@@ -86,6 +93,9 @@ def signals(example: str) -> list[Signal]:
     """What is compared of ``example``."""
     if example == "DrivetrainStep":
         return list(_DRIVETRAIN)
+    if isinstance(RUNS[example], Bench):
+        floor = "obstacle" if example == "BumperSweep" else "floor"
+        return [*_BENCH, Signal(f"{floor}.nose.f", "floor.force", "floor force")]
     inside = "testbed." if example.startswith("Motionless") else ""
     truth = "truth" if isinstance(RUNS[example], Alone) else "testbed.truth"
     found = _named(_BASE, f"{inside}robot", truth)
@@ -108,7 +118,7 @@ def bound(example: str, group: str) -> float:
 def simulated(compiler: Compiler, example: str, changes: str = "") -> Any:
     """The example with the settings of its FMU run, and ``changes``."""
     both = ", ".join(text for text in (CHANGES.get(example, ""), changes) if text)
-    return compiler.simulate(f"GiveWay.Examples.{example}", both, 1e-9 if isinstance(RUNS[example], Alone) else None)
+    return compiler.simulate(f"GiveWay.Examples.{example}", both, None if isinstance(RUNS[example], Pair) else 1e-9)
 
 
 def heights(result: Any, beside: Mapping[str, Array], compared: list[Signal], until_s: float) -> dict[str, float]:

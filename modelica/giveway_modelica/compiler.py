@@ -77,15 +77,17 @@ class Compiler:
         session = rumoca.Session(roots=[str(self._library), str(self._package)])
         return session.load(folder / "Variant.mo", model="Variant")
 
-    def simulate(self, name: str, changes: str = "", tolerance: float | None = None) -> Any:
-        """The result of an example with its own experiment settings, or a ``tolerance`` of its own."""
+    def simulate(
+        self, name: str, changes: str = "", tolerance: float | None = None, interval_s: float | None = None
+    ) -> Any:
+        """The result of an example with its own experiment settings, or another tolerance and output interval."""
         import rumoca
 
         settings = next(found for found in classes(self._package) if found.name == name).experiment
         if settings is None:
             raise ValueError(f"{name} has no experiment annotation")
-        stop_s, relative, interval_s = settings
+        stop_s, relative, interval = settings
         relative = tolerance or relative
         # Explicit steps: stiff ones restart too slowly at two thousand samples per second.
-        config = rumoca.SimConfig(solver="rk-like", rtol=relative, atol=1e-2 * relative, dt=interval_s)
+        config = rumoca.SimConfig(solver="rk-like", rtol=relative, atol=1e-2 * relative, dt=interval_s or interval)
         return self.load(name, changes).simulate(t=(0.0, stop_s), config=config)

@@ -18,6 +18,8 @@ from giveway.plan import Circle, Plan, Straight
 from giveway.variables import Value, table
 from numpy.typing import NDArray
 
+from giveway_modelica.bench import Bench
+
 Array = NDArray[np.float64]
 Inputs = Callable[[float], Mapping[str, float]]
 
@@ -136,7 +138,9 @@ def _truth(*names: str) -> tuple[str, ...]:
 
 _BASE = ("x", "y", "theta", "wheel_torque[0]", "wheel_torque[1]", "wheel_torque[2]")
 
-RUNS: Mapping[str, Alone | Pair] = {
+RUNS: Mapping[str, Alone | Pair | Bench] = {
+    "BumperDrop": Bench(floor_m=0.02, weight=True),
+    "BumperSweep": Bench(floor_m=0.005, v_mps=0.5),
     "DrivetrainStep": Alone(
         "drivetrain",
         {**TIGHT, "load.inertia": 0.15, "load.coulomb": 0.2, "load.viscous": 0.02},

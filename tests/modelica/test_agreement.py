@@ -67,6 +67,8 @@ def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler, fmu_runs: di
         ("LatchRelease", "data(bumper_latch_force=45.81)"),
         ("RollerWaves", "data(roller_coulomb_torque=0.2002)"),
         ("MovingCollision", "dummy(contact(e=0.301))"),
+        ("BumperDrop", "floor(e=0.301)"),
+        ("BumperSweep", "g_0=0.00100002"),
         ("CirclePushed", "first(f_y=-34.05)"),
     ],
 )

@@ -1,32 +1,23 @@
 """Along the motion of the bench examples the bumper's force is that of the bumper FMU."""
 
+import tomllib
+
 import numpy as np
 import pytest
-from giveway import native
-from giveway.fmu import Instance, open_fmu
-from giveway.variables import table
+from giveway_modelica.agreement import STOP_S
+from giveway_modelica.bench import ROBOT, bumper_force
 from giveway_modelica.compiler import Compiler
-from giveway_modelica.fmu_runs import TIGHT
+from giveway_modelica.fmu_runs import RUNS
+from giveway_modelica.robot_record import numbers
+from scipy.interpolate import CubicHermiteSpline
 
-STEP_S = 1e-6  # the FMU moves its faces on by one step: they start behind where they shall be
-SETS = ("carrier.position", "carrier.velocity", "plate.position", "plate.velocity")
+EVENT_S = 1e-6  # as the latch's
 
 
 def fmu_force(carrier_m: np.ndarray, carrier_mps: np.ndarray, plate_m: np.ndarray, plate_mps: np.ndarray) -> np.ndarray:
     """The force that drives the faces apart at each row of their motion, N."""
-    variables = table("bumper")
-    motion = np.stack([carrier_m - STEP_S * carrier_mps, carrier_mps, plate_m - STEP_S * plate_mps, plate_mps], axis=1)
-    force = np.zeros(1)
-    found = []
-    with Instance(open_fmu(native.fmu("bumper", 3)), "bumper") as instance:
-        instance.initialise({**TIGHT, "bumper.kind": 2, "bumper.latch_model": 0}, variables)
-        put = instance.setter("real", [variables[name].reference for name in SETS])
-        get = instance.getter("real", [variables["plate.force"].reference])
-        step = instance.stepper()
-        for k, row in enumerate(np.ascontiguousarray(motion)):
-            instance.check(put(row.ctypes.data) | step(k * STEP_S, STEP_S) | get(force.ctypes.data), k * STEP_S)
-            found.append(force[0])
-    return np.array(found)
+    with bumper_force() as law:
+        return np.array([law(*row) for row in zip(carrier_m, carrier_mps, plate_m, plate_mps, strict=True)])
 
 
 @pytest.mark.parametrize("example", ["BumperDrop", "BumperSweep"])
@@ -46,3 +37,15 @@ def test_another_law_has_another_force(compiler: Compiler) -> None:
     s, c, v, u = (np.asarray(result[f"slider.{name}"]) for name in ("s", "bumper.c", "v", "bumper.u"))
     theirs = fmu_force(s, v, s - c, v - u)
     assert np.abs(np.asarray(result["slider.bumper.f"]) - theirs).max() > 1e-4 * np.abs(theirs).max()
+
+
+def test_the_magnet_lets_go_and_takes_hold_at_the_same_instants(compiler: Compiler) -> None:
+    """Its gap passes g_0, where a quarter of its force is left: out, and back in the rebound."""
+    result = compiler.simulate("GiveWay.Examples.BumperSweep", tolerance=1e-9, interval_s=1e-4)
+    time_s, first = np.unique(np.asarray(result.time), return_index=True)
+    c, u = (np.asarray(result[f"slider.bumper.{name}"])[first] for name in "cu")
+    gap_m = {name: entry["value"] for name, entry in numbers(tomllib.loads(ROBOT.read_text()))}["bumper_latch_gap"]
+    ours = CubicHermiteSpline(time_s, c - gap_m, u).roots(extrapolate=False)
+    beside = RUNS["BumperSweep"].run(STOP_S["BumperSweep"])
+    assert len(beside["opening"]) == len(beside["closing"]) == 1
+    assert ours == pytest.approx(np.concatenate((beside["opening"], beside["closing"])), abs=EVENT_S)

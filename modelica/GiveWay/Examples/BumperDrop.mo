@@ -13,6 +13,7 @@ equation
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
-<p>The bumper of 3.5 on a bench: snap of the magnet, stroke, rebound, and the magnet catches the plate.</p>
+<p>The bumper of 3.5 on a bench: snap of the magnet, stroke onto the bottom stop, and rebound. The weight keeps the spring compressed: the magnet does not reach the plate again
+(<code>BumperSweep</code> shows that).</p>
 </html>"));
 end BumperDrop;
