@@ -15,11 +15,17 @@ model Drivetrain "The sliding drivetrain of GiveWay.Components.Drivetrain and it
   Real w(start = 0, fixed = true);
   Real q(start = 0, fixed = true);
   Real w_w(start = 0, fixed = true);
+  Real wind_up;
   Real tau_s;
+  Real tau_net;
+  Real f;
 equation
-  tau_s = k*(phi - q) + d*(w - w_w);
+  wind_up = phi - q;
+  tau_s = k*wind_up + d*(w - w_w);
+  tau_net = noEvent(max(-limit, min(limit, tau_m))) - tau_s;
   der(phi) = w;
-  J*der(w) = noEvent(max(-limit, min(limit, tau_m))) - tau_s - coulomb*direction - viscous*w;
+  J*der(w) = tau_net - coulomb*direction - viscous*w;
   der(q) = w_w;
-  I*der(w_w) = tau_s - B_r/r_r*tanh(slope*w_w/r_r);
+  f = B_r/r_r*tanh(slope*w_w/r_r);
+  I*der(w_w) = tau_s - f;
 end Drivetrain;
