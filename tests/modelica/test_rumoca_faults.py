@@ -121,6 +121,58 @@ def test_the_past_of_an_input_from_outside_is_refused(tmp_path: Path) -> None:
         compiled(tmp_path, text)
 
 
+def test_a_derivative_of_an_element_of_a_part_fails_in_a_loop(tmp_path: Path) -> None:
+    """`PartialRobot` and `OmniBase` write out their three wheels."""
+    text = (
+        "model Wheel\n  Real phi(start=0, fixed=true);\nend Wheel;\n"
+        "model M\n  Wheel w[2];\nequation\n  for i in 1:2 loop\n    der(w[i].phi) = i;\n  end for;\nend M;\n"
+    )
+    with pytest.raises(Exception, match="exactly one resolved variable-reference"):
+        compiled(tmp_path, text)
+    written_out = text.replace("  for i in 1:2 loop\n    der(w[i].phi) = i;\n  end for;\n", "  der(w[1].phi) = 1;\n")
+    result = compiled(tmp_path, written_out.replace("= 1;\n", "= 1;\n  der(w[2].phi) = 2;\n")).simulate(
+        t=(0.0, 1.0), dt=0.5
+    )
+    assert result["w[2].phi"][-1] == pytest.approx(2.0)
+
+
+FLANGES = (
+    "connector Flange\n  Real phi;\n  flow Real tau;\nend Flange;\n"
+    "model Pull\n  Flange axle;\nequation\n  axle.tau = -2;\nend Pull;\n"
+    "model M\n  Base base;\n  Pull a;\n  Pull b;\nequation\n"
+    "  connect(base.axle[1], a.axle);\n  connect(base.axle[2], b.axle);\nend M;\n"
+    "model Base\n  Flange axle[2];\n  Real phi[2](each start=0, each fixed=true);\n"
+    "  Real w[2](each start=0, each fixed=true);\nequation\n  for i in 1:2 loop\n"
+    "    axle[i].phi = phi[i];\n    der(phi[i]) = w[i];\n    der(w[i]) = axle[i].tau;\n  end for;\nend Base;\n"
+)
+
+
+def test_a_flange_in_an_array_has_no_derivative_in_a_loop(tmp_path: Path) -> None:
+    """`OmniBase` has axle0, axle1 and axle2. Tied to an angle of its own a flange in an array works."""
+    assert compiled(tmp_path, FLANGES).simulate(t=(0.0, 1.0), dt=0.5)["base.phi[2]"][-1] == pytest.approx(1.0)
+    with pytest.raises(Exception, match="exactly one resolved variable-reference"):
+        compiled(tmp_path, FLANGES.replace("der(phi[i])", "der(axle[i].phi)"))
+
+
+def test_an_input_at_the_top_cannot_be_simulated(tmp_path: Path) -> None:
+    """All examples are closed."""
+    text = "model M\n  input Real u(start=3);\n  Real x(start=0, fixed=true);\nequation\n  der(x) = u;\nend M;\n"
+    model = compiled(tmp_path, text)
+    with pytest.raises(Exception, match="neither a checked default nor a runtime value"):
+        model.simulate(t=(0.0, 1.0), dt=0.5)
+
+
+def test_external_c_does_not_run(tmp_path: Path) -> None:
+    """The package has none."""
+    text = (
+        'function root\n  input Real u;\n  output Real y;\n  external "C" y = sqrt(u);\nend root;\n'
+        "model M\n  Real x(start=0, fixed=true);\nequation\n  der(x) = root(4);\nend M;\n"
+    )
+    model = compiled(tmp_path, text)
+    with pytest.raises(Exception, match="external C function"):
+        model.simulate(t=(0.0, 1.0), dt=0.5)
+
+
 def test_units_are_not_checked(tmp_path: Path) -> None:
     """`giveway_modelica.units` does."""
     text = 'model M\n  Real x(unit="m");\nequation\n  x = time;\nend M;\n'
