@@ -82,6 +82,8 @@ _CONTROLLER = (
     Signal("x[2]", "reference.y", "reference"),
     Signal("q[1]", "command.wheel_angle[0]", "wanted wheel angle"),
     Signal("left", "detection.statistic", "detector's impulse"),
+    Signal("hit_point[1]", "detection.point_x", "located contact"),
+    Signal("hit_point[2]", "detection.point_y", "located contact"),
 )
 
 

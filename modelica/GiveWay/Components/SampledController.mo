@@ -81,9 +81,13 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   discrete SI.Impulse length(start=0, fixed=true) "Its magnitude";
   discrete SI.Impulse left(start=0, fixed=true) "Its magnitude after the leak: the statistic";
   discrete SI.Impulse p[2](each start=0, each fixed=true) "Impulse after the leak, base axes";
+  discrete SI.AngularImpulse moment_sum(start=0, fixed=true) "Impulse of the moment before its leak";
+  discrete SI.AngularImpulse moment(start=0, fixed=true) "Impulse of the moment after the leak";
   discrete Boolean hit(start=false, fixed=true) "A hit is noticed with this sample";
   discrete Integer hits(start=0, fixed=true) "Hits noticed so far";
   discrete Integer hit_tick(start=-1, fixed=true) "Sample of the last one";
+  discrete SI.Position hit_arm(start=0, fixed=true) "Lever arm of the last hit";
+  discrete SI.Position hit_point[2](each start=0, each fixed=true) "Where on the outline the last hit was, base frame";
   discrete Integer mode(start=1, fixed=true) "1 taring, 2 on the plan, 3 giving way, 4 settled";
   discrete Integer quiet_ticks(start=0, fixed=true) "Quiet samples of the escape";
   discrete Boolean placed(start=false, fixed=true) "The reference is on its plan";
@@ -155,6 +159,9 @@ equation
     length = sqrt(p_sum[1]^2 + p_sum[2]^2);
     left = max(0, length - leak*period);
     hit = judged and left > threshold;
+    moment_sum = if judged then (if zero_changed then 0 else pre(moment)) + M_z*period else 0;
+    hit_arm = if hit then moment_sum/length else pre(hit_arm);
+    hit_point = if hit then Functions.outlineEntry(p_sum/length, hit_arm, robot.outline_x, robot.outline_y) else pre(hit_point);
     hits = if hit then pre(hits) + 1 else pre(hits);
     hit_tick = if hit then tick else pre(hit_tick);
     // Mode.
@@ -162,6 +169,7 @@ equation
     mode = if hit then 3 else if pre(mode) == 1 then (if tare_done or tare_ticks == 0 then 2 else 1) else if pre(mode) == 3 and quiet_ticks >= settled_ticks then 4 else pre(mode);
     noticed = hit or lasts and not (mode <> pre(mode));
     noticed_ticks = if hit then 0 else if pre(noticed) then min(blanking_ticks, pre(noticed_ticks) + 1) else 0;
+    moment = if hit or left <= 0 or mode <> pre(mode) then 0 else moment_sum*left/length;
     p = if hit or left <= 0 or mode <> pre(mode) then zeros(2) else p_sum*left/length;
     // Reference: on the plan, or giving way.
     placing = mode == 2 and not pre(placed);
@@ -202,10 +210,11 @@ equation
 <ol>
 <li>Torques arrive over the bus, one sample old.</li>
 <li>The estimator compares them with T|<sub>0</sub> (38): at planned rest the tare, in motion friction and inertia of the planned motion, and takes the difference for the external wrench (40).</li>
-<li>The detector integrates the force vector and lets the integral leak by the error of the estimate: s = I + F T<sub>s</sub>, I = s max(0, 1 &minus; F<sub>0</sub>T<sub>s</sub>/|s|). Above the threshold it is a hit.</li>
+<li>The detector integrates the force vector and lets the integral leak by the error of the estimate: s = I + F T<sub>s</sub>, I = s max(0, 1 &minus; F<sub>0</sub>T<sub>s</sub>/|s|). Above the threshold it is a hit. The moment is integrated alike; moment over force is the lever arm, and with it
+the hit is located on the outline (41)-(46).</li>
 <li>The admittance moves the reference along the hit's direction by p/B = 0.5 m, (2) and (47), within limits. The heading is held (3).</li>
 <li>The reference becomes wheel angles and speeds, which reach the servos one sample later.</li>
 </ol>
-<p>Left out, since no example of the paper here needs it: sensor faults, stopping, live force instead of the frozen impulse, the location of the contact, plans that turn, and the way back to the plan after an escape.</p>
+<p>Left out, since no example of the paper here needs it: sensor faults, stopping, live force instead of the frozen impulse, plans that turn, and the way back to the plan after an escape.</p>
 </html>"));
 end SampledController;
