@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from html.parser import HTMLParser
 from pathlib import Path
 
 from giveway_modelica.compiler import CLASS, PACKAGE, ModelicaClass, classes
-from giveway_modelica.statements import STRING, declarations
+from giveway_modelica.statements import STRING, body, cut, declarations
 
 INFO = re.compile(r'Documentation\(info="((?:[^"\\]|\\.)*)"', re.DOTALL)
 EXPERIMENT = re.compile(r"experiment\(StopTime=[\d.e-]+, Tolerance=[\d.e-]+, Interval=[\d.e-]+\)")
@@ -19,8 +19,16 @@ NEVER_CLOSED = ("br", "hr", "img")
 
 def findings(package: Path = PACKAGE) -> Iterator[str]:
     """Everything that is against the conventions, as "file: what"."""
-    for found in classes(package):
-        for fault in (*_layout(found, package), *_documentation(found), *_icon(found), *_declarations(found)):
+    every = {found.name: found for found in classes(package)}
+    for found in every.values():
+        faults = (
+            *_layout(found, package),
+            *_documentation(found),
+            *_icon(found),
+            *_declarations(found),
+            *_diagram(found, every),
+        )
+        for fault in faults:
             yield f"{found.path.relative_to(package)}: {fault}"
     for folder in sorted(path.parent for path in package.rglob("package.mo")):
         yield from _order(folder, package)
@@ -107,3 +115,33 @@ def _declarations(found: ModelicaClass) -> Iterator[str]:
             yield f"{one.name} has no description"
         if one.type == "Real" and not re.search(r'\bunit="[^"]+"', one.rest) and found.name not in ANY_UNIT:
             yield f"{one.name} is a Real without a unit"
+
+
+def _diagram(found: ModelicaClass, every: Mapping[str, ModelicaClass]) -> Iterator[str]:
+    """Without places and lines Dymola and OpenModelica show an empty diagram, and no connectors at the icon."""
+    if found.kind not in ("model", "block"):
+        return
+    name = found.name.rsplit(".", 1)[-1]
+    for one in declarations(found.text, name):
+        kind = re.search(rf"replaceable model {one.type} = ([\w.]+)", found.text)
+        shown = _resolved(kind[1] if kind else one.type, found.name, every)
+        if (
+            shown in every
+            and every[shown].kind in ("model", "block", "connector")
+            and "Placement(" not in one.annotation
+        ):
+            yield f"{one.name} has no Placement"
+    for statement in cut(body(found.text, name)):
+        tied = re.search(r"\bconnect\([^)]*\)", statement)
+        if tied and "annotation (Line(" not in statement:
+            yield f"{tied[0]} has no Line"
+
+
+def _resolved(type_name: str, inside: str, every: Mapping[str, ModelicaClass]) -> str:
+    """Full name of a class of the package that is named ``type_name`` in class ``inside``; "" for others."""
+    scope = inside.rpartition(".")[0]
+    while scope:
+        if f"{scope}.{type_name}" in every:
+            return f"{scope}.{type_name}"
+        scope = scope.rpartition(".")[0]
+    return ""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 STRING = re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+ANNOTATION = re.compile(r"\s*\bannotation\s*\(.*\)$", re.DOTALL)
 SECTION = re.compile(r"\b(?:initial\s+)?(?:equation|algorithm)\b")
 PREFIXES = (
     r"(?:(?:final|inner|outer|replaceable|redeclare|flow|stream|discrete|parameter|constant|input|output|each)\s+)*"
@@ -30,6 +31,7 @@ class Declaration:
 
     Attributes:
         rest: what follows the name: dimensions, modification, value, description.
+        annotation: its own, or "".
     """
 
     prefixes: str
@@ -37,6 +39,7 @@ class Declaration:
     name: str
     rest: str
     description: str
+    annotation: str
 
 
 def cut(text: str) -> list[str]:
@@ -88,12 +91,13 @@ def declarations(text: str, name: str) -> list[Declaration]:
             continue
         if words.startswith(NOT_DECLARATIONS) or not words:
             continue
-        full = statement.removeprefix("protected").strip()
+        whole = statement.removeprefix("protected").strip()
+        full = ANNOTATION.sub("", whole)
         parts = DECLARATION.match(full)
         if parts is None:
             continue
         strings = list(STRING.finditer(full))
         last = strings[-1] if strings else None
         described = last[0][1:-1] if last is not None and not full[last.end() :].strip() else ""
-        found.append(Declaration(parts[1], parts[2], parts[4], parts[3] + parts[5], described))
+        found.append(Declaration(parts[1], parts[2], parts[4], parts[3] + parts[5], described, whole[len(full) :]))
     return found

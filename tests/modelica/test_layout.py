@@ -30,6 +30,14 @@ FAULTS = {
     "icon": ("Components/Motor.mo", "%name", "name", "no icon"),
     "experiment": ("Examples/BumperDrop.mo", "experiment(StopTime=", "experiment(StartTime=", "no experiment"),
     "example": ("Examples/BumperDrop.mo", "  extends Modelica.Icons.Example;\n", "", "does not extend"),
+    "place": (
+        "Components/Testbed.mo",
+        "Placement(transformation(extent",
+        "Place(transformation(extent",
+        "no Placement",
+    ),
+    "place of a connector": ("Components/Motor.mo", "Placement(", "Place(", "flange has no Placement"),
+    "line": ("Components/Testbed.mo", "annotation (Line(", "annotation (Lines(", "no Line"),
     "version": ("package.mo", 'version="0.1.0"', 'title="x"', "version="),
     "uses": ("package.mo", "uses(", "used(", "uses"),
 }

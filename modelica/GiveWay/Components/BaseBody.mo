@@ -9,7 +9,8 @@ model BaseBody "Rigid body that moves in the plane"
   parameter SI.Velocity v_x_start=0 "Velocity at the start, world frame";
   parameter SI.Velocity v_y_start=0 "Velocity at the start, world frame";
   parameter SI.AngularVelocity omega_start=0 "Yaw rate at the start";
-  Interfaces.PlanarFrame frame "Centre of the body";
+  Interfaces.PlanarFrame frame "Centre of the body"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   SI.Position x(start=x_start, fixed=true) "Position, world frame";
   SI.Position y(start=y_start, fixed=true) "Position, world frame";
   SI.Angle theta(start=theta_start, fixed=true) "Heading";

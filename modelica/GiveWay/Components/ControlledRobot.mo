@@ -6,17 +6,22 @@ model ControlledRobot "Robot with its servos and the sampled controller"
   parameter SI.Torque resolution=data.drivetrain_torque_sensor_resolution "Of the torque sensors";
   parameter Integer tare_ticks=100 "Samples of the tare at the start; 0: none, and the robot moves along its plan from the start";
   replaceable model Plan = Sources.Standstill constrainedby Interfaces.PartialPlan "Kind of plan";
-  Plan plan(t=controller.path_time) "Planned motion";
+  Plan plan(t=controller.path_time) "Planned motion"
+    annotation (Placement(transformation(extent={{-93,10},{-63,40}})));
   constant SI.Time cycle=0.001 "Cycle of the bus";
   SampledController controller(robot=data, period=cycle, counts=counts, resolution=resolution, tare_ticks=tare_ticks, phi_start=tau_start/data.drivetrain_stiffness, w_start=w_start, tau_start=tau_start,
     plan_x={plan.x, plan.y}, plan_v={plan.v_x, plan.v_y}, plan_a={plan.a_x, plan.a_y}, plan_theta=plan.theta)
-    "Estimator, detector and admittance";
+    "Estimator, detector and admittance"
+    annotation (Placement(transformation(extent={{-93,-40},{-63,-10}})));
   JointServo servo0(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
-    phi_start=-w_start[1]*cycle, w_start=w_start[1]) "Servo of wheel 0";
+    phi_start=-w_start[1]*cycle, w_start=w_start[1]) "Servo of wheel 0"
+    annotation (Placement(transformation(extent={{-50,45},{-20,75}})));
   JointServo servo1(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
-    phi_start=-w_start[2]*cycle, w_start=w_start[2]) "Servo of wheel 1";
+    phi_start=-w_start[2]*cycle, w_start=w_start[2]) "Servo of wheel 1"
+    annotation (Placement(transformation(extent={{-50,-15},{-20,15}})));
   JointServo servo2(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
-    phi_start=-w_start[3]*cycle, w_start=w_start[3]) "Servo of wheel 2";
+    phi_start=-w_start[3]*cycle, w_start=w_start[3]) "Servo of wheel 2"
+    annotation (Placement(transformation(extent={{-50,-75},{-20,-45}})));
 equation
   servo0.phi_m = phi_m[1];
   servo0.phi_ref = controller.phi_ref[1];

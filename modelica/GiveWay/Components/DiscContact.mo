@@ -13,8 +13,10 @@ model DiscContact "Cover contact of a disc on a rail with the base's outline"
   parameter SI.Length run_up "Travel of the nose until its tip is at the target";
   parameter SI.Position outline_x[:]=robot.outline_x "Corners of the outline, base frame, counter-clockwise";
   parameter SI.Position outline_y[:]=robot.outline_y "Corners of the outline, base frame, counter-clockwise";
-  Interfaces.PlanarFrame base "Centre of the base";
-  Interfaces.LinearFlange nose "Nose of the slider";
+  Interfaces.PlanarFrame base "Centre of the base"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Interfaces.LinearFlange nose "Nose of the slider"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   SI.Velocity v_x "Velocity of the base in its axes";
   SI.Velocity v_y "Velocity of the base in its axes";
   SI.AngularVelocity omega "Yaw rate of the base";

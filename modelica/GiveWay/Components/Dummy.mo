@@ -9,14 +9,21 @@ model Dummy "Collision dummy on its rail, with rope, bumper and cover"
   parameter SI.Position x_target=0.088046 "Where the tip is after run_up, world frame";
   parameter SI.Position y_target=0.1525 "Where the tip is after run_up, world frame";
   parameter SI.Length run_up=robot.slider_run_up "Travel until it is there";
-  Interfaces.PlanarFrame frame "Centre of the robot that is hit";
-  replaceable Slider slider(robot=robot, m=m, v_start=v_start) constrainedby Slider(robot=robot, m=m, v_start=v_start) "Slider with its bumper";
-  HangingWeight weight(m=robot.rope_hanging_mass, k=robot.rope_stiffness, d=robot.rope_damping, drop=robot.rope_drop_height, v_start=v_start) if roped "What pulls it";
-  DiscContact contact(robot=robot, psi=psi, x_target=x_target, y_target=y_target, run_up=run_up) "Between nose and robot";
+  Interfaces.PlanarFrame frame "Centre of the robot that is hit"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  replaceable Slider slider(robot=robot, m=m, v_start=v_start) constrainedby Slider(robot=robot, m=m, v_start=v_start) "Slider with its bumper"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  HangingWeight weight(m=robot.rope_hanging_mass, k=robot.rope_stiffness, d=robot.rope_damping, drop=robot.rope_drop_height, v_start=v_start) if roped "What pulls it"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
+  DiscContact contact(robot=robot, psi=psi, x_target=x_target, y_target=y_target, run_up=run_up) "Between nose and robot"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
 equation
-  connect(frame, contact.base);
-  connect(slider.nose, contact.nose);
-  connect(weight.rope, slider.rope);
+  connect(frame, contact.base)
+    annotation (Line(points={{100,0},{-80,-60}}, color={0,70,140}));
+  connect(slider.nose, contact.nose)
+    annotation (Line(points={{-40,60},{-40,-60}}, color={0,70,140}));
+  connect(weight.rope, slider.rope)
+    annotation (Line(points={{80,60},{-80,60}}, color={0,70,140}));
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
       Rectangle(extent={{-70,40},{60,-10}}, lineColor={64,64,64}, fillColor={192,192,192}, fillPattern=FillPattern.Solid),

@@ -4,7 +4,8 @@ model Floor "Rigid floor under a soft cover"
   parameter SI.TranslationalSpringConstant k "Stiffness of the cover";
   parameter Real e(unit="s/m") "Damping of the cover (Hunt and Crossley)";
   parameter SI.Position s_0 "Where it begins, along the rail";
-  Interfaces.LinearFlange nose "What lands on it";
+  Interfaces.LinearFlange nose "What lands on it"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
 equation
   nose.f = if nose.s > s_0 then noEvent(max(0, k*(nose.s - s_0)*(1 + e*der(nose.s)))) else 0;
   annotation (

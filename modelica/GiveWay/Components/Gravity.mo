@@ -3,7 +3,8 @@ model Gravity "Constant pull on a slider on a vertical rail"
   import Modelica.Units.SI;
   parameter SI.Mass m "Mass";
   constant SI.Acceleration g=9.81 "Gravity, as everywhere in this model";
-  Interfaces.LinearFlange flange "What is pulled";
+  Interfaces.LinearFlange flange "What is pulled"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
 equation
   flange.f = -m*g;
   annotation (

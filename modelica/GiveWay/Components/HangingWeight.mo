@@ -9,7 +9,8 @@ model HangingWeight "Weight on a rope over a pulley, with the floor it lands on"
   parameter Real e_floor(unit="s/m")=2 "Damping of the floor (Hunt and Crossley)";
   parameter SI.Velocity v_start=0 "Speed at the start";
   constant SI.Acceleration g=9.81 "Gravity, as everywhere in this model";
-  Interfaces.LinearFlange rope "End of the rope at the slider";
+  Interfaces.LinearFlange rope "End of the rope at the slider"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   SI.Position h(start=0, fixed=true) "Height that the weight has dropped";
   SI.Velocity w(start=v_start, fixed=true) "Its speed, downwards";
   SI.Position extension "Of the rope over its slack length";

@@ -12,10 +12,14 @@ block JointServo "Position servo of one drive: sampled PD on encoder counts"
   constant SI.Angle turn=6.283185307179586 "A turn";
   final parameter SI.Angle count_angle=turn/counts "Angle of a count";
   final parameter Real gain(unit="1")=1 - exp(-turn*cutoff*period) "Of the filter, per sample";
-  Interfaces.AngleInput phi_m "Angle of the motor";
-  Interfaces.AngleInput phi_ref "Wanted angle, from the bus";
-  Interfaces.AngularVelocityInput w_ref "Wanted speed, from the bus";
-  Interfaces.TorqueOutput tau_m "Torque of the motor";
+  Interfaces.AngleInput phi_m "Angle of the motor"
+    annotation (Placement(transformation(extent={{-110,30},{-90,50}})));
+  Interfaces.AngleInput phi_ref "Wanted angle, from the bus"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Interfaces.AngularVelocityInput w_ref "Wanted speed, from the bus"
+    annotation (Placement(transformation(extent={{-110,-50},{-90,-30}})));
+  Interfaces.TorqueOutput tau_m "Torque of the motor"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   discrete Integer tick(start=-1, fixed=true) "Samples taken";
   discrete Real count(start=0, fixed=true, unit="1") "Encoder count";
   discrete SI.AngularVelocity w(start=0, fixed=true) "Filtered speed";

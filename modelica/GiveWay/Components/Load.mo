@@ -5,8 +5,10 @@ model Load "Load of a drivetrain on the bench, with the friction B2 of its envir
   parameter SI.Torque coulomb=0 "Sliding level of the friction";
   parameter Real slope(unit="s/rad")=1 "Softening of the friction, as alpha in (28)";
   parameter SI.RotationalDampingConstant viscous=0 "Viscous friction";
-  Interfaces.RotaryFlange axle "Axle";
-  Interfaces.TorqueInput tau_ext "Torque of the environment on the load";
+  Interfaces.RotaryFlange axle "Axle"
+    annotation (Placement(transformation(extent={{-110,17},{-90,37}})));
+  Interfaces.TorqueInput tau_ext "Torque of the environment on the load"
+    annotation (Placement(transformation(extent={{-110,-37},{-90,-17}})));
   SI.Angle phi(start=0, fixed=true) "Angle";
   SI.AngularVelocity w(start=0, fixed=true) "Speed";
   SI.Torque friction "B2, against the motion";

@@ -8,8 +8,10 @@ model Motor "Motor behind a gear with stiction, reflected to the wheel axle"
   parameter SI.Torque limit "Largest torque of the motor";
   parameter SI.Angle phi_start=0 "Angle at the start";
   parameter SI.AngularVelocity w_start=0 "Speed at the start";
-  Interfaces.TorqueInput tau_m "Wanted torque of the motor";
-  Interfaces.RotaryFlange flange "Towards the torque sensor";
+  Interfaces.TorqueInput tau_m "Wanted torque of the motor"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Interfaces.RotaryFlange flange "Towards the torque sensor"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   SI.Angle phi(start=phi_start, fixed=true) "Angle, which the encoder sees";
   SI.AngularVelocity w(start=w_start, fixed=true) "Speed";
   SI.Torque tau_net "What the gear friction has to hold while the motor is stuck";

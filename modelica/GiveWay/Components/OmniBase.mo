@@ -10,26 +10,41 @@ model OmniBase "Base on three omnidirectional wheels"
   parameter SI.Velocity v_y_start=0 "Velocity at the start, world frame";
   parameter SI.AngularVelocity omega_start=0 "Yaw rate at the start";
   replaceable model Wheel = Omniwheel "Wheels, with their rollers";
-  Interfaces.PlanarFrame frame "Centre of the base";
-  Interfaces.RotaryFlange axle0 "Axle of wheel 0";
-  Interfaces.RotaryFlange axle1 "Axle of wheel 1";
-  Interfaces.RotaryFlange axle2 "Axle of wheel 2";
+  Interfaces.PlanarFrame frame "Centre of the base"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  Interfaces.RotaryFlange axle0 "Axle of wheel 0"
+    annotation (Placement(transformation(extent={{-110,30},{-90,50}})));
+  Interfaces.RotaryFlange axle1 "Axle of wheel 1"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Interfaces.RotaryFlange axle2 "Axle of wheel 2"
+    annotation (Placement(transformation(extent={{-110,-50},{-90,-30}})));
   Wheel wheel0(azimuth=0*third, R=robot.wheel_distance, r_w=robot.wheel_radius, r_r=robot.roller_radius, I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot,
-    v_n_start=cos(theta_start + 0*third)*v_x_start + sin(theta_start + 0*third)*v_y_start) "Wheel 0";
+    v_n_start=cos(theta_start + 0*third)*v_x_start + sin(theta_start + 0*third)*v_y_start) "Wheel 0"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
   Wheel wheel1(azimuth=1*third, R=robot.wheel_distance, r_w=robot.wheel_radius, r_r=robot.roller_radius, I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot,
-    v_n_start=cos(theta_start + 1*third)*v_x_start + sin(theta_start + 1*third)*v_y_start) "Wheel 1";
+    v_n_start=cos(theta_start + 1*third)*v_x_start + sin(theta_start + 1*third)*v_y_start) "Wheel 1"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
   Wheel wheel2(azimuth=2*third, R=robot.wheel_distance, r_w=robot.wheel_radius, r_r=robot.roller_radius, I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot,
-    v_n_start=cos(theta_start + 2*third)*v_x_start + sin(theta_start + 2*third)*v_y_start) "Wheel 2";
+    v_n_start=cos(theta_start + 2*third)*v_x_start + sin(theta_start + 2*third)*v_y_start) "Wheel 2"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
   BaseBody body(m=robot.base_mass, I=robot.base_yaw_inertia, x_start=x_start, y_start=y_start, theta_start=theta_start, v_x_start=v_x_start, v_y_start=v_y_start,
-    omega_start=omega_start) "Body";
+    omega_start=omega_start) "Body"
+    annotation (Placement(transformation(extent={{40,-80},{80,-40}})));
 equation
-  connect(body.frame, frame);
-  connect(wheel0.base, body.frame);
-  connect(wheel0.axle, axle0);
-  connect(wheel1.base, body.frame);
-  connect(wheel1.axle, axle1);
-  connect(wheel2.base, body.frame);
-  connect(wheel2.axle, axle2);
+  connect(body.frame, frame)
+    annotation (Line(points={{80,-60},{100,0}}, color={0,70,140}));
+  connect(wheel0.base, body.frame)
+    annotation (Line(points={{-80,65},{80,-60}}, color={0,70,140}));
+  connect(wheel0.axle, axle0)
+    annotation (Line(points={{-80,55},{-100,40}}, color={0,70,140}));
+  connect(wheel1.base, body.frame)
+    annotation (Line(points={{40,65},{80,-60}}, color={0,70,140}));
+  connect(wheel1.axle, axle1)
+    annotation (Line(points={{40,55},{-100,0}}, color={0,70,140}));
+  connect(wheel2.base, body.frame)
+    annotation (Line(points={{-80,-55},{80,-60}}, color={0,70,140}));
+  connect(wheel2.axle, axle2)
+    annotation (Line(points={{-80,-65},{-100,-40}}, color={0,70,140}));
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
       Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),

@@ -9,10 +9,13 @@ model Omniwheel "Omnidirectional wheel that rolls on the floor (9)-(30)"
   parameter SI.Inertia I_r "Inertia of the rollers on the floor";
   parameter Parameters.Trikey robot "The robot's numbers, for the rollers";
   parameter SI.Velocity v_n_start=0 "Speed along the axle at the start";
-  Interfaces.PlanarFrame base "Centre of the base";
-  Interfaces.RotaryFlange axle "Axle of the wheel";
+  Interfaces.PlanarFrame base "Centre of the base"
+    annotation (Placement(transformation(extent={{-110,17},{-90,37}})));
+  Interfaces.RotaryFlange axle "Axle of the wheel"
+    annotation (Placement(transformation(extent={{-110,-37},{-90,-17}})));
   replaceable model Roller = BristleRoller constrainedby Interfaces.PartialRollerFriction "Friction of the rollers";
-  Roller roller(robot=robot, r_r=r_r, v_start=v_n_start, v=v_n) "Rollers";
+  Roller roller(robot=robot, r_r=r_r, v_start=v_n_start, v=v_n) "Rollers"
+    annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   SI.Angle direction "Of the axle, world frame";
   SI.Velocity v_t "Speed along the rolling direction, without the base's turning";
   SI.Velocity v_n "Speed along the axle, outwards";

@@ -1,7 +1,8 @@
 within GiveWay.Components;
 model Robot "Base with three drivetrains, motors driven from outside"
   extends Interfaces.PartialRobot;
-  Interfaces.TorqueInput tau_ref[3] "Wanted motor torques";
+  Interfaces.TorqueInput tau_ref[3] "Wanted motor torques"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
 equation
   tau_m = tau_ref;
   annotation (

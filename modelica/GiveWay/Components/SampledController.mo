@@ -32,15 +32,19 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   final parameter SI.Inertia I_roll=robot.base_yaw_inertia + 3*robot.wheel_inertia*(robot.wheel_distance/robot.wheel_radius)^2 "Yaw inertia with the wheels";
   final parameter Real rate(unit="1/s")=robot.admittance_damping/robot.admittance_mass "Inverse time constant of (2)";
   final parameter SI.Length escape=robot.admittance_escape_impulse/robot.admittance_damping "Length of the escape (47)";
-  Interfaces.TorqueInput tau_s[3] "Sensed torques";
-  Interfaces.AngleInput phi_m[3] "Motor angles";
+  Interfaces.TorqueInput tau_s[3] "Sensed torques"
+    annotation (Placement(transformation(extent={{-110,17},{-90,37}})));
+  Interfaces.AngleInput phi_m[3] "Motor angles"
+    annotation (Placement(transformation(extent={{-110,-37},{-90,-17}})));
   input SI.Position plan_x[2] "Planned position at the path time, world frame";
   input SI.Velocity plan_v[2] "Planned velocity";
   input SI.Acceleration plan_a[2] "Planned acceleration";
   input SI.Angle plan_theta "Planned heading";
   output SI.Time path_time "Time of the plan";
-  Interfaces.AngleOutput phi_ref[3] "Wanted wheel angles";
-  Interfaces.AngularVelocityOutput w_ref[3] "Wanted wheel speeds";
+  Interfaces.AngleOutput phi_ref[3] "Wanted wheel angles"
+    annotation (Placement(transformation(extent={{90,17},{110,37}})));
+  Interfaces.AngularVelocityOutput w_ref[3] "Wanted wheel speeds"
+    annotation (Placement(transformation(extent={{90,-37},{110,-17}})));
   discrete Integer tick(start=-1, fixed=true) "Samples taken";
   discrete Integer path_ticks(start=0, fixed=true) "Samples of the plan's clock, which stands still during an escape";
   discrete SI.Torque tau_now[3](start={resolution*floor(tau_start[i]/resolution + 0.5) for i in 1:3}, each fixed=true) "Torques of this sample, on their way over the bus";

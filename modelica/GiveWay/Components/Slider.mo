@@ -8,10 +8,13 @@ model Slider "Collision dummy: a slider on a rail with a bumper at its nose"
   parameter SI.TranslationalDampingConstant viscous=robot.slider_damping "Viscous friction of the rail";
   parameter SI.Velocity v_c=0.005 "Speed over which the Coulomb friction turns";
   parameter SI.Velocity v_start=0 "Speed at the start";
-  Interfaces.LinearFlange rope "Where the rope pulls";
-  Interfaces.LinearFlange nose "Nose, in front of the bumper";
+  Interfaces.LinearFlange rope "Where the rope pulls"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Interfaces.LinearFlange nose "Nose, in front of the bumper"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   replaceable model Bumper = MagneticBumper constrainedby Interfaces.PartialBumper "Kind of bumper";
-  Bumper bumper(robot=robot, m_reduced=m_p*(m - m_p)/m, f_lock=m_p/m*f_drive + (m - m_p)/m*f_contact) "Bumper between carriage and plate";
+  Bumper bumper(robot=robot, m_reduced=m_p*(m - m_p)/m, f_lock=m_p/m*f_drive + (m - m_p)/m*f_contact) "Bumper between carriage and plate"
+    annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   SI.Position s(start=0, fixed=true) "Travel of the carriage";
   SI.Velocity v_mean(start=v_start, fixed=true) "Speed of the common centre of mass";
   SI.Velocity v "Speed of the carriage";

@@ -3,9 +3,12 @@ model TorqueSensorSpring "Elastic torque sensor in series with gear and belt"
   import Modelica.Units.SI;
   parameter SI.RotationalSpringConstant k "Stiffness in series of gear, sensor and belt";
   parameter SI.RotationalDampingConstant d "Damping";
-  Interfaces.RotaryFlange motor "Towards the motor";
-  Interfaces.RotaryFlange wheel "Towards the wheel";
-  Interfaces.TorqueOutput tau_s "Torque that is delivered to the wheel and read by the sensor";
+  Interfaces.RotaryFlange motor "Towards the motor"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Interfaces.RotaryFlange wheel "Towards the wheel"
+    annotation (Placement(transformation(extent={{90,17},{110,37}})));
+  Interfaces.TorqueOutput tau_s "Torque that is delivered to the wheel and read by the sensor"
+    annotation (Placement(transformation(extent={{90,-37},{110,-17}})));
   SI.Angle wind_up "Angle of the motor ahead of the wheel";
 equation
   wind_up = motor.phi - wheel.phi;

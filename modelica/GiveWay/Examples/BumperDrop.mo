@@ -4,12 +4,17 @@ model BumperDrop "A mass falls onto the floor with its magnetic spring bumper ah
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot "Numbers of dummy and bumper";
   parameter SI.Length height=0.02 "Of the fall";
-  Components.Slider slider(robot=robot, coulomb=0) "Falling mass";
-  Components.Gravity gravity(m=robot.slider_mass) "Its weight";
-  Components.Floor floor(k=robot.contact_stiffness, e=robot.contact_damping, s_0=height) "Floor";
+  Components.Slider slider(robot=robot, coulomb=0) "Falling mass"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  Components.Gravity gravity(m=robot.slider_mass) "Its weight"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
+  Components.Floor floor(k=robot.contact_stiffness, e=robot.contact_damping, s_0=height) "Floor"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
 equation
-  connect(gravity.flange, slider.rope);
-  connect(slider.nose, floor.nose);
+  connect(gravity.flange, slider.rope)
+    annotation (Line(points={{80,60},{-80,60}}, color={0,70,140}));
+  connect(slider.nose, floor.nose)
+    annotation (Line(points={{-40,60},{-40,-60}}, color={0,70,140}));
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>

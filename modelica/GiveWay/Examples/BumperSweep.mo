@@ -9,11 +9,15 @@ model BumperSweep "A bumper in front of a rigid obstacle, with what a designer v
   parameter SI.Force f_pre=2 "Preload";
   parameter SI.Force f_latch=45.8 "Force of the latch";
   parameter SI.Length g_0=0.001 "Gap of the latch at a quarter of its force";
-  Components.Slider slider(robot=robot, m=m, coulomb=0, v_start=v, bumper(k=k, f_pre=f_pre, f_latch=f_latch, g_0=g_0)) "Moving mass";
-  Components.Floor obstacle(k=robot.contact_stiffness, e=robot.contact_damping, s_0=0.005) "Rigid obstacle behind the cover";
-  Sensors.PeakForce peak(f=obstacle.nose.f) "Largest force";
+  Components.Slider slider(robot=robot, m=m, coulomb=0, v_start=v, bumper(k=k, f_pre=f_pre, f_latch=f_latch, g_0=g_0)) "Moving mass"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  Components.Floor obstacle(k=robot.contact_stiffness, e=robot.contact_damping, s_0=0.005) "Rigid obstacle behind the cover"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
+  Sensors.PeakForce peak(f=obstacle.nose.f) "Largest force"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
 equation
-  connect(slider.nose, obstacle.nose);
+  connect(slider.nose, obstacle.nose)
+    annotation (Line(points={{-40,60},{80,60}}, color={0,70,140}));
   annotation (
     experiment(StopTime=0.4, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>

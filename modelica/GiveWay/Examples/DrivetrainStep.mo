@@ -2,12 +2,17 @@ within GiveWay.Examples;
 model DrivetrainStep "Steps of motor torque on a drivetrain with its wheel"
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot "The robot's numbers";
-  Components.Drivetrain drivetrain(robot=robot) "Drivetrain";
-  Components.Load load(J=0.15, coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, viscous=0.02) "A third of the base, as the wheel feels it";
-  Sources.TorqueSteps steps "Wanted torque";
+  Components.Drivetrain drivetrain(robot=robot) "Drivetrain"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  Components.Load load(J=0.15, coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, viscous=0.02) "A third of the base, as the wheel feels it"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
+  Sources.TorqueSteps steps "Wanted torque"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
 equation
-  connect(drivetrain.wheel, load.axle);
-  connect(steps.tau, drivetrain.tau_m);
+  connect(drivetrain.wheel, load.axle)
+    annotation (Line(points={{-40,68},{40,65}}, color={0,70,140}));
+  connect(steps.tau, drivetrain.tau_m)
+    annotation (Line(points={{-40,-60},{-80,60}}, color={0,70,140}));
   load.tau_ext = 0;
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),

@@ -2,10 +2,13 @@ within GiveWay.Examples;
 model LatchRelease "An ideal latch lets go in a collision and takes hold again"
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey data "Numbers of robot and dummy";
-  Components.Robot robot(data=data) "Robot, not powered";
-  Components.LatchedDummy dummy(robot=data) "Dummy with an ideal latch";
+  Components.Robot robot(data=data) "Robot, not powered"
+    annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
+  Components.LatchedDummy dummy(robot=data) "Dummy with an ideal latch"
+    annotation (Placement(transformation(extent={{40,-20},{80,20}})));
 equation
-  connect(robot.frame, dummy.frame);
+  connect(robot.frame, dummy.frame)
+    annotation (Line(points={{-40,-8},{80,0}}, color={0,70,140}));
   robot.tau_ref = zeros(3);
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),

@@ -2,8 +2,10 @@ within GiveWay.Examples;
 model MotionlessNoBumper "The dummy with a hard cover hits the standing robot (5.2)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
-  Components.Testbed testbed(redeclare Components.HardDummy dummy) "Robot and dummy";
-  Sensors.FirstContact first(touching=testbed.dummy.contact.touching) "First contact";
+  Components.Testbed testbed(redeclare Components.HardDummy dummy) "Robot and dummy"
+    annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
+  Sensors.FirstContact first(touching=testbed.dummy.contact.touching) "First contact"
+    annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   SI.Time detection_time "From the first contact to the controller's decision, -1 before";
 equation
   detection_time = if testbed.robot.controller.hits > 0 then testbed.robot.controller.hit_tick*testbed.robot.controller.period - first.t else first.never;

@@ -9,12 +9,16 @@ model MovingCollision "The robot runs into the resting dummy (5.3)"
   parameter SI.Length way=speed*(ramp/2 + steady) "Until they meet";
   parameter SI.Position x_side=0.088046 "Middle of the side of the robot at the start";
   parameter SI.Position y_side=0.1525 "Middle of the side of the robot at the start";
-  Components.ControlledRobot robot(redeclare model Plan = Sources.Straight) "Robot";
-  Components.Dummy dummy(m=13.62, roped=false, run_up=0, x_target=x_side + way*cos(side), y_target=y_side + way*sin(side)) "Dummy at rest, without the rope";
-  Sensors.FirstContact first(touching=dummy.contact.touching) "First contact";
+  Components.ControlledRobot robot(redeclare model Plan = Sources.Straight) "Robot"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  Components.Dummy dummy(m=13.62, roped=false, run_up=0, x_target=x_side + way*cos(side), y_target=y_side + way*sin(side)) "Dummy at rest, without the rope"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
+  Sensors.FirstContact first(touching=dummy.contact.touching) "First contact"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
   SI.Time detection_time "From the first contact to the controller's decision, -1 before";
 equation
-  connect(robot.frame, dummy.frame);
+  connect(robot.frame, dummy.frame)
+    annotation (Line(points={{-40,52},{80,60}}, color={0,70,140}));
   detection_time = if robot.controller.hits > 0 then robot.controller.hit_tick*robot.controller.period - first.t else first.never;
   annotation (
     experiment(StopTime=1.3, Tolerance=1e-7, Interval=0.001),

@@ -3,11 +3,16 @@ model RollerWaves "Wheel 0 moves in waves, the other two stand (4.2)"
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey data "The robot's numbers";
   parameter Integer counts=data.drivetrain_encoder_counts "Encoder counts per turn";
-  Components.Robot robot(data=data) "Robot";
-  Sources.WheelWave wave(f=0.5) "Of wheel 0";
-  Components.JointServo servo0(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 0";
-  Components.JointServo servo1(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 1";
-  Components.JointServo servo2(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 2";
+  Components.Robot robot(data=data) "Robot"
+    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  Sources.WheelWave wave(f=0.5) "Of wheel 0"
+    annotation (Placement(transformation(extent={{-20,40},{20,80}})));
+  Components.JointServo servo0(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 0"
+    annotation (Placement(transformation(extent={{40,40},{80,80}})));
+  Components.JointServo servo1(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 1"
+    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
+  Components.JointServo servo2(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 2"
+    annotation (Placement(transformation(extent={{-20,-80},{20,-40}})));
 equation
   servo0.phi_ref = wave.phi;
   servo0.w_ref = wave.w;

@@ -3,14 +3,17 @@ model StaticPush "A steady push on the unpowered robot (5.1)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey data "The robot's numbers";
-  Components.Robot robot(data=data) "Robot, not powered";
+  Components.Robot robot(data=data) "Robot, not powered"
+    annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
   parameter SI.Force f=10 "Force of the push";
   constant SI.Angle side=1.0471975511965976 "Of the side that is pushed";
-  Sources.Push push(f_x=-f*cos(side), f_y=-f*sin(side), p_x=0.088046, p_y=0.1525, t_on=0.1) "At the middle of a side, at right angles";
+  Sources.Push push(f_x=-f*cos(side), f_y=-f*sin(side), p_x=0.088046, p_y=0.1525, t_on=0.1) "At the middle of a side, at right angles"
+    annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   SI.Force sensed[2] "Force that the torques show, base axes";
   Real share(unit="1") "Sensed force over true force";
 equation
-  connect(push.frame, robot.frame);
+  connect(push.frame, robot.frame)
+    annotation (Line(points={{80,0},{-40,-8}}, color={0,70,140}));
   robot.tau_ref = zeros(3);
   sensed = -Functions.forceOfTorques(robot.tau_s, data.wheel_radius);
   share = sqrt(sensed[1]^2 + sensed[2]^2)/f;

@@ -19,25 +19,36 @@ partial model PartialRobot "Base with three drivetrains, whose motors are somebo
   final parameter SI.Force drag_y=sin(third)*f_start[2] + sin(2*third)*f_start[3] "Of the rollers, base axes";
   final parameter SI.Torque tau_start[3]={2/3*data.wheel_radius*(cos(i*third)*drag_y - sin(i*third)*drag_x) for i in 0:2} "Torques that carry it";
   SI.Torque tau_m[3] "Wanted motor torques";
-  Interfaces.TorqueOutput tau_s[3] "Sensed torques";
-  Interfaces.AngleOutput phi_m[3] "Motor angles";
-  Interfaces.PlanarFrame frame "Centre of the base";
+  Interfaces.TorqueOutput tau_s[3] "Sensed torques"
+    annotation (Placement(transformation(extent={{90,30},{110,50}})));
+  Interfaces.AngleOutput phi_m[3] "Motor angles"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  Interfaces.PlanarFrame frame "Centre of the base"
+    annotation (Placement(transformation(extent={{90,-50},{110,-30}})));
   Components.OmniBase base(robot=data, x_start=x_start, y_start=y_start, theta_start=theta_start, v_x_start=v_x_start, v_y_start=v_y_start, omega_start=omega_start)
-    "Base on three wheels";
-  Components.Drivetrain drive0(robot=data, phi_start=tau_start[1]/data.drivetrain_stiffness, w_start=w_start[1]) "Drivetrain of wheel 0";
-  Components.Drivetrain drive1(robot=data, phi_start=tau_start[2]/data.drivetrain_stiffness, w_start=w_start[2]) "Drivetrain of wheel 1";
-  Components.Drivetrain drive2(robot=data, phi_start=tau_start[3]/data.drivetrain_stiffness, w_start=w_start[3]) "Drivetrain of wheel 2";
+    "Base on three wheels"
+    annotation (Placement(transformation(extent={{50,-20},{90,20}})));
+  Components.Drivetrain drive0(robot=data, phi_start=tau_start[1]/data.drivetrain_stiffness, w_start=w_start[1]) "Drivetrain of wheel 0"
+    annotation (Placement(transformation(extent={{-5,45},{25,75}})));
+  Components.Drivetrain drive1(robot=data, phi_start=tau_start[2]/data.drivetrain_stiffness, w_start=w_start[2]) "Drivetrain of wheel 1"
+    annotation (Placement(transformation(extent={{-5,-15},{25,15}})));
+  Components.Drivetrain drive2(robot=data, phi_start=tau_start[3]/data.drivetrain_stiffness, w_start=w_start[3]) "Drivetrain of wheel 2"
+    annotation (Placement(transformation(extent={{-5,-75},{25,-45}})));
 equation
-  connect(base.frame, frame);
-  connect(drive0.wheel, base.axle0);
+  connect(base.frame, frame)
+    annotation (Line(points={{90,0},{100,-40}}, color={0,70,140}));
+  connect(drive0.wheel, base.axle0)
+    annotation (Line(points={{25,66},{50,8}}, color={0,70,140}));
   drive0.tau_m = tau_m[1];
   tau_s[1] = drive0.tau_s;
   phi_m[1] = drive0.phi_m;
-  connect(drive1.wheel, base.axle1);
+  connect(drive1.wheel, base.axle1)
+    annotation (Line(points={{25,6},{50,0}}, color={0,70,140}));
   drive1.tau_m = tau_m[2];
   tau_s[2] = drive1.tau_s;
   phi_m[2] = drive1.phi_m;
-  connect(drive2.wheel, base.axle2);
+  connect(drive2.wheel, base.axle2)
+    annotation (Line(points={{25,-54},{50,-8}}, color={0,70,140}));
   drive2.tau_m = tau_m[3];
   tau_s[3] = drive2.tau_s;
   phi_m[3] = drive2.phi_m;

@@ -1,7 +1,8 @@
 within GiveWay.Sensors;
 model PlanarPosition "How far a body is from where it started"
   import Modelica.Units.SI;
-  Interfaces.PlanarFrame frame "The body";
+  Interfaces.PlanarFrame frame "The body"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   SI.Distance distance "From where it started";
   parameter SI.Position x_start=0 "Where it started, world frame";
   parameter SI.Position y_start=0 "Where it started, world frame";

@@ -7,7 +7,8 @@ model Push "Constant force on a point of the base for some time"
   parameter SI.Position p_y=0 "Point where it acts, base frame";
   parameter SI.Time t_on=0 "When it begins";
   parameter SI.Time t_off=1e9 "When it ends";
-  Interfaces.PlanarFrame frame "Centre of the base";
+  Interfaces.PlanarFrame frame "Centre of the base"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   Real on(unit="1") "1 while it acts";
   SI.Position r_x "Point, world axes";
   SI.Position r_y "Point, world axes";

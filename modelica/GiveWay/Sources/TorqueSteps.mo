@@ -3,7 +3,8 @@ block TorqueSteps "Staircase of torque"
   import Modelica.Units.SI;
   parameter SI.Time t[3]={0.05, 0.25, 0.5} "When it steps";
   parameter SI.Torque steps[4]={2, 5, -4, 0} "Torque before, between and after";
-  Interfaces.TorqueOutput tau "Torque";
+  Interfaces.TorqueOutput tau "Torque"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
 equation
   tau = if time < t[1] then steps[1] else if time < t[2] then steps[2] else if time < t[3] then steps[3] else steps[4];
   annotation (

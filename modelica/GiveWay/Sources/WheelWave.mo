@@ -4,8 +4,10 @@ block WheelWave "Wave of a wheel's angle, as in 4.2"
   parameter SI.Angle amplitude=1.5 "Amplitude";
   parameter SI.Frequency f=0.1 "Frequency";
   constant SI.Angle turn=6.283185307179586 "A turn";
-  Interfaces.AngleOutput phi "Wanted angle";
-  Interfaces.AngularVelocityOutput w "Wanted speed";
+  Interfaces.AngleOutput phi "Wanted angle"
+    annotation (Placement(transformation(extent={{90,17},{110,37}})));
+  Interfaces.AngularVelocityOutput w "Wanted speed"
+    annotation (Placement(transformation(extent={{90,-37},{110,-17}})));
 equation
   phi = amplitude*(1 - cos(turn*f*time));
   w = amplitude*turn*f*sin(turn*f*time);

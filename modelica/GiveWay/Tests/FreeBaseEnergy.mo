@@ -3,7 +3,8 @@ model FreeBaseEnergy "A base without friction keeps its kinetic energy"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot(roller_coulomb_torque=0) "No roller friction";
-  Components.OmniBase base(robot=robot, v_x_start=0.3, v_y_start=-0.2, omega_start=1.5, redeclare model Wheel = Components.TanhWheel) "Base";
+  Components.OmniBase base(robot=robot, v_x_start=0.3, v_y_start=-0.2, omega_start=1.5, redeclare model Wheel = Components.TanhWheel) "Base"
+    annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   SI.Energy kinetic "Of body, wheels and rollers";
   parameter SI.Energy kinetic_start(fixed=false) "At the start";
   SI.Energy residual "Change";

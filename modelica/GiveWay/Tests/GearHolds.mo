@@ -3,12 +3,15 @@ model GearHolds "A stuck gear holds a static load without creeping"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot "The robot's numbers";
-  Components.Drivetrain drivetrain(robot=robot) "Drivetrain";
-  Components.Load load(J=0.15, viscous=0.3) "Load";
+  Components.Drivetrain drivetrain(robot=robot) "Drivetrain"
+    annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
+  Components.Load load(J=0.15, viscous=0.3) "Load"
+    annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   parameter SI.Torque tau_ext=1.17 "Load of the push";
   SI.Angle residual "What the motor moves";
 equation
-  connect(drivetrain.wheel, load.axle);
+  connect(drivetrain.wheel, load.axle)
+    annotation (Line(points={{-40,8},{40,5}}, color={0,70,140}));
   drivetrain.tau_m = 0;
   load.tau_ext = tau_ext;
   residual = drivetrain.phi_m;

@@ -4,8 +4,10 @@ model RollerSteady "In steady motion the bristle's friction is (28)"
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot "The robot's numbers";
   parameter SI.Velocity v=0.05 "Speed";
-  Components.BristleRoller bristle(robot=robot, v_start=0.05, v=v) "Bristle";
-  Components.TanhRoller steady(robot=robot, v=v) "(28)";
+  Components.BristleRoller bristle(robot=robot, v_start=0.05, v=v) "Bristle"
+    annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
+  Components.TanhRoller steady(robot=robot, v=v) "(28)"
+    annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   SI.Force residual "Difference";
 equation
   residual = bristle.f - steady.f;
