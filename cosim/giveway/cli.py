@@ -354,7 +354,7 @@ def ssp(
 @app.command("sweep")
 def sweep_designs(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/magnetic_latch.toml`.")
+        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/studies/magnetic_latch.toml`.")
     ],
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
@@ -454,7 +454,7 @@ def study_gallery(
         "out/studies"
     ),
     examples: Annotated[Path, typer.Option("--examples", metavar="DIR", help="Where the study files are.")] = Path(
-        "examples"
+        "examples/studies"
     ),
 ) -> None:
     """Run the example studies and draw the README's pictures of them."""

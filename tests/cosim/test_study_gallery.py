@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 
 def small(name: str, folder: Path, **levels: list[float]) -> Path:
     """The example study ``name`` with other levels for some quantities, run; its folder."""
-    document = copy.deepcopy(study_file.read(ROOT / "examples" / f"{name}.toml").document)
+    document = copy.deepcopy(study_file.read(ROOT / "examples" / "studies" / f"{name}.toml").document)
     for entry in document["vary"]:
         for quantity, values in levels.items():
             if entry["quantity"].endswith(quantity):
@@ -28,7 +28,7 @@ def small(name: str, folder: Path, **levels: list[float]) -> Path:
                 entry.update(unit, values=values)
     if document["tolerances"].get("samples"):
         document["tolerances"]["samples"] = 1
-    sweep(study_file.check(document, ROOT / "examples", name), folder / name, threads=2)
+    sweep(study_file.check(document, ROOT / "examples" / "studies", name), folder / name, threads=2)
     return folder / name
 
 

@@ -97,7 +97,7 @@ def _span(values: Numbers) -> str:
 
 
 def latch_claim(answers: Answers) -> LatchClaim:
-    """What the study `examples/magnetic_latch.toml` says about the paper's claim."""
+    """What the study `examples/studies/magnetic_latch.toml` says about the paper's claim."""
     plate, spring, latch = (np.array(one.levels) for one in answers.setup.varied)
     shape = (len(plate), len(spring), len(latch), answers.runs.samples)
     runs = read_runs(answers.folder, ["peak contact force", "detection time"])
@@ -171,7 +171,7 @@ class SensorTrade:
 
 
 def sensor_trade(answers: Answers) -> SensorTrade:
-    """What the study `examples/sensor_stiffness.toml` says."""
+    """What the study `examples/studies/sensor_stiffness.toml` says."""
     stiffness, friction = (np.array(one.levels) for one in answers.setup.varied)
     shape = (len(stiffness), len(friction), answers.runs.samples, len(answers.setup.cases))
     force, detection, place, peak = "force at detection", "detection time", "location error", "peak contact force"
