@@ -102,6 +102,23 @@ static void the_number_of_samples_saturates(void)
     CHECK(step(&detector, &input).samples == GW_TICK_MASK);
 }
 
+/* Without a leak the impulse may be too small for a lever arm: 0.05 N for 1 ms is half the least impulse that gives one,
+ * and so gives half the moment. Far above it the moment is the one that was pushed with. */
+static void too_small_an_impulse_gives_less_lever_arm(void)
+{
+    const struct {
+        gw_real_t force;
+        gw_real_t torque;
+    } rows[] = {{R(0.05), R(0.0025)}, {R(0.2), R(0.02)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
+        const gw_detector_input_t input = push(rows[i].force, GW_REGIME_REST);
+        detector.config.leak_rest_n = GW_ZERO;
+        unit_row(i);
+        CHECK_NEAR(step(&detector, &input).mean_wrench.torque_nm, rows[i].torque, R(0.001) * rows[i].torque);
+    }
+}
+
 static void the_average_trips_above_its_threshold(void)
 {
     const struct {
@@ -231,6 +248,7 @@ void suite_detector(void)
     unit_run("the_impulse_trips_once_it_exceeds_the_threshold", the_impulse_trips_once_it_exceeds_the_threshold);
     unit_run("what_is_forgiven_depends_on_the_motion", what_is_forgiven_depends_on_the_motion);
     unit_run("the_number_of_samples_saturates", the_number_of_samples_saturates);
+    unit_run("too_small_an_impulse_gives_less_lever_arm", too_small_an_impulse_gives_less_lever_arm);
     unit_run("the_average_trips_above_its_threshold", the_average_trips_above_its_threshold);
     unit_run("nothing_is_integrated_while_nobody_asks", nothing_is_integrated_while_nobody_asks);
     unit_run("a_tripped_detector_rests_until_it_may_trip_again", a_tripped_detector_rests_until_it_may_trip_again);

@@ -200,7 +200,7 @@ static void freezing_stops_at_once(void)
 static void the_invariant_sees_every_member(void)
 {
     gw_reference_t turned = made();
-    gw_reference_t bad[15];
+    gw_reference_t bad[16];
     turned.theta_rad.value = -GW_PI;
     CHECK(gw_reference_invariant_holds(&turned));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
@@ -221,6 +221,7 @@ static void the_invariant_sees_every_member(void)
     bad[12].config.follow_gain_per_s = R(-1.0);
     bad[13].yaw.cosine = unit_above(GW_ONE);
     bad[14].yaw.sine = unit_nan();
+    bad[15].yaw.sine = unit_above(GW_ONE);
     CHECK(!gw_reference_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);

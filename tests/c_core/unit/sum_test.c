@@ -39,6 +39,16 @@ static void half_a_turn_has_one_name(void)
     CHECK(gw_sum_add_angle(gw_sum_of(-GW_PI), GW_ZERO).value == -GW_PI);
 }
 
+/* The invariant allows any excess within 1024, though no sum of angles comes to one: an angle it stays. */
+static void any_excess_leaves_an_angle(void)
+{
+    const gw_sum_t low = {GW_ONE, R(-1024.0)};
+    const gw_sum_t high = {-GW_ONE, R(1024.0)};
+    CHECK(gw_sum_invariant_holds(low) && gw_sum_invariant_holds(high));
+    CHECK(gw_sum_add_angle(low, GW_ZERO).value == GW_PI);
+    CHECK(gw_sum_add_angle(high, GW_ZERO).value == -GW_PI);
+}
+
 static void a_limited_sum_stays_within(void)
 {
     CHECK(gw_sum_limit(gw_sum_of(R(5.0)), R(2.0)).value == R(2.0));
@@ -64,6 +74,7 @@ void suite_sum(void)
     unit_run("small_increments_are_not_lost", small_increments_are_not_lost);
     unit_run("angles_stay_within_half_a_turn", angles_stay_within_half_a_turn);
     unit_run("half_a_turn_has_one_name", half_a_turn_has_one_name);
+    unit_run("any_excess_leaves_an_angle", any_excess_leaves_an_angle);
     unit_run("a_limited_sum_stays_within", a_limited_sum_stays_within);
     unit_run("a_sum_that_is_not_finite_is_none", a_sum_that_is_not_finite_is_none);
 }
