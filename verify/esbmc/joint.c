@@ -12,6 +12,7 @@ int main(void)
     gw_kinematics_t kinematics;
     gw_wheels_t angle_rad;
     const gw_pose_t displacement = {nondet_float(), nondet_float(), nondet_float()};
+    const gw_rotation_t yaw = {nondet_float(), nondet_float()};
     const gw_twist_t twist = {nondet_float(), nondet_float(), nondet_float()};
     for (unsigned int i = 0U; i < GW_WHEEL_COUNT; i++) {
         joint.angle_rad[i].value = nondet_float();
@@ -28,7 +29,7 @@ int main(void)
         gw_joint_place(&joint, &angle_rad);
         __ESBMC_assert(gw_joint_invariant_holds(&joint), "placing keeps the invariant");
     }
-    gw_joint_step(&joint, &kinematics, displacement, nondet_float(), twist, &command);
+    gw_joint_step(&joint, &kinematics, displacement, nondet_float(), yaw, twist, &command);
     __ESBMC_assert(gw_joint_invariant_holds(&joint), "a step keeps the invariant");
     for (unsigned int i = 0U; i < GW_WHEEL_COUNT; i++) {
         __ESBMC_assert(gw_in_range(command.angle_rad[i], -GW_PI, GW_PI), "an angle is commanded");
