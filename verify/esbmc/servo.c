@@ -30,7 +30,7 @@ int main(void)
     servo.last_count = nondet_int();
     servo.position_count = nondet_int();
     servo.reference_age = nondet_uint();
-    servo.reference_status = nondet_bool() ? GW_STATUS_OK : GW_STATUS_REFERENCE_STALE;
+    servo.reference_status = (gw_status_t)nondet_uint();
     servo.started = nondet_bool();
     servo.initialised = true;
     __ESBMC_assume(gw_in_range(servo.rad_per_count, 6.0e-6F, 1.6F) && gw_in_range(servo.count_rate, 6.0e-5F, 1.6e5F));

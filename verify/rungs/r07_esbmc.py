@@ -26,6 +26,7 @@ class Harness:
     # None for the servo, whose step exceeds memory with it, and the joint, where displacements of any bits may overflow
     # to infinity: that nothing overflows which must not is eva's claim.
     checks: tuple[str, ...] = ("--overflow-check",)
+    solver: tuple[str, ...] = ("--floatbv", "--bitwuzla")
 
 
 HARNESSES = {
@@ -64,6 +65,7 @@ HARNESSES = {
         "src/gw_servo.c",
         ("src/gw_servo.c", "count % turn", "contract_remainder(count, turn)"),
         (),
+        ("--fp2bv", "--boolector"),  # Bitwuzla runs out of memory over it
     ),
     "joint": Harness(
         ("gw_math", "gw_kinematics", "gw_config"),
@@ -100,8 +102,7 @@ def _verified(context: Context, name: str, harness: Harness, core: Path) -> None
         f"-I{core / 'src'}",
         f"-I{folder}",
         PORTABLE,
-        "--floatbv",
-        "--bitwuzla",
+        *harness.solver,
         *harness.checks,
         "--unwind",
         "17",  # beyond every loop, or it says so
