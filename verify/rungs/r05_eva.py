@@ -62,7 +62,7 @@ DRIVERS = {
             "if (!events->sensors_good) {\n                next = GW_MODE_STOPPED;",
         ),
         "gw_sensor_check_step:full,step:full,gw_controller_step:full",
-        states=2000,
+        states=300,
     ),
     "estimator": Driver(
         Mutant("gw_estimator.c", "torque_nm = gw_torques_limited(&input->torque_nm);", "torque_nm = input->torque_nm;")
