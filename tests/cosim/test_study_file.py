@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import giveway
 import pytest
 from giveway.errors import GivewayError
 from giveway.study import study_file
