@@ -92,22 +92,24 @@ def test_the_same_seed_draws_the_same_mutants(tmp_path: Path) -> None:
 
 def test_real_mutants_meet_their_fates(tmp_path: Path) -> None:
     killers = Killers(Context(ROOT, tmp_path))
-    path = ROOT / "c_core" / "src" / "gw_sum.c"
-    text = path.read_text()
+    source = ROOT / "c_core" / "src" / "gw_sum.c"
+    header = ROOT / "c_core" / "include" / "giveway" / "gw_sum.h"
+    texts = {path: path.read_text() for path in (source, header)}
 
-    def fate(healthy: str, sick: str) -> Fate:
-        assert text.count(healthy) == 1
-        start = text.index(healthy)
+    def fate(path: Path, healthy: str, sick: str) -> Fate:
+        assert texts[path].count(healthy) == 1
+        start = texts[path].index(healthy)
         key = Key(path.name, "", healthy, sick, 1)
         return killers.fate(Mutant(key, path, 0, start, start + len(healthy), sick))
 
-    assert fate("increment - sum.excess", "increment + sum.excess") is Fate.UNIT
-    assert fate("increment - sum.excess", "increment - no_such_name") is Fate.NOT_COMPILED
-    assert fate("1024.0)", "1024.5)") is Fate.SURVIVED
-    assert fate("increment - sum.excess", "(increment - (sum.excess))") is Fate.SAME_OBJECT
-    assert path.read_text() == text
+    # An inline function's mutant is in every source that includes it.
+    assert fate(header, "increment - sum.excess", "increment + sum.excess") is Fate.UNIT
+    assert fate(source, "+= TURN_REMAINDER", "+= no_such_name") is Fate.NOT_COMPILED
+    assert fate(source, "((gw_real_t)3.0)", "((gw_real_t)3.03)") is Fate.SURVIVED
+    assert fate(source, "result.value >= GW_PI", "result.value >= (GW_PI)") is Fate.SAME_OBJECT
     for endless in ("for (;;) { }", 'for (;;) { extern int puts(const char *); (void)puts("x"); }'):
-        assert fate("result.value = sum.value + corrected;", endless) is Fate.UNIT
+        assert fate(source, "result.excess += TURN_REMAINDER;", endless) is Fate.UNIT
+    assert texts == {path: path.read_text() for path in texts}
 
 
 @pytest.mark.parametrize(
