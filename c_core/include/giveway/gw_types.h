@@ -31,12 +31,13 @@
 extern "C" {
 #endif
 
+/* Largest finite number, written out: behind <math.h>, some C++ libraries for macOS leave FLT_MAX undefined. */
 #if (GW_REAL_DOUBLE == 1)
 typedef double gw_real_t;
-#define GW_REAL_MAX DBL_MAX
+#define GW_REAL_MAX 1.7976931348623157e+308
 #else
 typedef float gw_real_t;
-#define GW_REAL_MAX FLT_MAX
+#define GW_REAL_MAX 3.4028234663852886e+38F
 #endif
 
 /* Number of wheels; their radial directions are 120 degrees apart. */

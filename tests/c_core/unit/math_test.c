@@ -14,6 +14,7 @@ static void finite_means_neither_nan_nor_infinite(void)
         unit_row(i);
         CHECK(gw_is_finite(rows[i].x) == rows[i].finite);
     }
+    CHECK(unit_above(GW_REAL_MAX) == unit_infinity()); /* the largest: nothing is between */
 }
 
 static void a_range_holds_its_ends_and_not_their_neighbours(void)
