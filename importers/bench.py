@@ -12,9 +12,9 @@ import time
 from pathlib import Path
 
 from giveway import experiments, native
-from giveway.cli import print_columns
 from giveway.fmu import open_fmu
 from giveway.master import simulate
+from giveway.terminal import print_columns
 
 from importers.matrix import environment
 

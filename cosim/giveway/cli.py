@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,17 +15,18 @@ from giveway import __version__
 from giveway.errors import GivewayError, SimulationError, UnknownNameError, one_line
 from giveway.fmu_commands import fmu_app
 from giveway.scenario import BUMPERS
+from giveway.study_commands import study_app, sweep_designs
+from giveway.terminal import INTERRUPTED, print_columns, print_results, progress_bar, progress_bars
 
 if TYPE_CHECKING:
     from giveway.master import Progress
     from giveway.result import Result
     from giveway.scenario import Scenario
-    from giveway.study.answers import Answers
     from giveway.sweep import Sweep
 
-__all__ = ["app", "main", "print_columns", "progress_bar"]
+__all__ = ["app", "main"]
 
-FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+FAILED, WRONG_INPUT = 1, 2  # exit codes
 DEFAULT_BUMPER = "magnetic"
 LONG_RUN_S = 20.0  # simulated; shorter runs end before a bar could be read
 
@@ -38,8 +39,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-study_app = typer.Typer(help="Look at a study, and take its designs away.", no_args_is_help=True)
-app.add_typer(study_app, name="study")
+app.add_typer(study_app)
 app.add_typer(fmu_app)
 
 SetOption = Annotated[
@@ -101,7 +101,7 @@ def run(
     with replace_folder(out) as folder:
         result.write_into(folder)
         write_report(folder / "report.html", scenario.name, summary, [result])
-    _print_table(scenario.name, {scenario.bumper: result})
+    print_results(scenario.name, {scenario.bumper: result})
     if scenario.body_region is not None:
         from giveway.body_regions import judge
 
@@ -146,7 +146,7 @@ def demo(
         write_report(folder / "report.html", name, experiment.summary, list(results.values()))
         write_picture(folder / "overview.png", list(results.values()))
         write_summary(folder / "summary.json", results)
-    _print_table(name, results)
+    print_results(name, results)
     typer.echo(f"Written: {out / 'report.html'}, {out / 'overview.png'} and {out / 'summary.json'}")
 
 
@@ -166,7 +166,7 @@ def reproduce(
 
     names = [experiment.name for experiment in chosen(only or ())]
     check_output(out)
-    with _shares(names) as progress:
+    with progress_bars(names) as progress:
         found = run_all(names, not reduced, threads, progress)
     from giveway.report.reproduction import write_report
 
@@ -270,7 +270,7 @@ def fit(
     before = native.robot() if robot is None else robot
     bench = Bench(before)
     try:
-        with _shares(STAGES) as progress:
+        with progress_bars(STAGES) as progress:
             found = search(bench, progress, samples)
     except KeyboardInterrupt:
         raise typer.Abort from None  # Typer itself would end without a word
@@ -351,129 +351,7 @@ def ssp(
     typer.echo(f"Written: {out}")
 
 
-@app.command("sweep")
-def sweep_designs(
-    study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/studies/magnetic_latch.toml`.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
-    ] = None,
-    check: Annotated[
-        bool, typer.Option("--check", help="Check the study and say how many runs it has; run nothing.")
-    ] = False,
-) -> None:
-    """Run a study of many designs, or go on with it; then tables, Pareto front, traces and a report in DIR."""
-    from giveway.study import answers, command, study_file
-    from giveway.study.engine import plan_runs
-    from giveway.study.engine import sweep as run_study
-
-    setup = study_file.read(study)
-    folder = Path("out/studies") / study.stem if out is None else out
-    if check:
-        typer.echo(command.sizes(setup, plan_runs(setup)))
-        return
-    with command.showing(setup.name) as progress:
-        outcome = run_study(setup, folder, threads=threads, progress=progress)
-    typer.echo(command.overview(setup, outcome))
-    if outcome.interrupted:
-        again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
-        typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
-        raise typer.Exit(INTERRUPTED)
-    try:
-        found = answers.load(folder)
-        written = command.write_all(found)
-    except KeyboardInterrupt:
-        typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
-        raise typer.Exit(INTERRUPTED) from None
-    _print_answers(found)
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
-
-
-@study_app.command("show")
-def study_show(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
-) -> None:
-    """Show the first answers of a study, also while it runs or after it was interrupted; writes its report."""
-    from giveway.study import answers, command
-
-    found = answers.load(folder)
-    written = command.write_all(found, simulate_chosen=False)
-    _print_answers(found)
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
-
-
-@study_app.command("run")
-def study_run(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
-    design: Annotated[int, typer.Option("--design", metavar="N", help="Number of the design.")],
-) -> None:
-    """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
-    from giveway.study import answers
-    from giveway.study.chosen import CHOSEN, simulate
-
-    found = answers.load(folder)
-    found.check_design(design)
-    results = simulate(found.setup, found.runs, folder, design)
-    for name, result in results.items():
-        _print_table(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
-    typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")
-
-
-@study_app.command("export")
-def study_export(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
-    out: Annotated[
-        Path, typer.Option("--out", metavar="FILE", help="FILE.ssv, FILE.toml (for `giveway run`) or FILE.csv.")
-    ],
-    design: Annotated[
-        int | None, typer.Option("--design", metavar="N", help="Without it: the table of all, as CSV.")
-    ] = None,
-    collision: Annotated[str | None, typer.Option("--collision", metavar="NAME", help="Without it: the first.")] = None,
-    model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
-) -> None:
-    """Take a design away: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
-    from giveway.study import answers
-    from giveway.study.export import export_design, export_table
-
-    found = answers.load(folder)
-    if design is None:
-        export_table(found, out)
-    else:
-        export_design(found, design, out, collision=collision, model=model)
-    typer.echo(f"Written: {out}")
-
-
-@study_app.command("gallery")
-def study_gallery(
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the pictures.")] = Path("docs"),
-    studies: Annotated[Path, typer.Option("--studies", metavar="DIR", help="Folder for the runs.")] = Path(
-        "out/studies"
-    ),
-    examples: Annotated[Path, typer.Option("--examples", metavar="DIR", help="Where the study files are.")] = Path(
-        "examples/studies"
-    ),
-) -> None:
-    """Run the example studies and draw the README's pictures of them."""
-    from giveway.study import command
-    from giveway.study.gallery import draw_all
-
-    for path, sentence in draw_all(examples, studies, out, command.showing):
-        typer.echo(f"{path}: {sentence}")
-
-
-def _print_answers(found: Answers) -> None:
-    from giveway.study import command
-
-    print_columns(
-        f"{found.setup.name}: {command.counts(found)}", command.goal_header(found), command.design_rows(found)
-    )
-    rows = command.sensitivity_rows(found)
-    if rows:
-        print_columns("What decides", command.sensitivity_header(found), rows)
+app.command("sweep")(sweep_designs)
 
 
 def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenario, str]:
@@ -527,79 +405,6 @@ def _progress(duration_s: float) -> Iterator[Progress | None]:
         return
     with progress_bar("simulating") as progress:
         yield progress
-
-
-@contextmanager
-def progress_bar(title: str) -> Iterator[Progress | None]:
-    """A bar on stderr at a terminal, for (simulated time, duration) in s; nothing elsewhere."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (BarColumn(), TextColumn("{task.completed:.2f} of {task.total:g} s"), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=None)
-        yield lambda now_s, duration_s: bar.update(task, completed=now_s, total=duration_s)
-
-
-@contextmanager
-def _shares(names: Sequence[str]) -> Iterator[Callable[[str, float], None]]:
-    """One progress bar per experiment on stderr at a terminal, else a line when one begins."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    if not sys.stderr.isatty():
-        begun: set[str] = set()
-
-        def say(name: str, _share: float) -> None:
-            if name not in begun:
-                begun.add(name)
-                typer.echo(f"[{len(begun)} of {len(names)}] {name}", err=True)
-
-        yield say
-        return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %"),
-        TimeElapsedColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True)) as bars:
-        tasks = {name: bars.add_task(name, total=1.0, start=False) for name in names}
-
-        def draw(name: str, share: float) -> None:
-            bars.start_task(tasks[name])
-            bars.update(tasks[name], completed=share)
-
-        yield draw
-
-
-def _print_table(name: str, results: dict[str, Result]) -> None:
-    from giveway.summary import table_rows
-
-    header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
-    print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
-
-
-def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
-    """A table on stdout."""
-    from rich.box import SIMPLE_HEAD
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    terminal = Console(highlight=False)
-    # A pipe has no width to fit into: every row keeps its line there.
-    console = terminal if terminal.is_terminal else Console(highlight=False, width=1000)
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for index, name in enumerate(header):
-        table.add_column(name, no_wrap=index == 0, overflow="fold")
-    for row in rows:
-        table.add_row(*(Text(cell) for cell in row))
-    console.print(title, style="bold")
-    console.print(table)
 
 
 def main() -> None:

@@ -6,13 +6,9 @@ Three cases are told apart: "gear stuck" (stiction holds the motor), "unpowered"
 
 from __future__ import annotations
 
-import dataclasses
-import json
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,17 +24,13 @@ from giveway.drivetrain import (
     plant,
     response,
 )
-from giveway.files import write_text
 
 if TYPE_CHECKING:
     import control
     from numpy.typing import NDArray
 
-    from giveway.sweep import Sweep
+__all__ = ["Analysis", "Case", "Channel", "Margins", "Pole", "analyse", "table_rows"]
 
-__all__ = ["Analysis", "Case", "Channel", "Margins", "Pole", "analyse", "table_rows", "write_json"]
-
-SCHEMA_VERSION = 1
 STUCK, UNPOWERED, SERVO = "gear stuck", "unpowered", "servo"
 STATIC_HZ = 1e-6  # stands for frequency zero, where an unpowered drivetrain that turns freely has no response
 LOWEST_HZ, POINTS = 1e-3, 1500
@@ -326,46 +318,3 @@ def _cell(value: float | None, form: str) -> str:
 
 def _at(frequency_hz: float | None) -> str:
     return "" if frequency_hz is None else f" at {frequency_hz:.1f} Hz"
-
-
-def write_json(path: Path, title: str, analysis: Analysis, sweeps: Sequence[Sweep]) -> None:
-    """Every number and curve, atomically. Curves hold the magnitude (N m/N m) and the phase (deg)."""
-    document = {
-        "schema_version": SCHEMA_VERSION,
-        "title": title,
-        "parameters": {
-            name: value if math.isfinite(value) else "locked"
-            for name, value in {**analysis.drivetrain.variables(), **analysis.servo.variables()}.items()
-        },
-        "frequency_hz": _digits(analysis.frequency_hz),
-        "time_s": _digits(analysis.time_s),
-        "servo_loop": {"margins": dataclasses.asdict(analysis.margins), **_curve(analysis.loop)},
-        "cases": {name: _case_document(case) for name, case in analysis.cases.items()},
-        "measured": [
-            {"case": sweep.case, "source": sweep.source, "frequency_hz": _digits(sweep.frequency_hz)}
-            | _curve(sweep.response)
-            for sweep in sweeps
-        ],
-    }
-    write_text(path, json.dumps(document, allow_nan=False, separators=(",", ":")) + "\n")
-
-
-def _case_document(case: Case) -> dict[str, Any]:
-    channels = {}
-    for source, channel in case.channels.items():
-        numbers = dataclasses.asdict(channel)
-        numbers.update(_curve(numbers.pop("response")), step=_digits(channel.step))
-        channels[source] = numbers
-    poles = [
-        {**dataclasses.asdict(pole), "frequency_hz": pole.frequency_hz, "damping": pole.damping} for pole in case.poles
-    ]
-    return {"poles": poles, "stable": case.stable, "channels": channels}
-
-
-def _curve(response: NDArray[np.complex128]) -> dict[str, list[float]]:
-    return {"magnitude": _digits(np.abs(response)), "phase_deg": _digits(np.degrees(np.unwrap(np.angle(response))))}
-
-
-def _digits(values: NDArray[np.float64]) -> list[float]:
-    """Enough digits for a curve."""
-    return [float(f"{value:.7g}") for value in values]

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from giveway.terminal import print_columns, progress_bar
+
 __all__ = ["fmu_app"]
 
 FOUND = 1  # exit code of a check that found a fault
@@ -47,7 +49,6 @@ def info(
     grep: Annotated[str, typer.Option("--grep", metavar="TEXT", help="Only variables with TEXT in them.")] = "",
 ) -> None:
     """Say what an FMU is: interfaces, platforms, variables."""
-    from giveway.cli import print_columns
     from giveway.fmu_info import VARIABLE_HEADER, describe, variable_rows
 
     print_columns(file.name, ("", ""), describe(file))
@@ -72,7 +73,6 @@ def run(
     ] = None,
 ) -> None:
     """Run an FMU from its start values over FMPy; traces and plots."""
-    from giveway.cli import progress_bar
     from giveway.fmu_run import check_run_output, run_fmu, write_run
 
     out = Path("out") / f"{file.stem}.html" if out is None else out

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.style import context
 from matplotlib.ticker import MultipleLocator
 
-from giveway.drivetrain_analysis import write_json
+from giveway.drivetrain_record import write_json
 from giveway.files import check_file, check_output, replace_file, replace_folder
 from giveway.report.style import STYLE
 

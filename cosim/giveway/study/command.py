@@ -1,8 +1,7 @@
-"""What `giveway sweep` and `giveway study` say: progress, tables, where to go on."""
+"""What `giveway sweep` and `giveway study` say: progress, what was done, what was written."""
 
 from __future__ import annotations
 
-import math
 import sys
 import time
 from collections.abc import Iterator
@@ -10,27 +9,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.study.answers import Answers
 from giveway.study.engine import Outcome, Progress, Report
 
 if TYPE_CHECKING:
+    from giveway.study.answers import Answers
     from giveway.study.runs import RunTable
     from giveway.study.setup import Setup
 
-__all__ = [
-    "counts",
-    "design_rows",
-    "duration",
-    "goal_header",
-    "overview",
-    "sensitivity_header",
-    "sensitivity_rows",
-    "showing",
-    "sizes",
-    "write_all",
-]
+__all__ = ["duration", "overview", "showing", "sizes", "write_all"]
 
-SHOWN = 12  # designs in the table
 SAY_EVERY_S = 5.0  # without a terminal
 
 
@@ -94,69 +81,6 @@ def sizes(setup: Setup, table: RunTable) -> str:
         f"{setup.name}: {len(table.designs):,} designs, {len(table.cases)} collisions, {table.samples} samples "
         f"with the nominal one: {table.count:,} runs"
     )
-
-
-def number(value: float) -> str:
-    """A value with four digits; "-" for what did not happen."""
-    return "-" if math.isnan(value) else f"{value:.4g}"
-
-
-def goal_header(answers: Answers) -> tuple[str, ...]:
-    """The first line of `design_rows`."""
-    quantities = [f"{one.quantity.name}{_unit(one.quantity.unit)}" for one in answers.setup.varied]
-    goals = [f"{answers.goal_name(j)}{_unit(answers.goals[j].metric.unit)}" for j in answers.columns]
-    return ("design", *quantities, *goals, "front")
-
-
-def _unit(unit: str) -> str:
-    return f", {unit}" if unit not in ("", "1") else ""
-
-
-def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
-    """The best designs, in the order of the ranking."""
-    rows = []
-    for design in answers.order[:count]:
-        pairs = zip(answers.setup.varied, answers.designs[design], strict=True)
-        values = [one.quantity.text(v) if one.quantity.kind != "real" else number(v) for one, v in pairs]
-        goals = [number(value) for value in answers.values[design, answers.columns]]
-        rows.append((str(design), *values, *goals, "yes" if answers.pareto[design] else ""))
-    return rows
-
-
-def sensitivity_rows(answers: Answers) -> list[tuple[str, ...]]:
-    """Every quantity's part in every objective, the largest first."""
-    found = sorted(answers.sensitivities(), key=lambda one: (one.goal, -one.main))
-    return [
-        (
-            one.goal,
-            one.quantity,
-            f"{one.main:.3g}",
-            f"{one.interval:.2g}",
-            "-" if one.total is None else f"{one.total:.3g}",
-        )
-        for one in found
-    ]
-
-
-def sensitivity_header(answers: Answers) -> tuple[str, ...]:
-    """The first line of `sensitivity_rows`."""
-    effects = answers.setup.plan.kind == "morris"
-    return ("objective", "quantity", *(("mu*", "+-", "sigma") if effects else ("S1", "+-", "ST")))
-
-
-def counts(answers: Answers) -> str:
-    """How many designs there are and what became of them, in one sentence."""
-    done = int((answers.stored > 0).sum())
-    words = f"{len(answers.designs):,} designs"
-    if not answers.complete:
-        words += f" ({done:,} begun; the study is not complete)"
-    words += (
-        f", {int(answers.feasible.sum()):,} meet all constraints, {int(answers.pareto.sum()):,} on the Pareto front"
-    )
-    failed = int((answers.failed > 0).sum())
-    if failed:
-        words += f", {failed:,} with failed runs"
-    return words
 
 
 def write_all(answers: Answers, simulate_chosen: bool = True) -> list[Path]:

@@ -32,7 +32,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     """Write the summary of ``answers`` to ``path``; ``results``: the chosen designs by number and collision."""
     import jinja2
 
-    from giveway.study.command import counts, design_rows, goal_header, sensitivity_header, sensitivity_rows
+    from giveway.study.tables import counts, design_rows, goal_header, sensitivity_header, sensitivity_rows
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined

@@ -1,0 +1,139 @@
+"""The commands `giveway sweep` and `giveway study`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from giveway.terminal import INTERRUPTED, print_columns, print_results
+
+if TYPE_CHECKING:
+    from giveway.study.answers import Answers
+
+__all__ = ["study_app", "sweep_designs"]
+
+study_app = typer.Typer(name="study", help="Look at a study, and take its designs away.", no_args_is_help=True)
+
+
+def sweep_designs(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/studies/magnetic_latch.toml`.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Check the study and say how many runs it has; run nothing.")
+    ] = False,
+) -> None:
+    """Run a study of many designs, or go on with it; then tables, Pareto front, traces and a report in DIR."""
+    from giveway.study import answers, command, study_file
+    from giveway.study.engine import plan_runs
+    from giveway.study.engine import sweep as run_study
+
+    setup = study_file.read(study)
+    folder = Path("out/studies") / study.stem if out is None else out
+    if check:
+        typer.echo(command.sizes(setup, plan_runs(setup)))
+        return
+    with command.showing(setup.name) as progress:
+        outcome = run_study(setup, folder, threads=threads, progress=progress)
+    typer.echo(command.overview(setup, outcome))
+    if outcome.interrupted:
+        again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
+        typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    try:
+        found = answers.load(folder)
+        written = command.write_all(found)
+    except KeyboardInterrupt:
+        typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    _print_answers(found)
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+@study_app.command("show")
+def study_show(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+) -> None:
+    """Show the first answers of a study, also while it runs or after it was interrupted; writes its report."""
+    from giveway.study import answers, command
+
+    found = answers.load(folder)
+    written = command.write_all(found, simulate_chosen=False)
+    _print_answers(found)
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+@study_app.command("run")
+def study_run(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    design: Annotated[int, typer.Option("--design", metavar="N", help="Number of the design.")],
+) -> None:
+    """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
+    from giveway.study import answers
+    from giveway.study.chosen import CHOSEN, simulate
+
+    found = answers.load(folder)
+    found.check_design(design)
+    results = simulate(found.setup, found.runs, folder, design)
+    for name, result in results.items():
+        print_results(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
+    typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")
+
+
+@study_app.command("export")
+def study_export(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="FILE.ssv, FILE.toml (for `giveway run`) or FILE.csv.")
+    ],
+    design: Annotated[
+        int | None, typer.Option("--design", metavar="N", help="Without it: the table of all, as CSV.")
+    ] = None,
+    collision: Annotated[str | None, typer.Option("--collision", metavar="NAME", help="Without it: the first.")] = None,
+    model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
+) -> None:
+    """Take a design away: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
+    from giveway.study import answers
+    from giveway.study.export import export_design, export_table
+
+    found = answers.load(folder)
+    if design is None:
+        export_table(found, out)
+    else:
+        export_design(found, design, out, collision=collision, model=model)
+    typer.echo(f"Written: {out}")
+
+
+@study_app.command("gallery")
+def study_gallery(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the pictures.")] = Path("docs"),
+    studies: Annotated[Path, typer.Option("--studies", metavar="DIR", help="Folder for the runs.")] = Path(
+        "out/studies"
+    ),
+    examples: Annotated[Path, typer.Option("--examples", metavar="DIR", help="Where the study files are.")] = Path(
+        "examples/studies"
+    ),
+) -> None:
+    """Run the example studies and draw the README's pictures of them."""
+    from giveway.study import command
+    from giveway.study.gallery import draw_all
+
+    for path, sentence in draw_all(examples, studies, out, command.showing):
+        typer.echo(f"{path}: {sentence}")
+
+
+def _print_answers(found: Answers) -> None:
+    from giveway.study import tables
+
+    print_columns(f"{found.setup.name}: {tables.counts(found)}", tables.goal_header(found), tables.design_rows(found))
+    rows = tables.sensitivity_rows(found)
+    if rows:
+        print_columns("What decides", tables.sensitivity_header(found), rows)

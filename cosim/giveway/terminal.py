@@ -1,0 +1,92 @@
+"""What the commands put on a terminal: tables, and progress bars on stderr."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from giveway.master import Progress
+    from giveway.result import Result
+
+__all__ = ["INTERRUPTED", "print_columns", "print_results", "progress_bar", "progress_bars"]
+
+INTERRUPTED = 130  # exit code of a command that Ctrl-C ended
+
+
+def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
+    """A table on stdout."""
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    terminal = Console(highlight=False)
+    # A pipe has no width to fit into: every row keeps its line there.
+    console = terminal if terminal.is_terminal else Console(highlight=False, width=1000)
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for index, name in enumerate(header):
+        table.add_column(name, no_wrap=index == 0, overflow="fold")
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    console.print(title, style="bold")
+    console.print(table)
+
+
+def print_results(name: str, results: Mapping[str, Result]) -> None:
+    """The metrics of ``results``, a column for each bumper."""
+    from giveway.summary import table_rows
+
+    header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
+    print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Progress | None]:
+    """A bar on stderr at a terminal, for (simulated time, duration) in s; nothing elsewhere."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (BarColumn(), TextColumn("{task.completed:.2f} of {task.total:g} s"), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda now_s, duration_s: bar.update(task, completed=now_s, total=duration_s)
+
+
+@contextmanager
+def progress_bars(names: Sequence[str]) -> Iterator[Callable[[str, float], None]]:
+    """One progress bar per experiment on stderr at a terminal, else a line when one begins."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    if not sys.stderr.isatty():
+        begun: set[str] = set()
+
+        def say(name: str, _share: float) -> None:
+            if name not in begun:
+                begun.add(name)
+                typer.echo(f"[{len(begun)} of {len(names)}] {name}", err=True)
+
+        yield say
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as bars:
+        tasks = {name: bars.add_task(name, total=1.0, start=False) for name in names}
+
+        def draw(name: str, share: float) -> None:
+            bars.start_task(tasks[name])
+            bars.update(tasks[name], completed=share)
+
+        yield draw
