@@ -20,7 +20,10 @@ __all__ = ["AT_A_TIME", "UNIT", "Fate", "Killers"]
 
 AT_A_TIME = 2
 OPTIMISED: tuple[str, ...] = ("-O2", PORTABLE)  # at which an equivalent mutant gives the same object
-TRAPPING: tuple[str, ...] = ("-O1", PORTABLE, "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error")
+TRAPPING: tuple[str, ...] = (
+    *("-O1", PORTABLE, "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error"),
+    "-ftrivial-auto-var-init=pattern",  # what a mutant no longer writes has the same value in every build
+)
 # Some sixty times what a program takes; a mutant may print without end, too.
 CPU_S = 4
 MEMORY_GIB = 1.0
