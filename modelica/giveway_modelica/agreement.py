@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import functools
+import math
+from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,23 +13,20 @@ import numpy as np
 
 from giveway_modelica.bench import Bench
 from giveway_modelica.compiler import Compiler, classes
-from giveway_modelica.fmu_runs import FINEST, RUNS, Alone, Array, Pair
+from giveway_modelica.fmu_runs import FINEST, RUNS, Alone, Array, Pair, in_double
 from giveway_modelica.tube import at, excess
 
-# Without a sampled controller both are limited by their solvers, which run at 1e-9.
+# Without a sampled controller, and with one until the first hit: both are limited by their solvers, which run at 1e-9.
 SMOOTH = 1e-5
-# With it by the controller's single precision and by encoder counts that flip (6e-6 rad, felt as 0.015 N m).
+# After it by encoder counts that flip one sample earlier in one of the two: 6e-6 rad, which the servo makes a kick of
+# 0.015 N m for 0.5 ms, and the sensor's spring a ringing of 5e-4 N m.
 SAMPLED = 1e-4
-# The controller's single precision is 1e-7 of a turn, a sixth of a count. A count that flips one sample earlier in one
-# of the two kicks a motor by 0.015 N m for 0.5 ms, which rings on the sensor's spring with 5e-4 N m. The loop hands
-# that on: the impulse of a hit is off by 5e-5 N s, the direction in which the robot gives way by 4e-5 rad, and from
-# then on every count comes at another time. So the encoder itself leaves the torques open by more than the bound: with
-# 999 999 counts per turn instead of a million, Modelica is 7e-4 from itself. `test_halves.py` shows that, and opens
-# the loop: there plant and controller are each within the bounds above.
-COUNTED = {("CirclePushed", "wheel torques"): 3e-4}
+# Around the FMUs as shipped. Their controller's single precision is 1e-7 of a turn, a sixth of a count: many flip. The
+# loop hands that on: the impulse of a hit is off by 5e-5 N s, the direction in which the robot gives way by 4e-5 rad,
+# and from then on every count comes at another time. The same FMUs in double are as far from them as Modelica is.
+SHIPPED = {("CirclePushed", "wheel torques"): 3e-4}
 TUBE_S = 1e-4  # a tenth of a sample of the controller
 
-MOTION = ("base position", "heading", "dummy's travel")
 CHANGES = {
     "RollerWaves": "counts=1000000",
     "MotionlessNoBumper": f"testbed(robot({FINEST}))",
@@ -112,41 +112,55 @@ def signals(example: str) -> list[Signal]:
     return found
 
 
-def bound(example: str, group: str) -> float:
-    """How high the tube is, over the group's largest magnitude."""
-    return COUNTED.get((example, group), SAMPLED if example in CHANGES else SMOOTH)
+def bound(example: str, group: str, shipped: bool = False) -> float:
+    """How high the tube is, over the group's largest magnitude; ``shipped``: around FMUs in single precision."""
+    if not isinstance(RUNS[example], Pair):
+        return SMOOTH
+    return SHIPPED.get((example, group), SAMPLED) if shipped else SAMPLED
 
 
+@functools.cache
 def simulated(compiler: Compiler, example: str, changes: str = "") -> Any:
     """The example with the settings of its FMU run, and ``changes``."""
     both = ", ".join(text for text in (CHANGES.get(example, ""), changes) if text)
-    return compiler.simulate(f"GiveWay.Examples.{example}", both, None if isinstance(RUNS[example], Pair) else 1e-9)
+    return compiler.simulate(f"GiveWay.Examples.{example}", both, tolerance=1e-9)
 
 
-def heights(result: Any, beside: Mapping[str, Array], compared: list[Signal], until_s: float) -> dict[str, float]:
-    """Per group the lowest tube around ``beside`` that holds ``result`` until then, over its largest magnitude."""
-    time_s = beside["time"]
+@functools.cache
+def beside(example: str, shipped: bool = False) -> Mapping[str, Array]:
+    """The FMUs' run of the example: with the C library in double, or as shipped."""
+    with nullcontext() if shipped else in_double():
+        return RUNS[example].run(STOP_S[example])
+
+
+def heights(
+    result: Any, reference: Mapping[str, Array], compared: list[Signal], until_s: float = math.inf
+) -> dict[str, float]:
+    """Per group the lowest tube around ``reference`` that holds ``result`` until then, over its largest magnitude."""
+    time_s = reference["time"]
     rows = time_s <= until_s
     peaks: dict[str, float] = {}
     for one in compared:
-        peaks[one.group] = max(peaks.get(one.group, 0.0), float(np.abs(beside[one.theirs]).max()))
+        peaks[one.group] = max(peaks.get(one.group, 0.0), float(np.abs(reference[one.theirs]).max()))
     found = dict.fromkeys(peaks, 0.0)
     for one in compared:
         values = at(np.asarray(result.time), np.asarray(result[one.ours]), time_s[rows])
-        outside = excess(time_s[rows], values, time_s, beside[one.theirs], TUBE_S, 0.0).value
+        outside = excess(time_s[rows], values, time_s, reference[one.theirs], TUBE_S, 0.0).value
         found[one.group] = max(found[one.group], outside / (peaks[one.group] or 1.0))
     return found
 
 
-def rows(compiler: Compiler) -> Iterator[tuple[str, str, float, float]]:
-    """Example, group of signals, bound and what was found, of every example that has a run of the FMUs."""
-    for example, run in RUNS.items():
-        found = heights(simulated(compiler, example), run.run(STOP_S[example]), signals(example), STOP_S[example])
-        for group, height in found.items():
-            yield example, group, bound(example, group), height
+def found(compiler: Compiler, example: str, shipped: bool = False, changes: str = "") -> dict[str, float]:
+    """`heights` of ``example`` over all of its signals."""
+    return heights(simulated(compiler, example, changes), beside(example, shipped), signals(example))
 
 
 def table(compiler: Compiler) -> str:
-    """`rows` in Markdown."""
-    head = "| example | signals | bound | found |\n|---|---|---|---|\n"
-    return head + "".join(f"| {a} | {b} | {c:.0e} | {d:.1e} |\n" for a, b, c, d in rows(compiler))
+    """Every example's heights in Markdown: around the FMUs in double, and as shipped where that is another FMU."""
+    rows = ["| example | signals | bound | found | shipped |", "|---|---|---|---|---|"]
+    for example, run in RUNS.items():
+        single = {} if isinstance(run, Bench) else found(compiler, example, shipped=True)
+        for group, height in found(compiler, example).items():
+            other = f"{single[group]:.1e}" if group in single else ""
+            rows.append(f"| {example} | {group} | {bound(example, group):.0e} | {height:.1e} | {other} |")
+    return "\n".join(rows) + "\n"

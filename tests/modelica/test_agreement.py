@@ -4,58 +4,63 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from giveway_modelica.agreement import MOTION, SMOOTH, STOP_S, bound, heights, signals, simulated
+from giveway_modelica.agreement import SMOOTH, beside, bound, found, heights, signals, simulated
 from giveway_modelica.compiler import Compiler
-from giveway_modelica.fmu_runs import RUNS, Array, Pair
+from giveway_modelica.fmu_runs import RUNS, Pair
 from giveway_modelica.tube import at
 
 EVENT_S = 1e-6  # of locating an event; both solvers find it to some 1e-8 s
+PAIRS = [example for example, run in RUNS.items() if isinstance(run, Pair)]
 
 
-@pytest.fixture(scope="module")
-def fmu_runs() -> dict[str, dict[str, Array]]:
-    return {name: run.run(STOP_S[name]) for name, run in RUNS.items()}
+def outside(compiler: Compiler, example: str, shipped: bool = False, changes: str = "") -> dict[str, float]:
+    """What is higher than its tube."""
+    height = found(compiler, example, shipped, changes)
+    return {group: value for group, value in height.items() if value > bound(example, group, shipped)}
 
 
 @pytest.mark.parametrize("example", RUNS)
-def test_trajectories_lie_in_the_tube(compiler: Compiler, fmu_runs: dict[str, dict[str, Array]], example: str) -> None:
-    result, beside = simulated(compiler, example), fmu_runs[example]
-    found = heights(result, beside, signals(example), STOP_S[example])
-    assert {group: height for group, height in found.items() if height > bound(example, group)} == {}
-    if isinstance(RUNS[example], Pair):
-        prefix = "testbed.robot" if example.startswith("Motionless") else "robot"
-        hits = [
-            set(trace[trace >= 0])
-            for trace in (result[f"{prefix}.controller.hit_tick"], beside["controller.detection.tick"])
-        ]
-        assert hits[0] == hits[1]
-        assert hits[0]
-        # Until something happens the motion is smooth.
-        moved = [one for one in signals(example) if one.group in MOTION]
-        quiet = heights(result, beside, moved, 1e-3 * min(hits[0]))
-        assert max(quiet.values()) < SMOOTH
+def test_trajectories_lie_in_the_tube(compiler: Compiler, example: str) -> None:
+    assert outside(compiler, example) == {}
 
 
-def test_the_latch_lets_go_and_takes_hold_at_the_same_instants(
-    compiler: Compiler, fmu_runs: dict[str, dict[str, Array]]
-) -> None:
-    result, beside = simulated(compiler, "LatchRelease"), fmu_runs["LatchRelease"]
-    latched = beside["truth.latched"]
+@pytest.mark.parametrize("example", PAIRS)
+def test_trajectories_lie_in_the_tube_around_the_shipped_fmus(compiler: Compiler, example: str) -> None:
+    assert outside(compiler, example, shipped=True) == {}
+
+
+@pytest.mark.parametrize("example", PAIRS)
+def test_hits_are_noticed_with_the_same_sample(compiler: Compiler, example: str) -> None:
+    result, reference = simulated(compiler, example), beside(example)
+    prefix = "testbed.robot" if example.startswith("Motionless") else "robot"
+    theirs = "controller.detection.tick"
+    traces = result[f"{prefix}.controller.hit_tick"], reference[theirs], beside(example, shipped=True)[theirs]
+    ours, *others = (set(trace[trace >= 0]) for trace in traces)
+    assert others == [ours, ours]
+    assert ours
+    # Until something happens everything is smooth.
+    quiet = heights(result, reference, signals(example), 1e-3 * min(ours))
+    assert max(quiet.values()) < SMOOTH
+
+
+def test_the_latch_lets_go_and_takes_hold_at_the_same_instants(compiler: Compiler) -> None:
+    result, reference = simulated(compiler, "LatchRelease"), beside("LatchRelease")
+    latched = reference["truth.latched"]
     changes = np.flatnonzero(np.diff(latched)) + 1
     released, held = changes[latched[changes] < 0.5], changes[latched[changes] > 0.5]
     assert len(released) == len(held) == 1
     for name, row in (("t_release", released[0]), ("t_latch", held[0])):
-        found = {value for value in result[f"dummy.slider.bumper.{name}"] if value >= 0.0}
-        assert len(found) == 1
+        instants = {value for value in result[f"dummy.slider.bumper.{name}"] if value >= 0.0}
+        assert len(instants) == 1
         # Nothing else happens within these steps of the FMU, so that its last event is this one.
-        assert found.pop() == pytest.approx(beside["last_event_time"][row], abs=EVENT_S)
+        assert instants.pop() == pytest.approx(reference["last_event_time"][row], abs=EVENT_S)
 
 
-def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler, fmu_runs: dict[str, dict[str, Array]]) -> None:
-    result, beside = simulated(compiler, "DrivetrainStep"), fmu_runs["DrivetrainStep"]
-    stuck = at(np.asarray(result.time), np.asarray(result["drivetrain.motor.direction"]), beside["time"]) == 0
+def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler) -> None:
+    result, reference = simulated(compiler, "DrivetrainStep"), beside("DrivetrainStep")
+    stuck = at(np.asarray(result.time), np.asarray(result["drivetrain.motor.direction"]), reference["time"]) == 0
     # At t = 0.05 s and the like the FMU's row is before the new torque, Modelica's after it.
-    assert np.flatnonzero(stuck != (beside["gear.stuck"] > 0.5)).tolist() in ([], [50])
+    assert np.flatnonzero(stuck != (reference["gear.stuck"] > 0.5)).tolist() in ([], [50])
     assert 0 < stuck.sum() < len(stuck)
 
 
@@ -72,9 +77,5 @@ def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler, fmu_runs: di
         ("CirclePushed", "first(f_y=-34.05)"),
     ],
 )
-def test_a_small_fault_leaves_the_tube(
-    compiler: Compiler, fmu_runs: dict[str, dict[str, Array]], example: str, fault: str
-) -> None:
-    result = simulated(compiler, example, fault)
-    found = heights(result, fmu_runs[example], signals(example), STOP_S[example])
-    assert any(height > bound(example, group) for group, height in found.items())
+def test_a_small_fault_leaves_the_tube(compiler: Compiler, example: str, fault: str) -> None:
+    assert outside(compiler, example, changes=fault)
