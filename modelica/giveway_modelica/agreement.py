@@ -13,12 +13,12 @@ import numpy as np
 
 from giveway_modelica.bench import Bench
 from giveway_modelica.compiler import Compiler, classes
-from giveway_modelica.fmu_runs import FINEST, RUNS, Alone, Array, Pair, in_double
+from giveway_modelica.fmu_runs import COUNTS, FINEST, RUNS, Alone, Array, Pair, in_double
 from giveway_modelica.tube import at, excess
 
-# Without a sampled controller, and with one until the first hit: both are limited by their solvers, which run at 1e-9.
+# Without encoders, and with the controller's until the first hit: both are limited by their solvers, which run at 1e-9.
 SMOOTH = 1e-5
-# After it by encoder counts that flip one sample earlier in one of the two: 6e-6 rad, which the servo makes a kick of
+# Else by encoder counts that flip one sample earlier in one of the two: 6e-6 rad, which the servo makes a kick of
 # 0.015 N m for 0.5 ms, and the sensor's spring a ringing of 5e-4 N m.
 SAMPLED = 1e-4
 # Around the FMUs as shipped. Their controller's single precision is 1e-7 of a turn, a sixth of a count: many flip. The
@@ -28,7 +28,8 @@ SHIPPED = {("CirclePushed", "wheel torques"): 3e-4}
 TUBE_S = 1e-4  # a tenth of a sample of the controller
 
 CHANGES = {
-    "RollerWaves": "counts=1000000",
+    "RollerWaves": f"robot(counts={COUNTS})",
+    "RollerWavesPair": f"robot(counts={COUNTS})",
     "MotionlessNoBumper": f"testbed(robot({FINEST}))",
     "MotionlessSpring": f"testbed(robot({FINEST}))",
     "MotionlessMagnetic": f"testbed(robot({FINEST}))",
@@ -101,9 +102,9 @@ def signals(example: str) -> list[Signal]:
     inside = "testbed." if example.startswith("Motionless") else ""
     truth = "truth" if isinstance(RUNS[example], Alone) else "testbed.truth"
     found = _named(_BASE, f"{inside}robot", truth)
-    if example not in ("RollerWaves", "StaticPush", "CirclePushed"):
+    if example not in ("RollerWaves", "RollerWavesPair", "StaticPush", "CirclePushed"):
         found += _named(_DUMMY, f"{inside}dummy", truth)
-    if example == "RollerWaves":
+    if example.startswith("RollerWaves"):
         found.append(Signal("robot.base.body.theta", "truth.theta", "heading"))
     if example == "StaticPush":
         found += [Signal(f"robot.base.wheel{i}.roller.f", f"truth.roller_force[{i}]", "roller forces") for i in (0, 1)]
@@ -114,7 +115,7 @@ def signals(example: str) -> list[Signal]:
 
 def bound(example: str, group: str, shipped: bool = False) -> float:
     """How high the tube is, over the group's largest magnitude; ``shipped``: around FMUs in single precision."""
-    if not isinstance(RUNS[example], Pair):
+    if example not in CHANGES:
         return SMOOTH
     return SHIPPED.get((example, group), SAMPLED) if shipped else SAMPLED
 

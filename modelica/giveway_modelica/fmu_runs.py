@@ -140,12 +140,18 @@ _motor = _steps((0.0, 2.0), (0.05, 5.0), (0.25, -4.0), (0.5, 0.0))
 _pushed = _steps((0.0, 0.0), (0.1, 1.0))
 
 
-def _wave(t: float) -> Mapping[str, float]:
+def _waves(*wheels: int) -> Alone:
+    """These wheels move as in 4.2, the others stand."""
     omega = 2.0 * math.pi * 0.5
-    return {
-        "command.wheel_angle[0]": 1.5 * (1.0 - math.cos(omega * t)),
-        "command.wheel_speed[0]": 1.5 * omega * math.sin(omega * t),
-    }
+
+    def inputs(t: float) -> Mapping[str, float]:
+        angle, speed = 1.5 * (1.0 - math.cos(omega * t)), 1.5 * omega * math.sin(omega * t)
+        return {
+            f"command.wheel_{name}[{i}]": value for i in wheels for name, value in (("angle", angle), ("speed", speed))
+        }
+
+    fixed = {"slider.present": False, "electronics.command_delay": 0}
+    return Alone("testbed", {**TESTBED, **fixed}, inputs, _truth(*_BASE))
 
 
 def two_pushes(t: Array) -> Array:
@@ -174,12 +180,8 @@ RUNS: Mapping[str, Alone | Pair | Bench] = {
         lambda t: {"motor.torque": _motor(t)},
         ("sensor.torque", "motor.angle", "motor.speed", "load.angle", "load.speed", "gear.stuck"),
     ),
-    "RollerWaves": Alone(
-        "testbed",
-        {**TESTBED, "slider.present": False, "electronics.command_delay": 0},
-        _wave,
-        _truth(*_BASE),
-    ),
+    "RollerWaves": _waves(0),
+    "RollerWavesPair": _waves(0, 1),
     "StaticPush": Alone(
         "testbed",
         {**TESTBED, "slider.present": False},

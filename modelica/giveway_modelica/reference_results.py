@@ -29,6 +29,7 @@ _MOTIONLESS = (*_of("testbed.robot", *_POSE[:2], *_TORQUES), *_of("testbed.dummy
 SIGNALS = {
     "DrivetrainStep": ("drivetrain.tau_s", "drivetrain.phi_m", "load.phi", "load.w"),
     "RollerWaves": _of("robot", *_POSE, *_TORQUES),
+    "RollerWavesPair": _of("robot", *_POSE, *_TORQUES),
     "StaticPush": ("share", *_of("robot", *_POSE, *_TORQUES)),
     "MotionlessNoBumper": _MOTIONLESS,
     "MotionlessSpring": _MOTIONLESS,

@@ -70,7 +70,7 @@ def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler) -> None:
         ("DrivetrainStep", "robot(drivetrain_stiffness=721.1)"),
         ("StaticPush", "data(roller_presliding_stiffness=28903)"),
         ("LatchRelease", "data(bumper_latch_force=45.81)"),
-        ("RollerWaves", "data(roller_coulomb_torque=0.2002)"),
+        ("RollerWaves", "robot(data(roller_coulomb_torque=0.2002))"),
         ("MovingCollision", "dummy(contact(e=0.301))"),
         ("BumperDrop", "floor(e=0.301)"),
         ("BumperSweep", "g_0=0.00100002"),

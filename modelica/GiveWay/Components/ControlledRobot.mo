@@ -1,44 +1,23 @@
 within GiveWay.Components;
 model ControlledRobot "Robot with its servos and the sampled controller"
   import Modelica.Units.SI;
-  extends Interfaces.PartialRobot;
-  parameter Integer counts=data.drivetrain_encoder_counts "Encoder counts per turn";
+  extends Interfaces.PartialServoRobot;
   parameter SI.Torque resolution=data.drivetrain_torque_sensor_resolution "Of the torque sensors";
   parameter Integer tare_ticks=100 "Samples of the tare at the start; 0: none, and the robot moves along its plan from the start";
   replaceable model Plan = Sources.Standstill constrainedby Interfaces.PartialPlan "Kind of plan";
   Plan plan(t=controller.path_time) "Planned motion"
     annotation (Placement(transformation(extent={{-93,10},{-63,40}})));
-  constant SI.Time cycle=0.001 "Cycle of the bus";
   SampledController controller(robot=data, period=cycle, counts=counts, resolution=resolution, tare_ticks=tare_ticks, phi_start=tau_start/data.drivetrain_stiffness, w_start=w_start, tau_start=tau_start,
     plan_x={plan.x, plan.y}, plan_v={plan.v_x, plan.v_y}, plan_a={plan.a_x, plan.a_y}, plan_theta=plan.theta)
     "Estimator, detector and admittance"
     annotation (Placement(transformation(extent={{-93,-40},{-63,-10}})));
-  JointServo servo0(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
-    phi_start=-w_start[1]*cycle, w_start=w_start[1]) "Servo of wheel 0"
-    annotation (Placement(transformation(extent={{-50,45},{-20,75}})));
-  JointServo servo1(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
-    phi_start=-w_start[2]*cycle, w_start=w_start[2]) "Servo of wheel 1"
-    annotation (Placement(transformation(extent={{-50,-15},{-20,15}})));
-  JointServo servo2(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts,
-    phi_start=-w_start[3]*cycle, w_start=w_start[3]) "Servo of wheel 2"
-    annotation (Placement(transformation(extent={{-50,-75},{-20,-45}})));
 equation
-  servo0.phi_m = phi_m[1];
-  servo0.phi_ref = controller.phi_ref[1];
-  servo0.w_ref = controller.w_ref[1];
-  tau_m[1] = servo0.tau_m;
+  phi_ref = controller.phi_ref;
+  w_ref = controller.w_ref;
   controller.tau_s[1] = tau_s[1];
   controller.phi_m[1] = phi_m[1];
-  servo1.phi_m = phi_m[2];
-  servo1.phi_ref = controller.phi_ref[2];
-  servo1.w_ref = controller.w_ref[2];
-  tau_m[2] = servo1.tau_m;
   controller.tau_s[2] = tau_s[2];
   controller.phi_m[2] = phi_m[2];
-  servo2.phi_m = phi_m[3];
-  servo2.phi_ref = controller.phi_ref[3];
-  servo2.w_ref = controller.w_ref[3];
-  tau_m[3] = servo2.tau_m;
   controller.tau_s[3] = tau_s[3];
   controller.phi_m[3] = phi_m[3];
   annotation (

@@ -1,31 +1,19 @@
 within GiveWay.Examples;
-model RollerWaves "Wheel 0 moves in waves, the other two stand (4.2)"
+model RollerWaves "Wheel 0 moves in waves, the other two stand (4.2, Fig. 7a-c)"
   extends Modelica.Icons.Example;
-  parameter Parameters.Trikey data "The robot's numbers";
-  parameter Integer counts=data.drivetrain_encoder_counts "Encoder counts per turn";
-  Components.Robot robot(data=data) "Robot"
-    annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
+  Components.ServoRobot robot "Robot"
+    annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   Sources.WheelWave wave(f=0.5) "Of wheel 0"
-    annotation (Placement(transformation(extent={{-20,40},{20,80}})));
-  Components.JointServo servo0(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 0"
-    annotation (Placement(transformation(extent={{40,40},{80,80}})));
-  Components.JointServo servo1(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 1"
-    annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
-  Components.JointServo servo2(k_p=data.servo_kp, k_d=data.servo_kd, limit=data.drivetrain_torque_limit, cutoff=data.servo_derivative_cutoff, counts=counts) "Servo of wheel 2"
-    annotation (Placement(transformation(extent={{-20,-80},{20,-40}})));
+    annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
 equation
-  servo0.phi_ref = wave.phi;
-  servo0.w_ref = wave.w;
-  servo1.phi_ref = 0;
-  servo1.w_ref = 0;
-  servo2.phi_ref = 0;
-  servo2.w_ref = 0;
-  servo0.phi_m = robot.phi_m[1];
-  robot.tau_ref[1] = servo0.tau_m;
-  servo1.phi_m = robot.phi_m[2];
-  robot.tau_ref[2] = servo1.tau_m;
-  servo2.phi_m = robot.phi_m[3];
-  robot.tau_ref[3] = servo2.tau_m;
+  connect(wave.phi, robot.phi_wanted[1])
+    annotation (Line(points={{-40,5},{40,4}}, color={0,0,127}));
+  connect(wave.w, robot.w_wanted[1])
+    annotation (Line(points={{-40,-5},{40,-4}}, color={0,0,127}));
+  robot.phi_wanted[2] = 0;
+  robot.w_wanted[2] = 0;
+  robot.phi_wanted[3] = 0;
+  robot.w_wanted[3] = 0;
   annotation (
     experiment(StopTime=1.2, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
