@@ -173,6 +173,26 @@ def test_external_c_does_not_run(tmp_path: Path) -> None:
         model.simulate(t=(0.0, 1.0), dt=0.5)
 
 
+def test_an_external_object_is_refused(tmp_path: Path) -> None:
+    """The friction elements of Standard Library 4 look their torque up in such a table: `Motor` has its own friction.
+
+    Their switch between sliding and sticking, rewritten with a plain number for the torque, does run.
+    """
+    text = (
+        "class Table\n  extends ExternalObject;\n"
+        "  function constructor\n    input Real values[:, 2];\n    output Table table;\n"
+        '    external "C" table = make(values, size(values, 1));\n  end constructor;\n'
+        '  function destructor\n    input Table table;\n    external "C" release(table);\n  end destructor;\n'
+        "end Table;\n"
+        "function friction\n  input Table table;\n  input Real w;\n  output Real tau;\n"
+        '  external "C" tau = look_up(table, w);\nend friction;\n'
+        "model M\n  parameter Table table=Table([0, 1; 1, 2]);\n  Real w(start=1, fixed=true);\n"
+        "equation\n  der(w) = -friction(table, w);\nend M;\n"
+    )
+    with pytest.raises(Exception, match="unsupported type `Table`"):
+        compiled(tmp_path, text)
+
+
 def test_units_are_not_checked(tmp_path: Path) -> None:
     """`giveway_modelica.units` does."""
     text = 'model M\n  Real x(unit="m");\nequation\n  x = time;\nend M;\n'
