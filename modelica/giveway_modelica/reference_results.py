@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +37,7 @@ SIGNALS = {
     "MotionlessMagnetic": _MOTIONLESS,
     "MovingCollision": (*_of("robot", *_POSE[:2], *_TORQUES), *_of("dummy", *_DUMMY), "detection_time"),
     "CirclePushed": (*_of("robot", *_POSE[:2], *_TORQUES), "position.distance"),
+    "CircleRound": (*_of("robot", *_POSE[:2], "controller.mode"), "position.distance"),
     "BumperDrop": ("slider.s", "slider.bumper.c", "slider.bumper.f", "floor.nose.f"),
     "LatchRelease": (
         *_of("robot", *_POSE[:2]),
@@ -46,9 +48,8 @@ SIGNALS = {
 }
 
 
-def table(compiler: Compiler, example: str) -> str:
-    """The CSV of ``example``: time in s and the signals in their SI units."""
-    result = compiler.simulate(f"GiveWay.Examples.{example}")
+def table(result: Any, example: str) -> str:
+    """The CSV of ``result`` of ``example``: time in s and the signals in their SI units."""
     settings = next(found.experiment for found in classes() if found.name == f"GiveWay.Examples.{example}")
     assert settings is not None
     wanted = np.linspace(0.0, settings[0], ROWS)
@@ -66,5 +67,6 @@ def _shown(value: float) -> str:
 def texts(compiler: Compiler) -> Iterator[tuple[Path, str]]:
     """Path and content of every file."""
     for example, signals in SIGNALS.items():
-        yield FOLDER / example / f"{example}.csv", table(compiler, example)
+        result = compiler.simulate(f"GiveWay.Examples.{example}")
+        yield FOLDER / example / f"{example}.csv", table(result, example)
         yield FOLDER / example / "comparisonSignals.txt", "\n".join(("time", *signals)) + "\n"

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,11 +24,16 @@ def test_there_is_a_result_of_every_example() -> None:
     assert COMMAND in (FOLDER / "README.md").read_text()
 
 
-@pytest.mark.parametrize("example", SIGNALS)
-def test_the_reference_result_is_fresh(compiler: Compiler, example: str) -> None:
+def check_the_reference_result(result: Any, example: str) -> None:
+    """It is what is committed."""
     names, committed = read((FOLDER / example / f"{example}.csv").read_text())
     assert (FOLDER / example / "comparisonSignals.txt").read_text().split() == names == ["time", *SIGNALS[example]]
     assert committed.shape == (ROWS, len(names))
-    _, now = read(table(compiler, example))
+    _, now = read(table(result, example))
     scale = np.maximum(np.abs(committed).max(axis=0), 1e-6)
     assert (np.abs(now - committed) / scale).max() < CLOSE, f"run `{COMMAND}`"
+
+
+@pytest.mark.parametrize("example", [example for example in SIGNALS if example != "CircleRound"])
+def test_the_reference_result_is_fresh(compiler: Compiler, example: str) -> None:
+    check_the_reference_result(compiler.simulate(f"GiveWay.Examples.{example}"), example)

@@ -19,7 +19,9 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   parameter Integer blanking_ticks=300 "Samples after a hit in which no other can be noticed";
   parameter SI.Velocity settled_speed=0.005 "Speed below which the escape is over";
   parameter Integer settled_ticks=500 "Quiet samples after which it is";
-  parameter SI.Velocity finish_speed=0.01 "Slowest before the end of the escape";
+  parameter SI.Velocity finish_speed=0.01 "Slowest before the end of the escape, and of the way back";
+  parameter SI.Velocity rejoin_speed=0.1 "Largest on the way back to the plan";
+  parameter SI.Distance rejoin_distance=0.0002 "From the plan, within which the way back is over";
   parameter SI.Acceleration plan_acceleration=1.5 "Limit of the reference along the plan";
   parameter Real follow(unit="1/s")=2 "Gain towards the plan";
   parameter SI.Velocity follow_free=0.001 "Correction towards the plan that does not matter";
@@ -92,16 +94,21 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   discrete Integer hit_tick(start=-1, fixed=true) "Sample of the last one";
   discrete SI.Position hit_arm(start=0, fixed=true) "Lever arm of the last hit";
   discrete SI.Position hit_point[2](each start=0, each fixed=true) "Where on the outline the last hit was, base frame";
-  discrete Integer mode(start=1, fixed=true) "1 taring, 2 on the plan, 3 giving way, 4 settled";
+  discrete Integer mode(start=1, fixed=true) "1 taring, 2 on the plan, 3 giving way, 4 settled, 5 on the way back to the plan";
   discrete Integer quiet_ticks(start=0, fixed=true) "Quiet samples of the escape";
   discrete Boolean placed(start=false, fixed=true) "The reference is on its plan";
   discrete Boolean placing(start=false, fixed=true) "It is put there with this sample";
   discrete Boolean following(start=false, fixed=true) "It follows its plan in this sample";
   discrete Boolean escaping(start=false, fixed=true) "It gives way in this sample";
+  discrete Boolean returning(start=false, fixed=true) "It goes back to its plan in this sample";
+  discrete Boolean returned(start=false, fixed=true) "It is back there";
   discrete SI.Position goal[2](each start=0, each fixed=true) "What is left of the escape, world frame";
   discrete SI.Position goal_next[2](each start=0, each fixed=true) "The same after this sample";
   discrete SI.Velocity escape_step[4](each start=0, each fixed=true) "Velocities of a sample of the escape";
-  discrete SI.Position plan_error[2](each start=0, each fixed=true) "What will be left to the plan at its velocity";
+  discrete SI.Velocity plan_motion[2](each start=0, each fixed=true) "Velocity of the plan, whose clock may stand";
+  discrete SI.Position plan_error[2](each start=0, each fixed=true) "What will be left to the plan at that velocity";
+  discrete SI.Distance plan_distance(start=0, fixed=true) "Its length";
+  discrete SI.Velocity return_speed(start=0, fixed=true) "Wanted speed of the way back";
   discrete SI.Velocity v_wanted[2](each start=0, each fixed=true) "Wanted velocity towards the plan";
   discrete SI.Velocity v_change[2](each start=0, each fixed=true) "Change of velocity towards it";
   discrete Boolean free(start=false, fixed=true) "Neither correction nor limit matters: the acceleration is that of the plan";
@@ -170,24 +177,29 @@ equation
     hit_tick = if hit then tick else pre(hit_tick);
     // Mode.
     quiet_ticks = if hit or pre(mode) <> 3 then 0 else if speed < settled_speed and mean < leak then pre(quiet_ticks) + 1 else 0;
-    mode = if hit then 3 else if pre(mode) == 1 then (if tare_done or tare_ticks == 0 then 2 else 1) else if pre(mode) == 3 and quiet_ticks >= settled_ticks then 4 else pre(mode);
+    returned = pre(mode) == 5 and speed < settled_speed and sqrt((pre(plan_x[1]) - pre(x[1]))^2 + (pre(plan_x[2]) - pre(x[2]))^2) < rejoin_distance;
+    mode = if hit then 3 else if pre(mode) == 1 then (if tare_done or tare_ticks == 0 then 2 else 1) else if pre(mode) == 3 and quiet_ticks >= settled_ticks then 4 else if pre(mode) == 4 then 5 else if returned then 2 else pre(mode);
     noticed = hit or lasts and not (mode <> pre(mode));
     noticed_ticks = if hit then 0 else if pre(noticed) then min(blanking_ticks, pre(noticed_ticks) + 1) else 0;
     moment = if hit or left <= 0 or mode <> pre(mode) then 0 else moment_sum*left/length;
     p = if hit or left <= 0 or mode <> pre(mode) then zeros(2) else p_sum*left/length;
-    // Reference: on the plan, or giving way.
+    // Reference: on the plan, giving way, or on the way back.
     placing = mode == 2 and not pre(placed);
     placed = pre(placed) or placing;
     following = mode == 2 and not placing;
-    escaping = mode > 2;
+    escaping = mode == 3 or mode == 4;
+    returning = mode == 5;
     path_ticks = if mode == 2 then pre(path_ticks) + 1 else pre(path_ticks);
     goal = if hit then escape/length*Functions.rotate(p_sum, pre(theta)) else pre(goal_next);
     escape_step = Functions.escapeStep(goal, pre(v), rate, period, robot.admittance_speed_limit, robot.admittance_acceleration_limit, finish_speed);
-    plan_error = {pre(plan_x[1]) - pre(x[1]) - period/2*(pre(v[1]) + pre(plan_v[1])), pre(plan_x[2]) - pre(x[2]) - period/2*(pre(v[2]) + pre(plan_v[2]))};
-    v_wanted = Functions.limitLength({pre(plan_v[1]) + follow*plan_error[1], pre(plan_v[2]) + follow*plan_error[2]}, robot.admittance_speed_limit);
+    plan_motion = if returning then zeros(2) else {pre(plan_v[1]), pre(plan_v[2])};
+    plan_error = {pre(plan_x[1]) - pre(x[1]) - period/2*(pre(v[1]) + plan_motion[1]), pre(plan_x[2]) - pre(x[2]) - period/2*(pre(v[2]) + plan_motion[2])};
+    plan_distance = sqrt(plan_error[1]^2 + plan_error[2]^2);
+    return_speed = min(min(max(follow*plan_distance, finish_speed), Functions.brakingSpeed(plan_acceleration/2, period, plan_distance)), rejoin_speed);
+    v_wanted = if returning then return_speed/max(plan_distance, 1e-300)*plan_error else Functions.limitLength(plan_motion + follow*plan_error, robot.admittance_speed_limit);
     v_change = Functions.limitLength(v_wanted - pre(v), plan_acceleration*period);
-    free = follow*sqrt(plan_error[1]^2 + plan_error[2]^2) <= follow_free and sqrt((v_wanted[1] - pre(v[1]))^2 + (v_wanted[2] - pre(v[2]))^2) <= plan_acceleration*period;
-    v = if escaping then escape_step[1:2] else if following then pre(v) + v_change else if placing and tare_ticks == 0 then {pre(plan_v[1]), pre(plan_v[2])} else zeros(2);
+    free = follow*plan_distance <= follow_free and sqrt((v_wanted[1] - pre(v[1]))^2 + (v_wanted[2] - pre(v[2]))^2) <= plan_acceleration*period;
+    v = if escaping then escape_step[1:2] else if following or returning then pre(v) + v_change else if placing and tare_ticks == 0 then {pre(plan_v[1]), pre(plan_v[2])} else zeros(2);
     a = if following and free or placing and tare_ticks == 0 then {pre(plan_a[1]), pre(plan_a[2])} else if placing then zeros(2) else (v - pre(v))/period;
     way = if escaping then escape_step[3:4]*period else if placing then zeros(2) else period/2*(pre(v) + v);
     goal_next = if escaping then goal - way else zeros(2);
@@ -216,9 +228,9 @@ equation
 <li>The estimator compares them with T|<sub>0</sub> (38): at planned rest the tare, in motion friction and inertia of the planned motion, and takes the difference for the external wrench (40).</li>
 <li>The detector integrates the force vector and lets the integral leak by the error of the estimate: s = I + F T<sub>s</sub>, I = s max(0, 1 &minus; F<sub>0</sub>T<sub>s</sub>/|s|). Above the threshold it is a hit. The moment is integrated alike; moment over force is the lever arm, and with it
 the hit is located on the outline (41)-(46).</li>
-<li>The admittance moves the reference along the hit's direction by p/B = 0.5 m, (2) and (47), within limits. The heading is held (3).</li>
+<li>The admittance moves the reference along the hit's direction by p/B = 0.5 m, (2) and (47), within limits. The heading is held (3). When it has come to rest and nothing pushes for half a second, it goes back to the plan, whose clock stands still meanwhile.</li>
 <li>The reference becomes wheel angles and speeds, which reach the servos one sample later.</li>
 </ol>
-<p>Left out, since no example of the paper here needs it: sensor faults, stopping, live force instead of the frozen impulse, plans that turn, and the way back to the plan after an escape.</p>
+<p>Left out, since no example of the paper here needs it: sensor faults, stopping, live force instead of the frozen impulse, and plans that turn.</p>
 </html>"));
 end SampledController;
