@@ -62,13 +62,16 @@ class Compiler:
 
         self._library, self._scratch, self._package = library, scratch, package
         self._session = rumoca.Session(roots=[str(library)])
+        self._loaded: dict[str, Any] = {}
 
     def load(self, name: str, changes: str = "") -> Any:
         """The compiled class; ``changes`` is a modification such as "robot(counts=1000000)"."""
         import rumoca
 
         if not changes:
-            return self._session.load(self._package / "package.mo", model=name)
+            if name not in self._loaded:
+                self._loaded[name] = self._session.load(self._package / "package.mo", model=name)
+            return self._loaded[name]
         # rumoca only reads libraries whose names it meets in the file: hence the icon.
         text = f"model Variant\n  extends Modelica.Icons.Example;\n  extends {name}({changes});\nend Variant;\n"
         folder = self._scratch / re.sub(r"\W", "_", f"{name} {changes}")
