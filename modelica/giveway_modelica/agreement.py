@@ -22,7 +22,7 @@ SMOOTH = 1e-5
 # 0.015 N m for 0.5 ms, and the sensor's spring a ringing of 5e-4 N m.
 SAMPLED = 1e-4
 # Where counts do flip, as the instants at which gears begin to slide are located to some 1e-9 s, and then every count
-# comes at another time: the double FMU is as far from itself at another tolerance of its solver (found: 2.6e-4 and 1.3e-4).
+# comes at another time: the double FMU is 2.6e-4 and 1.3e-4 from itself if its solver runs at 1e-12 instead of 1e-11.
 FLIPPED = {("CircleRound", "wheel torques"): 5e-4, ("CircleRound", "detector's impulse"): 5e-4}
 # Around the FMUs as shipped. Their controller's single precision is 1e-7 of a turn, a sixth of a count: many flip. The
 # loop hands that on: the impulse of a hit is off by 5e-5 N s, the direction in which the robot gives way by 4e-5 rad.

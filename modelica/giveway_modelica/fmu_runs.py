@@ -33,7 +33,7 @@ Inputs = Callable[[float], Mapping[str, float]]
 
 COUNTS, RESOLUTION_NM = 1_000_000, 1e-9
 FINEST = f"counts={COUNTS}, resolution={RESOLUTION_NM}"  # the same as a modification of ControlledRobot
-# So tight that motor angles differ by less than 1e-5 of a count: then none flips within some seconds.
+# So tight that motor angles differ by less than 1e-5 of a count: then hardly any flips within seconds.
 TOLERANCE = 1e-11
 TIGHT: Mapping[str, Value] = {"solver.relative_tolerance": TOLERANCE, "solver.absolute_scale": 1e-5}
 TESTBED: Mapping[str, Value] = {
