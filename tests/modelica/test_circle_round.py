@@ -1,11 +1,13 @@
 """The whole round of 5.4, simulated once for all its tests: it takes as long as everything else together."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from giveway_modelica.agreement import SMOOTH, beside, heights, outside, signals
+from giveway_modelica.agreement import SMOOTH, beside, bound, heights, outside, signals
 from giveway_modelica.compiler import Compiler
+from giveway_modelica.fmu_runs import RUNS, Pair, in_double
 from giveway_modelica.tube import at
 from test_reference_results import check_the_reference_result
 
@@ -33,6 +35,15 @@ def test_push_escape_return_and_the_rest_of_the_round(whole_round: Any) -> None:
     assert set(whole_round["robot.controller.hit_tick"]) == {-1, 8067}
     quiet = heights(whole_round, reference, signals(EXAMPLE), 8.067)
     assert max(quiet.values()) < SMOOTH
+
+
+def test_another_way_back_leaves_the_tube(whole_round: Any) -> None:
+    run = RUNS[EXAMPLE]
+    assert isinstance(run, Pair)
+    with in_double():
+        other = replace(run, controller={**run.controller, "reference.rejoin_speed": 0.1001}).run(20.0)
+    height = heights(whole_round, other, signals(EXAMPLE))
+    assert height["reference"] > bound(EXAMPLE, "reference")
 
 
 def test_the_round_closes(whole_round: Any) -> None:
