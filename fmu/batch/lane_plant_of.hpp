@@ -49,7 +49,8 @@ public:
         last_event_ = L(-1.0);
         now_s_ = 0.0;
         last_step_s_ = 0.0;
-        inputs_are_new_ = false;
+        evaluated_ = false;
+        torques_are_new_ = false;
         // Elements that there are.
         const auto there = [](bool yes) { return L(yes ? 1.0 : 0.0); };
         const bool rope = p_.slider_present != 0 && p_.rope_attached != 0;
@@ -69,26 +70,28 @@ public:
         for (std::size_t i = 0; i < u_.motor_torque.size(); ++i) {
             u_.motor_torque[i] = L::load(rows + i * N);
         }
-        inputs_are_new_ = true;
+        torques_are_new_ = true;
     }
 
     void set_pushes(const double* rows) override {
-        u_.push_force_x = L::load(rows);
-        u_.push_force_y = L::load(rows + N);
-        u_.push_point_x = L::load(rows + 2 * N);
-        u_.push_point_y = L::load(rows + 3 * N);
-        inputs_are_new_ = true;
+        L* const pushes[] = {&u_.push_force_x, &u_.push_force_y, &u_.push_point_x, &u_.push_point_y};
+        for (L* const push : pushes) {
+            evaluated_ = evaluated_ && std::memcmp(push, rows, sizeof *push) == 0;
+            *push = L::load(rows);
+            rows += N;
+        }
     }
 
     [[gnu::flatten]] void advance(int count, double step_s) override {
         const double start_s = now_s_;
         for (int step = 1; step <= count; ++step) {
-            const Evaluation e = settled();
+            const Evaluation& e = settled();
             before_ = x_;
             rate_before_ = e.rate;
             indicators_before_ = plant::event_indicators(e, x_, m_, p_, d_);
             acted_ = u_;
             x_ = moved(x_, e.rate, L(step_s), u_);
+            evaluated_ = false;
             last_step_s_ = step_s;
             now_s_ = start_s + static_cast<double>(step) * step_s;
         }
@@ -133,32 +136,38 @@ private:
     }
 
     // Everything at the present state and inputs, after the mode changes that are due. A lane in which none is due keeps its bits.
-    Evaluation settled() {
-        Evaluation e = evaluate(x_, u_);
+    const Evaluation& settled() {
+        if (!evaluated_) {
+            present_ = evaluate(x_, u_);
+            evaluated_ = true;
+        }
         if (last_step_s_ > 0.0) {
-            if (change_modes(e)) {
-                e = evaluate(x_, u_);
+            if (change_modes()) {
+                present_ = evaluate(x_, u_);
             }
             last_step_s_ = 0.0;
         }
-        if (inputs_are_new_) {
+        if (torques_are_new_) {
             // As accept_inputs() of the plant.
             const auto before = m_.gear_direction;
             L changed(0.0);
             for (int i = 0; i < plant::wheel_count; ++i) {
-                plant::break_away(u_, m_, p_, i, e.sensed_torque[i]);
+                plant::break_away(u_, m_, p_, i, present_.sensed_torque[i]);
                 changed = changed + math::abs(m_.gear_direction[i] - before[i]);
             }
-            if (any_positive(changed)) {
-                e = evaluate(x_, u_);
+            if (any(math::less(L(0.0), changed))) {
+                present_ = evaluate(x_, u_);
+            } else {
+                plant::drive_motors(present_, x_, u_, m_, p_);
             }
-            inputs_are_new_ = false;
+            torques_are_new_ = false;
         }
-        return e;
+        return present_;
     }
 
-    // What the last step has led to. `end`: at its end, with the inputs of now. True if anything changed, and `end` has to be found again.
-    bool change_modes(Evaluation& end) {
+    // What the last step has led to. True if that changed the state or what decides, so that present_ has to be found again.
+    bool change_modes() {
+        Evaluation& end = present_;
         const L zero(0.0);
         const L one(1.0);
         // The gears with the torques that acted during the step.
@@ -179,9 +188,24 @@ private:
         if (!p_.has_ideal_latch()) {
             follow(plant::event_end_stop, one - m_.end_stop);
         }
-        // What decides; of several in one step the first.
+        // What decides.
         constexpr int deciding[] = {plant::event_gear, plant::event_gear + 1, plant::event_gear + 2, plant::event_end_stop};
         const int deciding_count = p_.has_ideal_latch() ? 4 : 3;
+        L lowest = zero;
+        for (int k = 0; k < deciding_count; ++k) {
+            lowest = math::min(lowest, g[deciding[k]]);
+        }
+        const auto decided = math::less(lowest, zero);
+        L changes = math::select(decided, one, zero);
+        for (const L& change : reported) {
+            changes = changes + math::abs(change);
+        }
+        const auto changed = math::less(zero, changes);
+        if (!any(changed)) {
+            end.net_torque = net_torque;
+            return false;
+        }
+        // Of several in one step the first.
         L share[4];
         L first = L(2.0);
         for (int k = 0; k < deciding_count; ++k) {
@@ -191,33 +215,25 @@ private:
             share[k] = math::select(math::less(g[event], zero), crossed, L(2.0));
             first = math::min(first, share[k]);
         }
-        const auto decided = math::less(first, L(1.5));
-        L changes = math::select(decided, one, zero);
-        for (const L& change : reported) {
-            changes = changes + math::abs(change);
-        }
-        if (!any_positive(changes)) {
-            end.net_torque = net_torque;
-            return false;
-        }
         const double before_s = now_s_ - last_step_s_;
         const L before_depth = indicators_before_[plant::event_contact];
         const L rise = math::max(g[plant::event_contact] - before_depth, L(1e-300));
         const L touched = L(before_s) + L(last_step_s_) * math::clamp((zero - before_depth) / rise, zero, one);
         const L met = math::select(math::less(zero, reported[plant::event_contact]), touched, first_contact_);
         first_contact_ = math::select(math::less(first_contact_, zero), met, first_contact_);
-        const auto changed = math::less(zero, changes);
         events_ = events_ + math::select(changed, one, zero);
         last_event_ = math::select(changed, math::select(decided, L(before_s) + L(last_step_s_) * first, L(now_s_)), last_event_);
         State as_it_is = x_; // nothing jumps where modes only report
         plant::planar_transition(end, as_it_is, m_, reported, p_, d_);
-        if (any_positive(math::select(decided, one, zero))) {
-            Events fired{};
-            for (int k = 0; k < deciding_count; ++k) {
-                fired[deciding[k]] = math::select(math::less(first, share[k]), zero, math::select(decided, L(-1.0), zero));
-            }
-            redo(first, decided, fired);
+        if (!any(decided)) {
+            end.net_torque = net_torque;
+            return false;
         }
+        Events fired{};
+        for (int k = 0; k < deciding_count; ++k) {
+            fired[deciding[k]] = math::select(math::less(first, share[k]), zero, math::select(decided, L(-1.0), zero));
+        }
+        redo(first, decided, fired);
         return true;
     }
 
@@ -238,16 +254,6 @@ private:
         }
     }
 
-    static bool any_positive(const L& lanes) {
-        double row[N];
-        lanes.store(row);
-        double largest = 0.0;
-        for (const double number : row) {
-            largest = largest < number ? number : largest;
-        }
-        return largest > 0.0;
-    }
-
     plant::Parameters<L> p_{};
     plant::Derived<L> d_{};
     State x_{};
@@ -257,7 +263,9 @@ private:
     plant::Outputs<L> outputs_{};
     L first_contact_, events_, last_event_;
     double now_s_ = 0.0;
-    bool inputs_are_new_ = false;
+    Evaluation present_{}; // at x_, u_ and m_, if
+    bool evaluated_ = false;
+    bool torques_are_new_ = false;
     // The last step: its length (0 once its mode changes were made), its beginning, and the inputs during it.
     double last_step_s_ = 0.0;
     State before_{}, rate_before_{};

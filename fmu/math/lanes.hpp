@@ -23,6 +23,7 @@ template <> struct LaneRegister<1> {
     static Numbers min(Numbers a, Numbers b) { return math::min(a, b); }
     static Numbers max(Numbers a, Numbers b) { return math::max(a, b); }
     static Numbers sqrt(Numbers a) { return math::sqrt(a); }
+    static bool any(Bits a) { return a != 0; }
 };
 #if defined(__AVX2__)
 template <> struct LaneRegister<4> {
@@ -31,6 +32,7 @@ template <> struct LaneRegister<4> {
     static Numbers min(Numbers a, Numbers b) { return _mm256_min_pd(a, b); } // a < b ? a : b, as for double
     static Numbers max(Numbers a, Numbers b) { return _mm256_max_pd(a, b); }
     static Numbers sqrt(Numbers a) { return _mm256_sqrt_pd(a); }
+    static bool any(Bits a) { return _mm256_movemask_pd(_mm256_castsi256_pd(std::bit_cast<__m256i>(a))) != 0; }
 };
 #endif
 #if defined(__AVX512F__)
@@ -41,6 +43,7 @@ template <> struct LaneRegister<8> {
     static Numbers min(Numbers a, Numbers b) { return _mm512_maskz_min_pd(0xFF, a, b); }
     static Numbers max(Numbers a, Numbers b) { return _mm512_maskz_max_pd(0xFF, a, b); }
     static Numbers sqrt(Numbers a) { return _mm512_maskz_sqrt_pd(0xFF, a); }
+    static bool any(Bits a) { return _mm512_movepi64_mask(std::bit_cast<__m512i>(a)) != 0; }
 };
 #endif
 
@@ -99,6 +102,11 @@ template <int N> Lanes<N> sqrt(Lanes<N> a) { return Lanes<N>::of(Lanes<N>::Regis
 template <int N> Lanes<N> abs(Lanes<N> a) {
     using L = Lanes<N>;
     return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<typename L::Bits>(a.value) & 0x7FFFFFFFFFFFFFFFLL));
+}
+
+template <int N> bool any(LaneMask<N> mask) { return Lanes<N>::Register::any(mask.bits); }
+template <int N, class Of> Lanes<N> where(LaneMask<N> needed, Of of) {
+    return any(needed) ? select(needed, of(), Lanes<N>(0.0)) : Lanes<N>(0.0);
 }
 
 template <int N> Lanes<N> acting(Lanes<N> mode, Lanes<N> depth) { return select(less(Lanes<N>(0.0), depth), mode, Lanes<N>(0.0)); }

@@ -49,4 +49,7 @@ template <class T> T square(T a) { return a * a; }
 // of depth = 0. Lanes, which have no root finding, also ask the depth.
 template <class T> T acting(T mode, T) { return mode; }
 
+// of(), which counts only where `needed`. Lanes leave it out where no design needs it, and have 0 where one does not.
+template <class M, class Of> auto where(M, Of of) { return of(); }
+
 } // namespace giveway::math

@@ -49,7 +49,8 @@ Contact<T> locate_disc(const Parameters<T>& p, const Derived<T>& d, const Nose<T
 template <class T> ContactForce<T> disc_force(const Parameters<T>& p, const Contact<T>& c, T engaged) {
     const T spring = math::acting(engaged, c.depth) * p.contact_stiffness * c.depth;
     const T normal_force = math::max(T(0.0), spring * (T(1.0) + p.contact_damping * c.depth_rate));
-    const T friction = p.contact_friction * normal_force * math::tanh(c.slip / p.contact_friction_speed);
+    const T friction = math::where(math::less(T(0.0), normal_force),
+                                   [&] { return p.contact_friction * normal_force * math::tanh(c.slip / p.contact_friction_speed); });
     const Vector2<T> force = T(-1.0) * normal_force * c.normal - friction * turned(c.normal);
     return {normal_force, force, cross(c.point, force), (normal_force - spring) * c.depth_rate + friction * c.slip, T(0.5) * spring * c.depth};
 }

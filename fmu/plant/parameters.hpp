@@ -6,7 +6,7 @@
 
 // Before any equation: `math::` names are looked up where a template is written, so every scalar type has to be known here.
 #include "../math/dual.hpp"
-#include "../math/lanes.hpp"
+#include "../math/lanes_elementary.hpp"
 
 namespace giveway::plant {
 

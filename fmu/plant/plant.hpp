@@ -15,6 +15,7 @@ template <class T, std::size_t N = state_count> struct Evaluation {
     std::array<T, N> rate;
     math::SinCos<T> heading;
     Vector2<T> velocity; // base axes
+    T push_power;
     std::array<T, wheel_count> wheel_speed, sensed_torque, net_torque, roller_force;
     Contact<T> contact;
     ContactForce<T> contact_force;
@@ -88,6 +89,18 @@ void slider_rates(Evaluation<T, N>& e, const std::array<T, N>& x, const Modes<T>
     }
 }
 
+// What the motors' torques act on: all of it, so new torques at the same state need no more than this.
+template <class T>
+void drive_motors(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p) {
+    T work = e.push_power;
+    for (int i = 0; i < wheel_count; ++i) {
+        e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
+        e.rate[motor_speed + i] = motor_acceleration(p, m.gear_direction[i], e.net_torque[i], x[motor_speed + i]);
+        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
+    }
+    e.rate[work_in] = work;
+}
+
 template <class T>
 Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
     Evaluation<T> e{};
@@ -98,7 +111,7 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
     const Vector2<T> push = to_base(e.heading, Vector2<T>{u.push_force_x, u.push_force_y});
     const Vector2<T> push_point{u.push_point_x, u.push_point_y};
     T loss = T(0.0);
-    T work = dot(push, e.velocity + omega * turned(push_point));
+    e.push_power = dot(push, e.velocity + omega * turned(push_point));
 
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
     for (int i = 0; i < wheel_count; ++i) {
@@ -108,7 +121,6 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
         const Planar3<T> row = wheel_row(p, i);
         e.wheel_speed[i] = dot(row, twist);
         e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
-        e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
         const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
         e.roller_force[i] = p.wheel_traction[i] * roller.force;
 
@@ -121,13 +133,12 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
 
         const T direction = m.gear_direction[i];
         e.rate[motor_angle + i] = x[motor_speed + i];
-        e.rate[motor_speed + i] = motor_acceleration(p, direction, e.net_torque[i], x[motor_speed + i]);
         e.rate[wheel_angle + i] = e.wheel_speed[i];
         e.rate[bristle + i] = roller.deflection_rate;
-        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
         loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
                p.drivetrain_damping * math::square(x[motor_speed + i] - e.wheel_speed[i]) + p.wheel_traction[i] * roller.dissipation;
     }
+    drive_motors(e, x, u, m, p);
 
     const auto touching = touch(p, d, detail::find_nose(x, p, d, e.heading), e.velocity, omega, x[compression], x[compression_rate],
                                 p.slider_present != 0 ? m.contact : T(0.0));
@@ -174,7 +185,6 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
     e.rate[base_vx] = acceleration_world.x;
     e.rate[base_vy] = acceleration_world.y;
     e.rate[base_omega] = acceleration.z;
-    e.rate[work_in] = work;
     e.rate[dissipated] = loss;
     e.rate[impulse_x] = force_world.x;
     e.rate[impulse_y] = force_world.y;
