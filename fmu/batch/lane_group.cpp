@@ -8,6 +8,7 @@
 #include <new>
 #include <tuple>
 
+#include "lane_noise.hpp"
 #include "lane_plant.hpp"
 #include "lane_step.hpp"
 #include "recorded_run.hpp"
@@ -91,13 +92,16 @@ private:
 // Designs side by side, from their start to the end of the last of them.
 class Group {
 public:
-    Group(LanePlant& plant, std::array<SampleRoom, widest>& rooms, std::unique_ptr<Lane>* lanes, std::size_t count)
-        : plant_(plant), rooms_(rooms), width_(static_cast<std::size_t>(plant.lanes())), lanes_(lanes), count_(count) {}
+    Group(LanePlant& plant, LaneNoise noise, std::array<SampleRoom, widest>& rooms, std::unique_ptr<Lane>* lanes, std::size_t count)
+        : plant_(plant), noise_(noise), rooms_(rooms), width_(static_cast<std::size_t>(plant.lanes())), lanes_(lanes), count_(count) {}
 
     void go() {
         std::array<LaneStart, widest> starts;
         for (std::size_t i = 0; i < width_; ++i) {
-            starts[i] = lanes_[i < count_ ? i : 0]->start(); // spare lanes repeat the first design
+            Lane& lane = *lanes_[i < count_ ? i : 0]; // spare lanes repeat the first design
+            starts[i] = lane.start();
+            seeds_[i] = lane.drives().sensors().seed;
+            noisy_ = noisy_ || lane.drives().sensors().torque_noise_nm > 0.0;
         }
         plant_.start(starts.data());
         each([&](Lane& lane, std::size_t i) {
@@ -107,9 +111,9 @@ public:
             }
             lane.run().result().method = GWB_FIXED_STEP;
             lane.run().result().plant_step_s = tick_s / lane.steps_per_tick();
-            sample(lane, i);
-            write_outputs(lane, i);
         });
+        sample();
+        each([&](Lane& lane, std::size_t i) { write_outputs(lane, i); });
         const std::uint32_t steps = lanes_[0]->run().spec().step_count;
         const int ticks = lanes_[0]->ticks_per_step();
         for (std::uint32_t k = 0; k <= steps && running_ > 0; ++k) {
@@ -167,7 +171,7 @@ private:
                 plant_.observe();
             }
             if (bus) {
-                each([&](Lane& lane, std::size_t i) { sample(lane, i); });
+                sample();
             }
         }
         each([&](Lane& lane, std::size_t i) {
@@ -201,10 +205,19 @@ private:
 
     [[nodiscard]] std::array<double, 3> motor_angles(std::size_t i) const { return take<std::array<double, 3>>(plant_.state() + plant::motor_angle * width_, i); }
 
-    void sample(Lane& lane, std::size_t i) {
-        using Outputs = plant::Outputs<double>;
-        const double* torque = plant_.outputs() + offsetof(Outputs, wheel_torque) / sizeof(double) * width_;
-        testbed::write_sensors(lane.variables(), lane.drives().sample(motor_angles(i), take<std::array<double, 3>>(torque, i)));
+    // What the sensors measure in this bus cycle.
+    void sample() {
+        std::array<double, testbed::Deviates{}.size() * widest> drawn{};
+        if (noisy_) {
+            noise_(seeds_.data(), static_cast<int>(testbed::Deviates{}.size()), cycle_, drawn.data());
+        }
+        ++cycle_;
+        each([&](Lane& lane, std::size_t i) {
+            using Outputs = plant::Outputs<double>;
+            const double* torque = plant_.outputs() + offsetof(Outputs, wheel_torque) / sizeof(double) * width_;
+            testbed::write_sensors(lane.variables(), lane.drives().sample(motor_angles(i), take<std::array<double, 3>>(torque, i),
+                                                                          take<testbed::Deviates>(drawn.data(), i)));
+        });
     }
 
     void write_outputs(Lane& lane, std::size_t i) {
@@ -220,23 +233,32 @@ private:
     }
 
     LanePlant& plant_;
+    LaneNoise noise_;
     std::array<SampleRoom, widest>& rooms_;
     std::size_t width_;
     std::unique_ptr<Lane>* lanes_;
     std::size_t count_;
     std::size_t running_ = count_;
     std::int64_t tick_ = 0;
+    std::int64_t cycle_ = 0; // of the bus
+    std::array<std::uint64_t, widest> seeds_{};
+    bool noisy_ = false;
     std::array<std::array<double, 3>, widest> motor_torque_{};
 };
 
-LanePlant* new_lane_plant(int lanes) {
+// What is compiled for a width.
+struct Width {
+    LanePlant* (*new_plant)();
+    LaneNoise noise;
+};
+Width width_of(int lanes) {
     switch (lanes) {
     case 8:
-        return new_lane_plant_8();
+        return {new_lane_plant_8, lane_noise_8};
     case 4:
-        return new_lane_plant_4();
+        return {new_lane_plant_4, lane_noise_4};
     default:
-        return new_lane_plant_1();
+        return {new_lane_plant_1, lane_noise_1};
     }
 }
 
@@ -250,8 +272,9 @@ int widest_lanes() {
 }
 
 void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep& how, Monitor& monitor, gwb_result_t* results, RunDone& listener) {
+    const Width width = width_of(how.lanes);
     const std::unique_ptr<testbed::PlantSystem> system(new (std::nothrow) testbed::PlantSystem);
-    const std::unique_ptr<LanePlant> plant(new_lane_plant(how.lanes));
+    const std::unique_ptr<LanePlant> plant(width.new_plant());
     const std::unique_ptr<std::unique_ptr<Lane>[]> lanes(new (std::nothrow) std::unique_ptr<Lane>[count]);
     const bool memory = system != nullptr && plant != nullptr && lanes != nullptr;
     std::size_t fitting = 0;
@@ -278,7 +301,7 @@ void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep&
         while (last < fitting && last - first < static_cast<std::size_t>(how.lanes) && lanes[last]->key() == lanes[first]->key()) {
             ++last;
         }
-        Group(*plant, rooms, &lanes[first], last - first).go();
+        Group(*plant, width.noise, rooms, &lanes[first], last - first).go();
         for (; first < last; ++first) {
             lanes[first].reset();
             listener.done();

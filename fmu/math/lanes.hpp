@@ -24,6 +24,10 @@ template <> struct LaneRegister<1> {
     static Numbers max(Numbers a, Numbers b) { return math::max(a, b); }
     static Numbers sqrt(Numbers a) { return math::sqrt(a); }
     static bool any(Bits a) { return a != 0; }
+    // Of the low halves; so for the others.
+    static Bits multiply_words(Bits a, Bits b) {
+        return static_cast<Bits>((static_cast<std::uint64_t>(a) & 0xFFFFFFFFU) * (static_cast<std::uint64_t>(b) & 0xFFFFFFFFU));
+    }
 };
 #if defined(__AVX2__)
 template <> struct LaneRegister<4> {
@@ -33,6 +37,7 @@ template <> struct LaneRegister<4> {
     static Numbers max(Numbers a, Numbers b) { return _mm256_max_pd(a, b); }
     static Numbers sqrt(Numbers a) { return _mm256_sqrt_pd(a); }
     static bool any(Bits a) { return _mm256_movemask_pd(_mm256_castsi256_pd(std::bit_cast<__m256i>(a))) != 0; }
+    static Bits multiply_words(Bits a, Bits b) { return std::bit_cast<Bits>(_mm256_mul_epu32(std::bit_cast<__m256i>(a), std::bit_cast<__m256i>(b))); }
 };
 #endif
 #if defined(__AVX512F__)
@@ -44,6 +49,9 @@ template <> struct LaneRegister<8> {
     static Numbers max(Numbers a, Numbers b) { return _mm512_maskz_max_pd(0xFF, a, b); }
     static Numbers sqrt(Numbers a) { return _mm512_maskz_sqrt_pd(0xFF, a); }
     static bool any(Bits a) { return _mm512_movepi64_mask(std::bit_cast<__m512i>(a)) != 0; }
+    static Bits multiply_words(Bits a, Bits b) {
+        return std::bit_cast<Bits>(_mm512_maskz_mul_epu32(0xFF, std::bit_cast<__m512i>(a), std::bit_cast<__m512i>(b)));
+    }
 };
 #endif
 
@@ -122,6 +130,14 @@ template <int N> Lanes<N> exp2_integer(Lanes<N> k) {
     using L = Lanes<N>;
     const L sum = k + L(6755399441055744.0 + 1023.0);
     return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<typename L::Bits>(sum.value) << 52));
+}
+
+// As for double: the exponent's bits become the last ones of a number of 2^52.
+template <int N> Split<Lanes<N>> split(Lanes<N> a) {
+    using L = Lanes<N>;
+    const auto bits = std::bit_cast<typename L::Bits>(a.value);
+    const L exponent = L::of(std::bit_cast<typename L::Numbers>((bits >> 52) | 0x4330000000000000LL)) - L(0x1p52 + 1023.0);
+    return {exponent, L::of(std::bit_cast<typename L::Numbers>((bits & 0x000FFFFFFFFFFFFFLL) | 0x3FF0000000000000LL))};
 }
 
 } // namespace giveway::math

@@ -22,32 +22,37 @@ inline std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> coun
 }
 
 // Natural logarithm of a normal number in (0, 1e300]: a = 2^k m, ln m by the atanh series.
-inline double log(double a) {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(a);
-    auto exponent = static_cast<std::int64_t>(bits >> 52U) - 1023;
-    double m = std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL);
-    if (m > 1.4142135623730951) {
-        m *= 0.5;
-        ++exponent;
-    }
-    const double s = (m - 1.0) / (m + 1.0); // |s| < 0.1716
-    const double s2 = s * s;
+template <class T> T log(T a) {
+    const Split<T> parts = split(a);
+    const auto high = less(T(1.4142135623730951), parts.mantissa);
+    const T m = select(high, T(0.5) * parts.mantissa, parts.mantissa);
+    const T k = parts.exponent + select(high, T(1.0), T(0.0));
+    const T s = (m - T(1.0)) / (m + T(1.0)); // |s| < 0.1716
+    const T s2 = s * s;
     // 1/n as constants: the loop would divide.
     constexpr double inverse[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0};
-    double p = 1.0 / 21.0;
+    T p(1.0 / 21.0);
     for (const double coefficient : inverse) {
-        p = p * s2 + coefficient;
+        p = p * s2 + T(coefficient);
     }
-    const auto k = static_cast<double>(exponent);
-    return k * detail::ln2_high + (k * detail::ln2_low + 2.0 * s * p);
+    return k * T(detail::ln2_high) + (k * T(detail::ln2_low) + T(2.0) * s * p);
 }
+
+namespace detail {
+
+inline constexpr std::uint32_t noise_key = 0x67697665U;
+
+// A standard normal deviate of two numbers in (0, 1).
+template <class T> T box_muller(T u1, T u2) { return sqrt(T(-2.0) * log(u1)) * sincos(T(6.283185307179586) * u2).cos; }
+
+} // namespace detail
 
 // Standard normal deviate.
 inline double normal(std::uint32_t seed, std::uint32_t channel, std::uint64_t tick) {
-    const auto words = philox4x32({static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32U), channel, 0U}, {seed, 0x67697665U});
+    const auto words = philox4x32({static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32U), channel, 0U}, {seed, detail::noise_key});
     const double u1 = (static_cast<double>(words[0]) + 0.5) * 0x1p-32; // in (0, 1)
     const double u2 = (static_cast<double>(words[1]) + 0.5) * 0x1p-32;
-    return sqrt(-2.0 * log(u1)) * sincos(6.283185307179586 * u2).cos;
+    return detail::box_muller(u1, u2);
 }
 
 } // namespace giveway::math

@@ -30,6 +30,15 @@ inline double exp2_integer(double k) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(static_cast<std::int64_t>(k) + 1023) << 52U);
 }
 
+// a = 2^exponent * mantissa with the mantissa in [1, 2), of a normal number above 0.
+template <class T> struct Split {
+    T exponent, mantissa;
+};
+inline Split<double> split(double a) {
+    const auto bits = std::bit_cast<std::uint64_t>(a);
+    return {static_cast<double>(static_cast<std::int64_t>(bits >> 52U) - 1023), std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL)};
+}
+
 // What a constant that others are divided by is kept as: lanes keep its inverse, which costs a fraction.
 template <class T> struct DivisorOf {
     using Type = T;

@@ -62,14 +62,18 @@ public:
             for (std::size_t i = 0; i < 3; ++i) {
                 earlier[i] -= wheel_speed_radps[i] * bus_period_s * static_cast<double>(cycles_ago);
             }
-            return take_sample(earlier, torque_nm, -cycles_ago);
+            return take_sample(earlier, torque_nm, -cycles_ago, deviates(options_.sensors, -cycles_ago));
         });
         return error;
     }
 
     // Once per bus cycle, when its time is reached: samples the sensors and returns what the controller gets now.
     SensorSample sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm) {
-        const SensorSample now = take_sample(motor_angle_rad, torque_nm, cycle_);
+        return sample(motor_angle_rad, torque_nm, deviates(options_.sensors, cycle_));
+    }
+    // With deviates() of the coming cycle that were drawn elsewhere.
+    SensorSample sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm, const Deviates& drawn) {
+        const SensorSample now = take_sample(motor_angle_rad, torque_nm, cycle_, drawn);
         ++cycle_;
         return samples_.exchange(now);
     }
@@ -98,13 +102,16 @@ public:
         return torque;
     }
 
+    [[nodiscard]] const SensorOptions& sensors() const { return options_.sensors; }
+
 private:
     static constexpr std::uint32_t stale_ticks = 20; // 10 ms without a command: hold
 
-    [[nodiscard]] SensorSample take_sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm, std::int64_t cycle) const {
+    [[nodiscard]] SensorSample take_sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm, std::int64_t cycle,
+                                           const Deviates& drawn) const {
         SensorSample sample{};
         for (std::size_t i = 0; i < 3; ++i) {
-            sample.torque_nm[i] = measured_torque(options_.sensors, static_cast<std::uint32_t>(i), cycle, torque_nm[i]);
+            sample.torque_nm[i] = measured_torque(options_.sensors, i, torque_nm[i], drawn[i]);
             sample.encoder_counts[i] = encoder_count(options_.sensors, motor_angle_rad[i]);
         }
         sample.counter = static_cast<std::int32_t>(static_cast<std::uint32_t>(cycle + max_delay_cycles));

@@ -30,10 +30,20 @@ inline std::int32_t encoder_count(const SensorOptions& options, double angle_rad
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
 }
 
-inline double measured_torque(const SensorOptions& options, std::uint32_t wheel, std::int64_t cycle, double torque_nm) {
+// What the noise of a sample is made of, one standard normal deviate per torque sensor.
+using Deviates = std::array<double, 3>;
+inline Deviates deviates(const SensorOptions& options, std::int64_t cycle) {
+    Deviates found{};
+    for (std::uint32_t wheel = 0; options.torque_noise_nm > 0.0 && wheel < 3U; ++wheel) {
+        found[wheel] = math::normal(options.seed, wheel, static_cast<std::uint64_t>(cycle));
+    }
+    return found;
+}
+
+inline double measured_torque(const SensorOptions& options, std::size_t wheel, double torque_nm, double deviate) {
     double value = torque_nm + options.torque_offset_nm[wheel];
     if (options.torque_noise_nm > 0.0) {
-        value += options.torque_noise_nm * math::normal(options.seed, wheel, static_cast<std::uint64_t>(cycle));
+        value += options.torque_noise_nm * deviate;
     }
     if (options.torque_resolution_nm > 0.0) {
         value = options.torque_resolution_nm * math::round(value / options.torque_resolution_nm);

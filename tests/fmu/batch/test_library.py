@@ -45,7 +45,7 @@ def test_an_ordinary_library_would_be_noticed() -> None:
 
 def shared_with_other_files(lanes: int) -> set[str]:
     """Functions in the object of the lanes that the linker might take for other files, too."""
-    (found,) = BUILD.glob(f"fmu/batch/CMakeFiles/giveway_batch.dir/lane_plant_{lanes}.cpp.o")
+    (found,) = BUILD.glob(f"fmu/batch/CMakeFiles/giveway_batch.dir/lanes_{lanes}.cpp.o")
     listing = subprocess.run(["nm", "--demangle", found], check=True, capture_output=True, text=True)
     symbols = [line.split(maxsplit=2) for line in listing.stdout.splitlines() if not line.startswith(" ")]
     weak = {name for _, kind, name in symbols if kind in "WV"}

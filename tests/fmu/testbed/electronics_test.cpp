@@ -35,14 +35,14 @@ TEST(Sensors, EncoderCountsAreTheFloorAndWrap) {
 }
 
 TEST(Sensors, TorqueIsOffsetQuantisedAndSaturated) {
-    SensorOptions o = ideal_sensors();
-    EXPECT_EQ(measured_torque(o, 0U, 0, 1.234), 1.234);
+    SensorOptions o = ideal_sensors(); // no noise: a deviate counts for nothing
+    EXPECT_EQ(measured_torque(o, 0U, 1.234, 9.0), 1.234);
     o.torque_offset_nm = {0.0, 0.5, 0.0};
-    EXPECT_EQ(measured_torque(o, 1U, 0, 1.0), 1.5);
+    EXPECT_EQ(measured_torque(o, 1U, 1.0, 9.0), 1.5);
     o.torque_resolution_nm = 0.25;
-    EXPECT_EQ(measured_torque(o, 0U, 0, 1.3), 1.25);
-    EXPECT_EQ(measured_torque(o, 0U, 0, 1000.0), 28.0);
-    EXPECT_EQ(measured_torque(o, 0U, 0, -1000.0), -28.0);
+    EXPECT_EQ(measured_torque(o, 0U, 1.3, 9.0), 1.25);
+    EXPECT_EQ(measured_torque(o, 0U, 1000.0, 9.0), 28.0);
+    EXPECT_EQ(measured_torque(o, 0U, -1000.0, 9.0), -28.0);
 }
 
 TEST(Sensors, TorqueNoiseHasItsStandardDeviation) {
@@ -51,7 +51,7 @@ TEST(Sensors, TorqueNoiseHasItsStandardDeviation) {
     constexpr int count = 100'000;
     double square = 0.0;
     for (int cycle = 0; cycle < count; ++cycle) {
-        square += std::pow(measured_torque(o, 2U, cycle, 0.0), 2);
+        square += std::pow(measured_torque(o, 2U, 0.0, deviates(o, cycle)[2]), 2);
     }
     EXPECT_NEAR(std::sqrt(square / count), 0.03, 0.03 * 5.0 / std::sqrt(2.0 * count)); // five standard errors
 }
