@@ -2,11 +2,12 @@
 // Included by one file per width.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 
 #include "convert.hpp"
-#include "elementary.hpp"
 #include "lanes_checks.hpp"
+#include "lanes_noise.hpp"
 #include "random_cases.hpp"
 
 namespace giveway::lanes_checks {
@@ -52,11 +53,20 @@ template <int N> void operations(Report report) {
         expect("round", math::round(x), [](double p, double) { return math::round(p); });
         expect("sign", math::sign(x), [](double p, double) { return math::sign(p); });
         expect("select", math::select(math::less(x, y), x, y), [](double p, double q) { return p < q ? p : q; });
-        expect("exp", math::exp(x), [](double p, double) { return math::exp(p); });
+        // Lanes have an exp and a tanh of their own, the same ones in every width.
+        expect("exp", math::exp(x), [](double p, double) { return math::exp(math::Lanes<1>(p)).value; });
         expect("expm1", math::expm1(x), [](double p, double) { return math::expm1(p); });
-        expect("tanh", math::tanh(x), [](double p, double) { return math::tanh(p); });
+        expect("tanh", math::tanh(x), [](double p, double) { return math::tanh(math::Lanes<1>(p)).value; });
         expect("sin", math::sincos(x).sin, [](double p, double) { return math::sincos(p).sin; });
         expect("cos", math::sincos(x).cos, [](double p, double) { return math::sincos(p).cos; });
+        const L positive = math::max(math::abs(x), L(1e-300));
+        expect("log", math::log(positive), [](double p, double) { return math::log(math::max(math::abs(p), 1e-300)); });
+        expect("where", math::where(math::less(x, y), [&] { return x / y; }), [](double p, double q) { return p < q ? p / q : 0.0; });
+        bool some = false;
+        for (int i = 0; i < N; ++i) {
+            some = some || a[i] < b[i];
+        }
+        compare(report, "any", any(math::less(x, y)) ? 1.0 : 0.0, some ? 1.0 : 0.0, 0);
         expect("constant", L(-0.0), [](double, double) { return -0.0; });
     }
     // A one-sided element acts where it exists and is pressed; for double its mode decides.
@@ -64,6 +74,42 @@ template <int N> void operations(Report report) {
         for (const double mode : {0.0, 1.0}) {
             compare(report, "acting, lanes", Rows<N>(math::acting(L(mode), L(depth))).value[N - 1], depth > 0.0 ? mode : 0.0, N - 1);
             compare(report, "acting, double", math::acting(mode, depth), mode, 0);
+        }
+    }
+}
+
+// How far exp and tanh of lanes are from libm's: relative errors, for arguments over their range and close to 0.
+template <int N> void own_functions(Report report) {
+    using L = math::Lanes<N>;
+    constexpr double bound = 1e-11; // lanes_elementary.hpp: 3e-12, and tanh takes a difference of two of them
+    constexpr int count = 199'999; // odd: no argument is 0, of which tanh keeps no sign
+    for (int i = 0; i <= count; ++i) {
+        const double wide = -700.0 + 1400.0 * (static_cast<double>(i) / count);
+        const double near = 0.06 * wide;
+        compare_close(report, "exp", Rows<N>(math::exp(L(wide))).value[N - 1], std::exp(wide), bound);
+        compare_close(report, "exp", Rows<N>(math::exp(L(near))).value[N - 1], std::exp(near), bound);
+        compare_close(report, "tanh", Rows<N>(math::tanh(L(near))).value[N - 1], std::tanh(near), bound);
+        compare(report, "tanh is odd", Rows<N>(math::tanh(L(-near))).value[N - 1], -Rows<N>(math::tanh(L(near))).value[N - 1], N - 1);
+    }
+    compare(report, "exp(0)", Rows<N>(math::exp(L(0.0))).value[0], 1.0, 0);
+    compare(report, "tanh(0)", Rows<N>(math::tanh(L(0.0))).value[0], 0.0, 0);
+    compare(report, "tanh saturates", Rows<N>(math::tanh(L(20.0))).value[0], 1.0, 0);
+    compare(report, "tanh saturates", Rows<N>(math::tanh(L(-1e300))).value[0], -1.0, 0);
+}
+
+// The noise of a design, whatever its lane and its neighbours.
+template <int N> void noise_in_lanes(Report report) {
+    std::int64_t seeds[N];
+    for (unsigned index = 0; index < 1000U; ++index) {
+        for (unsigned i = 0; i < N; ++i) {
+            seeds[i] = (index * 2654435761U + i * 977U) & 0xFFFFFFFFU;
+        }
+        typename math::Lanes<N>::Bits key;
+        std::memcpy(&key, seeds, sizeof key);
+        const std::uint64_t tick = index % 5U == 0U ? (1ULL << 32U) + index : index;
+        const Rows<N> found(math::normal<N>(key, index % 3U, tick));
+        for (int i = 0; i < N; ++i) {
+            compare(report, "noise", found.value[i], math::normal(static_cast<std::uint32_t>(seeds[i]), index % 3U, tick), i);
         }
     }
 }

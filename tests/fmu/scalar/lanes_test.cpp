@@ -20,6 +20,7 @@ int wrong = 0;
 
 TEST(Lanes, One) {
     operations_1(fail);
+    functions_1(fail);
     plant_1(fail);
 }
 
@@ -28,6 +29,7 @@ TEST(Lanes, Four) {
         GTEST_SKIP() << "this processor has no AVX2";
     }
     operations_4(fail);
+    functions_4(fail);
     plant_4(fail);
 }
 
@@ -36,6 +38,7 @@ TEST(Lanes, Eight) {
         GTEST_SKIP() << "this processor has no AVX-512";
     }
     operations_8(fail);
+    functions_8(fail);
     plant_8(fail);
 }
 
@@ -46,4 +49,8 @@ TEST(Lanes, ADifferenceInTheLastDigitIsSeen) {
     compare(count, "the same", 0.1, 0.1, 0);
     compare(count, "next to it", 0.1, 0.10000000000000002, 0);
     EXPECT_EQ(wrong, 1);
+    compare_close(count, "close", 1.0, 1.0 + 0.9e-11, 1e-11);
+    compare_close(count, "not close", 1.0, 1.0 + 1.1e-11, 1e-11);
+    compare_close(count, "no number", NAN, 1.0, 1e-11);
+    EXPECT_EQ(wrong, 3);
 }
