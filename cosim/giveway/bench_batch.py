@@ -11,9 +11,10 @@ import dataclasses
 import functools
 import json
 import os
+import resource
 import subprocess
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,6 +41,7 @@ __all__ = [
     "accuracy",
     "measure",
     "scale",
+    "scale_name",
 ]
 
 SIMULATED_S = 0.6
@@ -52,7 +54,7 @@ _ECOS = {"real": "real", "integer": "int", "boolean": "bool"}
 ACCURACY_RUNS = 2000
 ACCURACY_SEED = 1
 ACCURACY_HEADER = ("of all designs", "")
-SCALE_HEADER = ("designs", "runs/s", "s")
+SCALE_HEADER = ("designs", "runs/s", "s", "memory so far (MB)")
 SCALE_COUNTS = (1000, 10_000, 100_000, 1_000_000)
 SCALE_DESIGNS, SCALE_PORTION = 1000, 10_000
 SCALE_LONGEST_S = 1500.0
@@ -226,25 +228,37 @@ def _largest(a: xarray.Dataset, b: xarray.Dataset, name: str) -> float:
     return float(np.nanmax(np.abs(a[name].values - b[name].values)))
 
 
-def scale(counts: Sequence[int]) -> list[tuple[str, ...]]:
+def scale_name(count: int) -> str:
+    """What `scale` calls a count when it reports its progress."""
+    return f"{count:,} designs"
+
+
+def scale(counts: Sequence[int], progress: Callable[[str, float], None] | None = None) -> Iterator[tuple[str, ...]]:
     """Rows of `SCALE_HEADER`: random collisions, as many as said, over fixed steps on all processors.
 
-    The designs repeat after `SCALE_DESIGNS`, and are handed over in portions of `SCALE_PORTION`; every one is computed.
-    A count that would take longer than `SCALE_LONGEST_S` by the rate before it is left out.
+    A row comes as soon as it is known. The designs repeat after `SCALE_DESIGNS`, and are handed over in portions of
+    `SCALE_PORTION`, so memory does not grow with them; every one is computed. A count that would take longer than
+    `SCALE_LONGEST_S` by the rate before it is left out.
+    ``progress`` gets a count's name and the share that is done. Ctrl-C ends it at once with KeyboardInterrupt.
     """
-    rows: list[tuple[str, ...]] = []
     designs = random_collisions(SCALE_DESIGNS, ACCURACY_SEED)
     rate = 0.0
     for count in counts:
         if rate > 0.0 and count / rate > SCALE_LONGEST_S:
-            rows.append((f"{count:,}", "left out", f"{count / rate:.0f} expected"))
+            yield (f"{count:,}", "left out", f"{count / rate:.0f} expected", "")
             continue
         portion = min(count, SCALE_PORTION)
         prepared = batch.Prepared([designs[index % SCALE_DESIGNS] for index in range(portion)])
         started = time.perf_counter()
-        for _ in range(count // portion):
-            prepared.run(method="fixed-step")
+        for before in range(0, count, portion):
+
+            def report(done: int, _runs: int, before: int = before, count: int = count) -> None:
+                if progress is not None:
+                    progress(scale_name(count), (before + done) / count)
+
+            if prepared.run(method="fixed-step", progress=report).attrs["interrupted"]:
+                raise KeyboardInterrupt
         elapsed = time.perf_counter() - started
         rate = count / elapsed
-        rows.append((f"{count:,}", f"{rate:.0f}", f"{elapsed:.1f}"))
-    return rows
+        memory_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+        yield (f"{count:,}", f"{rate:.0f}", f"{elapsed:.1f}", f"{memory_mb:.0f}")

@@ -321,7 +321,15 @@ def bench(
     whole("--repeats", repeats, 1, 100)
     if scale:
         title = "Random collisions of 0.6 s over fixed steps, all threads"
-        print_columns(title, bench_batch.SCALE_HEADER, bench_batch.scale(bench_batch.SCALE_COUNTS))
+        counts, found_rows = bench_batch.SCALE_COUNTS, []
+        try:
+            with _shares([bench_batch.scale_name(count) for count in counts]) as progress:
+                for row in bench_batch.scale(counts, progress):
+                    found_rows.append(row)
+        except KeyboardInterrupt:
+            raise typer.Abort from None
+        finally:
+            print_columns(title, bench_batch.SCALE_HEADER, found_rows)
         return
     rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"

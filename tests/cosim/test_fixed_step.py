@@ -167,8 +167,27 @@ def test_the_benchmark_counts_what_differs() -> None:
     assert found["designs above 0.5 %"] == "0"
     assert int(found["detected on another tick"].split()[0]) == len(lines)
     assert sum(int(number) for name, number in rows if name.startswith("steps of ")) == 12
-    ((count, *_),) = bench_batch.scale((20,))
+
+
+def test_the_benchmark_of_scale_reports_its_progress_and_ends_by_ctrl_c() -> None:
+    shares: list[float] = []
+
+    def note(name: str, share: float) -> None:
+        assert name == "20 designs"
+        shares.append(share)
+
+    ((count, *_),) = bench_batch.scale((20,), note)
     assert count == "20"
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+    def press(_name: str, share: float) -> None:
+        if share == 1.0:
+            raise KeyboardInterrupt
+
+    rows = bench_batch.scale((20, 30), press)
+    with pytest.raises(KeyboardInterrupt):
+        next(rows)
 
 
 # What is done event-exact instead
