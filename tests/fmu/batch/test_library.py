@@ -49,7 +49,7 @@ def shared_with_other_files(lanes: int) -> set[str]:
     listing = subprocess.run(["nm", "--demangle", found], check=True, capture_output=True, text=True)
     symbols = [line.split(maxsplit=2) for line in listing.stdout.splitlines() if not line.startswith(" ")]
     weak = {name for _, kind, name in symbols if kind in "WV"}
-    own = re.compile(rf"\b(Lanes|LanePlantOf|Strided)<{lanes}>")
+    own = re.compile(rf"\b(Lanes|LanePlantOf|Strided|lane_noise_of)<{lanes}>")
     return {name for name in weak if own.search(name) is None}
 
 
