@@ -74,7 +74,7 @@ template <class Value> [[gnu::format(printf, 2, 0)]] int refuse(char* message, c
     return 0;
 }
 
-constexpr std::size_t largest_portion = 256;
+constexpr std::size_t largest_portion = 1024;
 constexpr double plant_step_min_s = 1e-6;
 constexpr double plant_step_max_s = 5e-4;
 
@@ -274,7 +274,7 @@ int gwb_start(const gwb_spec_t* specs, size_t count, const gwb_options_t* option
         }
         // Enough of them that designs of one kind meet, and some portions for each thread while there are few.
         const std::size_t lanes = made->options.lanes;
-        const std::size_t fair = count / (4U * std::size_t{options->threads}) / lanes * lanes;
+        const std::size_t fair = count / (2U * std::size_t{options->threads}) / lanes * lanes;
         made->portion = std::clamp<std::size_t>(fair, lanes, largest_portion);
     }
     for (std::size_t i = 0; i < count; ++i) {
