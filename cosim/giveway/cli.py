@@ -323,7 +323,7 @@ def bench(
         title = "Random collisions of 0.6 s over fixed steps, all threads"
         counts, found_rows = bench_batch.SCALE_COUNTS, []
         try:
-            with _shares([bench_batch.scale_name(count) for count in counts]) as progress:
+            with progress_bars([bench_batch.scale_name(count) for count in counts]) as progress:
                 for row in bench_batch.scale(counts, progress):
                     found_rows.append(row)
         except KeyboardInterrupt:
