@@ -16,6 +16,12 @@ static gw_real_t side_of(gw_vector_t point, gw_vector_t direction, gw_real_t off
     return cross(point, direction) - offset_m;
 }
 
+/* side_of(...) > 0: a difference has the sign of the order. */
+static bool is_right_of(gw_vector_t point, gw_vector_t direction, gw_real_t offset_m)
+{
+    return cross(point, direction) > offset_m;
+}
+
 static gw_real_t along(gw_vector_t a, gw_vector_t direction)
 {
     return (a.x * direction.x) + (a.y * direction.y);
@@ -96,33 +102,41 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
                         gw_contact_estimate_t *estimate)
 {
     const uint32_t count = config->vertex_count;
-    gw_real_t nearest_m = GW_REAL_MAX;
+    /* As long as all vertices lie on the side of the first one: which is nearest? Distances count from that side. */
+    const bool first_is_right = is_right_of(config->vertex_m[0], direction, offset_m);
+    const gw_vector_t reversed = {-direction.x, -direction.y};
+    const gw_vector_t line = first_is_right ? direction : reversed;
+    const gw_real_t line_m = first_is_right ? offset_m : -offset_m;
+    gw_real_t nearest_m = side_of(config->vertex_m[0], line, line_m);
     uint32_t nearest = 0U;
-    uint32_t entry = 0U;
-    bool outside = side_of(config->vertex_m[count - 1U], direction, offset_m) <= GW_ZERO;
-    for (uint32_t i = 0U; i < count; i++) {
+    bool crossed = false;
+    for (uint32_t i = 1U; (i < count) && (!crossed); i++) {
         const gw_vector_t vertex = config->vertex_m[i];
-        const gw_real_t side_m = side_of(vertex, direction, offset_m);
-        const gw_real_t distance_m = gw_magnitude(side_m);
-        /* Going counter-clockwise, the side grows exactly on the edges that the direction enters. */
-        if (side_m > GW_ZERO) {
-            if (outside) {
-                entry = i;
-                estimate->on_outline = true;
-            }
-            outside = false;
-        } else {
-            outside = true;
-        }
-        /* On a tie (an edge parallel to the line) the end that the force meets first. */
+        const gw_real_t distance_m = side_of(vertex, line, line_m);
         if (distance_m <= nearest_m) {
+            /* On a tie (an edge parallel to the line) the end that the force meets first. */
             if ((distance_m < nearest_m) || (along(vertex, direction) < along(config->vertex_m[nearest], direction))) {
                 nearest_m = distance_m;
                 nearest = i;
             }
+            /* What lies on the line lies on its left. */
+            crossed = (distance_m < GW_ZERO) || ((distance_m <= GW_ZERO) && first_is_right);
         }
     }
-    if (estimate->on_outline) {
+    estimate->on_outline = crossed;
+    if (crossed) {
+        /* Going counter-clockwise, the side grows exactly on the edges that the direction enters: the first vertex on
+         * the right ends such an edge. */
+        bool right = !first_is_right;
+        uint32_t entry = right ? nearest : 0U;
+        for (uint32_t i = nearest + 1U; i < count; i++) {
+            if (is_right_of(config->vertex_m[i], direction, offset_m)) {
+                entry = right ? entry : i;
+                right = true;
+            } else {
+                right = false;
+            }
+        }
         const gw_vector_t start = config->vertex_m[((entry > 0U) ? entry : count) - 1U];
         const gw_vector_t end = config->vertex_m[entry];
         const gw_real_t start_side_m = side_of(start, direction, offset_m);
@@ -155,7 +169,7 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
     if (estimate == NULL) {
         status = GW_STATUS_NULL_POINTER;
     } else {
-        no_contact(estimate);
+        bool located = false;
         if (contact == NULL) {
             status = GW_STATUS_NULL_POINTER;
         } else if (!contact->initialised) {
@@ -167,19 +181,22 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
             const gw_wrench_t valid = gw_wrench_limited(wrench);
             const gw_vector_t force = {valid.force_x_n, valid.force_y_n};
             const gw_real_t force_n = gw_length(force);
-            if (force_n >= contact->config.minimum_force_n) {
-                const gw_vector_t direction = gw_unit(force, force_n);
+            located = (force_n >= contact->config.minimum_force_n);
+            if (located) {
                 const gw_real_t arm_m = gw_limited(valid.torque_nm / force_n, LEVER_ARM_MAX);
                 /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
                 const gw_vector_t spread = {gw_limited(sigma.torque_nm, GW_WRENCH_MAX) / force_n,
                                             (arm_m * gw_limited(sigma.force_n, GW_WRENCH_MAX)) / force_n};
                 estimate->valid = true;
                 estimate->force_n = force_n;
-                estimate->direction_rad = gw_atan2(force.y, force.x);
                 estimate->lever_arm_m = arm_m;
                 estimate->lever_arm_sigma_m = gw_length(spread);
-                cut_outline(&contact->config, direction, arm_m, estimate);
+                estimate->direction_rad = gw_atan2(force.y, force.x);
+                cut_outline(&contact->config, gw_unit(force, force_n), arm_m, estimate);
             }
+        }
+        if (!located) {
+            no_contact(estimate);
         }
     }
     return status;

@@ -204,7 +204,6 @@ typedef struct {
     gw_wheels_t torque_nm;
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
-    gw_plan_t plan; /* if it is valid */
     gw_rotation_t yaw;             /* of the reference before it moves */
     gw_real_t reference_speed_mps; /* likewise */
     bool sensors_good;
@@ -367,21 +366,23 @@ static void give_way(gw_controller_t *controller, const tick_t *now)
 }
 
 /* Moves the reference by one tick, as the mode says. */
-static void move_reference(gw_controller_t *controller, const tick_t *now)
+static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, const tick_t *now)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool on_the_path = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REJOINING);
     if (on_the_path && now->plan_valid && (!controller->on_plan)) {
         /* Without a tare the robot may already be moving along its plan. */
         const bool moving = (controller->config.estimator.tare_ticks == 0U) && controller->config.drives_enabled;
-        gw_reference_place(&controller->reference, &now->plan, moving);
+        const gw_plan_t valid = gw_plan_limited(plan);
+        gw_reference_place(&controller->reference, &valid, moving);
         controller->on_plan = true;
     } else if ((mode == GW_MODE_FAULT) || (!controller->config.drives_enabled)) {
         gw_reference_freeze(&controller->reference);
     } else if ((mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED)) {
         give_way(controller, now);
     } else if (on_the_path && now->plan_valid) {
-        gw_reference_follow(&controller->reference, &now->plan, mode == GW_MODE_REJOINING);
+        const gw_plan_t valid = gw_plan_limited(plan);
+        gw_reference_follow(&controller->reference, &valid, mode == GW_MODE_REJOINING);
     } else {
         gw_reference_brake(&controller->reference);
     }
@@ -446,6 +447,14 @@ static void blank_tick(tick_t *now)
     now->detection = no_detection;
 }
 
+/* Is the reference as good as on a valid plan? */
+static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
+{
+    const gw_plan_t valid = gw_plan_limited(plan);
+    return (gw_reference_distance(&controller->reference, &valid) < controller->config.supervisor.rejoin_distance_m) &&
+           (gw_reference_angle(&controller->reference, &valid) < controller->config.supervisor.rejoin_angle_rad);
+}
+
 static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
                         gw_controller_output_t *output)
 {
@@ -457,9 +466,6 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     now.yaw = controller->reference.yaw;
     now.reference_speed_mps = reference_speed(controller);
     now.plan_valid = gw_plan_is_valid(&input->plan);
-    if (now.plan_valid) {
-        now.plan = gw_plan_limited(&input->plan);
-    }
     if (status == GW_STATUS_OK) {
         status = estimate(controller, input, &now);
     }
@@ -493,14 +499,10 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     /* Each is asked for in one mode only. */
     events.quiet = slow && (before == GW_MODE_REACTING) &&
                    (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
-    events.on_path =
-        now.plan_valid && slow && (before == GW_MODE_REJOINING) &&
-        (gw_reference_distance(&controller->reference, &now.plan) <
-         controller->config.supervisor.rejoin_distance_m) &&
-        (gw_reference_angle(&controller->reference, &now.plan) < controller->config.supervisor.rejoin_angle_rad);
+    events.on_path = now.plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
     (void)gw_supervisor_step(&controller->supervisor, &events);
     enter_mode(controller, before, &now);
-    move_reference(controller, &now);
+    move_reference(controller, &input->plan, &now);
     command_wheels(controller, input, &now, output);
     report(controller, &now, output);
     controller->tick = (controller->tick + 1U) & GW_TICK_MASK;

@@ -90,17 +90,18 @@ static bool may_release(const gw_detector_t *detector, const gw_detector_input_t
         release_n = gw_min(release_n, detector->config.force_threshold_n);
     }
     return (detector->ticks_since_trip >= detector->config.blanking_ticks) &&
-           (input->reaction_over || (force_length(input->mean) < release_n));
+           (input->reaction_over || (force_length(gw_wrench_limited(input->mean)) < release_n));
 }
 
 /* One step of the leaky vector integral; true if it trips. */
 static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
 {
     const gw_real_t leak_n = gw_detector_leak(detector, input->regime);
-    const gw_vector_t sum = {detector->impulse_x_newton_s + (input->wrench.force_x_n * detector->period_s),
-                             detector->impulse_y_newton_s + (input->wrench.force_y_n * detector->period_s)};
+    const gw_wrench_t wrench = gw_wrench_limited(input->wrench);
+    const gw_vector_t sum = {detector->impulse_x_newton_s + (wrench.force_x_n * detector->period_s),
+                             detector->impulse_y_newton_s + (wrench.force_y_n * detector->period_s)};
     const gw_real_t moment =
-        gw_limited(detector->impulse_moment_nms + (input->wrench.torque_nm * detector->period_s), IMPULSE_MAX);
+        gw_limited(detector->impulse_moment_nms + (wrench.torque_nm * detector->period_s), IMPULSE_MAX);
     const gw_real_t length = gw_length(sum);
     const gw_real_t left = length - (leak_n * detector->period_s);
     bool trips = false;
@@ -146,28 +147,24 @@ gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t 
             status = GW_STATUS_INPUT_INVALID;
             output->active = detector->active;
         } else {
-            gw_detector_input_t valid = *input;
-            valid.wrench = gw_wrench_limited(input->wrench);
-            valid.mean = gw_wrench_limited(input->mean);
-            valid.window_mean = gw_wrench_limited(input->window_mean);
             if (detector->active) {
                 if (detector->ticks_since_trip < detector->config.blanking_ticks) {
                     detector->ticks_since_trip++;
                 }
-                detector->active = !may_release(detector, &valid);
+                detector->active = !may_release(detector, input);
             }
-            if (detector->active || (!valid.enabled)) {
+            if (detector->active || (!input->enabled)) {
                 gw_detector_clear(detector);
             } else if (detector->config.kind == GW_DETECTOR_IMPULSE) {
-                output->tripped = integrate(detector, &valid, output);
+                output->tripped = integrate(detector, input, output);
             } else {
                 gw_real_t threshold_n = detector->config.force_threshold_n;
-                if (valid.regime == GW_REGIME_CREEPING) {
+                if (input->regime == GW_REGIME_CREEPING) {
                     threshold_n = gw_max(threshold_n, detector->config.leak_creep_n);
                 }
-                output->statistic = force_length(valid.window_mean);
-                output->mean_wrench = valid.mean;
-                output->samples = valid.mean_samples;
+                output->statistic = force_length(gw_wrench_limited(input->window_mean));
+                output->mean_wrench = gw_wrench_limited(input->mean);
+                output->samples = input->mean_samples;
                 output->tripped = (output->statistic > threshold_n);
             }
             if (output->tripped) {

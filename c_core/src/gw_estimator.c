@@ -278,12 +278,16 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
 static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *input, const gw_wheels_t *torque_nm,
                          motion_t *motion)
 {
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, motion->planned_twist);
+    if (!estimator->rate[0].started) { /* all of them start together */
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, motion->planned_twist);
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            /* Without it a robot that already moves would seem to be thrown into motion. */
+            gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
+        }
+    }
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_t *const filter = &estimator->rate[i];
-        /* Without it a robot that already moves would seem to be thrown into motion. */
-        gw_rate_filter_presume(filter, planned_rates.wheel[i]);
         gw_rate_filter_step(filter, &estimator->rate_constants, input->encoder_count[i], torque_nm->wheel[i]);
         motion->rates.wheel[i] = filter->rate_radps;
         motion->derivatives.wheel[i] = filter->derivative_radps2;

@@ -43,7 +43,7 @@
 gw_real_t gw_fraction(gw_real_t part, gw_real_t whole)
 {
     gw_real_t fraction = GW_ZERO;
-    if ((part < whole) && (part > -whole)) {
+    if (gw_magnitude(part) < whole) {
         fraction = part / whole;
     } else if (!(whole > GW_ZERO)) {
         /* nothing to have a part of */

@@ -63,13 +63,16 @@ static uint32_t count_distance(int32_t a, int32_t b)
 static gw_status_t torque_status(const gw_sensor_check_t *check, const gw_sensor_sample_t *sample)
 {
     gw_status_t status = GW_STATUS_OK;
+    const gw_real_t limit_nm = check->config.torque_limit_nm;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        if (!gw_is_finite(sample->torque_nm[i])) {
+        if (gw_magnitude(sample->torque_nm[i]) < limit_nm) {
+            /* this torque is good */
+        } else if (!gw_is_finite(sample->torque_nm[i])) {
             status = GW_STATUS_SENSOR_NONFINITE;
-        } else if ((status == GW_STATUS_OK) && (gw_magnitude(sample->torque_nm[i]) >= check->config.torque_limit_nm)) {
+        } else if (status == GW_STATUS_OK) {
             status = GW_STATUS_SENSOR_SATURATED;
         } else {
-            /* this torque is good */
+            /* an earlier one tells more */
         }
     }
     return status;
@@ -79,10 +82,12 @@ static gw_status_t torque_status(const gw_sensor_check_t *check, const gw_sensor
 static bool note_encoders(gw_sensor_check_t *check, const gw_sensor_sample_t *sample, uint32_t elapsed_ticks)
 {
     bool plausible = true;
+    const bool known = check->encoder_known;
+    /* At most 1e6 counts in 1000 ticks: no overflow. */
+    const uint32_t most = check->config.encoder_jump_counts * elapsed_ticks;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const uint32_t moved = count_distance(sample->encoder_count[i], check->last_count[i]);
-        /* At most 1e6 counts in 1000 ticks: no overflow. */
-        if (check->encoder_known && (moved > (check->config.encoder_jump_counts * elapsed_ticks))) {
+        if (known && (moved > most)) {
             plausible = false;
         }
         check->last_count[i] = sample->encoder_count[i];

@@ -16,21 +16,18 @@ gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
     /* Increments are small: a tick's. */
     gw_sum_t result = gw_sum_add(sum, gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE)
                                                                    : gw_wrap_angle(increment_rad));
-    /* value -+ 2 GW_PI is exact; the excess takes up that 2 GW_PI is not quite a turn. */
-    if (result.value > ALMOST_PI) {
+    if (!gw_within(result.value, ALMOST_PI)) {
+        /* value -+ 2 GW_PI is exact; the excess takes up that 2 GW_PI is not quite a turn. */
         if (result.value >= GW_PI) {
             result.value -= GW_TWO * GW_PI;
             result.excess += TURN_REMAINDER;
-        }
-        result.value = gw_limited(result.value, GW_PI);
-    } else if (!(result.value >= -ALMOST_PI)) {
-        if (result.value < -GW_PI) {
+        } else if (result.value < -GW_PI) {
             result.value += GW_TWO * GW_PI;
             result.excess -= TURN_REMAINDER;
+        } else {
+            /* within the turn, or NaN */
         }
         result.value = gw_limited(result.value, GW_PI); /* -pi if it is NaN */
-    } else {
-        /* within one turn */
     }
     return result;
 }
