@@ -286,9 +286,10 @@ static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *
             gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
         }
     }
+    const gw_rate_filter_constants_t constants = estimator->rate_constants; /* a copy stays in registers */
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_t *const filter = &estimator->rate[i];
-        gw_rate_filter_step(filter, &estimator->rate_constants, input->encoder_count[i], torque_nm->wheel[i]);
+        gw_rate_filter_step(filter, &constants, input->encoder_count[i], torque_nm->wheel[i]);
         motion->rates.wheel[i] = filter->rate_radps;
         motion->derivatives.wheel[i] = filter->derivative_radps2;
     }

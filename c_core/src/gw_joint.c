@@ -18,28 +18,23 @@ void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad)
     joint->placed = true;
 }
 
-static gw_wheels_t wheels_of(const gw_kinematics_t *kinematics, gw_real_t x, gw_real_t y, gw_real_t theta,
-                             gw_rotation_t yaw)
-{
-    const gw_vector_t world = {x, y};
-    const gw_vector_t base = gw_rotate_back(yaw, world);
-    const gw_twist_t twist = {base.x, base.y, theta};
-    return gw_kinematics_wheel_rates(kinematics, twist);
-}
-
 void gw_joint_step(gw_joint_t *joint, const gw_kinematics_t *kinematics, gw_pose_t displacement, gw_real_t theta_rad,
                    gw_rotation_t yaw, gw_twist_t twist, gw_joint_command_t *command)
 {
-    const gw_real_t mean_yaw_rad = theta_rad - (GW_HALF * displacement.theta_rad);
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t turned =
-        wheels_of(kinematics, displacement.x_m, displacement.y_m, displacement.theta_rad, gw_sincos(mean_yaw_rad));
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t speed = wheels_of(kinematics, twist.vx_mps, twist.vy_mps, twist.omega_radps, yaw);
+    const gw_vector_t way_m = {displacement.x_m, displacement.y_m};
+    const gw_vector_t velocity_mps = {twist.vx_mps, twist.vy_mps};
+    const gw_rotation_t mean_yaw = gw_sincos(theta_rad - (GW_HALF * displacement.theta_rad));
+    const gw_vector_t way = gw_rotate_back(mean_yaw, way_m);
+    const gw_vector_t velocity = gw_rotate_back(yaw, velocity_mps);
+    const gw_real_t rim_m = kinematics->wheel_distance_m * displacement.theta_rad;
+    const gw_real_t rim_mps = kinematics->wheel_distance_m * twist.omega_radps;
+    const gw_real_t per_radius = kinematics->per_wheel_radius;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        joint->angle_rad[i] = gw_sum_add_angle(joint->angle_rad[i], turned.wheel[i]);
+        const gw_vector_t n = kinematics->radial[i];
+        const gw_real_t turned_rad = (gw_along_rolling(n, way.x, way.y) + rim_m) * per_radius;
+        joint->angle_rad[i] = gw_sum_add_angle(joint->angle_rad[i], turned_rad);
         command->angle_rad[i] = joint->angle_rad[i].value;
-        command->speed_radps[i] = speed.wheel[i];
+        command->speed_radps[i] = (gw_along_rolling(n, velocity.x, velocity.y) + rim_mps) * per_radius;
     }
 }
 

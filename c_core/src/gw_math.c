@@ -141,16 +141,16 @@ gw_real_t gw_sqrt(gw_real_t x)
 /* y * 2^exponent for results that are normal numbers. Factors are powers of 2, so nothing is rounded. */
 static gw_real_t scale_by_power_of_two(gw_real_t y, int32_t exponent)
 {
+    const gw_real_t longest = (gw_real_t)2147483648.0; /* 2^31 */
     gw_real_t result = y;
     uint32_t left = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
-    while (left > 0U) {
-        const uint32_t now = (left < 31U) ? left : 31U;
-        const uint32_t power = (uint32_t)1U << now;
-        const gw_real_t factor = (gw_real_t)power;
-        result = (exponent < 0) ? (result / factor) : (result * factor);
-        left -= now;
+    while (left > 31U) {
+        result = (exponent < 0) ? (result / longest) : (result * longest);
+        left -= 31U;
     }
-    return result;
+    const uint32_t power = (uint32_t)1U << left;
+    const gw_real_t factor = (gw_real_t)power;
+    return (exponent < 0) ? (result / factor) : (result * factor);
 }
 
 /* A step of Horner's scheme. The series are written out: as loops they would take twice the instructions. */
@@ -212,15 +212,21 @@ gw_real_t gw_exp(gw_real_t x)
     return result;
 }
 
+/* e^x - 1 for EXPM1_LOWEST <= x <= EXP_HIGHEST. */
+static inline gw_real_t expm1_within(gw_real_t x)
+{
+    const reduced_exp_t reduced = reduce_exp(x);
+    const gw_real_t scale = scale_by_power_of_two(GW_ONE, reduced.exponent);
+    return (reduced.remainder_expm1 * scale) + (scale - GW_ONE);
+}
+
 gw_real_t gw_expm1(gw_real_t x)
 {
     gw_real_t result = GW_ZERO;
     if (x > EXP_HIGHEST) {
         result = GW_REAL_MAX;
     } else if (x >= EXPM1_LOWEST) {
-        const reduced_exp_t reduced = reduce_exp(x);
-        const gw_real_t scale = scale_by_power_of_two(GW_ONE, reduced.exponent);
-        result = (reduced.remainder_expm1 * scale) + (scale - GW_ONE);
+        result = expm1_within(x);
     } else if (x < EXPM1_LOWEST) {
         result = -GW_ONE;
     } else {
@@ -231,13 +237,16 @@ gw_real_t gw_expm1(gw_real_t x)
 
 gw_real_t gw_tanh(gw_real_t x)
 {
-    gw_real_t result = GW_ZERO;
-    if (gw_abs(x) >= TANH_SATURATED) {
-        result = (x < GW_ZERO) ? -GW_ONE : GW_ONE;
-    } else {
-        const gw_real_t e = gw_expm1(-GW_TWO * gw_abs(x)); /* 0 for NaN */
+    gw_real_t result = -GW_ZERO;
+    const gw_real_t size = gw_magnitude(x);
+    if (size < TANH_SATURATED) {
+        const gw_real_t e = expm1_within(-GW_TWO * size);
         const gw_real_t magnitude = -e / (e + GW_TWO);
         result = (x < GW_ZERO) ? -magnitude : magnitude;
+    } else if (size >= TANH_SATURATED) {
+        result = (x < GW_ZERO) ? -GW_ONE : GW_ONE;
+    } else {
+        /* NaN: 0 */
     }
     return result;
 }
@@ -352,8 +361,8 @@ static gw_real_t atan_of_fraction(gw_real_t x)
 gw_real_t gw_atan2(gw_real_t y, gw_real_t x)
 {
     gw_real_t angle = GW_ZERO;
-    const gw_real_t x_size = gw_abs(x);
-    const gw_real_t y_size = gw_abs(y);
+    const gw_real_t x_size = gw_magnitude(x);
+    const gw_real_t y_size = gw_magnitude(y);
     const gw_real_t larger = gw_max(x_size, y_size);
     if (gw_is_finite(x) && gw_is_finite(y) && (larger > GW_ZERO)) {
         angle = atan_of_fraction(gw_min(x_size, y_size) / larger);

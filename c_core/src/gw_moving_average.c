@@ -61,14 +61,16 @@ gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t samp
     } else if (!gw_wrench_is_valid(sample)) {
         status = GW_STATUS_INPUT_INVALID;
     } else {
+        gw_wrench_t *const place = &average->sample[average->index];
+        gw_wrench_t sum = average->window_sum;
         if (average->count < average->window) {
             average->count++;
         } else {
-            average->window_sum = minus(average->window_sum, average->sample[average->index]);
+            sum = minus(sum, *place);
         }
         const gw_wrench_t valid = gw_wrench_limited(sample);
-        average->sample[average->index] = valid;
-        average->window_sum = plus(average->window_sum, valid);
+        *place = valid;
+        average->window_sum = plus(sum, valid);
         average->fresh_sum = plus(average->fresh_sum, valid);
         average->index++;
         if (average->index >= average->window) {

@@ -9,26 +9,20 @@
 #define TURN_REMAINDER ((gw_real_t)-1.7484556000744971323e-7)
 #endif
 
-#define ALMOST_PI ((gw_real_t)3.0)
-
-gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
+gw_sum_t gw_sum_within_turn(gw_sum_t sum)
 {
-    /* Increments are small: a tick's. */
-    gw_sum_t result = gw_sum_add(sum, gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE)
-                                                                   : gw_wrap_angle(increment_rad));
-    if (!gw_within(result.value, ALMOST_PI)) {
-        /* value -+ 2 GW_PI is exact; the excess takes up that 2 GW_PI is not quite a turn. */
-        if (result.value >= GW_PI) {
-            result.value -= GW_TWO * GW_PI;
-            result.excess += TURN_REMAINDER;
-        } else if (result.value < -GW_PI) {
-            result.value += GW_TWO * GW_PI;
-            result.excess -= TURN_REMAINDER;
-        } else {
-            /* within the turn, or NaN */
-        }
-        result.value = gw_limited(result.value, GW_PI); /* -pi if it is NaN */
+    gw_sum_t result = sum;
+    /* value -+ 2 GW_PI is exact; the excess takes up that 2 GW_PI is not quite a turn. */
+    if (result.value >= GW_PI) {
+        result.value -= GW_TWO * GW_PI;
+        result.excess += TURN_REMAINDER;
+    } else if (result.value < -GW_PI) {
+        result.value += GW_TWO * GW_PI;
+        result.excess -= TURN_REMAINDER;
+    } else {
+        /* within the turn, or NaN */
     }
+    result.value = gw_limited(result.value, GW_PI); /* -pi if it is NaN */
     return result;
 }
 

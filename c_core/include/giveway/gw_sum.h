@@ -39,8 +39,21 @@ static inline gw_sum_t gw_sum_add(gw_sum_t sum, gw_real_t increment)
     return result;
 }
 
+/* The sum, at most a turn off, brought to [-pi, pi). */
+gw_sum_t gw_sum_within_turn(gw_sum_t sum);
 /* For angles: sum + increment modulo one turn, its value in [-pi, pi). |increment| <= GW_ANGLE_MAX. */
-gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad);
+static inline gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
+{
+    const gw_real_t almost_pi = (gw_real_t)3.0;
+    /* Increments are small: a tick's. */
+    const gw_real_t small = gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE) : gw_wrap_angle(increment_rad);
+    gw_sum_t result = gw_sum_add(sum, small);
+    if (!gw_within(result.value, almost_pi)) {
+        result = gw_sum_within_turn(result);
+    }
+    return result;
+}
+
 /* The sum, its value kept within [-limit, limit]; limit > 0. */
 static inline gw_sum_t gw_sum_limit(gw_sum_t sum, gw_real_t limit)
 {
