@@ -135,7 +135,7 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
                                gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
     const gw_real_t distance_m = gw_length(ahead);
     if (distance_m > GW_ZERO) {
-        const gw_vector_t unit = gw_unit(ahead, distance_m);
+        const gw_vector_t unit = gw_unit(ahead.x, ahead.y, distance_m);
         const gw_real_t end_rate = admittance->rate_per_s * admittance->decay;
         const gw_vector_t end_mps = {end_rate * ahead.x, end_rate * ahead.y};
         const gw_vector_t exact_m = {admittance->approach * ahead.x, admittance->approach * ahead.y};

@@ -192,7 +192,7 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
                 estimate->lever_arm_m = arm_m;
                 estimate->lever_arm_sigma_m = gw_length(spread);
                 estimate->direction_rad = gw_atan2(force.y, force.x);
-                cut_outline(&contact->config, gw_unit(force, force_n), arm_m, estimate);
+                cut_outline(&contact->config, gw_unit(force.x, force.y, force_n), arm_m, estimate);
             }
         }
         if (!located) {

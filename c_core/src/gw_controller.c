@@ -201,7 +201,6 @@ void gw_controller_safe_output(gw_controller_output_t *output)
 
 /* What one tick knows before the mode is decided. */
 typedef struct {
-    gw_wheels_t torque_nm;
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
     gw_rotation_t yaw;             /* of the reference before it moves */
@@ -250,7 +249,6 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
     estimator_input.planned_acceleration.ax_mps2 = change.x;
     estimator_input.planned_acceleration.ay_mps2 = change.y;
     estimator_input.planned_acceleration.alpha_radps2 = acceleration.alpha_radps2;
-    now->torque_nm = estimator_input.torque_nm;
     return gw_estimator_step(&controller->estimator, &estimator_input, &now->estimate);
 }
 
@@ -282,6 +280,12 @@ static void detect(gw_controller_t *controller, tick_t *now)
     }
 }
 
+static gw_tare_progress_t tare(gw_controller_t *controller, const gw_sensor_sample_t *sensor)
+{
+    const gw_wheels_t torque_nm = {{sensor->torque_nm[0], sensor->torque_nm[1], sensor->torque_nm[2]}};
+    return gw_estimator_tare(&controller->estimator, &torque_nm);
+}
+
 /* A new tare of the run was asked for: only a robot that stands may take one. */
 static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, const tick_t *now, bool *accepted)
 {
@@ -300,7 +304,7 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 static gw_vector_t hit_direction(const tick_t *now)
 {
     const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
-    return gw_rotate(now->yaw, gw_unit(force, gw_length(force)));
+    return gw_rotate(now->yaw, gw_unit(force.x, force.y, gw_length(force)));
 }
 
 /* What changes once, when a mode begins. */
@@ -430,7 +434,6 @@ static void report(const gw_controller_t *controller, const tick_t *now, gw_cont
 
 static void blank_tick(tick_t *now)
 {
-    static const gw_wheels_t blank_torque = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
     static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
                                                       {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
                                                       {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
@@ -442,7 +445,6 @@ static void blank_tick(tick_t *now)
                                                       false};
     static const gw_detector_output_t no_detection = {
         false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
-    now->torque_nm = blank_torque;
     now->estimate = no_estimate;
     now->detection = no_detection;
 }
@@ -485,7 +487,7 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     events.plan_valid = now.plan_valid;
     events.tare_done = false;
     if (now.sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
-        const gw_tare_progress_t progress = gw_estimator_tare(&controller->estimator, &now.torque_nm);
+        const gw_tare_progress_t progress = tare(controller, &input->sensor);
         events.tare_done = (progress == GW_TARE_DONE);
         if (progress == GW_TARE_REFUSED) {
             tare_status = GW_STATUS_TARE_REFUSED;

@@ -115,7 +115,7 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
         }
         /* What leaked away is part of the mean force. */
         const gw_real_t mean_n = (left / ((gw_real_t)detector->samples * detector->period_s)) + leak_n;
-        const gw_vector_t direction = gw_unit(sum, length);
+        const gw_vector_t direction = gw_unit(sum.x, sum.y, length);
         output->mean_wrench.force_x_n = direction.x * mean_n;
         output->mean_wrench.force_y_n = direction.y * mean_n;
         output->mean_wrench.torque_nm = (moment / gw_max(length, IMPULSE_MIN)) * mean_n;

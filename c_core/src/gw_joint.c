@@ -23,11 +23,11 @@ void gw_joint_step(gw_joint_t *joint, const gw_kinematics_t *kinematics, gw_pose
 {
     const gw_vector_t way_m = {displacement.x_m, displacement.y_m};
     const gw_vector_t velocity_mps = {twist.vx_mps, twist.vy_mps};
-    const gw_rotation_t mean_yaw = gw_sincos(theta_rad - (GW_HALF * displacement.theta_rad));
-    const gw_vector_t way = gw_rotate_back(mean_yaw, way_m);
     const gw_vector_t velocity = gw_rotate_back(yaw, velocity_mps);
     const gw_real_t rim_m = kinematics->wheel_distance_m * displacement.theta_rad;
     const gw_real_t rim_mps = kinematics->wheel_distance_m * twist.omega_radps;
+    const gw_rotation_t mean_yaw = gw_sincos(theta_rad - (GW_HALF * displacement.theta_rad));
+    const gw_vector_t way = gw_rotate_back(mean_yaw, way_m);
     const gw_real_t per_radius = kinematics->per_wheel_radius;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const gw_vector_t n = kinematics->radial[i];

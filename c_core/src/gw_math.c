@@ -351,7 +351,7 @@ static gw_real_t atan_of_fraction(gw_real_t x)
         (gw_real_t)0.6435011087932843868028,
         (gw_real_t)0.7853981633974483096157,
     };
-    const int32_t quarter = nearest_integer(x * (gw_real_t)4.0);
+    const int32_t quarter = (int32_t)((x * (gw_real_t)4.0) + GW_HALF);
     const gw_real_t c = (gw_real_t)quarter * (gw_real_t)0.25;
     const gw_real_t z = (x - c) / (GW_ONE + (x * c));
     const gw_real_t square = z * z;
@@ -400,9 +400,9 @@ gw_real_t gw_wrap_angle(gw_real_t angle_rad)
     return wrapped;
 }
 
-gw_vector_t gw_unit(gw_vector_t vector, gw_real_t length)
+gw_vector_t gw_unit(gw_real_t x, gw_real_t y, gw_real_t length)
 {
-    const gw_vector_t unit = {gw_fraction(vector.x, length), gw_fraction(vector.y, length)};
+    const gw_vector_t unit = {gw_fraction(x, length), gw_fraction(y, length)};
     return unit;
 }
 
@@ -413,8 +413,8 @@ gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
     if (length > limit) {
         /* Rounding must not lead beyond the limit: what bounds a speed has to bound it exactly. */
         const gw_real_t factor = limit / length;
-        result.x = gw_clamp(vector.x * factor, -limit, limit);
-        result.y = gw_clamp(vector.y * factor, -limit, limit);
+        result.x = gw_limited(vector.x * factor, limit);
+        result.y = gw_limited(vector.y * factor, limit);
     }
     return result;
 }

@@ -195,8 +195,8 @@ static inline gw_real_t gw_length(gw_vector_t vector)
 #endif
 }
 
-/* The vector over its length: (0, 0) if that is not positive. */
-gw_vector_t gw_unit(gw_vector_t vector, gw_real_t length);
+/* The vector (x, y) over its length: (0, 0) if that is not positive. */
+gw_vector_t gw_unit(gw_real_t x, gw_real_t y, gw_real_t length);
 /* The vector, shortened to the limit if it is longer; limit >= 0. */
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit);
 /* Highest speed at the end of a tick from which the deceleration still stops at the goal, for motion by trapezoids.
