@@ -4,7 +4,7 @@
 
 /* Both tables are in the order of gw_config_field_t. They are apart so that a program that prints no names has none. */
 
-const gw_config_limit_t *gw_config_limit(gw_config_field_t field)
+GW_SELDOM const gw_config_limit_t *gw_config_limit(gw_config_field_t field)
 {
     static const gw_config_limit_t limits[GW_FIELD_COUNT] = {
         {(gw_real_t)0.0, (gw_real_t)0.0}, /* none */
@@ -87,7 +87,7 @@ const gw_config_limit_t *gw_config_limit(gw_config_field_t field)
     return &limits[(row < (uint32_t)GW_FIELD_COUNT) ? row : 0U];
 }
 
-const char *gw_config_name(gw_config_field_t field)
+GW_SELDOM const char *gw_config_name(gw_config_field_t field)
 {
     static const char *const names[GW_FIELD_COUNT] = {
         "none",
@@ -170,7 +170,7 @@ const char *gw_config_name(gw_config_field_t field)
     return names[(row < (uint32_t)GW_FIELD_COUNT) ? row : 0U];
 }
 
-void gw_config_check_begin(gw_config_error_t *error)
+GW_SELDOM void gw_config_check_begin(gw_config_error_t *error)
 {
     error->field = GW_FIELD_NONE;
     error->index = 0U;
@@ -179,7 +179,7 @@ void gw_config_check_begin(gw_config_error_t *error)
     error->maximum = GW_ZERO;
 }
 
-void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value,
+GW_SELDOM void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value,
                               gw_real_t minimum, gw_real_t maximum)
 {
     if ((error->field == GW_FIELD_NONE) && (!gw_in_range(value, minimum, maximum))) {
@@ -191,13 +191,13 @@ void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field,
     }
 }
 
-void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value)
+GW_SELDOM void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value)
 {
     const gw_config_limit_t *const limit = gw_config_limit(field);
     gw_config_check_relation(error, field, index, value, limit->minimum, limit->maximum);
 }
 
-void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t index, uint32_t value)
+GW_SELDOM void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t index, uint32_t value)
 {
     /* No bound of a count exceeds 2^24, so rounding to the real type cannot bring one back into range. */
     gw_config_check_real(error, field, index, (gw_real_t)value);

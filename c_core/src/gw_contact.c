@@ -33,7 +33,7 @@ static gw_vector_t from_to(gw_vector_t a, gw_vector_t b)
     return difference;
 }
 
-void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error)
 {
     const uint32_t count = config->vertex_count;
     gw_config_check_real(error, GW_FIELD_CONTACT_MINIMUM_FORCE, 0U, config->minimum_force_n);
@@ -62,7 +62,7 @@ void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_
     }
 }
 
-gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config)
+GW_SELDOM gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((contact == NULL) || (config == NULL)) {
@@ -82,7 +82,7 @@ gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *co
     return status;
 }
 
-bool gw_contact_invariant_holds(const gw_contact_t *contact)
+GW_SELDOM bool gw_contact_invariant_holds(const gw_contact_t *contact)
 {
     bool holds = (contact != NULL);
     if (holds) {
@@ -150,7 +150,7 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
     }
 }
 
-static void no_contact(gw_contact_estimate_t *estimate)
+static GW_SELDOM void no_contact(gw_contact_estimate_t *estimate)
 {
     estimate->valid = false;
     estimate->on_outline = false;

@@ -3,7 +3,7 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_trikey.h"
 
-void gw_controller_config_trikey(gw_controller_config_t *config)
+GW_SELDOM void gw_controller_config_trikey(gw_controller_config_t *config)
 {
     static const gw_vector_t outline[GW_TRIKEY_OUTLINE_COUNT] = {
         {GW_TRIKEY_OUTLINE_X0_M, GW_TRIKEY_OUTLINE_Y0_M},
@@ -95,7 +95,7 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     config->drives_enabled = true;
 }
 
-gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)
+GW_SELDOM gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_begin(error);
     gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, 0U, config->period_s);
@@ -112,7 +112,7 @@ gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_
     return (error->field == GW_FIELD_NONE) ? GW_STATUS_OK : GW_STATUS_CONFIG_INVALID;
 }
 
-static void forget_detection(gw_controller_t *controller)
+static GW_SELDOM void forget_detection(gw_controller_t *controller)
 {
     static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
     static const gw_contact_estimate_t no_contact = {false,
@@ -128,7 +128,7 @@ static void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
-gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
+GW_SELDOM gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
                                gw_config_error_t *error)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -165,7 +165,7 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
     return status;
 }
 
-void gw_controller_safe_output(gw_controller_output_t *output)
+GW_SELDOM void gw_controller_safe_output(gw_controller_output_t *output)
 {
     static const gw_controller_output_t safe = {
         {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
@@ -203,8 +203,7 @@ void gw_controller_safe_output(gw_controller_output_t *output)
 typedef struct {
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
-    gw_rotation_t yaw;             /* of the reference before it moves */
-    gw_real_t reference_speed_mps; /* likewise */
+    gw_real_t reference_speed_mps; /* before it moves */
     bool sensors_good;
     bool plan_valid;
 } tick_t;
@@ -232,7 +231,7 @@ static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples
 static gw_status_t estimate(gw_controller_t *controller, const gw_controller_input_t *input, tick_t *now)
 {
     gw_estimator_input_t estimator_input;
-    const gw_rotation_t yaw = now->yaw;
+    const gw_rotation_t yaw = controller->reference.yaw;
     const gw_twist_t twist = controller->reference.twist;
     const gw_acceleration_t acceleration = controller->reference.acceleration;
     const gw_vector_t world_velocity = {twist.vx_mps, twist.vy_mps};
@@ -301,10 +300,10 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 }
 
 /* The direction of the hit in the world frame, as a unit vector. */
-static gw_vector_t hit_direction(const tick_t *now)
+static gw_vector_t hit_direction(const gw_controller_t *controller, const tick_t *now)
 {
     const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
-    return gw_rotate(now->yaw, gw_unit(force.x, force.y, gw_length(force)));
+    return gw_rotate(controller->reference.yaw, gw_unit(force.x, force.y, gw_length(force)));
 }
 
 /* What changes once, when a mode begins. */
@@ -313,7 +312,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && now->detection.tripped) {
-        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(now));
+        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller, now));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
             /* Resumed: nobody knows whether the way is still free, so the escape is not. */
@@ -351,7 +350,7 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
         felt.x = base.x * share;
         felt.y = base.y * share;
     }
-    return gw_rotate(now->yaw, felt);
+    return gw_rotate(controller->reference.yaw, felt);
 }
 
 static void give_way(gw_controller_t *controller, const tick_t *now)
@@ -369,24 +368,33 @@ static void give_way(gw_controller_t *controller, const tick_t *now)
     }
 }
 
+/* Onto the plan if the reference was not on it yet, else along it. plan valid. */
+static GW_APART void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
+{
+    const gw_plan_t valid = gw_plan_limited(plan);
+    if (controller->on_plan) {
+        gw_reference_follow(&controller->reference, &valid, controller->supervisor.mode == GW_MODE_REJOINING);
+    } else {
+        /* Without a tare the robot may already be moving along its plan. */
+        const bool moving = (controller->config.estimator.tare_ticks == 0U) && controller->config.drives_enabled;
+        gw_reference_place(&controller->reference, &valid, moving);
+        controller->on_plan = true;
+    }
+}
+
 /* Moves the reference by one tick, as the mode says. */
 static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, const tick_t *now)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool on_the_path = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REJOINING);
     if (on_the_path && now->plan_valid && (!controller->on_plan)) {
-        /* Without a tare the robot may already be moving along its plan. */
-        const bool moving = (controller->config.estimator.tare_ticks == 0U) && controller->config.drives_enabled;
-        const gw_plan_t valid = gw_plan_limited(plan);
-        gw_reference_place(&controller->reference, &valid, moving);
-        controller->on_plan = true;
+        take_plan(controller, plan);
     } else if ((mode == GW_MODE_FAULT) || (!controller->config.drives_enabled)) {
         gw_reference_freeze(&controller->reference);
     } else if ((mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED)) {
         give_way(controller, now);
     } else if (on_the_path && now->plan_valid) {
-        const gw_plan_t valid = gw_plan_limited(plan);
-        gw_reference_follow(&controller->reference, &valid, mode == GW_MODE_REJOINING);
+        take_plan(controller, plan);
     } else {
         gw_reference_brake(&controller->reference);
     }
@@ -432,7 +440,7 @@ static void report(const gw_controller_t *controller, const tick_t *now, gw_cont
     output->tick = controller->tick;
 }
 
-static void blank_tick(tick_t *now)
+static GW_SELDOM void blank_tick(tick_t *now)
 {
     static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
                                                       {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
@@ -450,7 +458,7 @@ static void blank_tick(tick_t *now)
 }
 
 /* Is the reference as good as on a valid plan? */
-static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
+static GW_APART bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
     const gw_plan_t valid = gw_plan_limited(plan);
     return (gw_reference_distance(&controller->reference, &valid) < controller->config.supervisor.rejoin_distance_m) &&
@@ -465,7 +473,6 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     gw_status_t tare_status;
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
-    now.yaw = controller->reference.yaw;
     now.reference_speed_mps = reference_speed(controller);
     now.plan_valid = gw_plan_is_valid(&input->plan);
     if (status == GW_STATUS_OK) {
@@ -531,7 +538,7 @@ gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_
     return status;
 }
 
-bool gw_controller_invariant_holds(const gw_controller_t *controller)
+GW_SELDOM bool gw_controller_invariant_holds(const gw_controller_t *controller)
 {
     bool holds = (controller != NULL);
     if (holds) {

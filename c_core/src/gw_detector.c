@@ -8,7 +8,7 @@
 /* Impulse below which no lever arm can be told, N s; below every threshold. */
 #define IMPULSE_MIN ((gw_real_t)0.0001)
 
-void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_count(error, GW_FIELD_DETECTOR_KIND, 0U, config->kind);
     gw_config_check_real(error, GW_FIELD_DETECTOR_FORCE_THRESHOLD, 0U, config->force_threshold_n);
@@ -20,7 +20,7 @@ void gw_detector_config_check(const gw_detector_config_t *config, gw_config_erro
     gw_config_check_count(error, GW_FIELD_DETECTOR_BLANKING_TICKS, 0U, config->blanking_ticks);
 }
 
-gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s)
+GW_SELDOM gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((detector == NULL) || (config == NULL)) {
@@ -42,7 +42,7 @@ gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t
     return status;
 }
 
-bool gw_detector_invariant_holds(const gw_detector_t *detector)
+GW_SELDOM bool gw_detector_invariant_holds(const gw_detector_t *detector)
 {
     bool holds = (detector != NULL);
     if (holds) {

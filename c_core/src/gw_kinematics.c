@@ -4,7 +4,7 @@
 
 #define HALF_SQRT_3 ((gw_real_t)0.8660254037844386467637)
 
-void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
 {
     uint32_t slots_seen = 0U;
     gw_config_check_real(error, GW_FIELD_GEOMETRY_WHEEL_RADIUS, 0U, config->wheel_radius_m);
@@ -24,7 +24,7 @@ void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_GEOMETRY_AZIMUTH, 0U, config->azimuth_rad);
 }
 
-gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config)
+GW_SELDOM gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config)
 {
     /* cos and sin of 0, 120 and 240 degrees, better than computed ones. */
     static const gw_vector_t slot_direction[GW_WHEEL_COUNT] = {
@@ -56,7 +56,7 @@ gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_co
     return status;
 }
 
-bool gw_kinematics_invariant_holds(const gw_kinematics_t *kinematics)
+GW_SELDOM bool gw_kinematics_invariant_holds(const gw_kinematics_t *kinematics)
 {
     bool holds = (kinematics != NULL);
     if (holds) {

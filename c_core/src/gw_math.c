@@ -138,11 +138,11 @@ gw_real_t gw_sqrt(gw_real_t x)
 }
 #endif
 
-/* y * 2^exponent for results that are normal numbers. Factors are powers of 2, so nothing is rounded. */
-static gw_real_t scale_by_power_of_two(gw_real_t y, int32_t exponent)
+/* 2^exponent, if that is a normal number. */
+static inline gw_real_t power_of_two(int32_t exponent)
 {
     const gw_real_t longest = (gw_real_t)2147483648.0; /* 2^31 */
-    gw_real_t result = y;
+    gw_real_t result = GW_ONE;
     uint32_t left = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
     while (left > 31U) {
         result = (exponent < 0) ? (result / longest) : (result * longest);
@@ -182,20 +182,20 @@ static inline gw_real_t exp_series(gw_real_t r)
     return value;
 }
 
-/* x = exponent * ln 2 + remainder, for EXP_LOWEST <= x <= EXP_HIGHEST. */
-typedef struct {
-    int32_t exponent;
-    gw_real_t remainder_expm1; /* e^remainder - 1 */
-} reduced_exp_t;
-
-static inline reduced_exp_t reduce_exp(gw_real_t x)
+/* e^x = scale * (1 + result), for EXP_LOWEST <= x <= EXP_HIGHEST; scale is a power of 2. */
+static inline gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
 {
-    reduced_exp_t reduced;
-    reduced.exponent = nearest_integer(x * LOG2_E);
-    const gw_real_t k = (gw_real_t)reduced.exponent;
+    const int32_t exponent = nearest_integer(x * LOG2_E);
+    const gw_real_t k = (gw_real_t)exponent;
     const gw_real_t r = (x - (k * LN2_HIGH)) - (k * LN2_LOW);
-    reduced.remainder_expm1 = r + ((r * r) * exp_series(r));
-    return reduced;
+    *scale = power_of_two(exponent);
+    return r + ((r * r) * exp_series(r));
+}
+
+/* The same, once for all that is not as often at work as tanh. */
+static GW_APART gw_real_t reduced_expm1_apart(gw_real_t x, gw_real_t *scale)
+{
+    return reduced_expm1(x, scale);
 }
 
 gw_real_t gw_exp(gw_real_t x)
@@ -204,20 +204,13 @@ gw_real_t gw_exp(gw_real_t x)
     if (x > EXP_HIGHEST) {
         result = GW_REAL_MAX;
     } else if (x >= EXP_LOWEST) {
-        const reduced_exp_t reduced = reduce_exp(x);
-        result = scale_by_power_of_two(GW_ONE + reduced.remainder_expm1, reduced.exponent);
+        gw_real_t scale;
+        const gw_real_t part = reduced_expm1_apart(x, &scale);
+        result = (GW_ONE + part) * scale; /* not rounded: the result is a normal number */
     } else {
         /* NaN or far below: 0 */
     }
     return result;
-}
-
-/* e^x - 1 for EXPM1_LOWEST <= x <= EXP_HIGHEST. */
-static inline gw_real_t expm1_within(gw_real_t x)
-{
-    const reduced_exp_t reduced = reduce_exp(x);
-    const gw_real_t scale = scale_by_power_of_two(GW_ONE, reduced.exponent);
-    return (reduced.remainder_expm1 * scale) + (scale - GW_ONE);
 }
 
 gw_real_t gw_expm1(gw_real_t x)
@@ -226,7 +219,9 @@ gw_real_t gw_expm1(gw_real_t x)
     if (x > EXP_HIGHEST) {
         result = GW_REAL_MAX;
     } else if (x >= EXPM1_LOWEST) {
-        result = expm1_within(x);
+        gw_real_t scale;
+        const gw_real_t part = reduced_expm1_apart(x, &scale);
+        result = (part * scale) + (scale - GW_ONE);
     } else if (x < EXPM1_LOWEST) {
         result = -GW_ONE;
     } else {
@@ -240,7 +235,9 @@ gw_real_t gw_tanh(gw_real_t x)
     gw_real_t result = -GW_ZERO;
     const gw_real_t size = gw_magnitude(x);
     if (size < TANH_SATURATED) {
-        const gw_real_t e = expm1_within(-GW_TWO * size);
+        gw_real_t scale;
+        const gw_real_t part = reduced_expm1(-GW_TWO * size, &scale);
+        const gw_real_t e = (part * scale) + (scale - GW_ONE); /* expm1 */
         const gw_real_t magnitude = -e / (e + GW_TWO);
         result = (x < GW_ZERO) ? -magnitude : magnitude;
     } else if (size >= TANH_SATURATED) {

@@ -27,7 +27,7 @@ static gw_wrench_t minus(gw_wrench_t a, gw_wrench_t b)
     return difference;
 }
 
-gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
+GW_SELDOM gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
 {
     gw_status_t status = GW_STATUS_OK;
     if (average == NULL) {
@@ -44,7 +44,7 @@ gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window
     return status;
 }
 
-void gw_moving_average_reset(gw_moving_average_t *average)
+GW_SELDOM void gw_moving_average_reset(gw_moving_average_t *average)
 {
     /* Old samples need not be erased: none is subtracted before it was overwritten. */
     average->window_sum = no_wrench;
@@ -82,7 +82,7 @@ gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t samp
     return status;
 }
 
-bool gw_moving_average_invariant_holds(const gw_moving_average_t *average)
+GW_SELDOM bool gw_moving_average_invariant_holds(const gw_moving_average_t *average)
 {
     bool holds = (average != NULL);
     if (holds) {

@@ -5,7 +5,7 @@
 #define THREE_HALVES ((gw_real_t)1.5)
 #define THREE ((gw_real_t)3.0)
 
-void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_BASE_MASS, 0U, config->mass_kg);
     gw_config_check_real(error, GW_FIELD_BASE_YAW_INERTIA, 0U, config->yaw_inertia_kgm2);
@@ -13,7 +13,7 @@ void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_
     gw_config_check_real(error, GW_FIELD_BASE_ROLLER_INERTIA, 0U, config->roller_inertia_kgm2);
 }
 
-gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
+GW_SELDOM gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
                             const gw_friction_config_t *friction, const gw_kinematics_t *kinematics)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -42,7 +42,7 @@ gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *in
     return status;
 }
 
-bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
+GW_SELDOM bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
 {
     bool holds = (nominal != NULL);
     if (holds) {

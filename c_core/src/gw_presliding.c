@@ -9,7 +9,7 @@
 #define WAY_MAX_M GW_ONE
 #define THREE ((gw_real_t)3.0)
 
-void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_config_check_real(error, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, i, config->stiffness_n_per_m[i]);
@@ -19,7 +19,7 @@ void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, 0U, config->elastic_fraction);
 }
 
-gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
+GW_SELDOM gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
                                const gw_friction_config_t *friction, const gw_kinematics_t *kinematics)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -53,7 +53,7 @@ static gw_real_t deflection_of(const gw_presliding_t *presliding, uint32_t wheel
     return force_n / presliding->config.stiffness_n_per_m[wheel];
 }
 
-bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
+GW_SELDOM bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
 {
     bool holds = (presliding != NULL);
     if (holds) {
@@ -72,19 +72,19 @@ bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
     return holds;
 }
 
-void gw_presliding_gap(gw_presliding_t *presliding)
+GW_SELDOM void gw_presliding_gap(gw_presliding_t *presliding)
 {
     presliding->torque_known = false;
     presliding->count_known = false;
 }
 
-void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm)
+GW_SELDOM void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm)
 {
     presliding->last_torque_nm = *mean_torque_nm;
     presliding->torque_known = true;
 }
 
-gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics)
+GW_SELDOM gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics)
 {
     gw_wheels_t torques;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {

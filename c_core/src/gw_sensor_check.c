@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, 0U, config->torque_limit_nm);
     gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, 0U, config->stale_ticks_max);
@@ -10,7 +10,7 @@ void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_con
     gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, 0U, config->recover_ticks);
 }
 
-gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config)
+GW_SELDOM gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((check == NULL) || (config == NULL)) {
@@ -38,7 +38,7 @@ gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check
     return status;
 }
 
-bool gw_sensor_check_invariant_holds(const gw_sensor_check_t *check)
+GW_SELDOM bool gw_sensor_check_invariant_holds(const gw_sensor_check_t *check)
 {
     bool holds = (check != NULL);
     if (holds) {

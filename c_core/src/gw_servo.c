@@ -6,7 +6,7 @@
 /* No motor turns faster; whatever the counts do, the measured speed stays a number. */
 #define SPEED_MAX ((gw_real_t)1.0e6)
 
-void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
+GW_SELDOM void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_SERVO_PERIOD, 0U, config->period_s);
     gw_config_check_real(error, GW_FIELD_SERVO_KP, 0U, config->kp_nm_per_rad);
@@ -18,7 +18,7 @@ void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *e
     gw_config_check_count(error, GW_FIELD_SERVO_STALE_TICKS_MAX, 0U, config->stale_ticks_max);
 }
 
-gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)
+GW_SELDOM gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((servo == NULL) || (config == NULL)) {
@@ -51,7 +51,7 @@ gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)
     return status;
 }
 
-bool gw_servo_invariant_holds(const gw_servo_t *servo)
+GW_SELDOM bool gw_servo_invariant_holds(const gw_servo_t *servo)
 {
     bool holds = (servo != NULL);
     if (holds) {

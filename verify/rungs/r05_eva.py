@@ -25,9 +25,10 @@ ONLY_CALLED_BY_THOSE = {
     "less_quarter_turns",
     "nearest_integer",
     "on",
-    "reduce_exp",
+    "reduced_expm1",
+    "reduced_expm1_apart",
     "root_of",
-    "scale_by_power_of_two",
+    "power_of_two",
     "sin_series",
 }
 OWN = re.compile(r"(draw|hold|disturb|demand|any|part|lowest|highest|step_sums|main)(_\w+)?(_\d+)?")
@@ -52,7 +53,11 @@ class Driver:
 
 DRIVERS = {
     "controller": Driver(
-        Mutant("gw_controller.c", "now.plan = gw_plan_limited(&input->plan);", "now.plan = input->plan;"),
+        Mutant(
+            "gw_controller.c",
+            "valid = gw_plan_limited(plan);\n    if (controller->on_plan) {",
+            "valid = *plan;\n    if (controller->on_plan) {",
+        ),
         "gw_controller_init:0,next_undisturbed:full",
     ),
     "bad_sensors": Driver(

@@ -113,6 +113,13 @@ static inline bool gw_is_finite(gw_real_t x)
     return gw_within(x, GW_REAL_MAX);
 }
 
+/* Root of the largest number. */
+#if (GW_REAL_DOUBLE == 1)
+#define GW_ROOT_MAX 1.3407807929942596e+154
+#else
+#define GW_ROOT_MAX 1.8446742974197924e+19F
+#endif
+
 /* Square root, correctly rounded; 0 for negative x and NaN; infinity stays GW_REAL_MAX's root at most. */
 #if (GW_HARDWARE_SQRT == 1)
 /* One instruction rounds correctly: the same bits as the portable function in a tenth of the time. */
@@ -189,7 +196,8 @@ static inline gw_real_t gw_length(gw_vector_t vector)
 {
     const gw_real_t square = (vector.x * vector.x) + (vector.y * vector.y);
 #if (GW_HARDWARE_SQRT == 1)
-    return (square <= GW_REAL_MAX) ? gw_sqrt_by_fpu(square) : gw_sqrt(square); /* a square is not negative */
+    /* A square is not negative; of infinity the root of the largest number, of NaN 0, as gw_sqrt. */
+    return (square <= GW_REAL_MAX) ? gw_sqrt_by_fpu(square) : ((square > GW_REAL_MAX) ? GW_ROOT_MAX : GW_ZERO);
 #else
     return gw_sqrt(square);
 #endif

@@ -48,7 +48,9 @@ static inline gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
     /* Increments are small: a tick's. */
     const gw_real_t small = gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE) : gw_wrap_angle(increment_rad);
     gw_sum_t result = gw_sum_add(sum, small);
-    if (!gw_within(result.value, almost_pi)) {
+    if (gw_within(result.value, almost_pi)) {
+        result.value = gw_limited(result.value, almost_pi);
+    } else {
         result = gw_sum_within_turn(result);
     }
     return result;

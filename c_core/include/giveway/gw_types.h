@@ -27,6 +27,16 @@
 #define GW_REAL_DOUBLE 0
 #endif
 
+/* Functions that the compiler is not to merge into their callers: the stack of one is free again when the next begins.
+ * GW_SELDOM: besides, what no tick needs, or hardly one: small rather than fast. Other compilers may ignore both. */
+#if defined(__GNUC__)
+#define GW_APART __attribute__((noinline))
+#define GW_SELDOM __attribute__((noinline, cold))
+#else
+#define GW_APART
+#define GW_SELDOM
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
