@@ -51,6 +51,7 @@ class Footprint:
     stack: int
     step_recorded: int
     step_searched: int
+    step_bristles: int
     servo_step: int
 
 
@@ -63,6 +64,7 @@ TARGET = Footprint(
     stack=512,
     step_recorded=3000,
     step_searched=3000,
+    step_bristles=3000,
     servo_step=300,
 )
 ROWS = {
@@ -73,6 +75,7 @@ ROWS = {
     "stack": "Worst stack, bytes",
     "step_recorded": "Longest step over a recorded collision, instructions",
     "step_searched": "Longest step found by search, instructions",
+    "step_bristles": "The same with bristles for the rollers' friction",
     "servo_step": "Longest servo step, instructions",
 }
 

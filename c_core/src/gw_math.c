@@ -243,7 +243,7 @@ gw_real_t gw_tanh(gw_real_t x)
     } else if (size >= TANH_SATURATED) {
         result = (x < GW_ZERO) ? -GW_ONE : GW_ONE;
     } else {
-        /* NaN: 0 */
+        /* NaN: the zero that x = 0 gives */
     }
     return result;
 }
@@ -348,7 +348,8 @@ static gw_real_t atan_of_fraction(gw_real_t x)
         (gw_real_t)0.6435011087932843868028,
         (gw_real_t)0.7853981633974483096157,
     };
-    const int32_t quarter = (int32_t)((x * (gw_real_t)4.0) + GW_HALF);
+    const gw_real_t shifted = (x * (gw_real_t)4.0) + GW_HALF;
+    const int32_t quarter = (int32_t)shifted;
     const gw_real_t c = (gw_real_t)quarter * (gw_real_t)0.25;
     const gw_real_t z = (x - c) / (GW_ONE + (x * c));
     const gw_real_t square = z * z;

@@ -28,8 +28,9 @@
 #endif
 
 /* Functions that the compiler is not to merge into their callers: the stack of one is free again when the next begins.
- * GW_SELDOM: besides, what no tick needs, or hardly one: small rather than fast. Other compilers may ignore both. */
-#if defined(__GNUC__)
+ * GW_SELDOM: besides, what no tick needs, or hardly one: small rather than fast. Other compilers may ignore
+ * both, and Frama-C has to: it forgets what functions with these attributes return. */
+#if defined(__GNUC__) && !defined(__FRAMAC__)
 #define GW_APART __attribute__((noinline))
 #define GW_SELDOM __attribute__((noinline, cold))
 #else
