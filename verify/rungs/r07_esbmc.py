@@ -41,8 +41,8 @@ HARNESSES = {
     ),
     "sensor_check": Harness(
         ("gw_sensor_check", "gw_math", "gw_config"),
-        "if (!gw_is_finite(sample->torque_nm[i])) {",
-        "if (sample->torque_nm[i] > GW_REAL_MAX) {",
+        "if (gw_magnitude(sample->torque_nm[i]) < limit_nm) {",
+        "if (!(gw_magnitude(sample->torque_nm[i]) >= limit_nm)) {",
     ),
     "supervisor": Harness(
         ("gw_supervisor", "gw_math", "gw_config"), "} else if (events->stop_request) {", "} if (events->stop_request) {"

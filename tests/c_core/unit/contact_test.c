@@ -155,6 +155,19 @@ static void the_end_that_is_met_first_does_not_depend_on_the_centre(void)
     }
 }
 
+/* The line runs through the first corner alone, and all others lie on its right: what lies on it counts as left, so the
+ * edge behind that corner is entered. */
+static void a_line_through_the_first_corner_alone_enters_there(void)
+{
+    const gw_contact_config_t triangle = {3U, {{R(0.0), R(0.0)}, {R(1.0), R(-0.5)}, {R(1.0), R(0.5)}}, R(1.0)};
+    const gw_wrench_t push = {R(0.0), R(10.0), R(0.0)};
+    gw_contact_t contact;
+    gw_contact_estimate_t estimate;
+    CHECK_STATUS(gw_contact_init(&contact, &triangle), GW_STATUS_OK);
+    CHECK_STATUS(gw_contact_locate(&contact, push, NO_SIGMA, &estimate), GW_STATUS_OK);
+    CHECK(estimate.on_outline && (estimate.point_m.x == R(0.0)) && (estimate.point_m.y == R(0.0)));
+}
+
 static void the_lever_arm_comes_with_its_deviation(void)
 {
     const gw_wrench_t push = {R(0.0), R(10.0), R(3.0)};
@@ -208,6 +221,7 @@ void suite_contact(void)
     unit_run("a_line_through_corners_enters_or_touches", a_line_through_corners_enters_or_touches);
     unit_run("the_end_that_is_met_first_does_not_depend_on_the_centre",
              the_end_that_is_met_first_does_not_depend_on_the_centre);
+    unit_run("a_line_through_the_first_corner_alone_enters_there", a_line_through_the_first_corner_alone_enters_there);
     unit_run("the_lever_arm_comes_with_its_deviation", the_lever_arm_comes_with_its_deviation);
     unit_run("a_weak_push_is_not_located", a_weak_push_is_not_located);
     unit_run("what_is_not_finite_is_refused", what_is_not_finite_is_refused);

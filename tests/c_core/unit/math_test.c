@@ -155,6 +155,8 @@ static void the_hyperbolic_tangent_saturates_at_one(void)
         CHECK_NEAR(gw_tanh(rows[i].x), rows[i].tanh, R(4.0) * ULP);
     }
     CHECK(gw_tanh(R(30.0)) == R(1.0));
+    CHECK_NEAR(gw_tanh(R(10.0)), R(0.99999999587769276), R(4.0) * ULP); /* from here on 1 in float, */
+    CHECK(gw_tanh(R(20.0)) == R(1.0));                                  /* from here on in double */
     CHECK(gw_tanh(-unit_infinity()) == R(-1.0));
     CHECK(gw_tanh(unit_nan()) == R(0.0));
 }
