@@ -69,8 +69,8 @@ HARNESSES = {
     ),
     "joint": Harness(
         ("gw_math", "gw_kinematics", "gw_config"),
-        "gw_sum_add_angle(joint->angle_rad[i], turned.wheel[i])",
-        "gw_sum_add(joint->angle_rad[i], turned.wheel[i])",
+        "gw_sum_add_angle(joint->angle_rad[i], turned_rad)",
+        "gw_sum_add(joint->angle_rad[i], turned_rad)",
         "src/gw_joint.c",
         checks=(),
     ),
