@@ -85,6 +85,7 @@ PARTS = {
     "controller and servo": None,
     "the same, and the names of the configuration's fields": 1,
     "estimator with its tare, detector and admittance": 2,
+    "estimator with its tare and detector": 4,
     "servo": 3,
 }
 SMALL = ("-Os", *FLAGS[1:])

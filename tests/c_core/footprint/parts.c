@@ -27,31 +27,37 @@ void firmware(void)
         status = gw_servo_step(&servo, &servo_input, &servo_output);
     }
 }
-#elif (PART == 2) /* estimate, detection and escape, without modes, plan and wheel commands */
+#elif (PART == 2) || (PART == 4) /* estimate and detection, with or without escape: no modes, plan and wheel commands */
 static gw_estimator_t estimator;
 static gw_detector_t detector;
-static gw_admittance_t admittance;
 const gw_controller_config_t config = {0};
 gw_estimator_input_t input;
 gw_estimator_output_t estimate;
 gw_detector_input_t push;
 gw_detector_output_t detection;
+#if (PART == 2)
+static gw_admittance_t admittance;
 gw_admittance_output_t motion;
 gw_vector_t vector;
+#endif
 
 void firmware(void)
 {
     status = gw_estimator_init(&estimator, &config.estimator, &config.geometry, &config.base, &config.friction,
                                config.period_s);
     status = gw_detector_init(&detector, &config.detector, config.period_s);
+#if (PART == 2)
     status = gw_admittance_init(&admittance, &config.admittance, config.period_s);
+#endif
     while (gw_estimator_tare(&estimator, &input.torque_nm) != GW_TARE_DONE) {
     }
     for (;;) {
         status = gw_estimator_step(&estimator, &input, &estimate);
         status = gw_detector_step(&detector, &push, &detection);
+#if (PART == 2)
         status = gw_admittance_start(&admittance, vector, vector);
         status = gw_admittance_step(&admittance, vector, &motion);
+#endif
     }
 }
 #else /* the servo of a drive */
