@@ -92,9 +92,9 @@ def test_the_same_seed_draws_the_same_mutants(tmp_path: Path) -> None:
 
 def test_real_mutants_meet_their_fates(tmp_path: Path) -> None:
     killers = Killers(Context(ROOT, tmp_path))
-    source = ROOT / "c_core" / "src" / "gw_sum.c"
+    source, other = (ROOT / "c_core" / "src" / name for name in ("gw_sum.c", "gw_detector.c"))
     header = ROOT / "c_core" / "include" / "giveway" / "gw_sum.h"
-    texts = {path: path.read_text() for path in (source, header)}
+    texts = {path: path.read_text() for path in (source, other, header)}
 
     def fate(path: Path, healthy: str, sick: str) -> Fate:
         assert texts[path].count(healthy) == 1
@@ -105,7 +105,7 @@ def test_real_mutants_meet_their_fates(tmp_path: Path) -> None:
     # An inline function's mutant is in every source that includes it.
     assert fate(header, "increment - sum.excess", "increment + sum.excess") is Fate.UNIT
     assert fate(source, "+= TURN_REMAINDER", "+= no_such_name") is Fate.NOT_COMPILED
-    assert fate(source, "((gw_real_t)3.0)", "((gw_real_t)3.03)") is Fate.SURVIVED
+    assert fate(other, "PERIOD, 0U, period_s", "PERIOD, 1U, period_s") is Fate.SURVIVED
     assert fate(source, "result.value >= GW_PI", "result.value >= (GW_PI)") is Fate.SAME_OBJECT
     for endless in ("for (;;) { }", 'for (;;) { extern int puts(const char *); (void)puts("x"); }'):
         assert fate(source, "result.excess += TURN_REMAINDER;", endless) is Fate.UNIT
