@@ -49,6 +49,8 @@ public:
         last_event_ = L(-1.0);
         now_s_ = 0.0;
         last_step_s_ = 0.0;
+        stage_ = {};
+        present_ = {};
         evaluated_ = false;
         torques_are_new_ = false;
         // Elements that there are.
@@ -90,7 +92,7 @@ public:
             rate_before_ = e.rate;
             indicators_before_ = plant::event_indicators(e, x_, m_, p_, d_);
             acted_ = u_;
-            x_ = moved(x_, e.rate, L(step_s), u_);
+            move(x_, before_, rate_before_, L(step_s), u_);
             evaluated_ = false;
             last_step_s_ = step_s;
             now_s_ = start_s + static_cast<double>(step) * step_s;
@@ -109,41 +111,46 @@ public:
 private:
     template <class Block> static const double* rows(const Block& block) { return reinterpret_cast<const double*>(&block); }
 
-    Evaluation evaluate(const State& x, const plant::Inputs<L>& u) {
+    // Not inlined, so that all who need it share one copy in the instruction cache.
+    [[gnu::noinline, gnu::flatten]] void evaluate(Evaluation& e, const State& x, const plant::Inputs<L>& u) {
         there_.gear_direction = m_.gear_direction;
         there_.latched = m_.latched;
-        return plant::evaluate(x, u, there_, p_, d_);
+        plant::evaluate_into(e, x, u, there_, p_, d_);
     }
 
-    // One step of the classic Runge-Kutta method. `rate`: at x.
-    State moved(const State& x, State rate, L step_s, const plant::Inputs<L>& u) {
-        const L weights[4] = {L(1.0 / 6.0) * step_s, L(1.0 / 3.0) * step_s, L(1.0 / 3.0) * step_s, L(1.0 / 6.0) * step_s};
-        const L reaches[3] = {L(0.5) * step_s, L(0.5) * step_s, step_s};
-        State next = x;
-        for (int stage = 0;; ++stage) {
+    // One step of the classic Runge-Kutta method from x, where the rate is `rate` (it may be that of stage_), to `next`.
+    void move(State& next, const State& x, const State& rate, L step_s, const plant::Inputs<L>& u) {
+        const L sixth = L(1.0 / 6.0) * step_s;
+        const L third = L(1.0 / 3.0) * step_s;
+        const L half = L(0.5) * step_s;
+        State sum; // x and its weighted rates so far
+        State reached;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            sum[i] = x[i] + sixth * rate[i];
+            reached[i] = x[i] + half * rate[i];
+        }
+        for (const L reach : {half, step_s}) {
+            evaluate(stage_, reached, u);
             for (std::size_t i = 0; i < x.size(); ++i) {
-                next[i] = next[i] + weights[stage] * rate[i];
+                sum[i] = sum[i] + third * stage_.rate[i];
+                reached[i] = x[i] + reach * stage_.rate[i];
             }
-            if (stage == 3) {
-                return next;
-            }
-            State reached;
-            for (std::size_t i = 0; i < x.size(); ++i) {
-                reached[i] = x[i] + reaches[stage] * rate[i];
-            }
-            rate = evaluate(reached, u).rate;
+        }
+        evaluate(stage_, reached, u);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            next[i] = sum[i] + sixth * stage_.rate[i];
         }
     }
 
     // Everything at the present state and inputs, after the mode changes that are due. A lane in which none is due keeps its bits.
     const Evaluation& settled() {
         if (!evaluated_) {
-            present_ = evaluate(x_, u_);
+            evaluate(present_, x_, u_);
             evaluated_ = true;
         }
         if (last_step_s_ > 0.0) {
             if (change_modes()) {
-                present_ = evaluate(x_, u_);
+                evaluate(present_, x_, u_);
             }
             last_step_s_ = 0.0;
         }
@@ -156,7 +163,7 @@ private:
                 changed = changed + math::abs(m_.gear_direction[i] - before[i]);
             }
             if (any(math::less(L(0.0), changed))) {
-                present_ = evaluate(x_, u_);
+                evaluate(present_, x_, u_);
             } else {
                 plant::drive_motors(present_, x_, u_, m_, p_);
             }
@@ -247,10 +254,13 @@ private:
             const L straight = step * rate_before_[i];
             x[i] = before_[i] + part * (straight + part * (x_[i] - before_[i] - straight));
         }
-        plant::planar_transition(evaluate(x, acted_), x, m_, fired, p_, d_);
-        x = moved(x, evaluate(x, acted_).rate, (L(1.0) - part) * step, acted_);
+        evaluate(stage_, x, acted_);
+        plant::planar_transition(stage_, x, m_, fired, p_, d_);
+        evaluate(stage_, x, acted_);
+        State end;
+        move(end, x, stage_.rate, (L(1.0) - part) * step, acted_);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            x_[i] = math::select(decided, x[i], x_[i]);
+            x_[i] = math::select(decided, end[i], x_[i]);
         }
     }
 
@@ -263,6 +273,7 @@ private:
     plant::Outputs<L> outputs_{};
     L first_contact_, events_, last_event_;
     double now_s_ = 0.0;
+    Evaluation stage_{};   // on the way to somewhere
     Evaluation present_{}; // at x_, u_ and m_, if
     bool evaluated_ = false;
     bool torques_are_new_ = false;

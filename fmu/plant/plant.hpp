@@ -101,9 +101,9 @@ void drive_motors(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u,
     e.rate[work_in] = work;
 }
 
+// `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
 template <class T>
-Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
-    Evaluation<T> e{};
+void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
     e.heading = math::sincos(x[base_theta]);
     e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
     const T omega = x[base_omega];
@@ -188,6 +188,12 @@ Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<
     e.rate[dissipated] = loss;
     e.rate[impulse_x] = force_world.x;
     e.rate[impulse_y] = force_world.y;
+}
+
+template <class T>
+Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+    Evaluation<T> e{};
+    evaluate_into(e, x, u, m, p, d);
     return e;
 }
 
