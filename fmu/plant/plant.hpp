@@ -114,6 +114,11 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
     e.push_power = dot(push, e.velocity + omega * turned(push_point));
 
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
+    // Of all wheels first: three chains of operations side by side in the processor.
+    std::array<T, wheel_count> steady;
+    for (int i = 0; i < wheel_count; ++i) {
+        steady[i] = steady_friction(p, i, dot(Vector2<T>{T(wheel_cos[i]), T(wheel_sin[i])}, e.velocity));
+    }
     for (int i = 0; i < wheel_count; ++i) {
         const Vector2<T> radial{T(wheel_cos[i]), T(wheel_sin[i])};
         const T axial_speed = dot(radial, e.velocity);
@@ -121,7 +126,7 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
         const Planar3<T> row = wheel_row(p, i);
         e.wheel_speed[i] = dot(row, twist);
         e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
-        const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
+        const auto roller = roller_force(p, i, axial_speed, x[bristle + i], steady[i]);
         e.roller_force[i] = p.wheel_traction[i] * roller.force;
 
         // The parts of the wheel's and roller's accelerations that come from turning (29), (30).

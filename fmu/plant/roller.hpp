@@ -19,22 +19,32 @@ template <class T> T bristle_rate(T v, T z, T stiffness, T limit, T elastic_frac
     return v * (T(1.0) - sliding * rho);
 }
 
-// v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m.
-template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z) {
+// What a roller's friction comes to in steady motion at speed v (28); a bristle sticks to as much as Coulomb friction near rest.
+template <class T> T steady_friction(const Parameters<T>& p, int wheel, T v) {
     const T coulomb = p.wheel_load[wheel] * p.roller_torque / p.roller_radius;
-    const T speed = math::abs(v);
-    const T steady = math::tanh(p.roller_slope * speed / p.roller_radius);
+    const T steady = math::tanh(p.roller_slope * math::abs(v) / p.roller_radius);
     if (p.roller_model == RollerModel::tanh) {
-        const T force = math::select(math::less(v, T(0.0)), T(-1.0) * coulomb * steady, coulomb * steady);
-        return {force, T(0.0), force * v};
+        return coulomb * steady;
     }
     const T stick = math::exp(T(-1.0) * math::square(v / p.roller_stribeck_speed));
+    return coulomb * (stick + (T(1.0) - stick) * steady);
+}
+
+// v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m; steady: steady_friction() at v, N.
+template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z, T steady) {
+    if (p.roller_model == RollerModel::tanh) {
+        const T force = math::select(math::less(v, T(0.0)), T(-1.0) * steady, steady);
+        return {force, T(0.0), force * v};
+    }
     // The floor keeps rho finite for a wheel without load.
-    const T limit = math::max(coulomb * (stick + (T(1.0) - stick) * steady), T(1e-9));
+    const T limit = math::max(steady, T(1e-9));
     const T sigma0 = p.roller_presliding_stiffness[wheel];
     const T rate = bristle_rate(v, z, sigma0, limit, p.roller_elastic_fraction);
     const T force = sigma0 * z + p.roller_presliding_damping * rate;
     return {force, rate, force * v - sigma0 * z * rate};
+}
+template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z) {
+    return roller_force(p, wheel, v, z, steady_friction(p, wheel, v));
 }
 
 // Deflection in steady motion at speed v, where z' = 0 and the friction is that of (28).
@@ -42,10 +52,7 @@ template <class T> T steady_deflection(const Parameters<T>& p, int wheel, T v) {
     if (p.roller_model == RollerModel::tanh) {
         return T(0.0);
     }
-    const T coulomb = p.wheel_load[wheel] * p.roller_torque / p.roller_radius;
-    const T stick = math::exp(T(-1.0) * math::square(v / p.roller_stribeck_speed));
-    const T limit = coulomb * (stick + (T(1.0) - stick) * math::tanh(p.roller_slope * math::abs(v) / p.roller_radius));
-    return math::sign(v) * limit / p.roller_presliding_stiffness[wheel];
+    return math::sign(v) * steady_friction(p, wheel, v) / p.roller_presliding_stiffness[wheel];
 }
 
 } // namespace giveway::plant
