@@ -15,23 +15,19 @@ public:
         delay_ = delay_cycles;
         next_ = 0;
         for (int j = 1; j <= delay_; ++j) {
-            entries_[slot(-j)] = history(j);
+            entries_[static_cast<std::size_t>(delay_ + 1 - j)] = history(j);
         }
     }
 
     // Puts this cycle's entry in and returns the one of `delay_cycles` ago.
     Entry exchange(const Entry& entry) {
-        entries_[slot(0)] = entry;
-        const Entry out = entries_[slot(-delay_)];
-        next_ = (next_ + 1) % length;
-        return out;
+        entries_[static_cast<std::size_t>(next_)] = entry;
+        next_ = next_ == delay_ ? 0 : next_ + 1; // no more places than are needed, which stay in the processor's cache
+        return entries_[static_cast<std::size_t>(next_)];
     }
 
 private:
-    static constexpr int length = max_delay_cycles + 1;
-    [[nodiscard]] std::size_t slot(int offset) const { return static_cast<std::size_t>((next_ + offset + length) % length); }
-
-    std::array<Entry, length> entries_{};
+    std::array<Entry, max_delay_cycles + 1> entries_{};
     int delay_ = 0;
     int next_ = 0;
 };
