@@ -99,4 +99,7 @@ template <class T> SinCos<T> sincos(T a) {
     return {sin_sign * select(odd, c, s), cos_sign * select(odd, s, c)};
 }
 
+// Of the base's heading, which lanes have their own for.
+template <class T> SinCos<T> heading(const T& a) { return sincos(a); }
+
 } // namespace giveway::math

@@ -40,4 +40,24 @@ template <int N> Lanes<N> tanh(Lanes<N> a) {
     return select(less(a, L(0.0)), L(-1.0) * t, t);
 }
 
+// To 4e-13, for |a| < 1e5 rad; sincos() itself has to give noise the bits that it has for double.
+template <int N> SinCos<Lanes<N>> heading(const Lanes<N>& a) {
+    using L = Lanes<N>;
+    using Bits = typename L::Bits;
+    const L shift(6755399441055744.0);
+    const L sum = a * L(0.63661977236758134) + shift; // the quadrant in its lowest bits
+    const L n = sum - shift;
+    const L r = (a - n * L(0x1.921fb54400000p+0)) - n * L(0x1.0b4611a626331p-34); // pi/2 in two parts, the first with trailing zero bits
+    const L r2 = r * r;
+    const L r4 = r2 * r2;
+    const L s = (L(-1.0 / 6.0) + L(1.0 / 120.0) * r2) + ((L(-1.0 / 5040.0) + L(1.0 / 362880.0) * r2) + (L(-1.0 / 39916800.0) + L(1.0 / 6227020800.0) * r2) * r4) * r4;
+    const L c = (L(1.0 / 24.0) - L(1.0 / 720.0) * r2) + ((L(1.0 / 40320.0) - L(1.0 / 3628800.0) * r2) + L(1.0 / 479001600.0) * r4) * r4;
+    const L sin = r + (r * r2) * s;
+    const L cos = (L(1.0) - L(0.5) * r2) + r4 * c;
+    const auto quadrant = std::bit_cast<Bits>(sum.value);
+    const LaneMask<N> odd{quadrant & 1};
+    const auto negated = [](L b, Bits twos) { return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<Bits>(b.value) ^ ((twos & 2) << 62))); };
+    return {negated(select(odd, cos, sin), quadrant), negated(select(odd, sin, cos), quadrant + 1)};
+}
+
 } // namespace giveway::math

@@ -104,7 +104,7 @@ void drive_motors(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u,
 // `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
 template <class T>
 void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
-    e.heading = math::sincos(x[base_theta]);
+    e.heading = math::heading(x[base_theta]);
     e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
     const T omega = x[base_omega];
     const Planar3<T> twist{e.velocity.x, e.velocity.y, omega};
@@ -230,7 +230,7 @@ void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Mod
 template <class T>
 EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
     EventVector<T> g{};
-    const auto heading = math::sincos(x[base_theta]);
+    const auto heading = math::heading(x[base_theta]);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
     const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
     for (int i = 0; i < wheel_count; ++i) {
@@ -323,7 +323,7 @@ template <class T> void break_away(const Inputs<T>& u, Modes<T>& m, const Parame
 // After the inputs changed: a stuck gear whose motor now pulls more than its stiction breaks away.
 template <class T>
 void accept_inputs(const StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {
-    const auto heading = math::sincos(x[base_theta]);
+    const auto heading = math::heading(x[base_theta]);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
     const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
     for (int i = 0; i < wheel_count; ++i) {

@@ -57,6 +57,8 @@ template <int N> void operations(Report report) {
         expect("exp", math::exp(x), [](double p, double) { return math::exp(math::Lanes<1>(p)).value; });
         expect("expm1", math::expm1(x), [](double p, double) { return math::expm1(p); });
         expect("tanh", math::tanh(x), [](double p, double) { return math::tanh(math::Lanes<1>(p)).value; });
+        expect("heading, sin", math::heading(x).sin, [](double p, double) { return math::heading(math::Lanes<1>(p)).sin.value; });
+        expect("heading, cos", math::heading(x).cos, [](double p, double) { return math::heading(math::Lanes<1>(p)).cos.value; });
         expect("sin", math::sincos(x).sin, [](double p, double) { return math::sincos(p).sin; });
         expect("cos", math::sincos(x).cos, [](double p, double) { return math::sincos(p).cos; });
         const L positive = math::max(math::abs(x), L(1e-300));
@@ -78,7 +80,7 @@ template <int N> void operations(Report report) {
     }
 }
 
-// How far exp and tanh of lanes are from libm's: relative errors, for arguments over their range and close to 0.
+// How far exp, tanh and the heading's sine and cosine of lanes are from libm's: relative errors, for arguments over their range and close to 0.
 template <int N> void own_functions(Report report) {
     using L = math::Lanes<N>;
     constexpr double bound = 1e-11; // lanes_elementary.hpp: 3e-12, and tanh takes a difference of two of them
@@ -91,6 +93,17 @@ template <int N> void own_functions(Report report) {
         compare_close(report, "tanh", Rows<N>(math::tanh(L(near))).value[N - 1], std::tanh(near), bound);
         compare(report, "tanh is odd", Rows<N>(math::tanh(L(-near))).value[N - 1], -Rows<N>(math::tanh(L(near))).value[N - 1], N - 1);
     }
+    constexpr double heading_bound = 5e-13; // lanes_elementary.hpp: 4e-13; of sine and cosine themselves, not relative, hence the 2
+    for (int i = 0; i <= count; ++i) {
+        const double turns = -700.0 + 1400.0 * (static_cast<double>(i) / count);
+        for (const double angle : {turns, 0.003 * turns, 140.0 * turns}) {
+            const auto found = math::heading(L(angle));
+            compare_close(report, "sine of a heading", 2.0 + Rows<N>(found.sin).value[N - 1], 2.0 + std::sin(angle), heading_bound);
+            compare_close(report, "cosine of a heading", 2.0 + Rows<N>(found.cos).value[N - 1], 2.0 + std::cos(angle), heading_bound);
+        }
+    }
+    compare(report, "sine of 0", Rows<N>(math::heading(L(0.0)).sin).value[0], 0.0, 0);
+    compare(report, "cosine of 0", Rows<N>(math::heading(L(0.0)).cos).value[0], 1.0, 0);
     compare(report, "exp(0)", Rows<N>(math::exp(L(0.0))).value[0], 1.0, 0);
     compare(report, "tanh(0)", Rows<N>(math::tanh(L(0.0))).value[0], 0.0, 0);
     compare(report, "tanh saturates", Rows<N>(math::tanh(L(20.0))).value[0], 1.0, 0);
