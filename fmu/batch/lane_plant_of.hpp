@@ -49,7 +49,8 @@ public:
         last_event_ = L(-1.0);
         now_s_ = 0.0;
         last_step_s_ = 0.0;
-        stage_ = {};
+        stages_ = {};
+        restart_ = {};
         present_ = {};
         evaluated_ = false;
         torques_are_new_ = false;
@@ -118,27 +119,23 @@ private:
         plant::evaluate_into(e, x, u, there_, p_, d_);
     }
 
-    // One step of the classic Runge-Kutta method from x, where the rate is `rate` (it may be that of stage_), to `next`.
+    // One step of the classic Runge-Kutta method from x, where the rate is `rate`, to `next`.
     void move(State& next, const State& x, const State& rate, L step_s, const plant::Inputs<L>& u) {
         const L sixth = L(1.0 / 6.0) * step_s;
         const L third = L(1.0 / 3.0) * step_s;
         const L half = L(0.5) * step_s;
-        State sum; // x and its weighted rates so far
         State reached;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            sum[i] = x[i] + sixth * rate[i];
-            reached[i] = x[i] + half * rate[i];
-        }
-        for (const L reach : {half, step_s}) {
-            evaluate(stage_, reached, u);
+        const L reaches[] = {half, half, step_s};
+        const State* from = &rate;
+        for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
             for (std::size_t i = 0; i < x.size(); ++i) {
-                sum[i] = sum[i] + third * stage_.rate[i];
-                reached[i] = x[i] + reach * stage_.rate[i];
+                reached[i] = x[i] + reaches[stage] * (*from)[i];
             }
+            evaluate(stages_[stage], reached, u);
+            from = &stages_[stage].rate;
         }
-        evaluate(stage_, reached, u);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            next[i] = sum[i] + sixth * stage_.rate[i];
+            next[i] = (((x[i] + sixth * rate[i]) + third * stages_[0].rate[i]) + third * stages_[1].rate[i]) + sixth * stages_[2].rate[i];
         }
     }
 
@@ -254,11 +251,11 @@ private:
             const L straight = step * rate_before_[i];
             x[i] = before_[i] + part * (straight + part * (x_[i] - before_[i] - straight));
         }
-        evaluate(stage_, x, acted_);
-        plant::planar_transition(stage_, x, m_, fired, p_, d_);
-        evaluate(stage_, x, acted_);
+        evaluate(restart_, x, acted_);
+        plant::planar_transition(restart_, x, m_, fired, p_, d_);
+        evaluate(restart_, x, acted_);
         State end;
-        move(end, x, stage_.rate, (L(1.0) - part) * step, acted_);
+        move(end, x, restart_.rate, (L(1.0) - part) * step, acted_);
         for (std::size_t i = 0; i < x.size(); ++i) {
             x_[i] = math::select(decided, end[i], x_[i]);
         }
@@ -273,7 +270,8 @@ private:
     plant::Outputs<L> outputs_{};
     L first_contact_, events_, last_event_;
     double now_s_ = 0.0;
-    Evaluation stage_{};   // on the way to somewhere
+    std::array<Evaluation, 3> stages_{}; // on the way to the end of a step
+    Evaluation restart_{}; // where a step is taken up again
     Evaluation present_{}; // at x_, u_ and m_, if
     bool evaluated_ = false;
     bool torques_are_new_ = false;
