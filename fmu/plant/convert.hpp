@@ -114,6 +114,7 @@ template <class To, class From> Derived<To> convert(const Derived<From>& d) {
         .plate_x = To(d.plate_x),
         .plate_y = To(d.plate_y),
         .carriage_mass = To(d.carriage_mass),
+        .roller_plastic_fraction = To(d.roller_plastic_fraction),
         .rope_pretension_length = To(d.rope_pretension_length),
         .tip_rate = To(d.tip_rate),
         .wheel_half_length = To(d.wheel_half_length),

@@ -10,6 +10,7 @@ template <class T> struct Derived {
     T origin_x, origin_y; // nose centre at s = 0, c = 0, world frame
     T plate_x, plate_y;   // unit outward vector of a robot-mounted plate, base frame
     math::Divisor<T> carriage_mass; // slider without a plate that moves on its own
+    math::Divisor<T> roller_plastic_fraction; // of a bristle's force, in which it slips more and more
     T rope_pretension_length; // ext0
     T tip_rate;               // of tipping over the line between two wheels, 1/s
     T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
@@ -29,6 +30,7 @@ template <class T> Derived<T> derive(const Parameters<T>& p) {
     d.plate_y = mount.sin;
     const T slider_mass = p.slider_mass;
     d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.plate_mass : slider_mass;
+    d.roller_plastic_fraction = T(1.0) - p.roller_elastic_fraction;
     d.rope_pretension_length = T(p.hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
     const T tipping_inertia = p.tilt_inertia + p.mass * (math::square(p.com_height) + math::square(T(0.5) * p.wheel_distance));
     d.tip_rate = math::sqrt(p.mass * T(gravity_mps2) * p.com_height / tipping_inertia);

@@ -126,7 +126,7 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
         const Planar3<T> row = wheel_row(p, i);
         e.wheel_speed[i] = dot(row, twist);
         e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
-        const auto roller = roller_force(p, i, axial_speed, x[bristle + i], steady[i]);
+        const auto roller = roller_force(p, d.roller_plastic_fraction, i, axial_speed, x[bristle + i], steady[i]);
         e.roller_force[i] = p.wheel_traction[i] * roller.force;
 
         // The parts of the wheel's and roller's accelerations that come from turning (29), (30).

@@ -11,10 +11,10 @@ template <class T> struct RollerForce {
     T dissipation;     // W
 };
 
-// z' of an elasto-plastic bristle that slides past the floor at v and slips at `limit` (N).
-template <class T> T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction) {
+// z' of an elasto-plastic bristle that slides past the floor at v and slips at `limit` (N); plastic_fraction: 1 - elastic_fraction.
+template <class T> T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction, const math::Divisor<T>& plastic_fraction) {
     const T rho = stiffness * math::abs(z) / limit;
-    const T y = math::clamp((rho - elastic_fraction) / (T(1.0) - elastic_fraction), T(0.0), T(1.0));
+    const T y = math::clamp((rho - elastic_fraction) / plastic_fraction, T(0.0), T(1.0));
     const T sliding = math::select(math::less(T(0.0), z * v), y * y * (T(3.0) - T(2.0) * y), T(0.0));
     return v * (T(1.0) - sliding * rho);
 }
@@ -31,7 +31,7 @@ template <class T> T steady_friction(const Parameters<T>& p, int wheel, T v) {
 }
 
 // v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m; steady: steady_friction() at v, N.
-template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z, T steady) {
+template <class T> RollerForce<T> roller_force(const Parameters<T>& p, const math::Divisor<T>& plastic_fraction, int wheel, T v, T z, T steady) {
     if (p.roller_model == RollerModel::tanh) {
         const T force = math::select(math::less(v, T(0.0)), T(-1.0) * steady, steady);
         return {force, T(0.0), force * v};
@@ -39,12 +39,12 @@ template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel
     // The floor keeps rho finite for a wheel without load.
     const T limit = math::max(steady, T(1e-9));
     const T sigma0 = p.roller_presliding_stiffness[wheel];
-    const T rate = bristle_rate(v, z, sigma0, limit, p.roller_elastic_fraction);
+    const T rate = bristle_rate(v, z, sigma0, limit, p.roller_elastic_fraction, plastic_fraction);
     const T force = sigma0 * z + p.roller_presliding_damping * rate;
     return {force, rate, force * v - sigma0 * z * rate};
 }
 template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z) {
-    return roller_force(p, wheel, v, z, steady_friction(p, wheel, v));
+    return roller_force(p, math::Divisor<T>(T(1.0) - p.roller_elastic_fraction), wheel, v, z, steady_friction(p, wheel, v));
 }
 
 // Deflection in steady motion at speed v, where z' = 0 and the friction is that of (28).

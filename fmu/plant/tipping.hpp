@@ -112,7 +112,7 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
         const T axial_speed = dot(f.radial, f.velocity);
         const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
         const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
-        const T grip_rate = bristle_rate(slip, x[grip + i], p.grip_stiffness, p.grip_friction * nominal_load, p.roller_elastic_fraction);
+        const T grip_rate = bristle_rate(slip, x[grip + i], p.grip_stiffness, p.grip_friction * nominal_load, p.roller_elastic_fraction, d.roller_plastic_fraction);
         const T traction = T(-1.0) * share * (p.grip_stiffness * x[grip + i] + p.grip_damping * grip_rate);
         e.roller_force[i] = share * roller.force;
         const Vector3<T> at_floor = traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
