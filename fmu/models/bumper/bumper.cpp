@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <new>
 
 #include "bumper_system.hpp"
 #include "bumper_variables.hpp"
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
+#include "integrated.hpp"
 #include "model.hpp"
 #include "state_archive.hpp"
 
@@ -49,8 +49,8 @@ public:
         a(start_time_s_);
         a(stored_at_start_j_);
         a(now_s_);
-        a(last_event_s_);
-        a(events_);
+        a(events_.last_s);
+        a(events_.count);
         a(exchanging_);
     }
 
@@ -64,15 +64,14 @@ public:
     Status initialise(double start_time_s, Message& message) override {
         start_time_s_ = start_time_s;
         now_s_ = 0.0;
-        events_ = 0;
+        events_ = {};
         exchanging_ = false;
         system_.start(parameters());
         system_.set_faces(faces(), 0.0);
         stored_at_start_j_ = system_.force(0.0).stored;
         const double state[state_count] = {};
-        if (!integrator_.create(system_, 0.0, state, solver_options())) {
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+        if (!integrator_.create(system_, 0.0, state, solver_options(v_, start_time_s_))) {
+            return failure(integrator_, message);
         }
         running_ = true;
         write_outputs_now();
@@ -86,8 +85,7 @@ public:
         now_s_ = integrator_.time(); // of the last good state, if it failed
         write_outputs_now();
         if (!advanced) {
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+            return failure(integrator_, message);
         }
         return Status::ok;
     }
@@ -115,14 +113,8 @@ public:
 
     Status update_events(EventUpdate& update, Message& message) override {
         // What the motion of before this instant has led to, then the new one.
-        const int count = settle(system_, now_s_, states());
-        if (count == too_many_events) {
-            std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
+        if (!settle_events(system_, now_s_, states(), start_time_s_, events_, update, message)) {
             return Status::error;
-        }
-        if (count > 0) {
-            events_ += count;
-            last_event_s_ = now_s_;
         }
         system_.set_faces(faces(), now_s_);
         update = {};
@@ -131,20 +123,10 @@ public:
 
 private:
     Status resume(Message& message) {
-        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
+            return failure(integrator_, message);
         }
         return Status::ok;
-    }
-
-    [[nodiscard]] solver::IntegratorOptions solver_options() const {
-        return {
-            .relative_tolerance = v_.solver_relative_tolerance,
-            .absolute_tolerance_scale = v_.solver_absolute_scale,
-            .maximum_step_s = v_.solver_maximum_step,
-            .clock_start_s = start_time_s_,
-        };
     }
 
     // Co-Simulation moves the faces itself.
@@ -187,12 +169,7 @@ private:
         v_.energy_work_in = x[work_in];
         v_.energy_dissipated = x[dissipated];
         v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
-        const auto statistics = integrator_.statistics(); // nothing in Model Exchange
-        const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
-        v_.events = static_cast<std::int32_t>(statistics.events) + events_;
-        v_.last_event_time = v_.events == 0 ? -1.0 : start_time_s_ + last_event_s;
-        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
-        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
+        write_statistics(v_, integrator_, events_, start_time_s_);
     }
 
     Variables v_{};
@@ -202,8 +179,7 @@ private:
     double stored_at_start_j_ = 0.0;
     double now_s_ = 0.0; // since the start
     // Model Exchange.
-    double last_event_s_ = 0.0;
-    std::int32_t events_ = 0;
+    ExchangedEvents events_;
     bool exchanging_ = false;
     // State.
     bool running_ = false; // initialised

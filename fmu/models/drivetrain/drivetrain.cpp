@@ -9,6 +9,7 @@
 #include "drivetrain_variables.hpp"
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
+#include "integrated.hpp"
 #include "model.hpp"
 #include "servo_axis.hpp"
 #include "state_archive.hpp"
@@ -54,8 +55,8 @@ public:
         a(tick_);
         a(due_);
         a(now_s_);
-        a(last_event_s_);
-        a(events_);
+        a(events_.last_s);
+        a(events_.count);
         a(exchanging_);
     }
 
@@ -78,7 +79,7 @@ public:
         due_ = true;
         servo_torque_nm_ = 0.0;
         now_s_ = 0.0;
-        events_ = 0;
+        events_ = {};
         exchanging_ = false;
         const auto refused = servo_.start({v_.servo_kp, v_.servo_kd, v_.drivetrain_torque_limit, v_.servo_derivative_cutoff,
                                            v_.servo_encoder_counts, v_.servo_delay});
@@ -90,9 +91,8 @@ public:
         const double state[state_count] = {v_.start_motor_angle, v_.start_motor_speed, v_.start_load_angle, v_.start_load_speed, 0.0, 0.0};
         system_.start(parameters(), {v_.load_inertia, v_.load_viscous}, state);
         stored_at_start_j_ = system_.evaluate(state).stored;
-        if (!integrator_.create(system_, 0.0, state, solver_options())) {
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+        if (!integrator_.create(system_, 0.0, state, solver_options(v_, start_time_s_))) {
+            return failure(integrator_, message);
         }
         running_ = true;
         write_outputs();
@@ -105,8 +105,7 @@ public:
         integrator_.restart(); // so that the state of a step needs no history of the integration
         if (!(v_.servo_enabled ? step_with_servo(end_s) : integrator_.advance(end_s))) {
             write_outputs(); // the last good state
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+            return failure(integrator_, message);
         }
         write_outputs();
         if (!std::isfinite(v_.energy_stored)) {
@@ -164,30 +163,15 @@ public:
         v_.energy_work_in = x[work_in];
         v_.energy_dissipated = x[dissipated];
         v_.energy_residual = v_.energy_work_in - v_.energy_dissipated - v_.energy_stored;
-        const auto statistics = integrator_.statistics(); // nothing in Model Exchange
-        const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
-        v_.events = static_cast<std::int32_t>(statistics.events) + events_;
-        v_.last_event_time = v_.events == 0 ? -1.0 : start_time_s_ + last_event_s;
-        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
-        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
+        write_statistics(v_, integrator_, events_, start_time_s_);
     }
 
 private:
     Status resume(Message& message) {
-        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
+            return failure(integrator_, message);
         }
         return Status::ok;
-    }
-
-    [[nodiscard]] solver::IntegratorOptions solver_options() const {
-        return {
-            .relative_tolerance = v_.solver_relative_tolerance,
-            .absolute_tolerance_scale = v_.solver_absolute_scale,
-            .maximum_step_s = v_.solver_maximum_step,
-            .clock_start_s = start_time_s_,
-        };
     }
 
     // Co-Simulation takes its torques in at the start of a step.
@@ -198,17 +182,7 @@ private:
     }
 
     bool settle_now(EventUpdate& update, Message& message) {
-        const int count = settle(system_, now_s_, states());
-        if (count == too_many_events) {
-            std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
-            return false;
-        }
-        if (count > 0) {
-            events_ += count;
-            last_event_s_ = now_s_;
-            update.states_changed = true;
-        }
-        return true;
+        return settle_events(system_, now_s_, states(), start_time_s_, events_, update, message);
     }
 
     // Acts on the tick of now, if it is one. The importer has to stop at each.
@@ -292,8 +266,7 @@ private:
     bool due_ = true;       // the servo has yet to act at this tick
     // Model Exchange.
     double now_s_ = 0.0; // since the start
-    double last_event_s_ = 0.0;
-    std::int32_t events_ = 0;
+    ExchangedEvents events_;
     bool exchanging_ = false;
     // State.
     bool running_ = false; // initialised

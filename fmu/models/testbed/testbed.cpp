@@ -3,10 +3,12 @@
 // Time runs in servo ticks of 0.5 ms. Reaching a bus tick samples the sensors; leaving it takes the command in. So sensor outputs at the end of a step
 // belong to that instant (less the bus delay), and the command set before the next step acts from there on.
 #include <cmath>
+#include <cstdio>
 #include <new>
 
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
+#include "integrated.hpp"
 #include "model.hpp"
 #include "start.hpp"
 #include "state_archive.hpp"
@@ -53,8 +55,8 @@ public:
         a(tick_);
         a(due_);
         a(now_s_);
-        a(last_event_s_);
-        a(events_);
+        a(events_.last_s);
+        a(events_.count);
         a(exchanging_);
     }
 
@@ -74,11 +76,10 @@ public:
         tick_ = 0;
         due_ = true;
         now_s_ = 0.0;
-        events_ = 0;
+        events_ = {};
         exchanging_ = false;
-        if (!integrator_.create(system_, 0.0, state.data(), solver_options())) {
-            std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-            return Status::error;
+        if (!integrator_.create(system_, 0.0, state.data(), solver_options(v_, start_time_s_))) {
+            return failure(integrator_, message);
         }
         running_ = true;
         sample_sensors();
@@ -100,8 +101,7 @@ public:
             const double until_s = reaches ? static_cast<double>(next) / static_cast<double>(servo_rate_hz) : end_s;
             if (!integrator_.advance(until_s)) {
                 write_outputs(); // the last good state
-                std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-                return Status::error;
+                return failure(integrator_, message);
             }
             if (system_.overturned()) {
                 write_outputs();
@@ -169,13 +169,7 @@ public:
         const double* x = state();
         write_truth(v_, x, system_.outputs(x), system_.modes(), system_.parameters(), system_.inputs().motor_torque,
                     {start_time_s_, system_.first_contact_time()}, stored_at_start_j_);
-        const auto statistics = integrator_.statistics(); // nothing in Model Exchange
-        const double last_event_s = events_ > 0 ? last_event_s_ : integrator_.last_event_time();
-        v_.events = static_cast<std::int32_t>(statistics.events) + events_;
-        v_.last_event_time = v_.events == 0 ? -1.0 : start_time_s_ + last_event_s;
-        v_.solver_steps = static_cast<std::int32_t>(statistics.steps);
-        v_.solver_rhs_calls = static_cast<std::int32_t>(statistics.rhs_calls);
-        v_.solver_jacobian_calls = static_cast<std::int32_t>(statistics.jacobian_calls);
+        write_statistics(v_, integrator_, events_, start_time_s_);
     }
 
 private:
@@ -183,9 +177,8 @@ private:
         if (running_) {
             system_.derive();
             exchange_state_ = checkpoint_state_;
-            if (!integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options())) {
-                std::snprintf(message.text, sizeof message.text, "%s", integrator_.error());
-                return Status::error;
+            if (!integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
+                return failure(integrator_, message);
             }
         }
         return Status::ok;
@@ -209,16 +202,6 @@ private:
         return whole;
     }
 
-    [[nodiscard]] solver::IntegratorOptions solver_options() const {
-        return {
-            .relative_tolerance = v_.solver_relative_tolerance,
-            .absolute_tolerance_scale = v_.solver_absolute_scale,
-            .maximum_step_s = v_.solver_maximum_step,
-            .method = static_cast<solver::Method>(v_.solver_method),
-            .clock_start_s = start_time_s_,
-        };
-    }
-
     // Co-Simulation takes a push in at the start of a step.
     void follow_push() {
         if (exchanging_) {
@@ -227,17 +210,7 @@ private:
     }
 
     bool settle_now(EventUpdate& update, Message& message) {
-        const int count = settle(system_, now_s_, state());
-        if (count == too_many_events) {
-            std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s_ + now_s_);
-            return false;
-        }
-        if (count > 0) {
-            events_ += count;
-            last_event_s_ = now_s_;
-            update.states_changed = true;
-        }
-        return true;
+        return settle_events(system_, now_s_, state(), start_time_s_, events_, update, message);
     }
 
     // The importer has to stop at each tick. At one of the bus first the sensors; in another update, when they have been passed on, the command.
@@ -295,8 +268,7 @@ private:
     bool due_ = true;       // the servo has yet to act at this tick
     // Model Exchange.
     double now_s_ = 0.0; // since the start
-    double last_event_s_ = 0.0;
-    std::int32_t events_ = 0;
+    ExchangedEvents events_;
     bool exchanging_ = false;
     plant::TippingVector<double> exchange_state_{};
     // State.
