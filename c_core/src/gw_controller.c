@@ -142,7 +142,7 @@ GW_SELDOM gw_status_t gw_controller_init(gw_controller_t *controller, const gw_c
     if (controller != NULL) {
         controller->initialised = (status == GW_STATUS_OK);
         if (controller->initialised) {
-            controller->config = *config;
+            controller->drives_enabled = config->drives_enabled;
             /* The configuration was checked as a whole, so none of these can refuse it. */
             (void)gw_sensor_check_init(&controller->sensor_check, &config->sensor_check);
             (void)gw_estimator_init(&controller->estimator, &config->estimator, &config->geometry, &config->base,
@@ -212,7 +212,7 @@ static gw_real_t reference_speed(const gw_controller_t *controller)
 {
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     const gw_real_t rim =
-        gw_abs(controller->reference.twist.omega_radps) * controller->config.geometry.wheel_distance_m;
+        gw_abs(controller->reference.twist.omega_radps) * controller->estimator.kinematics.wheel_distance_m;
     return gw_max(gw_length(velocity), rim);
 }
 
@@ -266,7 +266,7 @@ static void detect(gw_controller_t *controller, tick_t *now)
     detector_input.regime = now->estimate.regime;
     detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
                              (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING);
-    detector_input.reaction_over = now->reference_speed_mps < controller->config.supervisor.settled_speed_mps;
+    detector_input.reaction_over = now->reference_speed_mps < controller->supervisor.config.settled_speed_mps;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &now->detection);
     if (now->detection.tripped) {
@@ -340,7 +340,7 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
     /* The push that started the reaction is real: it must be able to bring the robot out of creeping. */
     const bool just_hit =
         controller->detector.active &&
-        (controller->detector.ticks_since_trip < controller->config.detector.blanking_ticks);
+        (controller->detector.ticks_since_trip < controller->detector.config.blanking_ticks);
     const gw_regime_t regime =
         (just_hit && (now->estimate.regime == GW_REGIME_CREEPING)) ? GW_REGIME_MOTION : now->estimate.regime;
     const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
@@ -357,7 +357,7 @@ static void give_way(gw_controller_t *controller, const tick_t *now)
 {
     gw_admittance_output_t motion;
     gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse feels none */
-    if (controller->config.admittance.kind == GW_ADMITTANCE_LIVE_FORCE) {
+    if (controller->admittance.config.kind == GW_ADMITTANCE_LIVE_FORCE) {
         force_n = live_force(controller, now);
     }
     const gw_status_t status = gw_admittance_step(&controller->admittance, force_n, &motion);
@@ -376,7 +376,7 @@ static GW_APART void take_plan(gw_controller_t *controller, const gw_plan_t *pla
         gw_reference_follow(&controller->reference, &valid, controller->supervisor.mode == GW_MODE_REJOINING);
     } else {
         /* Without a tare the robot may already be moving along its plan. */
-        const bool moving = (controller->config.estimator.tare_ticks == 0U) && controller->config.drives_enabled;
+        const bool moving = (controller->estimator.config.tare_ticks == 0U) && controller->drives_enabled;
         gw_reference_place(&controller->reference, &valid, moving);
         controller->on_plan = true;
     }
@@ -389,7 +389,7 @@ static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, c
     const bool on_the_path = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REJOINING);
     if (on_the_path && now->plan_valid && (!controller->on_plan)) {
         take_plan(controller, plan);
-    } else if ((mode == GW_MODE_FAULT) || (!controller->config.drives_enabled)) {
+    } else if ((mode == GW_MODE_FAULT) || (!controller->drives_enabled)) {
         gw_reference_freeze(&controller->reference);
     } else if ((mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED)) {
         give_way(controller, now);
@@ -404,7 +404,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
                            gw_controller_output_t *output)
 {
     const gw_kinematics_t *const kinematics = &controller->estimator.kinematics;
-    if (now->sensors_good && ((!gw_joint_is_placed(&controller->joint)) || (!controller->config.drives_enabled))) {
+    if (now->sensors_good && ((!gw_joint_is_placed(&controller->joint)) || (!controller->drives_enabled))) {
         gw_wheels_t measured;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             measured.wheel[i] = gw_estimator_encoder_angle(&controller->estimator, input->sensor.encoder_count[i]);
@@ -418,7 +418,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
     } else {
         gw_joint_hold(&controller->joint, &output->command);
     }
-    output->enable = controller->config.drives_enabled && gw_joint_is_placed(&controller->joint);
+    output->enable = controller->drives_enabled && gw_joint_is_placed(&controller->joint);
 }
 
 static void report(const gw_controller_t *controller, const tick_t *now, gw_controller_output_t *output)
@@ -461,8 +461,8 @@ static GW_SELDOM void blank_tick(tick_t *now)
 static GW_APART bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
     const gw_plan_t valid = gw_plan_limited(plan);
-    return (gw_reference_distance(&controller->reference, &valid) < controller->config.supervisor.rejoin_distance_m) &&
-           (gw_reference_angle(&controller->reference, &valid) < controller->config.supervisor.rejoin_angle_rad);
+    return (gw_reference_distance(&controller->reference, &valid) < controller->supervisor.config.rejoin_distance_m) &&
+           (gw_reference_angle(&controller->reference, &valid) < controller->supervisor.config.rejoin_angle_rad);
 }
 
 static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
@@ -504,7 +504,7 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
         status = tare_status;
     }
     const gw_vector_t force = {now.estimate.mean.force_x_n, now.estimate.mean.force_y_n};
-    const bool slow = now.reference_speed_mps < controller->config.supervisor.settled_speed_mps;
+    const bool slow = now.reference_speed_mps < controller->supervisor.config.settled_speed_mps;
     /* Each is asked for in one mode only. */
     events.quiet = slow && (before == GW_MODE_REACTING) &&
                    (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
@@ -545,9 +545,7 @@ GW_SELDOM bool gw_controller_invariant_holds(const gw_controller_t *controller)
         holds = controller->initialised;
     }
     if (holds) {
-        gw_config_error_t error;
-        holds = (gw_controller_config_check(&controller->config, &error) == GW_STATUS_OK) &&
-                gw_sensor_check_invariant_holds(&controller->sensor_check) &&
+        holds = gw_sensor_check_invariant_holds(&controller->sensor_check) &&
                 gw_estimator_invariant_holds(&controller->estimator) &&
                 gw_contact_invariant_holds(&controller->contact) &&
                 gw_detector_invariant_holds(&controller->detector) &&

@@ -74,7 +74,6 @@ typedef struct {
 } gw_controller_output_t;
 
 typedef struct {
-    gw_controller_config_t config;
     gw_sensor_check_t sensor_check;
     gw_contact_t contact;
     gw_detector_t detector;
@@ -87,6 +86,7 @@ typedef struct {
     uint32_t detection_count;
     int32_t detection_tick;
     uint32_t tick;
+    bool drives_enabled;
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */
     bool initialised;
