@@ -201,8 +201,6 @@ GW_SELDOM void gw_controller_safe_output(gw_controller_output_t *output)
 
 /* What one tick knows before the mode is decided. */
 typedef struct {
-    gw_estimator_output_t estimate;
-    gw_detector_output_t detection;
     gw_real_t reference_speed_mps; /* before it moves */
     bool sensors_good;
     bool plan_valid;
@@ -248,7 +246,7 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
     estimator_input.planned_acceleration.ax_mps2 = change.x;
     estimator_input.planned_acceleration.ay_mps2 = change.y;
     estimator_input.planned_acceleration.alpha_radps2 = acceleration.alpha_radps2;
-    return gw_estimator_step(&controller->estimator, &estimator_input, &now->estimate);
+    return gw_estimator_step(&controller->estimator, &estimator_input, &controller->estimate);
 }
 
 /* Is the robot being hit? */
@@ -256,25 +254,25 @@ static void detect(gw_controller_t *controller, tick_t *now)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     gw_detector_input_t detector_input;
-    if (now->estimate.zero_changed) {
+    if (controller->estimate.zero_changed) {
         gw_detector_clear(&controller->detector);
     }
-    detector_input.wrench = now->estimate.wrench;
-    detector_input.window_mean = now->estimate.window_mean;
-    detector_input.mean = now->estimate.mean;
-    detector_input.mean_samples = now->estimate.mean_samples;
-    detector_input.regime = now->estimate.regime;
+    detector_input.wrench = controller->estimate.wrench;
+    detector_input.window_mean = controller->estimate.window_mean;
+    detector_input.mean = controller->estimate.mean;
+    detector_input.mean_samples = controller->estimate.mean_samples;
+    detector_input.regime = controller->estimate.regime;
     detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
                              (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING);
     detector_input.reaction_over = now->reference_speed_mps < controller->supervisor.config.settled_speed_mps;
     /* The estimate is valid, so the detector cannot refuse it. */
-    (void)gw_detector_step(&controller->detector, &detector_input, &now->detection);
-    if (now->detection.tripped) {
+    (void)gw_detector_step(&controller->detector, &detector_input, &controller->detection);
+    if (controller->detection.tripped) {
         controller->detection_count = (controller->detection_count + 1U) & GW_TICK_MASK;
         controller->detection_tick = (int32_t)controller->tick;
-        controller->detection_wrench = now->detection.mean_wrench;
-        (void)gw_contact_locate(&controller->contact, now->detection.mean_wrench,
-                                sigma_of_mean(now->estimate.sigma, now->detection.samples),
+        controller->detection_wrench = controller->detection.mean_wrench;
+        (void)gw_contact_locate(&controller->contact, controller->detection.mean_wrench,
+                                sigma_of_mean(controller->estimate.sigma, controller->detection.samples),
                                 &controller->detection_contact);
     }
 }
@@ -292,7 +290,7 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
     const bool asked = requested && (!controller->tare_request_before);
     gw_status_t status = GW_STATUS_OK;
     controller->tare_request_before = requested;
-    *accepted = asked && (now->estimate.regime == GW_REGIME_REST) && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
+    *accepted = asked && (controller->estimate.regime == GW_REGIME_REST) && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
     if (asked && (!*accepted)) {
         status = GW_STATUS_TARE_REFUSED;
     }
@@ -302,7 +300,7 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 /* The direction of the hit in the world frame, as a unit vector. */
 static gw_vector_t hit_direction(const gw_controller_t *controller, const tick_t *now)
 {
-    const gw_vector_t force = {now->detection.mean_wrench.force_x_n, now->detection.mean_wrench.force_y_n};
+    const gw_vector_t force = {controller->detection.mean_wrench.force_x_n, controller->detection.mean_wrench.force_y_n};
     return gw_rotate(controller->reference.yaw, gw_unit(force.x, force.y, gw_length(force)));
 }
 
@@ -311,7 +309,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
-    if ((mode == GW_MODE_REACTING) && now->detection.tripped) {
+    if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
         (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller, now));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
@@ -335,14 +333,14 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick
 /* The force that live admittance feels: what exceeds the error that the detector forgives. World frame. */
 static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *now)
 {
-    const gw_vector_t base = {now->estimate.mean.force_x_n, now->estimate.mean.force_y_n};
+    const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     const gw_real_t length = gw_length(base);
     /* The push that started the reaction is real: it must be able to bring the robot out of creeping. */
     const bool just_hit =
         controller->detector.active &&
         (controller->detector.ticks_since_trip < controller->detector.config.blanking_ticks);
     const gw_regime_t regime =
-        (just_hit && (now->estimate.regime == GW_REGIME_CREEPING)) ? GW_REGIME_MOTION : now->estimate.regime;
+        (just_hit && (controller->estimate.regime == GW_REGIME_CREEPING)) ? GW_REGIME_MOTION : controller->estimate.regime;
     const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
@@ -423,12 +421,12 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
 
 static void report(const gw_controller_t *controller, const tick_t *now, gw_controller_output_t *output)
 {
-    output->estimate = now->estimate.mean;
+    output->estimate = controller->estimate.mean;
     /* The estimate is valid or zero; both are accepted. */
-    (void)gw_contact_locate(&controller->contact, now->estimate.mean,
-                            sigma_of_mean(now->estimate.sigma, now->estimate.mean_samples), &output->contact);
+    (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
+                            sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples), &output->contact);
     output->detection_active = controller->detector.active;
-    output->detection_statistic = now->detection.statistic;
+    output->detection_statistic = controller->detection.statistic;
     output->detection_count = controller->detection_count;
     output->detection_tick = controller->detection_tick;
     output->detection_wrench = controller->detection_wrench;
@@ -440,7 +438,7 @@ static void report(const gw_controller_t *controller, const tick_t *now, gw_cont
     output->tick = controller->tick;
 }
 
-static GW_SELDOM void blank_tick(tick_t *now)
+static GW_SELDOM void blank_tick(gw_controller_t *controller)
 {
     static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
                                                       {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
@@ -453,8 +451,8 @@ static GW_SELDOM void blank_tick(tick_t *now)
                                                       false};
     static const gw_detector_output_t no_detection = {
         false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
-    now->estimate = no_estimate;
-    now->detection = no_detection;
+    controller->estimate = no_estimate;
+    controller->detection = no_detection;
 }
 
 /* Is the reference as good as on a valid plan? */
@@ -485,12 +483,12 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
             status = GW_STATUS_PLAN_INVALID;
         }
     } else {
-        blank_tick(&now);
+        blank_tick(controller);
     }
     tare_status = judge_tare_request(controller, input->tare_request, &now, &events.tare_accepted);
     events.sensors_good = now.sensors_good;
     events.stop_request = input->stop_request;
-    events.hit = now.detection.tripped;
+    events.hit = controller->detection.tripped;
     events.plan_valid = now.plan_valid;
     events.tare_done = false;
     if (now.sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
@@ -503,11 +501,11 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     if (status == GW_STATUS_OK) {
         status = tare_status;
     }
-    const gw_vector_t force = {now.estimate.mean.force_x_n, now.estimate.mean.force_y_n};
+    const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     const bool slow = now.reference_speed_mps < controller->supervisor.config.settled_speed_mps;
     /* Each is asked for in one mode only. */
     events.quiet = slow && (before == GW_MODE_REACTING) &&
-                   (gw_length(force) < gw_detector_leak(&controller->detector, now.estimate.regime));
+                   (gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime));
     events.on_path = now.plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
     (void)gw_supervisor_step(&controller->supervisor, &events);
     enter_mode(controller, before, &now);

@@ -86,6 +86,8 @@ typedef struct {
     uint32_t detection_count;
     int32_t detection_tick;
     uint32_t tick;
+    gw_estimator_output_t estimate;
+    gw_detector_output_t detection;
     bool drives_enabled;
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */
