@@ -256,6 +256,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
     } else {
         /* planned rest */
     }
+    const gw_acceleration_t acceleration = chosen_acceleration(estimator, motion);
     gw_wheels_t friction_nm;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
         friction_nm = gw_presliding_step(&estimator->presliding, &estimator->kinematics, &estimator->rate_constants,
@@ -267,7 +268,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
     }
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     gw_wheels_t nominal = gw_nominal_torques_with_friction(&estimator->nominal, &estimator->kinematics, twist,
-                                                           chosen_acceleration(estimator, motion), &friction_nm);
+                                                           acceleration, &friction_nm);
     nominal.wheel[0] += zero->wheel[0];
     nominal.wheel[1] += zero->wheel[1];
     nominal.wheel[2] += zero->wheel[2];
@@ -340,14 +341,14 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_wheels_t torque_nm = gw_torques_limited(&input->torque_nm);
         motion.planned_twist = limited_twist(input->planned_twist);
         motion.planned_acceleration = limited_acceleration(input->planned_acceleration);
-        filter_rates(estimator, input, &torque_nm, &motion);
-        motion.measured_twist = gw_kinematics_twist(&estimator->kinematics, &motion.rates);
         const gw_real_t speed_mps = faster_of(estimator, motion.planned_twist);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         if (output->zero_changed) {
             gw_moving_average_reset(&estimator->average);
         }
         output->regime = regime_of(estimator, speed_mps);
+        filter_rates(estimator, input, &torque_nm, &motion);
+        motion.measured_twist = gw_kinematics_twist(&estimator->kinematics, &motion.rates);
         output->measured_twist = motion.measured_twist;
         output->nominal_nm = nominal_with_zero(estimator, input, &torque_nm, &motion);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &torque_nm);
