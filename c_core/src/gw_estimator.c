@@ -220,23 +220,15 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, 
     return estimator->rest != was_at_rest;
 }
 
-/* What a tick knows of the motion, along the base's axes. */
-typedef struct {
-    gw_twist_t planned_twist;
-    gw_acceleration_t planned_acceleration;
-    gw_twist_t measured_twist;
-    gw_wheels_t rates;
-    gw_wheels_t derivatives;
-} motion_t;
-
 /* The acceleration of the model; at planned rest the tare is all there is to plan. */
-static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, const motion_t *motion)
+static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, gw_acceleration_t planned,
+                                             const gw_wheels_t *rates, const gw_wheels_t *derivatives)
 {
     gw_acceleration_t acceleration = {GW_ZERO, GW_ZERO, GW_ZERO};
     if (estimator->config.acceleration_source == GW_SOURCE_MEASURED) {
-        acceleration = gw_kinematics_acceleration(&estimator->kinematics, &motion->rates, &motion->derivatives);
+        acceleration = gw_kinematics_acceleration(&estimator->kinematics, rates, derivatives);
     } else if ((estimator->config.acceleration_source == GW_SOURCE_PLANNED) && (!estimator->rest)) {
-        acceleration = motion->planned_acceleration;
+        acceleration = planned;
     } else {
         /* none */
     }
@@ -245,22 +237,22 @@ static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, co
 
 /* T|0 from the present zero and the model. */
 static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
-                                     const gw_wheels_t *torque_nm, const motion_t *motion)
+                                     const gw_wheels_t *torque_nm, gw_twist_t planned_twist,
+                                     gw_twist_t measured_twist, gw_acceleration_t acceleration)
 {
     const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
     gw_twist_t twist = no_twist;
     if (estimator->config.velocity_source == GW_SOURCE_MEASURED) {
-        twist = motion->measured_twist;
+        twist = measured_twist;
     } else if (!estimator->rest) {
-        twist = motion->planned_twist;
+        twist = planned_twist;
     } else {
         /* planned rest */
     }
-    const gw_acceleration_t acceleration = chosen_acceleration(estimator, motion);
     gw_wheels_t friction_nm;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
         friction_nm = gw_presliding_step(&estimator->presliding, &estimator->kinematics, &estimator->rate_constants,
-                                         input->encoder_count, torque_nm, motion->measured_twist);
+                                         input->encoder_count, torque_nm, measured_twist);
     } else {
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
         const gw_wheels_t roller_rates = gw_kinematics_roller_rates(&estimator->kinematics, twist);
@@ -277,11 +269,11 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
 
 /* Rates of the wheels and their derivatives, after this sample. */
 static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *input, const gw_wheels_t *torque_nm,
-                         motion_t *motion)
+                         gw_twist_t planned_twist, gw_wheels_t *rates, gw_wheels_t *derivatives)
 {
     if (!estimator->rate[0].started) { /* all of them start together */
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, motion->planned_twist);
+        const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, planned_twist);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             /* Without it a robot that already moves would seem to be thrown into motion. */
             gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
@@ -291,8 +283,8 @@ static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_t *const filter = &estimator->rate[i];
         gw_rate_filter_step(filter, &constants, input->encoder_count[i], torque_nm->wheel[i]);
-        motion->rates.wheel[i] = filter->rate_radps;
-        motion->derivatives.wheel[i] = filter->derivative_radps2;
+        rates->wheel[i] = filter->rate_radps;
+        derivatives->wheel[i] = filter->derivative_radps2;
     }
 }
 
@@ -336,21 +328,23 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         nothing_known(output);
         gw_estimator_restart(estimator);
     } else {
-        motion_t motion;
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
         const gw_wheels_t torque_nm = gw_torques_limited(&input->torque_nm);
-        motion.planned_twist = limited_twist(input->planned_twist);
-        motion.planned_acceleration = limited_acceleration(input->planned_acceleration);
-        const gw_real_t speed_mps = faster_of(estimator, motion.planned_twist);
+        const gw_twist_t planned_twist = limited_twist(input->planned_twist);
+        const gw_acceleration_t planned_acceleration = limited_acceleration(input->planned_acceleration);
+        const gw_real_t speed_mps = faster_of(estimator, planned_twist);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         if (output->zero_changed) {
             gw_moving_average_reset(&estimator->average);
         }
         output->regime = regime_of(estimator, speed_mps);
-        filter_rates(estimator, input, &torque_nm, &motion);
-        motion.measured_twist = gw_kinematics_twist(&estimator->kinematics, &motion.rates);
-        output->measured_twist = motion.measured_twist;
-        output->nominal_nm = nominal_with_zero(estimator, input, &torque_nm, &motion);
+        gw_wheels_t rates;
+        gw_wheels_t derivatives;
+        filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
+        const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
+        const gw_acceleration_t acceleration = chosen_acceleration(estimator, planned_acceleration, &rates, &derivatives);
+        output->measured_twist = measured_twist;
+        output->nominal_nm = nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &torque_nm);
         output->sigma = estimator->sigma;
         status = gw_moving_average_add(&estimator->average, output->wrench);
