@@ -128,6 +128,23 @@ static GW_SELDOM void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
+static GW_SELDOM void blank_tick(gw_controller_t *controller)
+{
+    static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      0U,
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0},
+                                                      {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
+                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
+                                                      GW_REGIME_CREEPING,
+                                                      false};
+    static const gw_detector_output_t no_detection = {
+        false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
+    controller->estimate = no_estimate;
+    controller->detection = no_detection;
+}
+
 GW_SELDOM gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
                                gw_config_error_t *error)
 {
@@ -154,6 +171,7 @@ GW_SELDOM gw_status_t gw_controller_init(gw_controller_t *controller, const gw_c
             (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
             gw_joint_init(&controller->joint);
             forget_detection(controller);
+            blank_tick(controller);
             controller->tick = 0U;
             controller->tare_request_before = false;
             controller->on_plan = false;
@@ -199,19 +217,13 @@ GW_SELDOM void gw_controller_safe_output(gw_controller_output_t *output)
     *output = safe;
 }
 
-/* What one tick knows before the mode is decided. */
-typedef struct {
-    gw_real_t reference_speed_mps; /* before it moves */
-    bool sensors_good;
-    bool plan_valid;
-} tick_t;
-
-static gw_real_t reference_speed(const gw_controller_t *controller)
+/* The reference, before it moves. */
+static bool is_slow(const gw_controller_t *controller)
 {
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     const gw_real_t rim =
         gw_abs(controller->reference.twist.omega_radps) * controller->estimator.kinematics.wheel_distance_m;
-    return gw_max(gw_length(velocity), rim);
+    return gw_max(gw_length(velocity), rim) < controller->supervisor.config.settled_speed_mps;
 }
 
 static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples)
@@ -226,7 +238,7 @@ static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples
 }
 
 /* The external wrench of this tick. */
-static gw_status_t estimate(gw_controller_t *controller, const gw_controller_input_t *input, tick_t *now)
+static gw_status_t estimate(gw_controller_t *controller, const gw_controller_input_t *input)
 {
     gw_estimator_input_t estimator_input;
     const gw_rotation_t yaw = controller->reference.yaw;
@@ -250,7 +262,7 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
 }
 
 /* Is the robot being hit? */
-static void detect(gw_controller_t *controller, tick_t *now)
+static void detect(gw_controller_t *controller, bool slow)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     gw_detector_input_t detector_input;
@@ -264,7 +276,7 @@ static void detect(gw_controller_t *controller, tick_t *now)
     detector_input.regime = controller->estimate.regime;
     detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
                              (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING);
-    detector_input.reaction_over = now->reference_speed_mps < controller->supervisor.config.settled_speed_mps;
+    detector_input.reaction_over = slow;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &controller->detection);
     if (controller->detection.tripped) {
@@ -284,7 +296,7 @@ static gw_tare_progress_t tare(gw_controller_t *controller, const gw_sensor_samp
 }
 
 /* A new tare of the run was asked for: only a robot that stands may take one. */
-static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, const tick_t *now, bool *accepted)
+static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, bool *accepted)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool asked = requested && (!controller->tare_request_before);
@@ -298,19 +310,19 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 }
 
 /* The direction of the hit in the world frame, as a unit vector. */
-static gw_vector_t hit_direction(const gw_controller_t *controller, const tick_t *now)
+static gw_vector_t hit_direction(const gw_controller_t *controller)
 {
     const gw_vector_t force = {controller->detection.mean_wrench.force_x_n, controller->detection.mean_wrench.force_y_n};
     return gw_rotate(controller->reference.yaw, gw_unit(force.x, force.y, gw_length(force)));
 }
 
 /* What changes once, when a mode begins. */
-static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick_t *now)
+static void enter_mode(gw_controller_t *controller, gw_mode_t before)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
-        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller, now));
+        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
             /* Resumed: nobody knows whether the way is still free, so the escape is not. */
@@ -331,7 +343,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before, const tick
 }
 
 /* The force that live admittance feels: what exceeds the error that the detector forgives. World frame. */
-static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *now)
+static gw_vector_t live_force(const gw_controller_t *controller)
 {
     const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     const gw_real_t length = gw_length(base);
@@ -351,12 +363,12 @@ static gw_vector_t live_force(const gw_controller_t *controller, const tick_t *n
     return gw_rotate(controller->reference.yaw, felt);
 }
 
-static void give_way(gw_controller_t *controller, const tick_t *now)
+static void give_way(gw_controller_t *controller)
 {
     gw_admittance_output_t motion;
     gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse feels none */
     if (controller->admittance.config.kind == GW_ADMITTANCE_LIVE_FORCE) {
-        force_n = live_force(controller, now);
+        force_n = live_force(controller);
     }
     const gw_status_t status = gw_admittance_step(&controller->admittance, force_n, &motion);
     if (status == GW_STATUS_OK) {
@@ -381,28 +393,28 @@ static GW_APART void take_plan(gw_controller_t *controller, const gw_plan_t *pla
 }
 
 /* Moves the reference by one tick, as the mode says. */
-static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, const tick_t *now)
+static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, bool plan_valid)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool on_the_path = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REJOINING);
-    if (on_the_path && now->plan_valid && (!controller->on_plan)) {
+    if (on_the_path && plan_valid && (!controller->on_plan)) {
         take_plan(controller, plan);
     } else if ((mode == GW_MODE_FAULT) || (!controller->drives_enabled)) {
         gw_reference_freeze(&controller->reference);
     } else if ((mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED)) {
-        give_way(controller, now);
-    } else if (on_the_path && now->plan_valid) {
+        give_way(controller);
+    } else if (on_the_path && plan_valid) {
         take_plan(controller, plan);
     } else {
         gw_reference_brake(&controller->reference);
     }
 }
 
-static void command_wheels(gw_controller_t *controller, const gw_controller_input_t *input, const tick_t *now,
+static void command_wheels(gw_controller_t *controller, const gw_controller_input_t *input, bool sensors_good,
                            gw_controller_output_t *output)
 {
     const gw_kinematics_t *const kinematics = &controller->estimator.kinematics;
-    if (now->sensors_good && ((!gw_joint_is_placed(&controller->joint)) || (!controller->drives_enabled))) {
+    if (sensors_good && ((!gw_joint_is_placed(&controller->joint)) || (!controller->drives_enabled))) {
         gw_wheels_t measured;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             measured.wheel[i] = gw_estimator_encoder_angle(&controller->estimator, input->sensor.encoder_count[i]);
@@ -419,7 +431,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
     output->enable = controller->drives_enabled && gw_joint_is_placed(&controller->joint);
 }
 
-static void report(const gw_controller_t *controller, const tick_t *now, gw_controller_output_t *output)
+static void report(const gw_controller_t *controller, gw_controller_output_t *output)
 {
     output->estimate = controller->estimate.mean;
     /* The estimate is valid or zero; both are accepted. */
@@ -438,23 +450,6 @@ static void report(const gw_controller_t *controller, const tick_t *now, gw_cont
     output->tick = controller->tick;
 }
 
-static GW_SELDOM void blank_tick(gw_controller_t *controller)
-{
-    static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      0U,
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0},
-                                                      {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      GW_REGIME_CREEPING,
-                                                      false};
-    static const gw_detector_output_t no_detection = {
-        false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
-    controller->estimate = no_estimate;
-    controller->detection = no_detection;
-}
-
 /* Is the reference as good as on a valid plan? */
 static GW_APART bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
@@ -466,32 +461,31 @@ static GW_APART bool is_near(const gw_controller_t *controller, const gw_plan_t 
 static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
                         gw_controller_output_t *output)
 {
-    tick_t now;
     gw_supervisor_events_t events;
     gw_status_t tare_status;
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
-    now.reference_speed_mps = reference_speed(controller);
-    now.plan_valid = gw_plan_is_valid(&input->plan);
+    const bool slow = is_slow(controller);
+    const bool plan_valid = gw_plan_is_valid(&input->plan);
     if (status == GW_STATUS_OK) {
-        status = estimate(controller, input, &now);
+        status = estimate(controller, input);
     }
-    now.sensors_good = (status == GW_STATUS_OK);
-    if (now.sensors_good) {
-        detect(controller, &now);
-        if (!now.plan_valid) {
+    const bool sensors_good = (status == GW_STATUS_OK);
+    if (sensors_good) {
+        detect(controller, slow);
+        if (!plan_valid) {
             status = GW_STATUS_PLAN_INVALID;
         }
     } else {
         blank_tick(controller);
     }
-    tare_status = judge_tare_request(controller, input->tare_request, &now, &events.tare_accepted);
-    events.sensors_good = now.sensors_good;
+    tare_status = judge_tare_request(controller, input->tare_request, &events.tare_accepted);
+    events.sensors_good = sensors_good;
     events.stop_request = input->stop_request;
     events.hit = controller->detection.tripped;
-    events.plan_valid = now.plan_valid;
+    events.plan_valid = plan_valid;
     events.tare_done = false;
-    if (now.sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
+    if (sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
         const gw_tare_progress_t progress = tare(controller, &input->sensor);
         events.tare_done = (progress == GW_TARE_DONE);
         if (progress == GW_TARE_REFUSED) {
@@ -502,16 +496,15 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
         status = tare_status;
     }
     const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
-    const bool slow = now.reference_speed_mps < controller->supervisor.config.settled_speed_mps;
     /* Each is asked for in one mode only. */
     events.quiet = slow && (before == GW_MODE_REACTING) &&
                    (gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime));
-    events.on_path = now.plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
+    events.on_path = plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
     (void)gw_supervisor_step(&controller->supervisor, &events);
-    enter_mode(controller, before, &now);
-    move_reference(controller, &input->plan, &now);
-    command_wheels(controller, input, &now, output);
-    report(controller, &now, output);
+    enter_mode(controller, before);
+    move_reference(controller, &input->plan, plan_valid);
+    command_wheels(controller, input, sensors_good, output);
+    report(controller, output);
     controller->tick = (controller->tick + 1U) & GW_TICK_MASK;
     return status;
 }

@@ -58,6 +58,7 @@ static void hold_output(gw_controller_output_t *output)
 
 static void part_step(void)
 {
+    gw_controller_t controller; /* what no tick may read of the one before, the last estimate and detection, has no value */
     gw_controller_output_t output;
     const gw_controller_input_t input = any_input();
     draw_controller(&controller);
@@ -78,7 +79,7 @@ static void part_refusals(void)
     (void)gw_controller_step(any_flag() ? &controller : NULL, any_flag() ? &input : NULL, any_flag() ? &output : NULL);
     draw_controller(&controller);
     controller.initialised = any_flag();
-    controller.config.period_s = draw_real((gw_real_t)0.0001, GW_ONE);
+    controller.reference.period_s = draw_real((gw_real_t)0.0001, GW_ONE);
     controller.detection_count = any_count;
     controller.detection_tick = any_int;
     controller.tick = any_count;

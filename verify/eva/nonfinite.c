@@ -28,7 +28,6 @@ static void part_refusals(void)
     static gw_controller_t controller;
     disturb_controller(&controller);
     controller.contact.config.vertex_count = GW_OUTLINE_VERTEX_MAX; /* as in contact.c */
-    controller.config.contact.vertex_count = GW_OUTLINE_VERTEX_MAX;
     controller.estimator.kinematics.wheel_radius_m = any_float;
     controller.estimator.kinematics.roller_radius_m = any_float;
     controller.estimator.kinematics.wheel_distance_m = any_float;
