@@ -466,26 +466,24 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
     const bool slow = is_slow(controller);
-    const bool plan_valid = gw_plan_is_valid(&input->plan);
+    events.plan_valid = gw_plan_is_valid(&input->plan);
     if (status == GW_STATUS_OK) {
         status = estimate(controller, input);
     }
-    const bool sensors_good = (status == GW_STATUS_OK);
-    if (sensors_good) {
+    events.sensors_good = (status == GW_STATUS_OK);
+    if (events.sensors_good) {
         detect(controller, slow);
-        if (!plan_valid) {
+        if (!events.plan_valid) {
             status = GW_STATUS_PLAN_INVALID;
         }
     } else {
         blank_tick(controller);
     }
     tare_status = judge_tare_request(controller, input->tare_request, &events.tare_accepted);
-    events.sensors_good = sensors_good;
     events.stop_request = input->stop_request;
     events.hit = controller->detection.tripped;
-    events.plan_valid = plan_valid;
     events.tare_done = false;
-    if (sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
+    if (events.sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
         const gw_tare_progress_t progress = tare(controller, &input->sensor);
         events.tare_done = (progress == GW_TARE_DONE);
         if (progress == GW_TARE_REFUSED) {
@@ -499,11 +497,11 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     /* Each is asked for in one mode only. */
     events.quiet = slow && (before == GW_MODE_REACTING) &&
                    (gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime));
-    events.on_path = plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
+    events.on_path = events.plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
     (void)gw_supervisor_step(&controller->supervisor, &events);
     enter_mode(controller, before);
-    move_reference(controller, &input->plan, plan_valid);
-    command_wheels(controller, input, sensors_good, output);
+    move_reference(controller, &input->plan, events.plan_valid);
+    command_wheels(controller, input, events.sensors_good, output);
     report(controller, output);
     controller->tick = (controller->tick + 1U) & GW_TICK_MASK;
     return status;
