@@ -20,13 +20,12 @@ GW_SELDOM gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *tor
                                gw_wheels_t *mean_nm)
 {
     gw_tare_progress_t progress = GW_TARE_RUNNING;
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t valid_nm = gw_torques_limited(torque_nm);
     tare->count++;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        tare->sum_nm[i] = gw_sum_limit(gw_sum_add(tare->sum_nm[i], valid_nm.wheel[i]), SUM_MAX);
-        tare->lowest_nm[i] = gw_min(tare->lowest_nm[i], valid_nm.wheel[i]);
-        tare->highest_nm[i] = gw_max(tare->highest_nm[i], valid_nm.wheel[i]);
+        const gw_real_t valid_nm = gw_limited(torque_nm->wheel[i], GW_TORQUE_MAX);
+        tare->sum_nm[i] = gw_sum_limit(gw_sum_add(tare->sum_nm[i], valid_nm), SUM_MAX);
+        tare->lowest_nm[i] = gw_min(tare->lowest_nm[i], valid_nm);
+        tare->highest_nm[i] = gw_max(tare->highest_nm[i], valid_nm);
         if ((tare->highest_nm[i] - tare->lowest_nm[i]) > variation_nm) {
             progress = GW_TARE_REFUSED;
         }

@@ -58,7 +58,9 @@ static void hold_output(gw_controller_output_t *output)
 
 static void part_step(void)
 {
-    gw_controller_t controller; /* what no tick may read of the one before, the last estimate and detection, has no value */
+    static const gw_moving_average_t empty;
+    gw_controller_t controller; /* no value at first: what no tick may read of the one before keeps none */
+    controller.estimator.average = empty; /* as in part_init */
     gw_controller_output_t output;
     const gw_controller_input_t input = any_input();
     draw_controller(&controller);
