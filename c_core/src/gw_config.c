@@ -4,87 +4,158 @@
 
 /* Both tables are in the order of gw_config_field_t. They are apart so that a program that prints no names has none. */
 
-GW_SELDOM const gw_config_limit_t *gw_config_limit(gw_config_field_t field)
+/* The bounds that occur, so that a row of the table is two places among them: an eighth of the bytes of two numbers where
+ * enumerations are short, as on Arm. */
+typedef enum {
+    AT_MINUS_10,
+    AT_MINUS_3_2,
+    AT_0,
+    AT_0_000001,
+    AT_0_00001,
+    AT_0_0001,
+    AT_0_001,
+    AT_0_005,
+    AT_0_01,
+    AT_0_1,
+    AT_0_5,
+    AT_0_99,
+    AT_1,
+    AT_2,
+    AT_3,
+    AT_3_2,
+    AT_4,
+    AT_5,
+    AT_10,
+    AT_16,
+    AT_100,
+    AT_1000,
+    AT_1024,
+    AT_2000,
+    AT_10000,
+    AT_100000,
+    AT_1000000,
+    AT_10000000,
+    BOUND_COUNT
+} bound_t;
+
+typedef struct {
+    bound_t minimum;
+    bound_t maximum;
+} row_t;
+
+GW_SELDOM gw_config_limit_t gw_config_limit(gw_config_field_t field)
 {
-    static const gw_config_limit_t limits[GW_FIELD_COUNT] = {
-        {(gw_real_t)0.0, (gw_real_t)0.0}, /* none */
-        {(gw_real_t)0.0001, (gw_real_t)0.1}, /* controller.period */
-        {(gw_real_t)0.005, (gw_real_t)1.0}, /* geometry.wheel_radius */
-        {(gw_real_t)0.001, (gw_real_t)0.5}, /* geometry.roller_radius */
-        {(gw_real_t)0.01, (gw_real_t)5.0}, /* geometry.wheel_distance */
-        {(gw_real_t)0.0, (gw_real_t)2.0}, /* geometry.wheel_slot */
-        {(gw_real_t)-3.2, (gw_real_t)3.2}, /* geometry.azimuth */
-        {(gw_real_t)0.1, (gw_real_t)2000.0}, /* base.mass */
-        {(gw_real_t)0.0001, (gw_real_t)10000.0}, /* base.yaw_inertia */
-        {(gw_real_t)0.0, (gw_real_t)10.0}, /* base.wheel_inertia */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* base.roller_inertia */
-        {(gw_real_t)0.0, (gw_real_t)100.0}, /* friction.coulomb_torque */
-        {(gw_real_t)0.0, (gw_real_t)1000.0}, /* friction.tanh_slope */
-        {(gw_real_t)0.1, (gw_real_t)10000.0}, /* sensor_check.torque_limit */
-        {(gw_real_t)1.0, (gw_real_t)1000.0}, /* sensor_check.stale_ticks_max */
-        {(gw_real_t)1.0, (gw_real_t)1000000.0}, /* sensor_check.encoder_jump */
-        {(gw_real_t)1.0, (gw_real_t)100000.0}, /* sensor_check.recover_ticks */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* estimator.velocity_source */
-        {(gw_real_t)0.0, (gw_real_t)2.0}, /* estimator.acceleration_source */
-        {(gw_real_t)0.0, (gw_real_t)100.0}, /* estimator.torque_noise */
-        {(gw_real_t)0.1, (gw_real_t)10000.0}, /* estimator.rate_cutoff */
-        {(gw_real_t)0.0, (gw_real_t)10000000.0}, /* estimator.drivetrain_stiffness */
-        {(gw_real_t)4.0, (gw_real_t)1000000.0}, /* estimator.encoder_counts */
-        {(gw_real_t)1.0, (gw_real_t)1024.0}, /* estimator.average_window */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* estimator.rest_speed */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* estimator.creep_speed */
-        {(gw_real_t)1.0, (gw_real_t)100000.0}, /* estimator.rest_ticks */
-        {(gw_real_t)0.0, (gw_real_t)100000.0}, /* estimator.tare_ticks */
-        {(gw_real_t)1.0, (gw_real_t)100000.0}, /* estimator.retare_ticks */
-        {(gw_real_t)0.0, (gw_real_t)100.0}, /* estimator.tare_variation */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* estimator.friction_model */
-        {(gw_real_t)10.0, (gw_real_t)10000000.0}, /* estimator.presliding_stiffness */
-        {(gw_real_t)0.0, (gw_real_t)100000.0}, /* estimator.presliding_damping */
-        {(gw_real_t)0.000001, (gw_real_t)1.0}, /* estimator.stribeck_speed */
-        {(gw_real_t)0.0, (gw_real_t)0.99}, /* estimator.elastic_fraction */
-        {(gw_real_t)0.001, (gw_real_t)1000.0}, /* contact.minimum_force */
-        {(gw_real_t)3.0, (gw_real_t)16.0}, /* outline.count */
-        {(gw_real_t)-10.0, (gw_real_t)10.0}, /* outline.x */
-        {(gw_real_t)-10.0, (gw_real_t)10.0}, /* outline.y */
-        {(gw_real_t)0.0, (gw_real_t)0.0}, /* outline */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* detector.kind */
-        {(gw_real_t)0.01, (gw_real_t)10000.0}, /* detector.force_threshold */
-        {(gw_real_t)0.001, (gw_real_t)1000.0}, /* detector.impulse_threshold */
-        {(gw_real_t)0.0, (gw_real_t)1000.0}, /* detector.leak_rest */
-        {(gw_real_t)0.0, (gw_real_t)1000.0}, /* detector.leak_creep */
-        {(gw_real_t)0.0, (gw_real_t)1000.0}, /* detector.leak_motion */
-        {(gw_real_t)0.0, (gw_real_t)10000.0}, /* detector.release_force */
-        {(gw_real_t)0.0, (gw_real_t)100000.0}, /* detector.blanking_ticks */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* admittance.kind */
-        {(gw_real_t)0.01, (gw_real_t)10000.0}, /* admittance.mass */
-        {(gw_real_t)0.01, (gw_real_t)10000.0}, /* admittance.damping */
-        {(gw_real_t)0.0, (gw_real_t)1000.0}, /* admittance.escape_impulse */
-        {(gw_real_t)0.001, (gw_real_t)10.0}, /* admittance.speed_limit */
-        {(gw_real_t)0.001, (gw_real_t)1000.0}, /* admittance.acceleration_limit */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* admittance.finish_speed */
-        {(gw_real_t)0.0, (gw_real_t)100.0}, /* reference.follow_gain */
-        {(gw_real_t)0.001, (gw_real_t)10.0}, /* reference.speed_limit */
-        {(gw_real_t)0.001, (gw_real_t)1000.0}, /* reference.acceleration_limit */
-        {(gw_real_t)0.001, (gw_real_t)100.0}, /* reference.yaw_rate_limit */
-        {(gw_real_t)0.001, (gw_real_t)10000.0}, /* reference.yaw_acceleration_limit */
-        {(gw_real_t)0.001, (gw_real_t)10.0}, /* reference.rejoin_speed */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* reference.finish_speed */
-        {(gw_real_t)0.000001, (gw_real_t)1.0}, /* supervisor.settled_speed */
-        {(gw_real_t)1.0, (gw_real_t)100000.0}, /* supervisor.settled_ticks */
-        {(gw_real_t)0.0, (gw_real_t)1.0}, /* supervisor.after_settled */
-        {(gw_real_t)0.00001, (gw_real_t)1.0}, /* supervisor.rejoin_distance */
-        {(gw_real_t)0.0001, (gw_real_t)1.0}, /* supervisor.rejoin_angle */
-        {(gw_real_t)0.00001, (gw_real_t)0.1}, /* servo.period */
-        {(gw_real_t)0.0, (gw_real_t)1000000.0}, /* servo.kp */
-        {(gw_real_t)0.0, (gw_real_t)100000.0}, /* servo.kd */
-        {(gw_real_t)0.01, (gw_real_t)10000.0}, /* servo.torque_limit */
-        {(gw_real_t)0.0, (gw_real_t)10000000.0}, /* servo.torque_rate_limit */
-        {(gw_real_t)4.0, (gw_real_t)1000000.0}, /* servo.encoder_counts */
-        {(gw_real_t)0.1, (gw_real_t)10000.0}, /* servo.derivative_cutoff */
-        {(gw_real_t)1.0, (gw_real_t)100000.0}, /* servo.stale_ticks_max */
+    static const gw_real_t bound[BOUND_COUNT] = {
+        [AT_MINUS_10] = (gw_real_t)-10.0,
+        [AT_MINUS_3_2] = (gw_real_t)-3.2,
+        [AT_0] = (gw_real_t)0.0,
+        [AT_0_000001] = (gw_real_t)0.000001,
+        [AT_0_00001] = (gw_real_t)0.00001,
+        [AT_0_0001] = (gw_real_t)0.0001,
+        [AT_0_001] = (gw_real_t)0.001,
+        [AT_0_005] = (gw_real_t)0.005,
+        [AT_0_01] = (gw_real_t)0.01,
+        [AT_0_1] = (gw_real_t)0.1,
+        [AT_0_5] = (gw_real_t)0.5,
+        [AT_0_99] = (gw_real_t)0.99,
+        [AT_1] = (gw_real_t)1.0,
+        [AT_2] = (gw_real_t)2.0,
+        [AT_3] = (gw_real_t)3.0,
+        [AT_3_2] = (gw_real_t)3.2,
+        [AT_4] = (gw_real_t)4.0,
+        [AT_5] = (gw_real_t)5.0,
+        [AT_10] = (gw_real_t)10.0,
+        [AT_16] = (gw_real_t)16.0,
+        [AT_100] = (gw_real_t)100.0,
+        [AT_1000] = (gw_real_t)1000.0,
+        [AT_1024] = (gw_real_t)1024.0,
+        [AT_2000] = (gw_real_t)2000.0,
+        [AT_10000] = (gw_real_t)10000.0,
+        [AT_100000] = (gw_real_t)100000.0,
+        [AT_1000000] = (gw_real_t)1000000.0,
+        [AT_10000000] = (gw_real_t)10000000.0,
     };
-    const uint32_t row = (uint32_t)field;
-    return &limits[(row < (uint32_t)GW_FIELD_COUNT) ? row : 0U];
+    static const row_t rows[GW_FIELD_COUNT] = {
+        {AT_0, AT_0}, /* none */
+        {AT_0_0001, AT_0_1}, /* controller.period */
+        {AT_0_005, AT_1}, /* geometry.wheel_radius */
+        {AT_0_001, AT_0_5}, /* geometry.roller_radius */
+        {AT_0_01, AT_5}, /* geometry.wheel_distance */
+        {AT_0, AT_2}, /* geometry.wheel_slot */
+        {AT_MINUS_3_2, AT_3_2}, /* geometry.azimuth */
+        {AT_0_1, AT_2000}, /* base.mass */
+        {AT_0_0001, AT_10000}, /* base.yaw_inertia */
+        {AT_0, AT_10}, /* base.wheel_inertia */
+        {AT_0, AT_1}, /* base.roller_inertia */
+        {AT_0, AT_100}, /* friction.coulomb_torque */
+        {AT_0, AT_1000}, /* friction.tanh_slope */
+        {AT_0_1, AT_10000}, /* sensor_check.torque_limit */
+        {AT_1, AT_1000}, /* sensor_check.stale_ticks_max */
+        {AT_1, AT_1000000}, /* sensor_check.encoder_jump */
+        {AT_1, AT_100000}, /* sensor_check.recover_ticks */
+        {AT_0, AT_1}, /* estimator.velocity_source */
+        {AT_0, AT_2}, /* estimator.acceleration_source */
+        {AT_0, AT_100}, /* estimator.torque_noise */
+        {AT_0_1, AT_10000}, /* estimator.rate_cutoff */
+        {AT_0, AT_10000000}, /* estimator.drivetrain_stiffness */
+        {AT_4, AT_1000000}, /* estimator.encoder_counts */
+        {AT_1, AT_1024}, /* estimator.average_window */
+        {AT_0, AT_1}, /* estimator.rest_speed */
+        {AT_0, AT_1}, /* estimator.creep_speed */
+        {AT_1, AT_100000}, /* estimator.rest_ticks */
+        {AT_0, AT_100000}, /* estimator.tare_ticks */
+        {AT_1, AT_100000}, /* estimator.retare_ticks */
+        {AT_0, AT_100}, /* estimator.tare_variation */
+        {AT_0, AT_1}, /* estimator.friction_model */
+        {AT_10, AT_10000000}, /* estimator.presliding_stiffness */
+        {AT_0, AT_100000}, /* estimator.presliding_damping */
+        {AT_0_000001, AT_1}, /* estimator.stribeck_speed */
+        {AT_0, AT_0_99}, /* estimator.elastic_fraction */
+        {AT_0_001, AT_1000}, /* contact.minimum_force */
+        {AT_3, AT_16}, /* outline.count */
+        {AT_MINUS_10, AT_10}, /* outline.x */
+        {AT_MINUS_10, AT_10}, /* outline.y */
+        {AT_0, AT_0}, /* outline */
+        {AT_0, AT_1}, /* detector.kind */
+        {AT_0_01, AT_10000}, /* detector.force_threshold */
+        {AT_0_001, AT_1000}, /* detector.impulse_threshold */
+        {AT_0, AT_1000}, /* detector.leak_rest */
+        {AT_0, AT_1000}, /* detector.leak_creep */
+        {AT_0, AT_1000}, /* detector.leak_motion */
+        {AT_0, AT_10000}, /* detector.release_force */
+        {AT_0, AT_100000}, /* detector.blanking_ticks */
+        {AT_0, AT_1}, /* admittance.kind */
+        {AT_0_01, AT_10000}, /* admittance.mass */
+        {AT_0_01, AT_10000}, /* admittance.damping */
+        {AT_0, AT_1000}, /* admittance.escape_impulse */
+        {AT_0_001, AT_10}, /* admittance.speed_limit */
+        {AT_0_001, AT_1000}, /* admittance.acceleration_limit */
+        {AT_0, AT_1}, /* admittance.finish_speed */
+        {AT_0, AT_100}, /* reference.follow_gain */
+        {AT_0_001, AT_10}, /* reference.speed_limit */
+        {AT_0_001, AT_1000}, /* reference.acceleration_limit */
+        {AT_0_001, AT_100}, /* reference.yaw_rate_limit */
+        {AT_0_001, AT_10000}, /* reference.yaw_acceleration_limit */
+        {AT_0_001, AT_10}, /* reference.rejoin_speed */
+        {AT_0, AT_1}, /* reference.finish_speed */
+        {AT_0_000001, AT_1}, /* supervisor.settled_speed */
+        {AT_1, AT_100000}, /* supervisor.settled_ticks */
+        {AT_0, AT_1}, /* supervisor.after_settled */
+        {AT_0_00001, AT_1}, /* supervisor.rejoin_distance */
+        {AT_0_0001, AT_1}, /* supervisor.rejoin_angle */
+        {AT_0_00001, AT_0_1}, /* servo.period */
+        {AT_0, AT_1000000}, /* servo.kp */
+        {AT_0, AT_100000}, /* servo.kd */
+        {AT_0_01, AT_10000}, /* servo.torque_limit */
+        {AT_0, AT_10000000}, /* servo.torque_rate_limit */
+        {AT_4, AT_1000000}, /* servo.encoder_counts */
+        {AT_0_1, AT_10000}, /* servo.derivative_cutoff */
+        {AT_1, AT_100000}, /* servo.stale_ticks_max */
+    };
+    const uint32_t index = (uint32_t)field;
+    const row_t row = rows[(index < (uint32_t)GW_FIELD_COUNT) ? index : 0U];
+    const gw_config_limit_t limit = {bound[row.minimum], bound[row.maximum]};
+    return limit;
 }
 
 GW_SELDOM const char *gw_config_name(gw_config_field_t field)
@@ -193,8 +264,8 @@ GW_SELDOM void gw_config_check_relation(gw_config_error_t *error, gw_config_fiel
 
 GW_SELDOM void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value)
 {
-    const gw_config_limit_t *const limit = gw_config_limit(field);
-    gw_config_check_relation(error, field, index, value, limit->minimum, limit->maximum);
+    const gw_config_limit_t limit = gw_config_limit(field);
+    gw_config_check_relation(error, field, index, value, limit.minimum, limit.maximum);
 }
 
 GW_SELDOM void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t index, uint32_t value)

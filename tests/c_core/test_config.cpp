@@ -139,16 +139,16 @@ gw_config_field_t refused(const gw_servo_config_t &config) {
 
 template <class Config, class Fields> void check_real_bounds(const Config &good, const Fields &fields) {
     for (const auto &[field, setter] : fields) {
-        const gw_config_limit_t *limit = gw_config_limit(field);
+        const gw_config_limit_t limit = gw_config_limit(field);
         SCOPED_TRACE(gw_config_name(field));
         const auto with = [&](Real value) {
             Config config = good;
             setter(config, static_cast<double>(value));
             return refused(config);
         };
-        EXPECT_EQ(with(limit->minimum), GW_FIELD_NONE);
-        EXPECT_EQ(with(limit->maximum), GW_FIELD_NONE);
-        for (const Real bad : {std::nextafter(limit->minimum, -infinite), std::nextafter(limit->maximum, infinite),
+        EXPECT_EQ(with(limit.minimum), GW_FIELD_NONE);
+        EXPECT_EQ(with(limit.maximum), GW_FIELD_NONE);
+        for (const Real bad : {std::nextafter(limit.minimum, -infinite), std::nextafter(limit.maximum, infinite),
                                -infinite, infinite, not_a_number}) {
             EXPECT_EQ(with(bad), field) << bad;
         }
@@ -157,19 +157,19 @@ template <class Config, class Fields> void check_real_bounds(const Config &good,
 
 template <class Config, class Fields> void check_count_bounds(const Config &good, const Fields &fields) {
     for (const auto &[field, setter] : fields) {
-        const gw_config_limit_t *limit = gw_config_limit(field);
+        const gw_config_limit_t limit = gw_config_limit(field);
         SCOPED_TRACE(gw_config_name(field));
         const auto with = [&](double value) {
             Config config = good;
             setter(config, value);
             return refused(config);
         };
-        EXPECT_EQ(with(limit->minimum), GW_FIELD_NONE);
-        EXPECT_EQ(with(limit->maximum), GW_FIELD_NONE);
-        if (limit->minimum > 0) {
-            EXPECT_EQ(with(static_cast<double>(limit->minimum) - 1.0), field);
+        EXPECT_EQ(with(limit.minimum), GW_FIELD_NONE);
+        EXPECT_EQ(with(limit.maximum), GW_FIELD_NONE);
+        if (limit.minimum > 0) {
+            EXPECT_EQ(with(static_cast<double>(limit.minimum) - 1.0), field);
         }
-        EXPECT_EQ(with(static_cast<double>(limit->maximum) + 1.0), field);
+        EXPECT_EQ(with(static_cast<double>(limit.maximum) + 1.0), field);
         EXPECT_EQ(with(4294967295.0), field);
     }
 }
@@ -198,23 +198,23 @@ TEST(Config, EveryFieldOfTheTableIsTested) {
                                    special_fields.count(field);
         EXPECT_EQ(places, 1U) << gw_config_name(field);
         EXPECT_TRUE(names.insert(gw_config_name(field)).second) << "name given twice";
-        EXPECT_LE(gw_config_limit(field)->minimum, gw_config_limit(field)->maximum);
+        EXPECT_LE(gw_config_limit(field).minimum, gw_config_limit(field).maximum);
     }
     EXPECT_STREQ(gw_config_name(GW_FIELD_COUNT), "none");
     EXPECT_STREQ(gw_config_name(static_cast<gw_config_field_t>(-1)), "none");
 }
 
 TEST(Config, PreslidingStiffnessOfEachWheel) {
-    const gw_config_limit_t *limit = gw_config_limit(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS);
+    const gw_config_limit_t limit = gw_config_limit(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS);
     for (std::uint32_t i = 0; i < 3; ++i) {
         const auto with = [&](Real value) {
             auto config = trikey();
             config.estimator.presliding.stiffness_n_per_m[i] = value;
             return refused(config);
         };
-        EXPECT_EQ(with(limit->minimum), GW_FIELD_NONE);
-        EXPECT_EQ(with(limit->maximum), GW_FIELD_NONE);
-        for (const Real bad : {std::nextafter(limit->minimum, -infinite), std::nextafter(limit->maximum, infinite),
+        EXPECT_EQ(with(limit.minimum), GW_FIELD_NONE);
+        EXPECT_EQ(with(limit.maximum), GW_FIELD_NONE);
+        for (const Real bad : {std::nextafter(limit.minimum, -infinite), std::nextafter(limit.maximum, infinite),
                                -infinite, infinite, not_a_number}) {
             EXPECT_EQ(with(bad), GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS) << bad;
         }

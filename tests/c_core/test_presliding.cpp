@@ -265,14 +265,14 @@ TEST(Presliding, NoInputBreaksTheState) {
                              real(1e9),    real(-1e-20), real(2.3)};
     for (int trial = 0; trial < 300; ++trial) {
         const auto within = [&](gw_config_field_t field) {
-            const gw_config_limit_t *limit = gw_config_limit(field);
+            const gw_config_limit_t limit = gw_config_limit(field);
             const int end = random.integer(0, 3);
-            const double low = std::log(std::max(static_cast<double>(limit->minimum), 1e-7));
-            return end == 0   ? limit->minimum
-                   : end == 1 ? limit->maximum
-                              : std::min(std::max(real(std::exp(random.uniform(low, std::log(limit->maximum)))),
-                                                  limit->minimum),
-                                         limit->maximum);
+            const double low = std::log(std::max(static_cast<double>(limit.minimum), 1e-7));
+            return end == 0   ? limit.minimum
+                   : end == 1 ? limit.maximum
+                              : std::min(std::max(real(std::exp(random.uniform(low, std::log(limit.maximum)))),
+                                                  limit.minimum),
+                                         limit.maximum);
         };
         gw_presliding_config_t presliding{};
         for (auto &stiffness : presliding.stiffness_n_per_m) {

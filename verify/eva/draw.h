@@ -43,12 +43,12 @@ static int32_t draw_integer(int32_t low, int32_t high)
 /* A setting that init must refuse. */
 static gw_real_t draw_refused(gw_config_field_t field)
 {
-    return draw_real(gw_config_limit(field)->maximum + GW_ONE, GW_REAL_MAX);
+    return draw_real(gw_config_limit(field).maximum + GW_ONE, GW_REAL_MAX);
 }
 
 static gw_real_t draw_setting(gw_config_field_t field)
 {
-    return draw_real(gw_config_limit(field)->minimum, gw_config_limit(field)->maximum);
+    return draw_real(gw_config_limit(field).minimum, gw_config_limit(field).maximum);
 }
 
 /* Eva raises an alarm wherever it cannot show what these require. No NaN is within a range. */

@@ -8,12 +8,12 @@
 
 static uint32_t lowest_count(gw_config_field_t field)
 {
-    return (uint32_t)gw_config_limit(field)->minimum;
+    return (uint32_t)gw_config_limit(field).minimum;
 }
 
 static uint32_t highest_count(gw_config_field_t field)
 {
-    return (uint32_t)gw_config_limit(field)->maximum;
+    return (uint32_t)gw_config_limit(field).maximum;
 }
 
 #define PI_ROUNDED ((gw_real_t)3.1415928)
@@ -26,7 +26,7 @@ static uint32_t highest_count(gw_config_field_t field)
 #define CHOICE(place, type, last) ((place) = (type)draw_count(0U, (last)))
 #define FLAG(place) ((place) = any_flag())
 #define TRUE(place) ((place) = true)
-#define SETTING(place, field) REAL(place, gw_config_limit(field)->minimum, gw_config_limit(field)->maximum)
+#define SETTING(place, field) REAL(place, gw_config_limit(field).minimum, gw_config_limit(field).maximum)
 #define COUNT_SETTING(place, field) COUNT(place, lowest_count(field), highest_count(field))
 #include "states.inc"
 
@@ -66,7 +66,7 @@ static uint32_t highest_count(gw_config_field_t field)
 #define CHOICE(place, type, last) ((place) = (type)draw_count(0U, (last) + 1U))
 #define FLAG(place) ((place) = any_flag())
 #define TRUE(place) ((place) = any_flag())
-#define SETTING(place, field) ((place) = draw_real(gw_config_limit(field)->minimum, gw_config_limit(field)->maximum + (gw_real_t)1000.0))
+#define SETTING(place, field) ((place) = draw_real(gw_config_limit(field).minimum, gw_config_limit(field).maximum + (gw_real_t)1000.0))
 #define COUNT_SETTING(place, field) ((place) = draw_count(lowest_count(field), highest_count(field) + 1U))
 #include "states.inc"
 

@@ -64,9 +64,9 @@ static inline gw_real_t take_real(bytes_t *bytes)
 /* A setting: mostly within its range, both ends included, now and then any bits. */
 static inline gw_real_t take_setting(bytes_t *bytes, gw_config_field_t field)
 {
-    const gw_config_limit_t *const limit = gw_config_limit(field);
+    const gw_config_limit_t limit = gw_config_limit(field);
     const uint32_t bits = take_count(bytes);
-    gw_real_t value = limit->minimum + ((limit->maximum - limit->minimum) * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF));
+    gw_real_t value = limit.minimum + ((limit.maximum - limit.minimum) * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF));
     if ((bits & 0xFFU) == 0xFFU) {
         value = take_real(bytes);
     }
@@ -75,10 +75,10 @@ static inline gw_real_t take_setting(bytes_t *bytes, gw_config_field_t field)
 
 static inline uint32_t take_count_setting(bytes_t *bytes, gw_config_field_t field)
 {
-    const gw_config_limit_t *const limit = gw_config_limit(field);
+    const gw_config_limit_t limit = gw_config_limit(field);
     const uint32_t bits = take_count(bytes);
-    const uint32_t span = ((uint32_t)limit->maximum - (uint32_t)limit->minimum) + 1U;
-    return ((bits & 0xFFU) == 0xFFU) ? bits : ((uint32_t)limit->minimum + ((bits >> 8U) % span));
+    const uint32_t span = ((uint32_t)limit.maximum - (uint32_t)limit.minimum) + 1U;
+    return ((bits & 0xFFU) == 0xFFU) ? bits : ((uint32_t)limit.minimum + ((bits >> 8U) % span));
 }
 
 /* Mostly within the scale of what is usual, so that sensors are good for a while; now and then any bits. */

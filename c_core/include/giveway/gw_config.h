@@ -108,8 +108,8 @@ typedef struct {
     gw_real_t maximum;
 } gw_config_error_t;
 
-/* The row of a field; the row "none" for GW_FIELD_NONE and anything that is no field. Never NULL. */
-const gw_config_limit_t *gw_config_limit(gw_config_field_t field);
+/* The row of a field; the row "none" for GW_FIELD_NONE and anything that is no field. */
+gw_config_limit_t gw_config_limit(gw_config_field_t field);
 /* Its name, "none" likewise. The names take 2.3 kB of flash, which a linker that drops unused sections gives back to
  * who does not call this. */
 const char *gw_config_name(gw_config_field_t field);

@@ -30,24 +30,30 @@ void firmware(void)
 #elif (PART == 2) || (PART == 4) /* estimate and detection, with or without escape: no modes, plan and wheel commands */
 static gw_estimator_t estimator;
 static gw_detector_t detector;
-const gw_controller_config_t config = {0};
+/* The configurations that it has: not those of outline, reference, sensors and modes. */
+const gw_real_t period_s = 0;
+const gw_geometry_config_t geometry = {0};
+const gw_inertia_config_t base = {0};
+const gw_friction_config_t friction = {0};
+const gw_estimator_config_t estimator_config = {0};
+const gw_detector_config_t detector_config = {0};
 gw_estimator_input_t input;
 gw_estimator_output_t estimate;
 gw_detector_input_t push;
 gw_detector_output_t detection;
 #if (PART == 2)
 static gw_admittance_t admittance;
+const gw_admittance_config_t admittance_config = {0};
 gw_admittance_output_t motion;
 gw_vector_t vector;
 #endif
 
 void firmware(void)
 {
-    status = gw_estimator_init(&estimator, &config.estimator, &config.geometry, &config.base, &config.friction,
-                               config.period_s);
-    status = gw_detector_init(&detector, &config.detector, config.period_s);
+    status = gw_estimator_init(&estimator, &estimator_config, &geometry, &base, &friction, period_s);
+    status = gw_detector_init(&detector, &detector_config, period_s);
 #if (PART == 2)
-    status = gw_admittance_init(&admittance, &config.admittance, config.period_s);
+    status = gw_admittance_init(&admittance, &admittance_config, period_s);
 #endif
     while (gw_estimator_tare(&estimator, &input.torque_nm) != GW_TARE_DONE) {
     }

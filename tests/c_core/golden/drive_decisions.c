@@ -13,10 +13,10 @@ digest_t drive_config(void)
     generator_t generator = generator_begin(11U);
     for (uint32_t row = 0U; row <= (uint32_t)GW_FIELD_COUNT; row++) {
         const gw_config_field_t field = (gw_config_field_t)row;
-        const gw_config_limit_t *const limit = gw_config_limit(field);
+        const gw_config_limit_t limit = gw_config_limit(field);
         digest_text(&digest, gw_config_name(field));
-        digest_real(&digest, limit->minimum);
-        digest_real(&digest, limit->maximum);
+        digest_real(&digest, limit.minimum);
+        digest_real(&digest, limit.maximum);
         for (uint32_t i = 0U; i < 16U; i++) {
             gw_config_error_t error;
             gw_config_check_begin(&error);

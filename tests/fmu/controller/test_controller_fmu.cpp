@@ -51,7 +51,7 @@ TEST(ControllerFmu, BoundsAreThoseOfTheLibrary) {
     int compared = 0;
     for (int row = 1; row < GW_FIELD_COUNT; ++row) {
         const auto field = static_cast<gw_config_field_t>(row);
-        const gw_config_limit_t *limit = gw_config_limit(field);
+        const gw_config_limit_t limit = gw_config_limit(field);
         const std::string name = gw_config_name(field);
         if (field == GW_FIELD_OUTLINE_CONVEX || name.starts_with("servo.")) {
             continue; // a rule on the whole outline; the servo is in the testbed
@@ -59,8 +59,8 @@ TEST(ControllerFmu, BoundsAreThoseOfTheLibrary) {
         const giveway::VariableInfo *info = variable(name);
         ASSERT_NE(info, nullptr) << name;
         EXPECT_EQ(info->causality, giveway::Causality::parameter);
-        EXPECT_EQ(static_cast<float>(info->minimum), limit->minimum) << name;
-        EXPECT_EQ(static_cast<float>(info->maximum), limit->maximum) << name;
+        EXPECT_EQ(static_cast<float>(info->minimum), limit.minimum) << name;
+        EXPECT_EQ(static_cast<float>(info->maximum), limit.maximum) << name;
         ++compared;
     }
     EXPECT_GT(compared, 55);
