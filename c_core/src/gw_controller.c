@@ -378,10 +378,16 @@ static void give_way(gw_controller_t *controller)
     }
 }
 
+/* The plan, valid, as the provers need it; apart, so that it is there once. */
+static GW_APART gw_plan_t within_ranges(const gw_plan_t *plan)
+{
+    return gw_plan_limited(plan);
+}
+
 /* Onto the plan if the reference was not on it yet, else along it. plan valid. */
 static GW_APART void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
 {
-    const gw_plan_t valid = gw_plan_limited(plan);
+    const gw_plan_t valid = within_ranges(plan);
     if (controller->on_plan) {
         gw_reference_follow(&controller->reference, &valid, controller->supervisor.mode == GW_MODE_REJOINING);
     } else {
@@ -453,7 +459,7 @@ static void report(const gw_controller_t *controller, gw_controller_output_t *ou
 /* Is the reference as good as on a valid plan? */
 static GW_APART bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
-    const gw_plan_t valid = gw_plan_limited(plan);
+    const gw_plan_t valid = within_ranges(plan);
     return (gw_reference_distance(&controller->reference, &valid) < controller->supervisor.config.rejoin_distance_m) &&
            (gw_reference_angle(&controller->reference, &valid) < controller->supervisor.config.rejoin_angle_rad);
 }

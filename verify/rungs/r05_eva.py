@@ -55,7 +55,7 @@ DRIVERS = {
     "controller": Driver(
         Mutant(
             "gw_controller.c",
-            "valid = gw_plan_limited(plan);\n    if (controller->on_plan) {",
+            "valid = within_ranges(plan);\n    if (controller->on_plan) {",
             "valid = *plan;\n    if (controller->on_plan) {",
         ),
         "gw_controller_init:0,next_undisturbed:full",
