@@ -55,8 +55,8 @@ HARNESSES = {
     ),
     "tare": Harness(
         ("gw_tare", "gw_math", "gw_sum", "gw_wrench", "gw_kinematics", "gw_config"),
-        "const gw_wheels_t valid_nm = gw_torques_limited(torque_nm);",
-        "const gw_wheels_t valid_nm = *torque_nm;",
+        "valid_nm = gw_limited(torque_nm->wheel[i], GW_TORQUE_MAX);",
+        "valid_nm = torque_nm->wheel[i];",
     ),
     "servo": Harness(
         ("gw_math", "gw_config"),

@@ -124,6 +124,27 @@ static void an_estimator_starts_from_nothing(void)
     CHECK((!estimator.presliding.torque_known) && (!estimator.presliding.count_known));
 }
 
+/* What a tick without good sensors finds. */
+static void check_nothing_found(const gw_estimator_output_t *estimate, const gw_detector_output_t *detection)
+{
+    const gw_wrench_t wrenches[] = {estimate->wrench, estimate->mean, estimate->window_mean, detection->mean_wrench};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(wrenches); i++) {
+        unit_row(i);
+        CHECK((wrenches[i].force_x_n == GW_ZERO) && (wrenches[i].force_y_n == GW_ZERO));
+        CHECK(wrenches[i].torque_nm == GW_ZERO);
+    }
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        unit_row(i);
+        CHECK(estimate->nominal_nm.wheel[i] == GW_ZERO);
+    }
+    CHECK((estimate->sigma.force_n == GW_ZERO) && (estimate->sigma.torque_nm == GW_ZERO));
+    CHECK((estimate->measured_twist.vx_mps == GW_ZERO) && (estimate->measured_twist.vy_mps == GW_ZERO));
+    CHECK(estimate->measured_twist.omega_radps == GW_ZERO);
+    CHECK((estimate->mean_samples == 0U) && (estimate->regime == GW_REGIME_CREEPING) && (!estimate->zero_changed));
+    CHECK((!detection->tripped) && (!detection->active) && (detection->statistic == GW_ZERO) &&
+          (detection->samples == 0U));
+}
+
 static void a_controller_starts_from_nothing(void)
 {
     static gw_controller_t controller;
@@ -139,6 +160,7 @@ static void a_controller_starts_from_nothing(void)
     CHECK((controller.detection_contact.force_n == GW_ZERO) && (controller.detection_contact.direction_rad == GW_ZERO));
     CHECK((controller.detection_contact.lever_arm_m == GW_ZERO) &&
           (controller.detection_contact.lever_arm_sigma_m == GW_ZERO));
+    check_nothing_found(&controller.estimate, &controller.detection);
 }
 
 static void a_refused_supervisor_is_in_fault(void)
