@@ -16,13 +16,13 @@ static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
 
 GW_SELDOM void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_count(error, GW_FIELD_ADMITTANCE_KIND, 0U, config->kind);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_MASS, 0U, config->mass_kg);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_DAMPING, 0U, config->damping_newton_s_per_m);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, 0U, config->escape_impulse_newton_s);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, 0U, config->speed_limit_mps);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, 0U, config->acceleration_limit_mps2);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, 0U, config->finish_speed_mps);
+    gw_config_check_count(error, GW_FIELD_ADMITTANCE_KIND, config->kind);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_MASS, config->mass_kg);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_DAMPING, config->damping_newton_s_per_m);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, config->escape_impulse_newton_s);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, config->speed_limit_mps);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, config->acceleration_limit_mps2);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, config->finish_speed_mps);
 }
 
 GW_SELDOM gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
@@ -34,7 +34,7 @@ GW_SELDOM gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_a
     } else {
         gw_config_error_t error;
         gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, period_s);
         gw_admittance_config_check(config, &error);
         admittance->initialised = (error.field == GW_FIELD_NONE);
         if (admittance->initialised) {
@@ -63,7 +63,7 @@ GW_SELDOM bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
     if (holds) {
         gw_config_error_t error;
         gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, admittance->period_s);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, admittance->period_s);
         gw_admittance_config_check(&admittance->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
                 gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&

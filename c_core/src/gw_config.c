@@ -262,14 +262,19 @@ GW_SELDOM void gw_config_check_relation(gw_config_error_t *error, gw_config_fiel
     }
 }
 
-GW_SELDOM void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value)
+GW_SELDOM void gw_config_check_element(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value)
 {
     const gw_config_limit_t limit = gw_config_limit(field);
     gw_config_check_relation(error, field, index, value, limit.minimum, limit.maximum);
 }
 
-GW_SELDOM void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t index, uint32_t value)
+GW_SELDOM void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, gw_real_t value)
+{
+    gw_config_check_element(error, field, 0U, value);
+}
+
+GW_SELDOM void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t value)
 {
     /* No bound of a count exceeds 2^24, so rounding to the real type cannot bring one back into range. */
-    gw_config_check_real(error, field, index, (gw_real_t)value);
+    gw_config_check_element(error, field, 0U, (gw_real_t)value);
 }

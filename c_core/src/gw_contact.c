@@ -36,12 +36,12 @@ static gw_vector_t from_to(gw_vector_t a, gw_vector_t b)
 GW_SELDOM void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error)
 {
     const uint32_t count = config->vertex_count;
-    gw_config_check_real(error, GW_FIELD_CONTACT_MINIMUM_FORCE, 0U, config->minimum_force_n);
-    gw_config_check_count(error, GW_FIELD_OUTLINE_COUNT, 0U, count);
+    gw_config_check_real(error, GW_FIELD_CONTACT_MINIMUM_FORCE, config->minimum_force_n);
+    gw_config_check_count(error, GW_FIELD_OUTLINE_COUNT, count);
     for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
         if (i < count) {
-            gw_config_check_real(error, GW_FIELD_OUTLINE_X, i, config->vertex_m[i].x);
-            gw_config_check_real(error, GW_FIELD_OUTLINE_Y, i, config->vertex_m[i].y);
+            gw_config_check_element(error, GW_FIELD_OUTLINE_X, i, config->vertex_m[i].x);
+            gw_config_check_element(error, GW_FIELD_OUTLINE_Y, i, config->vertex_m[i].y);
         }
     }
     /* Strictly convex and counter-clockwise: every other vertex lies to the left of every edge. Checking neighbours

@@ -98,7 +98,7 @@ GW_SELDOM void gw_controller_config_trikey(gw_controller_config_t *config)
 GW_SELDOM gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_begin(error);
-    gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, 0U, config->period_s);
+    gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, config->period_s);
     gw_geometry_config_check(&config->geometry, error);
     gw_inertia_config_check(&config->base, error);
     gw_friction_config_check(&config->friction, error);

@@ -10,14 +10,14 @@
 
 GW_SELDOM void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_count(error, GW_FIELD_DETECTOR_KIND, 0U, config->kind);
-    gw_config_check_real(error, GW_FIELD_DETECTOR_FORCE_THRESHOLD, 0U, config->force_threshold_n);
-    gw_config_check_real(error, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, 0U, config->impulse_threshold_newton_s);
-    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_REST, 0U, config->leak_rest_n);
-    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_CREEP, 0U, config->leak_creep_n);
-    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_MOTION, 0U, config->leak_motion_n);
-    gw_config_check_real(error, GW_FIELD_DETECTOR_RELEASE_FORCE, 0U, config->release_force_n);
-    gw_config_check_count(error, GW_FIELD_DETECTOR_BLANKING_TICKS, 0U, config->blanking_ticks);
+    gw_config_check_count(error, GW_FIELD_DETECTOR_KIND, config->kind);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_FORCE_THRESHOLD, config->force_threshold_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, config->impulse_threshold_newton_s);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_REST, config->leak_rest_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_CREEP, config->leak_creep_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_LEAK_MOTION, config->leak_motion_n);
+    gw_config_check_real(error, GW_FIELD_DETECTOR_RELEASE_FORCE, config->release_force_n);
+    gw_config_check_count(error, GW_FIELD_DETECTOR_BLANKING_TICKS, config->blanking_ticks);
 }
 
 GW_SELDOM gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s)
@@ -28,7 +28,7 @@ GW_SELDOM gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detecto
     } else {
         gw_config_error_t error;
         gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, period_s);
         gw_detector_config_check(config, &error);
         detector->initialised = (error.field == GW_FIELD_NONE);
         gw_detector_reset(detector);
@@ -51,7 +51,7 @@ GW_SELDOM bool gw_detector_invariant_holds(const gw_detector_t *detector)
     if (holds) {
         gw_config_error_t error;
         gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, detector->period_s);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, detector->period_s);
         gw_detector_config_check(&detector->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_within(detector->impulse_x_newton_s, IMPULSE_MAX) &&
                 gw_within(detector->impulse_y_newton_s, IMPULSE_MAX) &&

@@ -7,20 +7,20 @@ static const gw_twist_t no_twist = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0
 
 GW_SELDOM void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, 0U, config->velocity_source);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, 0U, config->acceleration_source);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_TORQUE_NOISE, 0U, config->torque_noise_nm);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_RATE_CUTOFF, 0U, config->rate_cutoff_radps);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, 0U, config->drivetrain_stiffness_nm_per_rad);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, 0U, config->encoder_counts);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, 0U, config->average_window);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_REST_SPEED, 0U, config->rest_speed_mps);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_CREEP_SPEED, 0U, config->creep_speed_mps);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_REST_TICKS, 0U, config->rest_ticks);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_TARE_TICKS, 0U, config->tare_ticks);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_RETARE_TICKS, 0U, config->retare_ticks);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, 0U, config->tare_variation_nm);
-    gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, 0U, config->friction_model);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, config->velocity_source);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, config->acceleration_source);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_TORQUE_NOISE, config->torque_noise_nm);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_RATE_CUTOFF, config->rate_cutoff_radps);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, config->drivetrain_stiffness_nm_per_rad);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, config->encoder_counts);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, config->average_window);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_REST_SPEED, config->rest_speed_mps);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_CREEP_SPEED, config->creep_speed_mps);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_REST_TICKS, config->rest_ticks);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_TARE_TICKS, config->tare_ticks);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_RETARE_TICKS, config->retare_ticks);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, config->tare_variation_nm);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, config->friction_model);
     gw_presliding_config_check(&config->presliding, error);
 }
 
@@ -33,6 +33,7 @@ GW_SELDOM gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_esti
         status = GW_STATUS_NULL_POINTER;
     } else {
         gw_config_error_t error;
+        estimator->initialised = false;
         gw_config_check_begin(&error);
         gw_estimator_config_check(config, &error);
         if (error.field != GW_FIELD_NONE) {
@@ -50,8 +51,8 @@ GW_SELDOM gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_esti
         if (status == GW_STATUS_OK) {
             status = gw_presliding_init(&estimator->presliding, &config->presliding, friction, &estimator->kinematics);
         }
-        estimator->initialised = (status == GW_STATUS_OK);
-        if (estimator->initialised) {
+        if (status == GW_STATUS_OK) {
+            estimator->initialised = true;
             estimator->config = *config;
             (void)gw_moving_average_init(&estimator->average, config->average_window); /* window was checked */
             estimator->run_zero_nm = no_torque;

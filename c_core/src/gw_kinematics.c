@@ -7,11 +7,11 @@
 GW_SELDOM void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
 {
     uint32_t slots_seen = 0U;
-    gw_config_check_real(error, GW_FIELD_GEOMETRY_WHEEL_RADIUS, 0U, config->wheel_radius_m);
-    gw_config_check_real(error, GW_FIELD_GEOMETRY_ROLLER_RADIUS, 0U, config->roller_radius_m);
-    gw_config_check_real(error, GW_FIELD_GEOMETRY_WHEEL_DISTANCE, 0U, config->wheel_distance_m);
+    gw_config_check_real(error, GW_FIELD_GEOMETRY_WHEEL_RADIUS, config->wheel_radius_m);
+    gw_config_check_real(error, GW_FIELD_GEOMETRY_ROLLER_RADIUS, config->roller_radius_m);
+    gw_config_check_real(error, GW_FIELD_GEOMETRY_WHEEL_DISTANCE, config->wheel_distance_m);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        gw_config_check_count(error, GW_FIELD_GEOMETRY_WHEEL_SLOT, i, config->wheel_slot[i]);
+        gw_config_check_element(error, GW_FIELD_GEOMETRY_WHEEL_SLOT, i, (gw_real_t)config->wheel_slot[i]);
         if (config->wheel_slot[i] < GW_WHEEL_COUNT) {
             slots_seen |= ((uint32_t)1U << config->wheel_slot[i]);
         }
@@ -21,7 +21,7 @@ GW_SELDOM void gw_geometry_config_check(const gw_geometry_config_t *config, gw_c
         gw_config_check_relation(error, GW_FIELD_GEOMETRY_WHEEL_SLOT, GW_WHEEL_COUNT - 1U,
                                  (gw_real_t)config->wheel_slot[GW_WHEEL_COUNT - 1U], GW_ONE, GW_ZERO);
     }
-    gw_config_check_real(error, GW_FIELD_GEOMETRY_AZIMUTH, 0U, config->azimuth_rad);
+    gw_config_check_real(error, GW_FIELD_GEOMETRY_AZIMUTH, config->azimuth_rad);
 }
 
 GW_SELDOM gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config)

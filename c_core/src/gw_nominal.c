@@ -7,10 +7,10 @@
 
 GW_SELDOM void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_real(error, GW_FIELD_BASE_MASS, 0U, config->mass_kg);
-    gw_config_check_real(error, GW_FIELD_BASE_YAW_INERTIA, 0U, config->yaw_inertia_kgm2);
-    gw_config_check_real(error, GW_FIELD_BASE_WHEEL_INERTIA, 0U, config->wheel_inertia_kgm2);
-    gw_config_check_real(error, GW_FIELD_BASE_ROLLER_INERTIA, 0U, config->roller_inertia_kgm2);
+    gw_config_check_real(error, GW_FIELD_BASE_MASS, config->mass_kg);
+    gw_config_check_real(error, GW_FIELD_BASE_YAW_INERTIA, config->yaw_inertia_kgm2);
+    gw_config_check_real(error, GW_FIELD_BASE_WHEEL_INERTIA, config->wheel_inertia_kgm2);
+    gw_config_check_real(error, GW_FIELD_BASE_ROLLER_INERTIA, config->roller_inertia_kgm2);
 }
 
 GW_SELDOM gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,

@@ -12,11 +12,11 @@
 GW_SELDOM void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        gw_config_check_real(error, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, i, config->stiffness_n_per_m[i]);
+        gw_config_check_element(error, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, i, config->stiffness_n_per_m[i]);
     }
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, 0U, config->damping_newton_s_per_m);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_STRIBECK_SPEED, 0U, config->stribeck_speed_mps);
-    gw_config_check_real(error, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, 0U, config->elastic_fraction);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, config->damping_newton_s_per_m);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_STRIBECK_SPEED, config->stribeck_speed_mps);
+    gw_config_check_real(error, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, config->elastic_fraction);
 }
 
 GW_SELDOM gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,

@@ -13,10 +13,10 @@ GW_SELDOM gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *const
     } else {
         gw_config_error_t error;
         gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
-        gw_config_check_real(&error, GW_FIELD_ESTIMATOR_RATE_CUTOFF, 0U, cutoff_radps);
-        gw_config_check_count(&error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, 0U, counts_per_turn);
-        gw_config_check_real(&error, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, 0U, stiffness_nm_per_rad);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, period_s);
+        gw_config_check_real(&error, GW_FIELD_ESTIMATOR_RATE_CUTOFF, cutoff_radps);
+        gw_config_check_count(&error, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, counts_per_turn);
+        gw_config_check_real(&error, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, stiffness_nm_per_rad);
         if (error.field != GW_FIELD_NONE) {
             status = GW_STATUS_CONFIG_INVALID;
         } else {

@@ -12,14 +12,14 @@
 
 GW_SELDOM void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error)
 {
-    gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, 0U, period_s);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, 0U, config->follow_gain_per_s);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_SPEED_LIMIT, 0U, config->speed_limit_mps);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_ACCELERATION_LIMIT, 0U, config->acceleration_limit_mps2);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_RATE_LIMIT, 0U, config->yaw_rate_limit_radps);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, 0U, config->yaw_acceleration_limit_radps2);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_REJOIN_SPEED, 0U, config->rejoin_speed_mps);
-    gw_config_check_real(error, GW_FIELD_REFERENCE_FINISH_SPEED, 0U, config->finish_speed_mps);
+    gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, period_s);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, config->follow_gain_per_s);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_SPEED_LIMIT, config->speed_limit_mps);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_ACCELERATION_LIMIT, config->acceleration_limit_mps2);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_RATE_LIMIT, config->yaw_rate_limit_radps);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, config->yaw_acceleration_limit_radps2);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_REJOIN_SPEED, config->rejoin_speed_mps);
+    gw_config_check_real(error, GW_FIELD_REFERENCE_FINISH_SPEED, config->finish_speed_mps);
     if (error->field == GW_FIELD_NONE) {
         /* A correction of more than half the distance per tick would overshoot. */
         gw_config_check_relation(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, 0U, config->follow_gain_per_s, GW_ZERO,

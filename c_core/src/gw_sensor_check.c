@@ -4,10 +4,10 @@
 
 GW_SELDOM void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_real(error, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, 0U, config->torque_limit_nm);
-    gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, 0U, config->stale_ticks_max);
-    gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, 0U, config->encoder_jump_counts);
-    gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, 0U, config->recover_ticks);
+    gw_config_check_real(error, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, config->torque_limit_nm);
+    gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, config->stale_ticks_max);
+    gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, config->encoder_jump_counts);
+    gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, config->recover_ticks);
 }
 
 GW_SELDOM gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config)

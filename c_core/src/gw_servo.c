@@ -8,14 +8,14 @@
 
 GW_SELDOM void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_real(error, GW_FIELD_SERVO_PERIOD, 0U, config->period_s);
-    gw_config_check_real(error, GW_FIELD_SERVO_KP, 0U, config->kp_nm_per_rad);
-    gw_config_check_real(error, GW_FIELD_SERVO_KD, 0U, config->kd_nms_per_rad);
-    gw_config_check_real(error, GW_FIELD_SERVO_TORQUE_LIMIT, 0U, config->torque_limit_nm);
-    gw_config_check_real(error, GW_FIELD_SERVO_TORQUE_RATE_LIMIT, 0U, config->torque_rate_limit_nm_per_s);
-    gw_config_check_count(error, GW_FIELD_SERVO_ENCODER_COUNTS, 0U, config->encoder_counts);
-    gw_config_check_real(error, GW_FIELD_SERVO_DERIVATIVE_CUTOFF, 0U, config->derivative_cutoff_hz);
-    gw_config_check_count(error, GW_FIELD_SERVO_STALE_TICKS_MAX, 0U, config->stale_ticks_max);
+    gw_config_check_real(error, GW_FIELD_SERVO_PERIOD, config->period_s);
+    gw_config_check_real(error, GW_FIELD_SERVO_KP, config->kp_nm_per_rad);
+    gw_config_check_real(error, GW_FIELD_SERVO_KD, config->kd_nms_per_rad);
+    gw_config_check_real(error, GW_FIELD_SERVO_TORQUE_LIMIT, config->torque_limit_nm);
+    gw_config_check_real(error, GW_FIELD_SERVO_TORQUE_RATE_LIMIT, config->torque_rate_limit_nm_per_s);
+    gw_config_check_count(error, GW_FIELD_SERVO_ENCODER_COUNTS, config->encoder_counts);
+    gw_config_check_real(error, GW_FIELD_SERVO_DERIVATIVE_CUTOFF, config->derivative_cutoff_hz);
+    gw_config_check_count(error, GW_FIELD_SERVO_STALE_TICKS_MAX, config->stale_ticks_max);
 }
 
 GW_SELDOM gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)

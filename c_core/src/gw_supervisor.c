@@ -4,11 +4,11 @@
 
 GW_SELDOM void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_real(error, GW_FIELD_SUPERVISOR_SETTLED_SPEED, 0U, config->settled_speed_mps);
-    gw_config_check_count(error, GW_FIELD_SUPERVISOR_SETTLED_TICKS, 0U, config->settled_ticks);
-    gw_config_check_count(error, GW_FIELD_SUPERVISOR_AFTER_SETTLED, 0U, config->after_settled);
-    gw_config_check_real(error, GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, 0U, config->rejoin_distance_m);
-    gw_config_check_real(error, GW_FIELD_SUPERVISOR_REJOIN_ANGLE, 0U, config->rejoin_angle_rad);
+    gw_config_check_real(error, GW_FIELD_SUPERVISOR_SETTLED_SPEED, config->settled_speed_mps);
+    gw_config_check_count(error, GW_FIELD_SUPERVISOR_SETTLED_TICKS, config->settled_ticks);
+    gw_config_check_count(error, GW_FIELD_SUPERVISOR_AFTER_SETTLED, config->after_settled);
+    gw_config_check_real(error, GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, config->rejoin_distance_m);
+    gw_config_check_real(error, GW_FIELD_SUPERVISOR_REJOIN_ANGLE, config->rejoin_angle_rad);
 }
 
 GW_SELDOM gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_supervisor_config_t *config)

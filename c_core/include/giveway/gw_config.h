@@ -117,8 +117,10 @@ const char *gw_config_name(gw_config_field_t field);
 /* error->field = GW_FIELD_NONE: start of a check. error is not NULL here and below. */
 void gw_config_check_begin(gw_config_error_t *error);
 /* Notes the field if value is outside its range (or NaN) and no field was noted before. */
-void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value);
-void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t index, uint32_t value);
+void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, gw_real_t value);
+void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t value);
+/* The same for an element of an array. */
+void gw_config_check_element(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value);
 /* Notes the field if value is outside [minimum, maximum]: for a rule that relates several fields. */
 void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value,
                               gw_real_t minimum, gw_real_t maximum);

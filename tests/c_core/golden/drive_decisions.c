@@ -20,8 +20,8 @@ digest_t drive_config(void)
         for (uint32_t i = 0U; i < 16U; i++) {
             gw_config_error_t error;
             gw_config_check_begin(&error);
-            gw_config_check_real(&error, field, i, generator_any(&generator));
-            gw_config_check_count(&error, field, i, generator_u32(&generator));
+            gw_config_check_element(&error, field, i, generator_any(&generator));
+            gw_config_check_element(&error, field, i, (gw_real_t)generator_u32(&generator));
             gw_config_check_relation(&error, field, i, generator_any(&generator), GW_ZERO, GW_ONE);
             digest_config_error(&digest, &error);
         }
