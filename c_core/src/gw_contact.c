@@ -75,7 +75,13 @@ GW_SELDOM gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_co
             status = GW_STATUS_CONFIG_INVALID;
             contact->initialised = false;
         } else {
-            contact->config = *config;
+            /* Member by member: see gw_estimator.c. */
+            contact->config.vertex_count = config->vertex_count;
+            contact->config.minimum_force_n = config->minimum_force_n;
+            for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
+                contact->config.vertex_m[i].x = config->vertex_m[i].x;
+                contact->config.vertex_m[i].y = config->vertex_m[i].y;
+            }
             contact->initialised = true;
         }
     }
