@@ -157,8 +157,7 @@ GW_SELDOM gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const 
                                estimator->config.tare_variation_nm, &mean_nm);
     }
     if (progress == GW_TARE_DONE) {
-        estimator->run_zero_nm = no_torque;
-        if (estimator->config.tare_ticks > 0U) {
+        if (estimator->config.tare_ticks > 0U) { /* else it stays zero */
             take_zero(estimator, &mean_nm, &estimator->run_zero_nm);
         }
         estimator->rest_zero_nm = estimator->run_zero_nm;

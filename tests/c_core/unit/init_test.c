@@ -105,6 +105,19 @@ static void an_average_starts_from_nothing(void)
     }
 }
 
+static void check_kept(const gw_estimator_config_t *kept, const gw_estimator_config_t *config)
+{
+    CHECK((kept->velocity_source == config->velocity_source) && (kept->friction_model == config->friction_model));
+    CHECK(kept->acceleration_source == config->acceleration_source);
+    CHECK((kept->torque_noise_nm == config->torque_noise_nm) && (kept->rate_cutoff_radps == config->rate_cutoff_radps));
+    CHECK(kept->drivetrain_stiffness_nm_per_rad == config->drivetrain_stiffness_nm_per_rad);
+    CHECK((kept->encoder_counts == config->encoder_counts) && (kept->average_window == config->average_window));
+    CHECK((kept->rest_speed_mps == config->rest_speed_mps) && (kept->creep_speed_mps == config->creep_speed_mps));
+    CHECK((kept->rest_ticks == config->rest_ticks) && (kept->tare_ticks == config->tare_ticks));
+    CHECK((kept->retare_ticks == config->retare_ticks) && (kept->tare_variation_nm == config->tare_variation_nm));
+    CHECK(memcmp(&kept->presliding, &config->presliding, sizeof(kept->presliding)) == 0);
+}
+
 static void an_estimator_starts_from_nothing(void)
 {
     static gw_estimator_t estimator;
@@ -122,6 +135,7 @@ static void an_estimator_starts_from_nothing(void)
         CHECK(estimator.presliding.last_count[i] == 0);
     }
     CHECK((!estimator.presliding.torque_known) && (!estimator.presliding.count_known));
+    check_kept(&estimator.config, &config.estimator);
 }
 
 /* What a tick without good sensors finds. */
