@@ -107,52 +107,56 @@ GW_SELDOM bool gw_contact_invariant_holds(const gw_contact_t *contact)
 static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction, gw_real_t offset_m,
                         gw_contact_estimate_t *estimate)
 {
-    const uint32_t count = config->vertex_count;
-    /* As long as all vertices lie on the side of the first one: which is nearest? Distances count from that side. */
-    const bool first_is_right = is_right_of(config->vertex_m[0], direction, offset_m);
+    const gw_vector_t *const first = &config->vertex_m[0];
+    const gw_vector_t *const last = &config->vertex_m[config->vertex_count - 1U];
+    /* From the last vertex down. As long as all lie on its side: which is nearest? Distances count from that side. */
+    const bool last_is_right = is_right_of(*last, direction, offset_m);
     const gw_vector_t reversed = {-direction.x, -direction.y};
-    const gw_vector_t line = first_is_right ? direction : reversed;
-    const gw_real_t line_m = first_is_right ? offset_m : -offset_m;
-    gw_real_t nearest_m = side_of(config->vertex_m[0], line, line_m);
-    uint32_t nearest = 0U;
+    const gw_vector_t line = last_is_right ? direction : reversed;
+    const gw_real_t line_m = last_is_right ? offset_m : -offset_m;
+    const gw_vector_t *vertex = last;
+    const gw_vector_t *nearest = last;
+    gw_real_t nearest_m = side_of(*last, line, line_m);
     bool crossed = false;
-    for (uint32_t i = 1U; (i < count) && (!crossed); i++) {
-        const gw_vector_t vertex = config->vertex_m[i];
-        const gw_real_t distance_m = side_of(vertex, line, line_m);
+    while (vertex != first) {
+        vertex--;
+        const gw_real_t distance_m = side_of(*vertex, line, line_m);
         if (distance_m <= nearest_m) {
-            /* On a tie (an edge parallel to the line) the end that the force meets first. */
-            if ((distance_m < nearest_m) || (along(vertex, direction) < along(config->vertex_m[nearest], direction))) {
+            if (distance_m < nearest_m) {
                 nearest_m = distance_m;
-                nearest = i;
+                nearest = vertex;
+                /* What lies on the line lies on its left. */
+                if ((distance_m < GW_ZERO) || ((distance_m <= GW_ZERO) && last_is_right)) {
+                    crossed = true;
+                    break;
+                }
+            } else if (along(*vertex, direction) <= along(*nearest, direction)) {
+                nearest = vertex; /* an edge parallel to the line: the end that the force meets first */
+            } else {
+                /* the other end */
             }
-            /* What lies on the line lies on its left. */
-            crossed = (distance_m < GW_ZERO) || ((distance_m <= GW_ZERO) && first_is_right);
         }
     }
     estimate->on_outline = crossed;
     if (crossed) {
-        /* Going counter-clockwise, the side grows exactly on the edges that the direction enters: the first vertex on
-         * the right ends such an edge. */
-        bool right = !first_is_right;
-        uint32_t entry = right ? nearest : 0U;
-        for (uint32_t i = nearest + 1U; i < count; i++) {
-            if (is_right_of(config->vertex_m[i], direction, offset_m)) {
-                entry = right ? entry : i;
-                right = true;
-            } else {
-                right = false;
+        /* Going counter-clockwise, the side grows exactly on the edges that the direction enters: of these the last. */
+        const gw_vector_t *end = vertex;
+        if (last_is_right) {
+            end++;
+        } else {
+            while ((end != first) && is_right_of(end[-1], direction, offset_m)) {
+                end--;
             }
         }
-        const gw_vector_t start = config->vertex_m[((entry > 0U) ? entry : count) - 1U];
-        const gw_vector_t end = config->vertex_m[entry];
-        const gw_real_t start_side_m = side_of(start, direction, offset_m);
-        const gw_real_t end_side_m = side_of(end, direction, offset_m);
+        const gw_vector_t *const start = (end == first) ? last : &end[-1];
+        const gw_real_t start_side_m = side_of(*start, direction, offset_m);
+        const gw_real_t end_side_m = side_of(*end, direction, offset_m);
         const gw_real_t fraction = gw_fraction(-start_side_m, end_side_m - start_side_m);
-        const gw_vector_t edge = from_to(start, end);
-        estimate->point_m.x = start.x + (fraction * edge.x);
-        estimate->point_m.y = start.y + (fraction * edge.y);
+        const gw_vector_t edge = from_to(*start, *end);
+        estimate->point_m.x = start->x + (fraction * edge.x);
+        estimate->point_m.y = start->y + (fraction * edge.y);
     } else {
-        estimate->point_m = config->vertex_m[nearest];
+        estimate->point_m = *nearest;
     }
 }
 
