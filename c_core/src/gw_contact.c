@@ -151,7 +151,7 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
         const gw_vector_t *const start = (end == first) ? last : &end[-1];
         const gw_real_t start_side_m = side_of(*start, direction, offset_m);
         const gw_real_t end_side_m = side_of(*end, direction, offset_m);
-        const gw_real_t fraction = gw_fraction(-start_side_m, end_side_m - start_side_m);
+        const gw_real_t fraction = gw_fraction_inline(-start_side_m, end_side_m - start_side_m);
         const gw_vector_t edge = from_to(*start, *end);
         estimate->point_m.x = start->x + (fraction * edge.x);
         estimate->point_m.y = start->y + (fraction * edge.y);

@@ -222,7 +222,7 @@ static bool is_slow(const gw_controller_t *controller)
 {
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     const gw_real_t rim =
-        gw_abs(controller->reference.twist.omega_radps) * controller->estimator.kinematics.wheel_distance_m;
+        gw_magnitude(controller->reference.twist.omega_radps) * controller->estimator.kinematics.wheel_distance_m;
     return gw_max(gw_length(velocity), rim) < controller->supervisor.config.settled_speed_mps;
 }
 
@@ -230,7 +230,7 @@ static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples
 {
     gw_wrench_sigma_t result = sigma;
     if (samples > 1U) {
-        const gw_real_t root = gw_sqrt((gw_real_t)samples);
+        const gw_real_t root = gw_sqrt_of_square((gw_real_t)samples);
         result.force_n = sigma.force_n / root;
         result.torque_nm = sigma.torque_nm / root;
     }

@@ -106,7 +106,7 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
     const gw_real_t left = length - (leak_n * detector->period_s);
     bool trips = false;
     if (left > GW_ZERO) {
-        const gw_real_t shrink = gw_fraction(left, length);
+        const gw_real_t shrink = gw_fraction_inline(left, length);
         detector->impulse_x_newton_s = gw_limited(sum.x * shrink, IMPULSE_MAX);
         detector->impulse_y_newton_s = gw_limited(sum.y * shrink, IMPULSE_MAX);
         detector->impulse_moment_nms = moment * shrink;

@@ -209,7 +209,7 @@ static gw_acceleration_t limited_acceleration(gw_acceleration_t acceleration)
 static gw_real_t faster_of(const gw_estimator_t *estimator, gw_twist_t twist)
 {
     const gw_vector_t velocity = {twist.vx_mps, twist.vy_mps};
-    const gw_real_t rim = gw_abs(twist.omega_radps) * estimator->kinematics.wheel_distance_m;
+    const gw_real_t rim = gw_magnitude(twist.omega_radps) * estimator->kinematics.wheel_distance_m;
     return gw_max(gw_length(velocity), rim);
 }
 

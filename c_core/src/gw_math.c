@@ -12,6 +12,7 @@
 #define EXP_HIGHEST ((gw_real_t)709.0)
 #define EXPM1_LOWEST ((gw_real_t)-40.0) /* e^x is below half an ulp of 1 */
 #define TANH_SATURATED ((gw_real_t)20.0)
+typedef uint64_t tanh_power_t; /* holds e^(2 TANH_SATURATED) */
 #define SQRT_SCALINGS 9U
 #define SQRT_LIFT ((gw_real_t)4.149515568880993e180) /* 2^600 */
 #define SQRT_LIFT_ROOT ((gw_real_t)4.909093465297727e-91) /* 2^-300 */
@@ -28,6 +29,7 @@
 #define EXP_HIGHEST ((gw_real_t)88.0)
 #define EXPM1_LOWEST ((gw_real_t)-20.0)
 #define TANH_SATURATED ((gw_real_t)10.0)
+typedef uint32_t tanh_power_t;
 #define SQRT_SCALINGS 6U
 #define SQRT_LIFT ((gw_real_t)7.922816251426434e28)       /* 2^96 */
 #define SQRT_LIFT_ROOT ((gw_real_t)3.552713678800501e-15) /* 2^-48 */
@@ -182,20 +184,19 @@ static inline gw_real_t exp_series(gw_real_t r)
     return value;
 }
 
-/* e^x = scale * (1 + result), for EXP_LOWEST <= x <= EXP_HIGHEST; scale is a power of 2. */
-static inline gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
+/* e^r - 1, for |r| up to half of ln 2. */
+static inline gw_real_t short_expm1(gw_real_t r)
 {
-    const int32_t exponent = nearest_integer(x * LOG2_E);
-    const gw_real_t k = (gw_real_t)exponent;
-    const gw_real_t r = (x - (k * LN2_HIGH)) - (k * LN2_LOW);
-    *scale = power_of_two(exponent);
     return r + ((r * r) * exp_series(r));
 }
 
-/* The same, once for all that is not as often at work as tanh. */
-static GW_APART gw_real_t reduced_expm1_apart(gw_real_t x, gw_real_t *scale)
+/* e^x = scale * (1 + result), for EXP_LOWEST <= x <= EXP_HIGHEST; scale is a power of 2. */
+static GW_APART gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
 {
-    return reduced_expm1(x, scale);
+    const int32_t exponent = nearest_integer(x * LOG2_E);
+    const gw_real_t k = (gw_real_t)exponent;
+    *scale = power_of_two(exponent);
+    return short_expm1((x - (k * LN2_HIGH)) - (k * LN2_LOW));
 }
 
 gw_real_t gw_exp(gw_real_t x)
@@ -205,7 +206,7 @@ gw_real_t gw_exp(gw_real_t x)
         result = GW_REAL_MAX;
     } else if (x >= EXP_LOWEST) {
         gw_real_t scale;
-        const gw_real_t part = reduced_expm1_apart(x, &scale);
+        const gw_real_t part = reduced_expm1(x, &scale);
         result = (GW_ONE + part) * scale; /* not rounded: the result is a normal number */
     } else {
         /* NaN or far below: 0 */
@@ -220,7 +221,7 @@ gw_real_t gw_expm1(gw_real_t x)
         result = GW_REAL_MAX;
     } else if (x >= EXPM1_LOWEST) {
         gw_real_t scale;
-        const gw_real_t part = reduced_expm1_apart(x, &scale);
+        const gw_real_t part = reduced_expm1(x, &scale);
         result = (part * scale) + (scale - GW_ONE);
     } else if (x < EXPM1_LOWEST) {
         result = -GW_ONE;
@@ -235,8 +236,12 @@ gw_real_t gw_tanh(gw_real_t x)
     gw_real_t result = -GW_ZERO;
     const gw_real_t size = gw_magnitude(x);
     if (size < TANH_SATURATED) {
-        gw_real_t scale;
-        const gw_real_t part = reduced_expm1(-GW_TWO * size, &scale);
+        /* As reduced_expm1(-2 size), where the sign of the exponent is known, and that it has few bits. */
+        const gw_real_t twice = GW_TWO * size;
+        const uint32_t halvings = (uint32_t)((twice * LOG2_E) + GW_HALF);
+        const gw_real_t k = (gw_real_t)halvings;
+        const gw_real_t part = short_expm1(((k * LN2_HIGH) - twice) + (k * LN2_LOW));
+        const gw_real_t scale = GW_ONE / (gw_real_t)((tanh_power_t)1 << halvings);
         const gw_real_t e = (part * scale) + (scale - GW_ONE); /* expm1 */
         const gw_real_t magnitude = -e / (e + GW_TWO);
         result = (x < GW_ZERO) ? -magnitude : magnitude;
@@ -361,10 +366,13 @@ gw_real_t gw_atan2(gw_real_t y, gw_real_t x)
     gw_real_t angle = GW_ZERO;
     const gw_real_t x_size = gw_magnitude(x);
     const gw_real_t y_size = gw_magnitude(y);
-    const gw_real_t larger = gw_max(x_size, y_size);
-    if (gw_is_finite(x) && gw_is_finite(y) && (larger > GW_ZERO)) {
-        angle = atan_of_fraction(gw_min(x_size, y_size) / larger);
-        if (y_size > x_size) {
+    const bool steep = (y_size > x_size);
+    const gw_real_t larger = steep ? y_size : x_size;
+    const gw_real_t smaller = steep ? x_size : y_size;
+    /* The first fails if either is NaN. */
+    if ((smaller <= larger) && (larger > GW_ZERO) && (larger <= GW_REAL_MAX)) {
+        angle = atan_of_fraction(smaller / larger);
+        if (steep) {
             angle = (GW_HALF * GW_PI) - angle;
         }
         if (x < GW_ZERO) {
@@ -398,12 +406,6 @@ gw_real_t gw_wrap_angle(gw_real_t angle_rad)
     return wrapped;
 }
 
-gw_vector_t gw_unit(gw_real_t x, gw_real_t y, gw_real_t length)
-{
-    const gw_vector_t unit = {gw_fraction(x, length), gw_fraction(y, length)};
-    return unit;
-}
-
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
 {
     gw_vector_t result = vector;
@@ -423,7 +425,7 @@ gw_real_t gw_braking_speed(gw_real_t deceleration, gw_real_t period, gw_real_t d
     if (distance > GW_ZERO) {
         /* v^2 = 2 a (distance - T v/2) */
         const gw_real_t half_step = (GW_HALF * deceleration) * period;
-        speed = gw_sqrt((half_step * half_step) + ((GW_TWO * deceleration) * distance)) - half_step;
+        speed = gw_sqrt_of_square((half_step * half_step) + ((GW_TWO * deceleration) * distance)) - half_step;
     }
     return speed;
 }

@@ -131,9 +131,9 @@ static void move_yaw(gw_reference_t *reference, gw_real_t wanted_radps, const gw
 {
     const gw_real_t most = reference->config.yaw_acceleration_limit_radps2 * reference->period_s;
     const gw_real_t change = wanted_radps - reference->twist.omega_radps;
-    const gw_real_t allowed = gw_clamp(change, -most, most);
+    const gw_real_t allowed = gw_limited(change, most);
     const gw_real_t omega = gw_limited(reference->twist.omega_radps + allowed, YAW_RATE_MAX);
-    if ((planned != NULL) && (gw_abs(change) <= most)) {
+    if ((planned != NULL) && gw_within(change, most)) {
         reference->acceleration.alpha_radps2 = planned->alpha_radps2;
     } else {
         reference->acceleration.alpha_radps2 = allowed / reference->period_s;

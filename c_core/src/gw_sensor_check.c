@@ -82,12 +82,11 @@ static gw_status_t torque_status(const gw_sensor_check_t *check, const gw_sensor
 static bool note_encoders(gw_sensor_check_t *check, const gw_sensor_sample_t *sample, uint32_t elapsed_ticks)
 {
     bool plausible = true;
-    const bool known = check->encoder_known;
-    /* At most 1e6 counts in 1000 ticks: no overflow. */
-    const uint32_t most = check->config.encoder_jump_counts * elapsed_ticks;
+    /* At most 1e6 counts in 1000 ticks: no overflow. Without a sample before, any number of counts is plausible. */
+    const uint32_t most = check->encoder_known ? (check->config.encoder_jump_counts * elapsed_ticks) : UINT32_MAX;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const uint32_t moved = count_distance(sample->encoder_count[i], check->last_count[i]);
-        if (known && (moved > most)) {
+        if (moved > most) {
             plausible = false;
         }
         check->last_count[i] = sample->encoder_count[i];

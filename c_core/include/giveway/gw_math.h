@@ -113,13 +113,6 @@ static inline bool gw_is_finite(gw_real_t x)
     return gw_within(x, GW_REAL_MAX);
 }
 
-/* Root of the largest number. */
-#if (GW_REAL_DOUBLE == 1)
-#define GW_ROOT_MAX 1.3407807929942596e+154
-#else
-#define GW_ROOT_MAX 1.8446742974197924e+19F
-#endif
-
 /* Square root, correctly rounded; 0 for negative x and NaN; infinity stays GW_REAL_MAX's root at most. */
 #if (GW_HARDWARE_SQRT == 1)
 /* One instruction rounds correctly: the same bits as the portable function in a tenth of the time. */
@@ -143,8 +136,28 @@ static inline gw_real_t gw_sqrt(gw_real_t x)
 #else
 gw_real_t gw_sqrt(gw_real_t x);
 #endif
+
+/* The same for x >= 0 that is known to be finite: nothing is asked again. */
+static inline gw_real_t gw_sqrt_of_square(gw_real_t x)
+{
+#if (GW_HARDWARE_SQRT == 1)
+    return gw_sqrt_by_fpu(x);
+#else
+    return gw_sqrt(x);
+#endif
+}
+
 /* part / whole limited to [-1, 1], for the share of a whole that rounding must not exceed; 0 unless whole > 0. */
 gw_real_t gw_fraction(gw_real_t part, gw_real_t whole);
+/* The same; where a tick's instructions are counted, the usual case without a call. */
+static inline gw_real_t gw_fraction_inline(gw_real_t part, gw_real_t whole)
+{
+#if (GW_ARM_FLOAT == 1)
+    return (gw_magnitude(part) < whole) ? (part / whole) : gw_fraction(part, whole);
+#else
+    return gw_fraction(part, whole);
+#endif
+}
 /* e^x; 0 below the smallest normal number and for NaN, GW_REAL_MAX where it would overflow. */
 gw_real_t gw_exp(gw_real_t x);
 /* e^x - 1 without cancellation near 0; -1 far below 0, GW_REAL_MAX where it would overflow, 0 for NaN. */
@@ -191,20 +204,19 @@ static inline gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vec
     return result;
 }
 
-/* Length of the vector, for components below 1e18 in magnitude. */
+/* Length of the vector, for components below 1e18 in magnitude: rung `eva` shows that no step asks for another. */
 static inline gw_real_t gw_length(gw_vector_t vector)
 {
-    const gw_real_t square = (vector.x * vector.x) + (vector.y * vector.y);
-#if (GW_HARDWARE_SQRT == 1)
-    /* A square is not negative; of infinity the root of the largest number, of NaN 0, as gw_sqrt. */
-    return (square <= GW_REAL_MAX) ? gw_sqrt_by_fpu(square) : ((square > GW_REAL_MAX) ? GW_ROOT_MAX : GW_ZERO);
-#else
-    return gw_sqrt(square);
-#endif
+    return gw_sqrt_of_square((vector.x * vector.x) + (vector.y * vector.y));
 }
 
 /* The vector (x, y) over its length: (0, 0) if that is not positive. */
-gw_vector_t gw_unit(gw_real_t x, gw_real_t y, gw_real_t length);
+static inline gw_vector_t gw_unit(gw_real_t x, gw_real_t y, gw_real_t length)
+{
+    const gw_vector_t unit = {gw_fraction_inline(x, length), gw_fraction_inline(y, length)};
+    return unit;
+}
+
 /* The vector, shortened to the limit if it is longer; limit >= 0. */
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit);
 /* Highest speed at the end of a tick from which the deceleration still stops at the goal, for motion by trapezoids.
