@@ -118,7 +118,7 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
     const gw_vector_t *nearest = last;
     gw_real_t nearest_m = side_of(*last, line, line_m);
     bool crossed = false;
-    while (vertex != first) {
+    do {
         vertex--;
         const gw_real_t distance_m = side_of(*vertex, line, line_m);
         if (distance_m <= nearest_m) {
@@ -136,7 +136,7 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
                 /* the other end */
             }
         }
-    }
+    } while (vertex != first);
     estimate->on_outline = crossed;
     if (crossed) {
         /* Going counter-clockwise, the side grows exactly on the edges that the direction enters: of these the last. */
