@@ -119,30 +119,33 @@ static gw_real_t bearable_at(const gw_presliding_t *presliding, const gw_kinemat
     const gw_real_t slow = speed_mps / presliding->config.stribeck_speed_mps;
     const gw_real_t stick = gw_exp(-(slow * slow));
     const gw_real_t steady =
-        gw_tanh(presliding->friction.tanh_slope_s_per_rad * (gw_abs(speed_mps) * kinematics->per_roller_radius));
+        gw_tanh(presliding->friction.tanh_slope_s_per_rad * (gw_magnitude(speed_mps) * kinematics->per_roller_radius));
     const gw_real_t share = stick + ((GW_ONE - stick) * steady);
     return gw_clamp(presliding->bearable_n * share, BEARABLE_MIN_N, presliding->bearable_n);
 }
 
-/* 1 - A rho: how much of a motion that way deflects the bristle further. */
-static gw_real_t deflecting_share(const gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t way)
+/* Does a motion that way deflect the bristle further? */
+static bool deflects_further(gw_real_t deflection_m, gw_real_t way)
+{
+    return ((deflection_m > GW_ZERO) && (way > GW_ZERO)) || ((deflection_m < GW_ZERO) && (way < GW_ZERO));
+}
+
+/* 1 - A rho: how much of such a motion goes into the bristle. */
+static gw_real_t deflecting_share(const gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n)
 {
     const gw_real_t deflection_m = presliding->deflection_m[wheel].value;
-    gw_real_t share = GW_ONE;
-    if (((deflection_m > GW_ZERO) && (way > GW_ZERO)) || ((deflection_m < GW_ZERO) && (way < GW_ZERO))) {
-        const gw_real_t rho = (presliding->config.stiffness_n_per_m[wheel] * gw_abs(deflection_m)) / bearable_n;
-        const gw_real_t beyond = (rho - presliding->config.elastic_fraction) /
-                                 (GW_ONE - presliding->config.elastic_fraction);
-        const gw_real_t y = gw_clamp(beyond, GW_ZERO, GW_ONE);
-        const gw_real_t sliding = (y * y) * (THREE - (GW_TWO * y));
-        share = GW_ONE - (sliding * rho);
-    }
-    return share;
+    const gw_real_t rho = (presliding->config.stiffness_n_per_m[wheel] * gw_magnitude(deflection_m)) / bearable_n;
+    const gw_real_t beyond = (rho - presliding->config.elastic_fraction) /
+                             (GW_ONE - presliding->config.elastic_fraction);
+    const gw_real_t y = gw_clamp(beyond, GW_ZERO, GW_ONE);
+    const gw_real_t sliding = (y * y) * (THREE - (GW_TWO * y));
+    return GW_ONE - (sliding * rho);
 }
 
 /* Moves the deflection by one sample's way. The exact solution ends at g/sigma0 and never passes it, from either side:
  * nor does this, however long the way. */
-static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t way_m)
+static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t way_m,
+                    gw_real_t share)
 {
     const gw_sum_t before_m = presliding->deflection_m[wheel];
     const gw_real_t most_m = deflection_of(presliding, wheel, presliding->bearable_n);
@@ -150,7 +153,7 @@ static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t beara
     const bool below = before_m.value < end_m;
     const gw_real_t low_m = below ? -most_m : end_m;
     const gw_real_t high_m = below ? end_m : most_m;
-    gw_sum_t after_m = gw_sum_add(before_m, way_m * deflecting_share(presliding, wheel, bearable_n, way_m));
+    gw_sum_t after_m = gw_sum_add(before_m, way_m * share);
     if (!gw_in_range(after_m.value, low_m, high_m)) {
         after_m = gw_sum_of(gw_clamp(after_m.value, low_m, high_m));
     }
@@ -171,9 +174,14 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
         const gw_real_t speed_mps = (n.x * twist.vx_mps) + (n.y * twist.vy_mps);
         const gw_real_t way_m = (n.x * moved.vx_mps) + (n.y * moved.vy_mps);
         const gw_real_t bearable_n = bearable_at(presliding, kinematics, speed_mps);
-        const gw_real_t rate_mps = speed_mps * deflecting_share(presliding, i, bearable_n, speed_mps);
+        /* The share is that of speed and way, as far as they go the same way. */
+        const bool speed_deflects = deflects_further(presliding->deflection_m[i].value, speed_mps);
+        const bool way_deflects = deflects_further(presliding->deflection_m[i].value, way_m);
+        const gw_real_t share =
+            (speed_deflects || way_deflects) ? deflecting_share(presliding, i, bearable_n) : GW_ONE;
+        const gw_real_t rate_mps = speed_deflects ? (speed_mps * share) : speed_mps;
         if (gw_within(way_m, WAY_MAX_M)) {
-            deflect(presliding, i, bearable_n, gw_limited(way_m, WAY_MAX_M));
+            deflect(presliding, i, bearable_n, gw_limited(way_m, WAY_MAX_M), way_deflects ? share : GW_ONE);
         }
         const gw_real_t force_n = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) +
                                   (presliding->config.damping_newton_s_per_m * rate_mps);
