@@ -140,19 +140,29 @@ gw_real_t gw_sqrt(gw_real_t x)
 }
 #endif
 
-/* 2^exponent, if that is a normal number. */
-static inline gw_real_t power_of_two(int32_t exponent)
+#define LONGEST_SHIFT 31U
+
+/* 2^times and 2^-times, if that is a normal number. */
+static inline gw_real_t power_above_1(uint32_t times)
 {
-    const gw_real_t longest = (gw_real_t)2147483648.0; /* 2^31 */
     gw_real_t result = GW_ONE;
-    uint32_t left = (exponent < 0) ? (uint32_t)(-exponent) : (uint32_t)exponent;
-    while (left > 31U) {
-        result = (exponent < 0) ? (result / longest) : (result * longest);
-        left -= 31U;
+    uint32_t left = times;
+    while (left > LONGEST_SHIFT) {
+        result *= (gw_real_t)((uint32_t)1U << LONGEST_SHIFT);
+        left -= LONGEST_SHIFT;
     }
-    const uint32_t power = (uint32_t)1U << left;
-    const gw_real_t factor = (gw_real_t)power;
-    return (exponent < 0) ? (result / factor) : (result * factor);
+    return result * (gw_real_t)((uint32_t)1U << left);
+}
+
+static inline gw_real_t power_below_1(uint32_t times)
+{
+    gw_real_t result = GW_ONE;
+    uint32_t left = times;
+    while (left > LONGEST_SHIFT) {
+        result /= (gw_real_t)((uint32_t)1U << LONGEST_SHIFT);
+        left -= LONGEST_SHIFT;
+    }
+    return result / (gw_real_t)((uint32_t)1U << left);
 }
 
 /* A step of Horner's scheme. The series are written out: as loops they would take twice the instructions. */
@@ -191,23 +201,35 @@ static inline gw_real_t short_expm1(gw_real_t r)
 }
 
 /* e^x = scale * (1 + result), for EXP_LOWEST <= x <= EXP_HIGHEST; scale is a power of 2. */
-static GW_APART gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
+static GW_SELDOM gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
 {
     const int32_t exponent = nearest_integer(x * LOG2_E);
     const gw_real_t k = (gw_real_t)exponent;
-    *scale = power_of_two(exponent);
+    *scale = (exponent < 0) ? power_below_1((uint32_t)(-exponent)) : power_above_1((uint32_t)exponent);
     return short_expm1((x - (k * LN2_HIGH)) - (k * LN2_LOW));
+}
+
+/* The same for x = -size <= 0, where the sign of the exponent is known: scale is 2^-halvings. */
+static inline gw_real_t reduced_expm1_below_0(gw_real_t size, uint32_t *halvings)
+{
+    *halvings = (uint32_t)((size * LOG2_E) + GW_HALF);
+    const gw_real_t k = (gw_real_t)*halvings;
+    return short_expm1(((k * LN2_HIGH) - size) + (k * LN2_LOW));
 }
 
 gw_real_t gw_exp(gw_real_t x)
 {
     gw_real_t result = GW_ZERO;
-    if (x > EXP_HIGHEST) {
+    if ((x <= GW_ZERO) && (x >= EXP_LOWEST)) {
+        uint32_t halvings;
+        const gw_real_t part = reduced_expm1_below_0(-x, &halvings);
+        result = (GW_ONE + part) * power_below_1(halvings); /* not rounded: the result is a normal number */
+    } else if (x > EXP_HIGHEST) {
         result = GW_REAL_MAX;
-    } else if (x >= EXP_LOWEST) {
+    } else if (x > GW_ZERO) {
         gw_real_t scale;
         const gw_real_t part = reduced_expm1(x, &scale);
-        result = (GW_ONE + part) * scale; /* not rounded: the result is a normal number */
+        result = (GW_ONE + part) * scale;
     } else {
         /* NaN or far below: 0 */
     }
@@ -236,11 +258,8 @@ gw_real_t gw_tanh(gw_real_t x)
     gw_real_t result = -GW_ZERO;
     const gw_real_t size = gw_magnitude(x);
     if (size < TANH_SATURATED) {
-        /* As reduced_expm1(-2 size), where the sign of the exponent is known, and that it has few bits. */
-        const gw_real_t twice = GW_TWO * size;
-        const uint32_t halvings = (uint32_t)((twice * LOG2_E) + GW_HALF);
-        const gw_real_t k = (gw_real_t)halvings;
-        const gw_real_t part = short_expm1(((k * LN2_HIGH) - twice) + (k * LN2_LOW));
+        uint32_t halvings;
+        const gw_real_t part = reduced_expm1_below_0(GW_TWO * size, &halvings);
         const gw_real_t scale = GW_ONE / (gw_real_t)((tanh_power_t)1 << halvings);
         const gw_real_t e = (part * scale) + (scale - GW_ONE); /* expm1 */
         const gw_real_t magnitude = -e / (e + GW_TWO);

@@ -292,15 +292,6 @@ static void lengths_are_limited(void)
     CHECK((same.x == vector.x) && (same.y == vector.y));
 }
 
-/* Where the square overflows, the root of the largest number; of NaN 0: as gw_sqrt, on every machine. */
-static void lengths_beyond_the_largest_number(void)
-{
-    const gw_vector_t huge = {GW_REAL_MAX, GW_REAL_MAX};
-    const gw_vector_t broken = {R(1.0), unit_nan()};
-    CHECK(gw_length(huge) == gw_sqrt(GW_REAL_MAX));
-    CHECK(gw_length(broken) == R(0.0));
-}
-
 /* v^2 = 2 a (distance - T v/2): what is left after the tick stops exactly. */
 static void the_braking_speed_stops_at_the_goal(void)
 {
@@ -345,6 +336,5 @@ void suite_math(void)
     unit_run("counters_may_wrap", counters_may_wrap);
     unit_run("vectors_turn_and_turn_back", vectors_turn_and_turn_back);
     unit_run("lengths_are_limited", lengths_are_limited);
-    unit_run("lengths_beyond_the_largest_number", lengths_beyond_the_largest_number);
     unit_run("the_braking_speed_stops_at_the_goal", the_braking_speed_stops_at_the_goal);
 }
