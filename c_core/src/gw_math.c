@@ -12,7 +12,7 @@
 #define EXP_HIGHEST ((gw_real_t)709.0)
 #define EXPM1_LOWEST ((gw_real_t)-40.0) /* e^x is below half an ulp of 1 */
 #define TANH_SATURATED ((gw_real_t)20.0)
-typedef uint64_t tanh_power_t; /* holds e^(2 TANH_SATURATED) */
+typedef uint64_t tanh_power_t; /* beyond e^(2 TANH_SATURATED) */
 #define SQRT_SCALINGS 9U
 #define SQRT_LIFT ((gw_real_t)4.149515568880993e180) /* 2^600 */
 #define SQRT_LIFT_ROOT ((gw_real_t)4.909093465297727e-91) /* 2^-300 */
@@ -140,18 +140,20 @@ gw_real_t gw_sqrt(gw_real_t x)
 }
 #endif
 
-#define LONGEST_SHIFT 31U
-
 /* 2^times and 2^-times, if that is a normal number. */
+#define LONGEST_SHIFT 31U
+#define LONGEST_POWER ((gw_real_t)2147483648.0) /* 2^31 */
+
 static inline gw_real_t power_above_1(uint32_t times)
 {
     gw_real_t result = GW_ONE;
     uint32_t left = times;
     while (left > LONGEST_SHIFT) {
-        result *= (gw_real_t)((uint32_t)1U << LONGEST_SHIFT);
+        result *= LONGEST_POWER;
         left -= LONGEST_SHIFT;
     }
-    return result * (gw_real_t)((uint32_t)1U << left);
+    const uint32_t power = (uint32_t)1U << left;
+    return result * (gw_real_t)power;
 }
 
 static inline gw_real_t power_below_1(uint32_t times)
@@ -159,10 +161,11 @@ static inline gw_real_t power_below_1(uint32_t times)
     gw_real_t result = GW_ONE;
     uint32_t left = times;
     while (left > LONGEST_SHIFT) {
-        result /= (gw_real_t)((uint32_t)1U << LONGEST_SHIFT);
+        result /= LONGEST_POWER;
         left -= LONGEST_SHIFT;
     }
-    return result / (gw_real_t)((uint32_t)1U << left);
+    const uint32_t power = (uint32_t)1U << left;
+    return result / (gw_real_t)power;
 }
 
 /* A step of Horner's scheme. The series are written out: as loops they would take twice the instructions. */
@@ -212,7 +215,8 @@ static GW_SELDOM gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
 /* The same for x = -size <= 0, where the sign of the exponent is known: scale is 2^-halvings. */
 static inline gw_real_t reduced_expm1_below_0(gw_real_t size, uint32_t *halvings)
 {
-    *halvings = (uint32_t)((size * LOG2_E) + GW_HALF);
+    const gw_real_t shifted = (size * LOG2_E) + GW_HALF;
+    *halvings = (uint32_t)shifted;
     const gw_real_t k = (gw_real_t)*halvings;
     return short_expm1(((k * LN2_HIGH) - size) + (k * LN2_LOW));
 }
@@ -260,7 +264,8 @@ gw_real_t gw_tanh(gw_real_t x)
     if (size < TANH_SATURATED) {
         uint32_t halvings;
         const gw_real_t part = reduced_expm1_below_0(GW_TWO * size, &halvings);
-        const gw_real_t scale = GW_ONE / (gw_real_t)((tanh_power_t)1 << halvings);
+        const tanh_power_t power = (tanh_power_t)1U << halvings;
+        const gw_real_t scale = GW_ONE / (gw_real_t)power;
         const gw_real_t e = (part * scale) + (scale - GW_ONE); /* expm1 */
         const gw_real_t magnitude = -e / (e + GW_TWO);
         result = (x < GW_ZERO) ? -magnitude : magnitude;

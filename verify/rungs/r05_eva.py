@@ -25,10 +25,12 @@ ONLY_CALLED_BY_THOSE = {
     "less_quarter_turns",
     "nearest_integer",
     "on",
+    "power_above_1",
+    "power_below_1",
     "reduced_expm1",
-    "reduced_expm1_apart",
+    "reduced_expm1_below_0",
     "root_of",
-    "power_of_two",
+    "short_expm1",
     "sin_series",
 }
 OWN = re.compile(r"(draw|hold|disturb|demand|any|part|lowest|highest|step_sums|main)(_\w+)?(_\d+)?")
@@ -81,7 +83,7 @@ DRIVERS = {
     "contact": Driver(
         Mutant(
             "gw_contact.c",
-            "gw_fraction(-start_side_m, end_side_m - start_side_m)",
+            "gw_fraction_inline(-start_side_m, end_side_m - start_side_m)",
             "-start_side_m / (end_side_m - start_side_m)",
         ),
         "gw_contact_init:0",
