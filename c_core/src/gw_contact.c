@@ -126,17 +126,14 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
                 nearest_m = distance_m;
                 nearest = vertex;
                 /* What lies on the line lies on its left. */
-                if ((distance_m < GW_ZERO) || ((distance_m <= GW_ZERO) && last_is_right)) {
-                    crossed = true;
-                    break;
-                }
+                crossed = (distance_m < GW_ZERO) || ((distance_m <= GW_ZERO) && last_is_right);
             } else if (along(*vertex, direction) <= along(*nearest, direction)) {
                 nearest = vertex; /* an edge parallel to the line: the end that the force meets first */
             } else {
                 /* the other end */
             }
         }
-    } while (vertex != first);
+    } while ((vertex != first) && (!crossed));
     estimate->on_outline = crossed;
     if (crossed) {
         /* Going counter-clockwise, the side grows exactly on the edges that the direction enters: of these the last. */
