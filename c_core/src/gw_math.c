@@ -153,7 +153,8 @@ static inline gw_real_t power_above_1(uint32_t times)
         left -= LONGEST_SHIFT;
     }
     const uint32_t power = (uint32_t)1U << left;
-    return result * (gw_real_t)power;
+    const gw_real_t factor = (gw_real_t)power;
+    return result * factor;
 }
 
 static inline gw_real_t power_below_1(uint32_t times)
@@ -165,7 +166,8 @@ static inline gw_real_t power_below_1(uint32_t times)
         left -= LONGEST_SHIFT;
     }
     const uint32_t power = (uint32_t)1U << left;
-    return result / (gw_real_t)power;
+    const gw_real_t factor = (gw_real_t)power;
+    return result / factor;
 }
 
 /* A step of Horner's scheme. The series are written out: as loops they would take twice the instructions. */
