@@ -144,7 +144,7 @@ gw_real_t gw_sqrt(gw_real_t x)
 #define LONGEST_SHIFT 31U
 #define LONGEST_POWER ((gw_real_t)2147483648.0) /* 2^31 */
 
-static inline gw_real_t power_above_1(uint32_t times)
+static inline gw_real_t rising_power_of_two(uint32_t times)
 {
     gw_real_t result = GW_ONE;
     uint32_t left = times;
@@ -157,7 +157,7 @@ static inline gw_real_t power_above_1(uint32_t times)
     return result * factor;
 }
 
-static inline gw_real_t power_below_1(uint32_t times)
+static inline gw_real_t falling_power_of_two(uint32_t times)
 {
     gw_real_t result = GW_ONE;
     uint32_t left = times;
@@ -210,12 +210,12 @@ static GW_SELDOM gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
 {
     const int32_t exponent = nearest_integer(x * LOG2_E);
     const gw_real_t k = (gw_real_t)exponent;
-    *scale = (exponent < 0) ? power_below_1((uint32_t)(-exponent)) : power_above_1((uint32_t)exponent);
+    *scale = (exponent < 0) ? falling_power_of_two((uint32_t)(-exponent)) : rising_power_of_two((uint32_t)exponent);
     return short_expm1((x - (k * LN2_HIGH)) - (k * LN2_LOW));
 }
 
 /* The same for x = -size <= 0, where the sign of the exponent is known: scale is 2^-halvings. */
-static inline gw_real_t reduced_expm1_below_0(gw_real_t size, uint32_t *halvings)
+static inline gw_real_t falling_expm1(gw_real_t size, uint32_t *halvings)
 {
     const gw_real_t shifted = (size * LOG2_E) + GW_HALF;
     *halvings = (uint32_t)shifted;
@@ -228,8 +228,8 @@ gw_real_t gw_exp(gw_real_t x)
     gw_real_t result = GW_ZERO;
     if ((x <= GW_ZERO) && (x >= EXP_LOWEST)) {
         uint32_t halvings;
-        const gw_real_t part = reduced_expm1_below_0(-x, &halvings);
-        result = (GW_ONE + part) * power_below_1(halvings); /* not rounded: the result is a normal number */
+        const gw_real_t part = falling_expm1(-x, &halvings);
+        result = (GW_ONE + part) * falling_power_of_two(halvings); /* not rounded: the result is a normal number */
     } else if (x > EXP_HIGHEST) {
         result = GW_REAL_MAX;
     } else if (x > GW_ZERO) {
@@ -265,7 +265,7 @@ gw_real_t gw_tanh(gw_real_t x)
     const gw_real_t size = gw_magnitude(x);
     if (size < TANH_SATURATED) {
         uint32_t halvings;
-        const gw_real_t part = reduced_expm1_below_0(GW_TWO * size, &halvings);
+        const gw_real_t part = falling_expm1(GW_TWO * size, &halvings);
         const tanh_power_t power = (tanh_power_t)1U << halvings;
         const gw_real_t scale = GW_ONE / (gw_real_t)power;
         const gw_real_t e = (part * scale) + (scale - GW_ONE); /* expm1 */
