@@ -214,7 +214,7 @@ static GW_SELDOM gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
     return short_expm1((x - (k * LN2_HIGH)) - (k * LN2_LOW));
 }
 
-/* The same for x = -size <= 0, where the sign of the exponent is known: scale is 2^-halvings. */
+/* The same for x = -size <= 0, where the sign of the exponent is known: the scale is 2^-halvings. */
 static inline gw_real_t falling_expm1(gw_real_t size, uint32_t *halvings)
 {
     const gw_real_t shifted = (size * LOG2_E) + GW_HALF;
