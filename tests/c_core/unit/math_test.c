@@ -221,6 +221,8 @@ static void directions_in_every_octant(void)
 
 static void directions_of_nothing_are_zero(void)
 {
+    CHECK_NEAR(gw_atan2(R(3.0), R(3.0)), GW_PI / R(4.0), R(4.0) * ULP);
+    CHECK_NEAR(gw_atan2(GW_REAL_MAX, R(1.0)), GW_PI / R(2.0), R(4.0) * ULP);
     CHECK(gw_atan2(R(0.0), R(0.0)) == R(0.0));
     CHECK(gw_atan2(unit_nan(), R(1.0)) == R(0.0));
     CHECK(gw_atan2(R(1.0), unit_nan()) == R(0.0));
