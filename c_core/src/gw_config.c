@@ -4,7 +4,7 @@
 
 /* Both tables are in the order of gw_config_field_t. They are apart so that a program that prints no names has none. */
 
-/* The bounds that occur, so that a row of the table is two places among them: an eighth of the bytes of two numbers where
+/* The bounds that occur, so that a row of the table is two places among them: a quarter of the bytes of two floats where
  * enumerations are short, as on Arm. */
 typedef enum {
     AT_MINUS_10,
