@@ -204,8 +204,10 @@ static void directions_in_every_octant(void)
     } rows[] = {
         {R(0.0), R(1.0), R(0.0)},
         {R(1.0), R(2.0), R(0.46364760900080612)},
+        {R(3.0), R(3.0), R(0.78539816339744831)},
         {R(2.0), R(1.0), R(1.10714871779409050)},
         {R(1.0), R(0.0), R(1.57079632679489662)},
+        {GW_REAL_MAX, R(1.0), R(1.57079632679489662)},
         {R(2.0), R(-1.0), R(2.03444393579570273)},
         {R(1.0), R(-2.0), R(2.67794504458898712)},
         {R(-1.0), R(-2.0), R(-2.67794504458898712)},
@@ -221,8 +223,6 @@ static void directions_in_every_octant(void)
 
 static void directions_of_nothing_are_zero(void)
 {
-    CHECK_NEAR(gw_atan2(R(3.0), R(3.0)), GW_PI / R(4.0), R(4.0) * ULP);
-    CHECK_NEAR(gw_atan2(GW_REAL_MAX, R(1.0)), GW_PI / R(2.0), R(4.0) * ULP);
     CHECK(gw_atan2(R(0.0), R(0.0)) == R(0.0));
     CHECK(gw_atan2(unit_nan(), R(1.0)) == R(0.0));
     CHECK(gw_atan2(R(1.0), unit_nan()) == R(0.0));
