@@ -8,7 +8,7 @@ from giveway.errors import GivewayError
 from giveway.study.designs import DesignPlan, deviations, make, problem
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
 from giveway.study.quantities import columns, find
-from giveway.study.units import factor
+from giveway.units import factor
 
 RATE, LATCH, MASS = (
     find("quantity", f"testbed.{name}") for name in ("bumper.spring_rate", "bumper.latch_force", "base.mass")
@@ -115,7 +115,7 @@ def test_tolerances_begin_with_none_and_stay_inside() -> None:
 @pytest.mark.parametrize(("unit", "wanted", "size"), [
     ("N/mm", "N/m", 1e3), ("kN/m", "N/m", 1e3), ("deg", "rad", np.pi / 180.0), ("km/h", "m/s", 1.0 / 3.6),
     ("g", "kg", 1e-3), ("%", "1", 0.01), ("N.mm/deg", "N.m/rad", 0.18 / np.pi), ("kg/s2", "N/m", 1.0),
-    ("N.m", "J", 1.0), ("ms", "s", 1e-3),
+    ("N.m", "J", 1.0), ("ms", "s", 1e-3), ("lb", "kg", 0.45359237), ("in", "mm", 25.4), ("N/cm2", "kPa", 10.0),
 ])  # fmt: skip
 def test_units_convert(unit: str, wanted: str, size: float) -> None:
     assert factor("unit", unit, wanted) == pytest.approx(size, rel=1e-14)

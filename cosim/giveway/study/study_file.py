@@ -26,8 +26,8 @@ from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
 from giveway.study.metrics import find_metric
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
-from giveway.study.units import factor
 from giveway.toml_sections import Section, lines_named, read_toml
+from giveway.units import factor
 
 __all__ = ["check", "read"]
 

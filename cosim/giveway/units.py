@@ -1,4 +1,4 @@
-"""Units as a user writes them: "N/mm", "deg", "km/h", "%"; whether they fit a quantity, and by which factor."""
+"""Units as a user writes them: "N/mm", "lb", "km/h", "%"; whether they fit a quantity, and by which factor."""
 
 from __future__ import annotations
 
@@ -18,9 +18,12 @@ _ATOMS: Mapping[str, tuple[float, _Dimension]] = {
     "mm": (1e-3, (1, 0, 0, 0, 0)),
     "cm": (1e-2, (1, 0, 0, 0, 0)),
     "m": (1.0, (1, 0, 0, 0, 0)),
+    "in": (0.0254, (1, 0, 0, 0, 0)),
+    "ft": (0.3048, (1, 0, 0, 0, 0)),
     "km": (1e3, (1, 0, 0, 0, 0)),
     "g": (1e-3, (0, 1, 0, 0, 0)),
     "kg": (1.0, (0, 1, 0, 0, 0)),
+    "lb": (0.45359237, (0, 1, 0, 0, 0)),
     "us": (1e-6, (0, 0, 1, 0, 0)),
     "ms": (1e-3, (0, 0, 1, 0, 0)),
     "s": (1.0, (0, 0, 1, 0, 0)),
@@ -33,6 +36,10 @@ _ATOMS: Mapping[str, tuple[float, _Dimension]] = {
     "mN": (1e-3, (1, 1, -2, 0, 0)),
     "N": (1.0, (1, 1, -2, 0, 0)),
     "kN": (1e3, (1, 1, -2, 0, 0)),
+    "lbf": (0.45359237 * 9.80665, (1, 1, -2, 0, 0)),
+    "Pa": (1.0, (-1, 1, -2, 0, 0)),
+    "kPa": (1e3, (-1, 1, -2, 0, 0)),
+    "MPa": (1e6, (-1, 1, -2, 0, 0)),
     "J": (1.0, (2, 1, -2, 0, 0)),
     "W": (1.0, (2, 1, -3, 0, 0)),
     "degC": (1.0, (0, 0, 0, 0, 1)),
