@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import logging
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
@@ -422,7 +423,9 @@ def main() -> None:
 
 def _main(arguments: list[str]) -> int:
     try:
-        code = app(args=arguments, standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning
+            code = app(args=arguments, standalone_mode=False)
     except GivewayError as error:
         under_way = isinstance(error, SimulationError) and error.time_s > 0.0
         return _fail(str(error), FAILED if under_way else WRONG_INPUT)
@@ -435,6 +438,21 @@ def _main(arguments: list[str]) -> int:
             raise
         return _fail(one_line(error.format_message()), WRONG_INPUT)
     return code if isinstance(code, int) else 0
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """A warning as one line on stderr; what a user can do nothing about goes to the log."""
+    if issubclass(category, FutureWarning):
+        typer.echo(f"giveway: {one_line(str(message))}", err=True)
+    else:
+        logging.getLogger("giveway").debug("%s:%d: %s: %s", filename, lineno, category.__name__, message)
 
 
 def _fail(message: str, code: int) -> int:

@@ -265,9 +265,10 @@ class Collision:
         ]
         return Metric("escape distance", travel[0], "m", travel[1], 3)
 
-    def bumper_travel(self) -> Metric:
-        """Largest compression of the bumper, mm."""
-        return Metric("bumper travel", 1e3 * float(self["testbed.truth.bumper_compression"].max()), "mm", decimals=1)
+    def bumper_compression(self) -> Metric:
+        """Largest compression of the bumper, mm: what the collision used of its travel."""
+        compression_m = float(self["testbed.truth.bumper_compression"].max())
+        return Metric("bumper compression", 1e3 * compression_m, "mm", decimals=1)
 
     # Numbers of a design
 
@@ -380,7 +381,7 @@ def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]
         hit.magnitude(),
         hit.impulse(),
         hit.peak_force(),
-        hit.bumper_travel(),
+        hit.bumper_compression(),
         hit.peak_torque(),
         hit.peak_torque_any(),
         hit.escape(),

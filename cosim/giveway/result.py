@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.errors import FileError
 from giveway.files import read_json, replace_folder, write_text
+from giveway.metric_names import RENAMED, current_name
 from giveway.metrics import Metric
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class Result:
 
     def metric(self, name: str) -> Metric:
         """The metric called ``name``."""
+        name = current_name("metric", name)
         for metric in self.metrics:
             if metric.name == name:
                 return metric
@@ -86,7 +88,7 @@ def load(folder: Path | str) -> Result:
     folder = Path(folder)
     manifest = read_json(folder / MANIFEST_FILE, SCHEMA_VERSION, HINT)
     entries = read_json(folder / METRICS_FILE, SCHEMA_VERSION, HINT)["metrics"]
-    metrics = tuple(Metric(**entry) for entry in entries)
+    metrics = tuple(Metric(**{**entry, "name": RENAMED.get(entry["name"], entry["name"])}) for entry in entries)
     path = folder / TRACES_FILE
     try:
         data = pyarrow.parquet.read_table(path)

@@ -31,7 +31,7 @@ constexpr gwb_metric_info_t metric_infos[] = {
     {"force at detection", "N", 1},
     {"impulse at detection", "N.s", 1},
     {"peak contact force", "N", 0},
-    {"bumper travel", "mm", 0},
+    {"bumper compression", "mm", 0},
     {"peak wheel torque", "N.m", 0},
     {"peak torque, any sign", "N.m", 0},
     {"escape distance", "m", 1},

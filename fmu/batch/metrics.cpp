@@ -121,7 +121,7 @@ private:
         }
         const double scale = std::max({work, most_stored - least_stored, dissipated});
         set(GWB_PEAK_FORCE, peak_force);
-        set(GWB_BUMPER_TRAVEL, 1e3 * travel);
+        set(GWB_BUMPER_COMPRESSION, 1e3 * travel);
         if (parameters_.bumper) {
             set(GWB_BOTTOMING_MARGIN, 1e3 * (parameters_.bumper_travel_m - travel));
         }

@@ -76,9 +76,9 @@ def test_peak_torque_of_either_sign_sees_the_reversal() -> None:
     assert hit().peak_torque_any().value == pytest.approx(6.0)
 
 
-def test_peak_force_and_bumper_travel() -> None:
+def test_peak_force_and_bumper_compression() -> None:
     assert hit().peak_force().value == pytest.approx(40.0)
-    assert hit().bumper_travel().value == pytest.approx(30.0)
+    assert hit().bumper_compression().value == pytest.approx(30.0)
 
 
 def test_escape_of_reference_and_base() -> None:

@@ -75,6 +75,15 @@ def test_a_damaged_trace_file_is_refused(short_run: Result, tmp_path: Path) -> N
         giveway.load(folder)
 
 
+def test_a_metric_is_found_by_the_name_it_had_before(short_run: Result, tmp_path: Path) -> None:
+    with pytest.warns(FutureWarning, match='"bumper travel" is called "bumper compression" now'):
+        assert short_run.metric("bumper travel") is short_run.metric("bumper compression")
+    folder = short_run.save(tmp_path / "old")
+    file = folder / "metrics.json"
+    file.write_text(file.read_text().replace("bumper compression", "bumper travel"))
+    assert giveway.load(folder).metrics == short_run.metrics
+
+
 def test_unknown_metric_offers_the_nearest(short_run: Result) -> None:
     assert short_run.metric("detection time").unit == "ms"
     with pytest.raises(UnknownNameError, match="detection time"):

@@ -61,13 +61,13 @@ def test_goals_are_taken_over_runs_as_asked(
 
 def test_the_answers_are_those_of_the_stored_runs(tmp_path: Path) -> None:
     study = small_study().vary(SPRING, values=[600.0, 1200.0]).collision("slow", speed=0.3, edge=1, time=0.12)
-    study.objective("peak contact force").objective("bumper travel", collisions="mean", goal="minimise")
-    study.constraint("bumper travel", maximum=3.0, unit="cm").tolerance(LATCH, relative=0.3).tolerances(samples=3)
+    study.objective("peak contact force").objective("bumper compression", collisions="mean", goal="minimise")
+    study.constraint("bumper compression", maximum=3.0, unit="cm").tolerance(LATCH, relative=0.3).tolerances(samples=3)
     study.document["part_runs"] = 5  # designs end in the middle of parts
     found = study.run(tmp_path / "study", threads=2)
     runs = stored_runs(tmp_path / "study")
     peak = runs["peak contact force"].reshape(8, 4, 2)
-    travel = runs["bumper travel"].reshape(8, 4, 2)
+    travel = runs["bumper compression"].reshape(8, 4, 2)
     np.testing.assert_array_equal(found.values[:, 0], peak.max(axis=(1, 2)))
     np.testing.assert_allclose(found.values[:, 1], travel.mean(axis=2).max(axis=1), rtol=1e-15)
     np.testing.assert_array_equal(found.feasible, travel.max(axis=(1, 2)) <= 30.0)

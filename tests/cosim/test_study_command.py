@@ -45,7 +45,7 @@ metric = "peak contact force"
 
 [report]
 chosen = 1
-metrics = ["bumper travel"]
+metrics = ["bumper compression"]
 """
 
 
@@ -56,7 +56,7 @@ def test_from_the_file_to_the_chosen_bumper(
     swept = cli("sweep", "mine.toml")
     assert swept.returncode == 0, swept.stderr
     folder = tmp_path / "out" / "studies" / "mine"
-    for word in ("9 designs", "bumper travel", "What decides", "mu*"):
+    for word in ("9 designs", "bumper compression", "What decides", "mu*"):
         assert word in swept.stdout
     assert "9 of 9 runs" in swept.stderr
     page = (folder / "report.html").read_text(encoding="utf-8")
@@ -115,3 +115,10 @@ def test_wrong_input_is_one_line_and_writes_nothing(
     assert said.count("\n") == 1
     assert words in said
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.toml", "wrong.toml"]
+
+
+def test_the_name_that_a_metric_had_before_still_works(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "old.toml").write_text(STUDY.replace("bumper compression", "bumper travel"), encoding="utf-8")
+    checked = cli("sweep", "old.toml", "--check")
+    assert checked.returncode == 0
+    assert checked.stderr == 'giveway: report.metrics[0]: "bumper travel" is called "bumper compression" now\n'

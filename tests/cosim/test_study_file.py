@@ -41,7 +41,7 @@ relative = 0.1
 metric = "peak contact force"
 
 [[constraint]]
-metric = "bumper travel"
+metric = "bumper compression"
 maximum = 110
 unit = "mm"
 """

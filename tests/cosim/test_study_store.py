@@ -17,6 +17,7 @@ from giveway.errors import FileError
 from giveway.study import Study
 from giveway.study.engine import Outcome, plan_runs, sweep
 from giveway.study.native_part import NativePart
+from giveway.study.results_table import read_part
 from giveway.study.store import KeyIndex, Store, read_manifest
 from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
 
@@ -210,6 +211,17 @@ def test_a_broken_part_is_named(tmp_path: Path) -> None:
     part.write_bytes(part.read_bytes()[:100])
     with pytest.raises(FileError, match=r"part-000000000.*delete it"):
         swept(small_study(), tmp_path / "study")
+
+
+def test_a_part_is_read_by_the_names_that_its_metrics_had(tmp_path: Path) -> None:
+    small_study().run(tmp_path / "s")
+    part = part_files(tmp_path / "s")[0]
+    table = pyarrow.parquet.read_table(part)
+    names = ["bumper travel" if name == "bumper compression" else name for name in table.column_names]
+    pyarrow.parquet.write_table(table.rename_columns(names), part)
+    column = read_part(part, ["bumper compression", "run"])
+    assert column.column_names == ["bumper compression", "run"]
+    assert column["bumper compression"].equals(table["bumper compression"])
 
 
 def test_a_broken_part_beside_it_is_no_matter(tmp_path: Path) -> None:

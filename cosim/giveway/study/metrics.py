@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.errors import UnknownNameError
+from giveway.metric_names import current_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,6 +62,7 @@ def all_metrics() -> dict[str, Metric]:
 def find_metric(field: str, name: str) -> Metric:
     """The metric ``name``; the error names ``field`` and the nearest."""
     known = all_metrics()
+    name = current_name(field, name)
     if name not in known:
         raise UnknownNameError(field, name, known)
     return known[name]

@@ -9,6 +9,7 @@ import numpy as np
 
 from giveway import batch
 from giveway.errors import FileError
+from giveway.metric_names import former_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,11 +117,17 @@ def read_runs(folder: Path, names: list[str]) -> dict[str, NDArray[np.float64]]:
 
 
 def read_part(path: Path, columns: list[str]) -> Any:
-    """Some columns of a part as a pyarrow table; FileError if it cannot be read."""
+    """Some columns of a part as a pyarrow table; FileError if it cannot be read.
+
+    A part may be older than the name of a metric: then its column is taken by the name that it had.
+    """
     import pyarrow
     import pyarrow.parquet
 
     try:
-        return pyarrow.parquet.read_table(path, columns=columns, memory_map=False)
-    except (OSError, pyarrow.ArrowException) as error:
+        with pyarrow.parquet.ParquetFile(path, memory_map=False) as part:
+            there = set(part.schema_arrow.names)
+            stored = [name if name in there else former_name(name) or name for name in columns]
+            return part.read(columns=stored).select(stored).rename_columns(columns)
+    except (OSError, KeyError, pyarrow.ArrowException) as error:
         raise FileError(path, f"cannot be read: {error}", "delete it; the same command makes it again") from None
