@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.approach import outline_of
 from giveway.metrics import Collision
+from giveway.report.obstacle import obstacle, plate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,16 +44,14 @@ def scene(label: str, result: Result) -> dict[str, Any]:
     estimated_force = _to_world(hit, "controller.estimate.force_x", "controller.estimate.force_y", 0.0, 0.0, theta)
     return {
         "label": label,
-        "outline": _outline(parameters),
-        "wheel": {"radius": parameters["wheel.radius"], "distance": parameters["wheel.distance"]},
-        "nose_radius": parameters["contact.nose_radius"],
-        "rigid": result.manifest["scenario"]["bumper"] == "none",
-        "rail": _rail(hit),
+        "outline": outline_of(parameters).tolist(),
+        "wheel": {name: parameters[f"wheel.{name}"] for name in ("radius", "distance", "width")},
+        "obstacle": obstacle(parameters) if parameters["slider.present"] else None,
+        "plate": plate(parameters),
         "time": _rounded((hit.time_s - contact_s)[rows]),
         "base": [sampled(f"testbed.truth.{name}") for name in ("x", "y", "theta")],
         "nose": [sampled("testbed.truth.nose_x"), sampled("testbed.truth.nose_y")],
         "compression": sampled("testbed.truth.bumper_compression"),
-        "slider": parameters["slider.present"],
         "point": [_rounded(values[rows]) for values in point],
         "force": [_rounded(values[rows]) for values in force],
         "estimated_point": [_rounded(values[rows]) for values in estimated_point],
@@ -77,19 +76,6 @@ def _to_world(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     bx, by = hit[name_x], hit[name_y]
     return x + np.cos(theta) * bx - np.sin(theta) * by, y + np.sin(theta) * bx + np.cos(theta) * by
-
-
-def _outline(parameters: dict[str, Any]) -> list[list[float]]:
-    count = int(parameters["outline.count"])
-    return [[parameters[f"outline.{axis}[{corner}]"] for axis in "xy"] for corner in range(count)]
-
-
-def _rail(hit: Collision) -> list[float]:
-    """Unit vector of the slider's travel, from the nose's motion up to contact."""
-    row = min(hit.until_detection().start, len(hit.time_s) - 1)
-    dx, dy = (hit[f"testbed.truth.nose_{axis}"][row] - hit[f"testbed.truth.nose_{axis}"][0] for axis in "xy")
-    length = math.hypot(dx, dy)
-    return [dx / length, dy / length] if length > 0.0 else [1.0, 0.0]
 
 
 def _detection(hit: Collision, contact_s: float) -> dict[str, Any] | None:

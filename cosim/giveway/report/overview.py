@@ -13,6 +13,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.style import context
 from matplotlib.transforms import Affine2D
 
+from giveway.report.obstacle import SLIDER_M
 from giveway.report.runs import IMPACT_MS, Run
 from giveway.report.style import STYLE, TRUTH_COLOUR
 from giveway.summary import table_rows
@@ -28,7 +29,6 @@ INK = "#2b2f36"
 ESCAPED_S = 2.0  # the last of the three poses, after contact
 ARROW_M_PER_N = 0.01
 ESTIMATE_COLOUR = "#c8500a"
-SLIDER_M = (0.14, 0.12)
 WHEEL_WIDTH_M = 0.04
 
 

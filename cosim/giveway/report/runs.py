@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from giveway.metrics import Collision
+from giveway.report.obstacle import rail
 from giveway.report.style import COLOURS
 
 if TYPE_CHECKING:
@@ -34,8 +34,7 @@ class Run:
         self.impact = (self.time_ms >= IMPACT_MS[0]) & (self.time_ms <= IMPACT_MS[1])
         self.detected_ms = None if self.hit.detected is None else float(self.time_ms[self.hit.detected])
         nose = np.stack([self.hit["testbed.truth.nose_x"], self.hit["testbed.truth.nose_y"]], axis=1)
-        direction = float(self.parameters["testbed"]["slider.direction"])
-        self.along = np.array([math.cos(direction), math.sin(direction)])
+        self.along = np.array(rail(self.parameters["testbed"]))
         self.contact_row = min(self.hit.until_detection().start, len(nose) - 1)
         self.nose = nose
 

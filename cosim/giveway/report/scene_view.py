@@ -14,6 +14,7 @@ from matplotlib.style import context
 from giveway.approach import outline_of
 from giveway.footprint import wheel_corners
 from giveway.metrics import Collision
+from giveway.report.obstacle import EDGE_DEPTH_M, EDGE_M, rail
 from giveway.report.style import STYLE, TRUTH_COLOUR
 
 if TYPE_CHECKING:
@@ -26,8 +27,6 @@ __all__ = ["scenes_figure"]
 
 INK, ESTIMATE_COLOUR = "#2b2f36", "#c8500a"
 ARROW_M_PER_N = 0.004
-EDGE_M = 1.2  # of a long edge, as drawn
-EDGE_DEPTH_M = 0.06
 WIDTH_M, HEIGHT_M = 1.3, 1.6  # of a panel
 
 
@@ -85,8 +84,7 @@ def _draw_robot(axes: Axes, hit: Collision, testbed: Mapping[str, Any], row: int
 
 
 def _draw_obstacle(axes: Axes, hit: Collision, testbed: Mapping[str, Any], row: int) -> None:
-    direction = float(testbed["slider.direction"])
-    along = np.array([math.cos(direction), math.sin(direction)])
+    along = np.array(rail(testbed))
     tip = np.array([hit[f"testbed.truth.nose_{axis}"][row] for axis in "xy"])
     across = np.array([-along[1], along[0]])
     if testbed["contact.nose_shape"] == 1:

@@ -6,7 +6,7 @@
   const seek = document.getElementById("seek"), clock = document.getElementById("clock");
   const play = document.getElementById("play"), speed = document.getElementById("speed");
   const colours = { truth: "#7a2ea0", estimate: "#0b64a8", detected: "#c8500a", body: "#eef1f4", ink: "#2b2f36" };
-  const metresPerNewton = 0.004, smallestForce = 2, longestArrow = 0.45, springLength = 0.16;
+  const metresPerNewton = 0.004, smallestForce = 2, longestArrow = 0.45, railLength = 2;
   const first = Math.min(...scenes.map(s => s.time[0]));
   const last = Math.max(...scenes.map(s => s.time[s.time.length - 1]));
   let now = first, playing = false, before = 0;
@@ -16,6 +16,12 @@
   const toTime = v => v < half ? first + (knee - first) * v / half : knee + (last - knee) * (v - half) / half;
   const toSlider = t => t < knee ? half * (t - first) / (knee - first) : half + half * (t - knee) / Math.max(last - knee, 1e-9);
 
+  // From (way back from the tip of the nose, way to the left of the rail) to the world.
+  function place(obstacle, nose) {
+    const [x, y] = obstacle.rail;
+    return ([back, left]) => [nose[0] - x * back - y * left, nose[1] - y * back + x * left];
+  }
+
   // All that moves must stay in view: limits over every scene, the same scale for all.
   function limits(s) {
     const box = [Infinity, Infinity, -Infinity, -Infinity], reach = s.wheel.distance + s.wheel.radius;
@@ -24,9 +30,9 @@
       box[2] = Math.max(box[2], x + r); box[3] = Math.max(box[3], y + r);
     };
     s.base[0].forEach((x, i) => add(x, s.base[1][i], reach));
-    if (s.slider) s.nose[0].forEach((x, i) => {
-      add(x, s.nose[1][i], 0.05);
-      add(x - s.rail[0] * 0.3, s.nose[1][i] - s.rail[1] * 0.3, 0.1);
+    if (s.obstacle) s.time.forEach((_, i) => {
+      const at = place(s.obstacle, [s.nose[0][i], s.nose[1][i]]);
+      [...s.obstacle.body, ...(s.obstacle.edge || [[0, 0]])].forEach(p => add(...at(p), 0.02));
     });
     return box;
   }
@@ -75,33 +81,49 @@
       pen.beginPath(); pen.moveTo(box[0] - 1, y); pen.lineTo(box[2] + 1, y); pen.stroke();
     }
   }
-  function robot(s, pose, scale) {
+  function robot(s, pose, compression, scale) {
     pen.save(); pen.translate(pose[0], pose[1]); pen.rotate(pose[2]);
     for (let wheel = 0; wheel < 3; wheel++) {
       pen.save(); pen.rotate(wheel * 2 * Math.PI / 3); pen.translate(s.wheel.distance, 0);
-      pen.fillStyle = "#aab1bb"; pen.fillRect(-0.02, -s.wheel.radius, 0.04, 2 * s.wheel.radius);
+      pen.fillStyle = "#aab1bb"; pen.fillRect(-s.wheel.width / 2, -s.wheel.radius, s.wheel.width, 2 * s.wheel.radius);
       pen.restore();
     }
     polygon(s.outline); pen.fillStyle = "rgba(238,241,244,.85)"; pen.fill();
     pen.strokeStyle = colours.ink; pen.lineWidth = 1.6 / scale; pen.stroke();
+    if (s.plate) bumperOnRobot(s.plate, compression, scale);
     pen.fillStyle = colours.ink; polygon([[0.07, 0], [-0.02, 0.03], [-0.02, -0.03]]); pen.fill();
     pen.restore();
   }
-  function slider(s, nose, compression, scale) {
-    const u = s.rail, n = [-u[1], u[0]], at = (back, side) => [nose[0] - u[0] * back + n[0] * side, nose[1] - u[1] * back + n[1] * side];
-    pen.strokeStyle = "#c9ced6"; pen.lineWidth = 3 / scale;
-    pen.beginPath(); pen.moveTo(...at(2, 0)); pen.lineTo(...at(springLength, 0)); pen.stroke();
-    const gap = Math.max(springLength - compression, 0.02), from = 2 * s.nose_radius;
-    pen.strokeStyle = "#8a8f98"; pen.lineWidth = (s.rigid ? 6 : 1.4) / scale; pen.beginPath();
+  // A zigzag between two points, or a bar if it does not give.
+  function spring(from, to, gives, scale) {
+    const length = Math.max(Math.hypot(to[0] - from[0], to[1] - from[1]), 1e-9);
+    const across = [-(to[1] - from[1]) / length, (to[0] - from[0]) / length];
+    pen.strokeStyle = "#8a8f98"; pen.lineWidth = (gives ? 1.4 : 6) / scale; pen.beginPath();
     for (let k = 0; k <= 10; k++) {
-      const back = from + (gap - from) * k / 10, side = s.rigid || k % 10 === 0 ? 0 : k % 2 ? 0.022 : -0.022;
-      (k ? pen.lineTo : pen.moveTo).apply(pen, at(back, side));
+      const side = !gives || k % 10 === 0 ? 0 : k % 2 ? 0.022 : -0.022;
+      const at = [0, 1].map(i => from[i] + (to[i] - from[i]) * k / 10 + across[i] * side);
+      (k ? pen.lineTo : pen.moveTo).apply(pen, at);
     }
     pen.stroke();
-    polygon([at(gap, 0.06), at(gap + 0.12, 0.06), at(gap + 0.12, -0.06), at(gap, -0.06)]);
+  }
+  function slider(obstacle, nose, compression, scale) {
+    const at = place(obstacle, nose), moved = obstacle.sprung ? compression : 0;
+    const body = obstacle.body.map(([back, left]) => [back - moved, left]);
+    pen.strokeStyle = "#c9ced6"; pen.lineWidth = 3 / scale;
+    pen.beginPath(); pen.moveTo(...at([body[1][0], 0])); pen.lineTo(...at([railLength, 0])); pen.stroke();
+    spring(at([obstacle.front, 0]), at([body[0][0], 0]), obstacle.sprung, scale);
+    polygon(body.map(at));
     pen.fillStyle = "#d5dae1"; pen.fill(); pen.strokeStyle = colours.ink; pen.lineWidth = 1.2 / scale; pen.stroke();
-    pen.fillStyle = "#4a505a"; const c = at(s.nose_radius, 0);
-    pen.beginPath(); pen.arc(c[0], c[1], s.nose_radius, 0, 7); pen.fill();
+    pen.fillStyle = "#4a505a";
+    if (obstacle.edge) { polygon(obstacle.edge.map(at)); pen.fill(); return; }
+    pen.beginPath(); pen.arc(...at([obstacle.radius, 0]), obstacle.radius, 0, 7); pen.fill();
+  }
+  // In the base frame.
+  function bumperOnRobot(plate, compression, scale) {
+    const ends = plate.ends.map(e => [0, 1].map(i => e[i] + plate.inward[i] * compression));
+    spring(plate.foot, [0, 1].map(i => (ends[0][i] + ends[1][i]) / 2), true, scale);
+    pen.strokeStyle = "#4a505a"; pen.lineWidth = 4 / scale;
+    pen.beginPath(); pen.moveTo(...ends[0]); pen.lineTo(...ends[1]); pen.stroke();
   }
 
   function draw() {
@@ -116,7 +138,8 @@
       pen.save();
       pen.translate((index + .5) * cell, top + (height - top - 10) / 2); pen.scale(scale, -scale);
       pen.translate(-(box[0] + box[2]) / 2, -(box[1] + box[3]) / 2);
-      grid(scale); if (s.slider) slider(s, pair(s.nose), mix(s.compression), scale); robot(s, pose, scale);
+      grid(scale); if (s.obstacle) slider(s.obstacle, pair(s.nose), mix(s.compression), scale);
+      robot(s, pose, mix(s.compression), scale);
       const force = pair(s.force), touching = Math.hypot(...force) >= smallestForce;
       if (touching) { arrow(pair(s.point), force, colours.truth, 5, scale); dot(pair(s.point), colours.truth, 5, scale); }
       if (hit && now >= hit.time) {
