@@ -73,6 +73,28 @@ def test_a_file_becomes_a_scenario(tmp_path: Path) -> None:
     assert found["slider.direction"] == pytest.approx(math.radians(-120.0), abs=1e-6)  # corners to micrometres
 
 
+@pytest.mark.parametrize("tare_ticks", [0, 50, 400])
+def test_a_moving_robot_is_met_in_time_however_long_the_tare_holds_it(tare_ticks: int, tmp_path: Path) -> None:
+    text = f"""
+schema_version = 1
+duration = 1.7
+[plan]
+kind = "straight"
+speed = 0.2
+direction = 60
+[collision]
+speed = 0.0
+edge = 0
+time = 1.6
+[controller]
+estimator.tare_ticks = {tare_ticks}
+"""
+    traces = batch.run(read_scenario(written(tmp_path, text))).traces
+    # The robot lags its plan by up to 5 mm (see test_approach.py); 50 ms of tare are 10 mm.
+    late_s = float(traces["testbed.truth.first_contact_time"][-1]) - 1.6
+    assert 0.0 < late_s < 5e-3 / 0.2
+
+
 def test_a_height_lets_the_base_tip(tmp_path: Path) -> None:
     assert "base.tipping" not in read_scenario(written(tmp_path, GOOD)).testbed
     found = read_scenario(written(tmp_path, GOOD.replace("mass = 12.0", "mass = 12.0\nheight = 0.45"))).testbed

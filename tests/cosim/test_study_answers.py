@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from giveway import batch
+from giveway.errors import GivewayError
 from giveway.study import answers
 from giveway.study.answers import over_runs
 from giveway.study.chosen import simulate
@@ -76,6 +77,71 @@ def test_the_answers_are_those_of_the_stored_runs(tmp_path: Path) -> None:
     assert set(found.order) == set(np.flatnonzero(found.feasible))
     assert found.pareto[found.order[0]]
     assert found.table()["peak contact force, worst collision, worst of tolerances"].attrs["units"] == "N"
+
+
+def compared_by_hand(costs: np.ndarray, weights: tuple[float, float]) -> tuple[list[bool], list[int]]:
+    """Front and ranking of ``costs`` (designs, 2; less is better), pair by pair."""
+    designs = range(len(costs))
+    beaten = [
+        any((costs[i] <= costs[j]).all() and (costs[i] < costs[j]).any() for i in designs)
+        for j in designs
+    ]  # fmt: skip
+    on_front = [not one for one in beaten]
+    best = [min(costs[i][k] for i in designs if on_front[i]) for k in (0, 1)]
+    worst = [max(costs[i][k] for i in designs if on_front[i]) for k in (0, 1)]
+
+    def distance(i: int) -> float:
+        shares = ((costs[i][k] - best[k]) / ((worst[k] - best[k]) or 1.0) for k in (0, 1))
+        return math.sqrt(sum(weight * share**2 for weight, share in zip(weights, shares, strict=True)))
+
+    return on_front, sorted(designs, key=lambda i: (beaten[i], distance(i)))
+
+
+@pytest.mark.parametrize(("force", "travel"), [
+    ("minimise", "minimise"), ("minimise", "maximise"), ("maximise", "minimise"), ("maximise", "maximise"),
+])  # fmt: skip
+def test_goals_and_weights_decide_front_and_ranking(force: str, travel: str, tmp_path: Path) -> None:
+    orders = []
+    for weights in ((1.0, 16.0), (16.0, 1.0)):
+        study = small_study().vary(SPRING, values=[400.0, 2500.0])
+        study.objective("peak contact force", goal=force, weight=weights[0])
+        study.objective("bumper compression", goal=travel, weight=weights[1])
+        found = study.run(tmp_path / "study", threads=2)  # the second only looks at the runs of the first
+        runs = stored_runs(tmp_path / "study")
+        costs = np.stack([runs["peak contact force"], runs["bumper compression"]], axis=1)
+        costs *= [1.0 if goal == "minimise" else -1.0 for goal in (force, travel)]
+        on_front, order = compared_by_hand(costs, weights)
+        assert found.pareto.tolist() == on_front
+        assert found.order.tolist() == order
+        orders.append(order)
+    assert orders[0] != orders[1]  # else the weights would not have been needed
+
+
+def test_goals_and_weights_are_read_as_they_are_written() -> None:
+    study = small_study().objective("contact impulse").objective("rebound speed", goal="maximise", weight=3.0)
+    assert [(one.sense, one.weight) for one in study.setup().objectives] == [(1, 1.0), (-1, 3.0)]
+    for wrong in ("maximize", "max", ""):
+        with pytest.raises(GivewayError, match=r"objective\[0\]\.goal: .*maximise.*minimise"):
+            small_study().objective("contact impulse", goal=wrong).setup()
+
+
+@pytest.mark.parametrize(("limit", "bound"), [("minimum", 30.0), ("maximum", 60.0)])
+def test_a_constraint_is_met_by_the_worst_of_all_runs(limit: str, bound: float, tmp_path: Path) -> None:
+    study = small_study().collision("slow", speed=0.3, edge=1, time=0.12)
+    study.tolerance(LATCH, relative=0.5).tolerances(samples=3)
+    found = study.constraint("peak contact force", **{limit: bound}).run(tmp_path / "study", threads=2)
+    peaks = stored_runs(tmp_path / "study")["peak contact force"].reshape(4, 8)
+    least, most = peaks.min(axis=1), peaks.max(axis=1)
+    assert found.feasible.tolist() == (least >= bound if limit == "minimum" else most <= bound).tolist()
+    assert ((least < bound) & (most > bound)).any()  # in some design, the best run alone would have done
+    assert found.feasible.any()
+
+
+@pytest.mark.parametrize("limit", ["minimum", "maximum"])
+def test_a_limit_is_itself_allowed(limit: str, tmp_path: Path) -> None:
+    found = small_study().constraint("false detections", **{limit: 0}).run(tmp_path / "study", threads=2)
+    assert not stored_runs(tmp_path / "study")["false detections"].any()
+    assert found.feasible.all()
 
 
 def test_a_design_with_a_failed_run_is_not_among_the_answers(tmp_path: Path) -> None:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from giveway.errors import GivewayError
 from giveway.study.designs import DesignPlan, deviations, make, problem
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
 from giveway.study.quantities import columns, find
-from giveway.units import factor
 
 RATE, LATCH, MASS = (
     find("quantity", f"testbed.{name}") for name in ("bumper.spring_rate", "bumper.latch_force", "base.mass")
@@ -110,24 +108,6 @@ def test_tolerances_begin_with_none_and_stay_inside() -> None:
     assert np.abs(found[:, 0]).max() > 0.28
     corners = deviations(tolerances, "corners", 64, 1)
     assert sorted(map(tuple, corners)) == sorted([(0.0, 0.0), (-0.3, -9.0), (-0.3, 9.0), (0.3, -9.0), (0.3, 9.0)])
-
-
-@pytest.mark.parametrize(("unit", "wanted", "size"), [
-    ("N/mm", "N/m", 1e3), ("kN/m", "N/m", 1e3), ("deg", "rad", np.pi / 180.0), ("km/h", "m/s", 1.0 / 3.6),
-    ("g", "kg", 1e-3), ("%", "1", 0.01), ("N.mm/deg", "N.m/rad", 0.18 / np.pi), ("kg/s2", "N/m", 1.0),
-    ("N.m", "J", 1.0), ("ms", "s", 1e-3), ("lb", "kg", 0.45359237), ("in", "mm", 25.4), ("N/cm2", "kPa", 10.0),
-])  # fmt: skip
-def test_units_convert(unit: str, wanted: str, size: float) -> None:
-    assert factor("unit", unit, wanted) == pytest.approx(size, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("unit", "wanted"),
-    [("N", "N/m"), ("m", "rad"), ("Nm", "N.m"), ("", "kg"), ("N/", "N"), ("N//m", "N/m"), ("K", "degC")],
-)
-def test_units_that_do_not_fit_are_refused(unit: str, wanted: str) -> None:
-    with pytest.raises(GivewayError, match=wanted):
-        factor("vary[0].unit", unit, wanted)
 
 
 def test_a_number_of_the_robot_is_all_variables_that_take_it() -> None:

@@ -143,6 +143,17 @@ def test_a_hit_anywhere_around_comes_straight_in() -> None:
     np.testing.assert_allclose(found, expected, atol=2e-3)  # the base gives way under the nose until detection
 
 
+def test_a_moving_robot_is_met_in_time_however_long_the_tare_holds_it() -> None:
+    plan = {"kind": "straight", "speed": 0.2, "direction": 60.0}
+    study = Study("tares", duration=1.7, bumper="none", plan=plan).collision("head-on", speed=0.0, edge=0, time=1.6)
+    study.vary("controller.estimator.tare_ticks", values=[0, 50, 400])
+    results = run_natively(plan_runs(study.setup()), np.arange(3))
+    names = [metric.name for metric in batch.native_metrics()]
+    # The robot lags its plan by up to 5 mm (see test_approach.py); 50 ms of tare are 10 mm.
+    late_s = results["metric"][:, names.index("contact time")] - 1.6
+    assert ((late_s > 0.0) & (late_s < 5e-3 / 0.2)).all(), late_s
+
+
 def test_the_hit_has_its_tolerances() -> None:
     study = small_study(vary=[]).tolerance("collision.speed", relative=0.1).tolerance("collision.angle", absolute=5.0)
     study.tolerance("collision.offset", absolute=10, unit="mm").tolerance("collision.mass", relative=0.05)
