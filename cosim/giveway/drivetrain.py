@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway import native
-from giveway.errors import FileError, GivewayError
+from giveway.errors import GivewayError
 from giveway.robot import Robot, read_robot
 from giveway.variables import table
 
@@ -201,12 +201,8 @@ def _load_inertia(robot: Robot, load: str | float) -> float:
 
 def _value(robot: Robot, model: str, name: str) -> float:
     """A number of the robot file within the range that the FMUs allow it."""
-    try:
-        return float(table(model).check(name, robot.value(name)))
-    except FileError:
-        raise
-    except GivewayError as error:
-        raise FileError(robot.path, f"{name}: {error}") from None
+    variables = table(model)
+    return float(variables.robot_value(robot, variables[name]))
 
 
 def plant(drivetrain: Drivetrain, stuck: bool = False) -> control.StateSpace:

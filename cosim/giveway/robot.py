@@ -1,33 +1,57 @@
-"""The robot file: every number of a robot with its unit, source, confidence and provenance."""
+"""The robot file: every number of a robot with its unit, source, confidence and provenance.
+
+`read_robot` is the one reader. What a robot file may state, and in which unit its numbers are handed on, is what the
+variable tables take from it; another unit of the same kind ("lb", "mm") is converted.
+"""
 
 from __future__ import annotations
 
-import math
-import tomllib
-from collections.abc import Iterator
+import functools
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from giveway.errors import FileError, nearest_names
+from giveway import native
+from giveway.checks import finite
+from giveway.errors import FileError, GivewayError, InputFileError, nearest_names
+from giveway.table_files import entry_unit, read_table_file, robot_paths
+from giveway.toml_lines import line_of
+from giveway.toml_sections import Section, lines_named, read_toml
+from giveway.units import factor
 
-__all__ = ["Entry", "Robot", "read_robot"]
+__all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot"]
 
 SCHEMA_VERSION = 1
+PROVENANCE = ("given", "sourced", "fitted", "assumed")
+CONFIDENCE = ("high", "medium", "low")
+_KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
+_HEADER = ("schema_version", "robot")  # what is no number
+_Number = float | int
 
 
 @dataclass(frozen=True)
 class Entry:
-    """How a value of a robot file is to be read.
+    """One number, or list of numbers, of a robot file.
 
     Attributes:
-        text: value with unit.
+        values: in ``unit``; a single number is a tuple of one.
+        is_list: the file states a list.
+        unit: of the variable tables; "1" for what has none.
+        text: value with unit as the file states them.
+        scale: what the stated value was multiplied by to be in ``unit``.
         provenance: given, sourced, fitted or assumed; "" if the file does not say.
+        confidence: high, medium or low; "" likewise.
         source, note: in words; "" likewise.
     """
 
+    values: tuple[_Number, ...]
+    is_list: bool
+    unit: str
     text: str
+    scale: float
     provenance: str
+    confidence: str
     source: str
     note: str
 
@@ -35,63 +59,105 @@ class Entry:
 class Robot:
     """A robot file that has been read; values are addressed by their table path (``base.mass``)."""
 
-    def __init__(self, path: Path, tables: dict[str, Any]) -> None:
-        self.path = path
-        self._entries: dict[str, dict[str, Any]] = {}
-        self._collect("", tables)
+    def __init__(self, path: Path, text: str, name: str, entries: Mapping[str, Entry]) -> None:
+        self.path, self.name = path, name
+        self._text, self._entries = text, dict(entries)
 
-    def _collect(self, prefix: str, table: dict[str, Any]) -> None:
-        for key, entry in table.items():
-            if not isinstance(entry, dict):
-                continue
-            name = f"{prefix}{key}"
-            if "value" in entry:
-                self._entries[name] = entry
-            else:
-                self._collect(f"{name}.", entry)
-
-    def value(self, name: str, index: int = 0) -> float | int | bool:
-        """The value at ``name`` in the unit its entry states; ``index`` selects from a list value."""
+    def __getitem__(self, name: str) -> Entry:
+        """The entry at ``name``; FileError if the file does not have it."""
         if name not in self._entries:
             near = nearest_names(name, self._entries)
             hint = f"the file has {' and '.join(near)}" if near else "every value of the robot is needed"
             raise FileError(self.path, f"{name} is missing", hint)
-        value = self._entries[name]["value"]
-        if isinstance(value, list):
-            value = value[index] if index < len(value) else 0.0  # a shorter list leaves the rest unused
-        if not isinstance(value, int | float) or not math.isfinite(value):
-            raise FileError(self.path, f"{name} = {value} is not a finite number")
-        return value
+        return self._entries[name]
+
+    def value(self, name: str, index: int = 0) -> float | int:
+        """The value at ``name`` in the unit of the variable tables; ``index`` selects from a list value."""
+        entry = self[name]
+        if not entry.is_list:
+            return entry.values[0]
+        return entry.values[index] if index < len(entry.values) else 0.0  # a shorter list leaves the rest unused
 
     def entries(self) -> Iterator[tuple[str, Entry]]:
         """Every entry with its name, in the order of the file."""
-        for name, entry in self._entries.items():
-            value, unit = entry["value"], self.unit(name)
-            values = ", ".join(f"{part:g}" for part in (value if isinstance(value, list) else [value]))
-            words = (str(entry.get(key, "")) for key in ("provenance", "source", "note"))
-            yield name, Entry(f"{values} {unit}" if unit not in ("", "1") else values, *words)
+        yield from self._entries.items()
 
     def count(self, name: str) -> int:
         """Number of values at ``name``: the length of a list, 1 for a single number."""
-        value = self._entries[name]["value"] if name in self._entries else self.value(name)
-        return len(value) if isinstance(value, list) else 1
+        return len(self[name].values)
 
-    def unit(self, name: str) -> str:
-        """The unit that the entry ``name`` states ("" if it states none)."""
-        return str(self._entries.get(name, {}).get("unit", ""))
+    def refusal(self, name: str, allowed: str) -> GivewayError:
+        """The error that says, with file and line, that the value at ``name`` is not ``allowed``."""
+        entry = self[name]
+        values = ", ".join(f"{value:g}" for value in entry.values)
+        converted = f" ({values} {entry.unit})" if entry.scale != 1.0 else ""
+        cause = GivewayError(name, entry.text + converted, allowed)
+        return InputFileError(self.path, line_of(self._text, f"{name}.value"), cause)
 
 
 def read_robot(path: Path) -> Robot:
-    """Read and check a robot file; FileError names the file and what is wrong with it."""
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise FileError(path, "no such file", "give the path of a robot file (TOML)") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise FileError(path, f"is not TOML: {error}") from None
-    found = tables.get("schema_version")
-    if found != SCHEMA_VERSION:
-        raise FileError(path, f"schema_version is {found}", f"this version reads {SCHEMA_VERSION}")
-    return Robot(path, tables)
+    """Read and check the robot file ``path``.
+
+    Raises:
+        FileError: the file cannot be read.
+        InputFileError: it is no TOML, or a table, key, word or unit in it is unknown, of the wrong type or kind; names
+            file and line.
+    """
+    text, document = read_toml(path, "give the path of a robot file (TOML)")
+    with lines_named(path, text):
+        known = _known()
+        top = Section("", document, (*_HEADER, *dict.fromkeys(name.partition(".")[0] for name in known)))
+        version = top.required("schema_version", str(SCHEMA_VERSION))
+        if version != SCHEMA_VERSION:
+            raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+        header = top.table("robot", ("name",))
+        name = "" if header is None else header.text("name", "")
+        entries: dict[str, Entry] = {}
+        for part, values in document.items():
+            if part in _HEADER:
+                continue
+            keys = [name.removeprefix(f"{part}.") for name in known if name.startswith(f"{part}.")]
+            section = Section(part, values, keys)
+            for key in section.values:
+                entries[section.full(key)] = _entry(section.full(key), section.values[key], *known[section.full(key)])
+    return Robot(path, text, name, entries)
+
+
+def _entry(name: str, values: Any, unit: str, count: int | None) -> Entry:
+    """The entry ``name``, converted to ``unit``; it may be a list of up to ``count`` numbers."""
+    if not isinstance(values, dict):
+        raise GivewayError(name, values, f'a table with value and unit, {name} = {{ value = ..., unit = "{unit}" }}')
+    section = Section(name, values, _KEYS)
+    stated = section.required("value", "a finite number" if count is None else f"up to {count} finite numbers")
+    items = stated if isinstance(stated, list) else [stated]
+    field = section.full("value")
+    if isinstance(stated, list) and not (count is not None and 1 <= len(stated) <= count):
+        raise GivewayError(field, stated, "one number" if count is None else f"a list of 1 to {count} numbers")
+    for index, item in enumerate(items):
+        finite(f"{field}[{index}]" if isinstance(stated, list) else field, item)
+    section.required("unit", f'"{unit}"' + (", or a unit of the same kind" if unit != "1" else ""))
+    stated_unit = section.text("unit")
+    scale = 1.0 if stated_unit == unit else factor(section.full("unit"), stated_unit, unit)
+    shown = ", ".join(f"{item:g}" for item in items)
+    return Entry(
+        values=tuple(items) if scale == 1.0 else tuple(item * scale for item in items),
+        is_list=isinstance(stated, list),
+        unit=unit,
+        text=shown if stated_unit == "1" else f"{shown} {stated_unit}",
+        scale=scale,
+        provenance=section.choice("provenance", PROVENANCE) if "provenance" in values else "",
+        confidence=section.choice("confidence", CONFIDENCE) if "confidence" in values else "",
+        source=section.text("source", ""),
+        note=section.text("note", ""),
+    )
+
+
+@functools.cache
+def _known() -> Mapping[str, tuple[str, int | None]]:
+    """Every name that a robot file may have, with its unit and how many numbers it may state (None: one)."""
+    known: dict[str, tuple[str, int | None]] = {}
+    for model in (*native.MODELS, *native.COMPONENTS):
+        for variable in read_table_file(native.variables(model))["variable"]:
+            for name in robot_paths(variable):
+                known.setdefault(name, (entry_unit(variable) or "1", variable.get("count")))
+    return known

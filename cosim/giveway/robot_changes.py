@@ -16,10 +16,10 @@ __all__ = ["NewValue", "changed_robot"]
 
 @dataclass(frozen=True)
 class NewValue:
-    """What replaces an entry of a robot file; the unit stays.
+    """What replaces an entry of a robot file; the unit that the file states stays.
 
     Attributes:
-        value: in the entry's unit.
+        value: in the unit of the variable tables.
         source: where it comes from.
         provenance: given, sourced, fitted or assumed.
         confidence: high, medium or low; None: as it was.
@@ -40,31 +40,32 @@ def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
 
     robot = read_robot(path)
     document = tomlkit.parse(path.read_text(encoding="utf-8"))
+    stated: dict[str, float] = {}
     for name, new in changes.items():
-        robot.value(name)  # refuses what the file does not have
+        stated[name] = finite(name, new.value) / robot[name].scale
         table = document
         for key in name.split("."):
             table = table[key]
         assert isinstance(table, AbstractTable)
-        table["value"] = finite(name, new.value)
+        table["value"] = stated[name]
         for key in ("source", "confidence", "provenance", "note"):
             words = getattr(new, key)
             if words is not None:
                 table[key] = words
     text = tomlkit.dumps(document)
-    _check(path, text, changes)
+    _check(path, text, stated)
     return text
 
 
-def _check(path: Path, text: str, changes: Mapping[str, NewValue]) -> None:
-    """The new text says what the old one said, but for ``changes``."""
+def _check(path: Path, text: str, changes: Mapping[str, float]) -> None:
+    """The new text says what the old one said, but for ``changes``: the new values by name."""
     old, new = tomllib.loads(path.read_text(encoding="utf-8")), tomllib.loads(text)
-    for name, change in changes.items():
+    for name, value in changes.items():
         *tables, key = name.split(".")
         before, after = old, new
         for table in tables:
             before, after = before[table], after[table]
-        if after[key]["value"] != change.value:
+        if after[key]["value"] != value:
             raise FileError(path, f"{name} could not be replaced")
         before[key] = after[key]
     if old != new:

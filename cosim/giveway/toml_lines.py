@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 __all__ = ["flatten", "line_of"]
@@ -35,14 +35,37 @@ def line_of(text: str, name: str) -> int:
     lines = text.splitlines(keepends=True)
     wanted = name
     while wanted:
-        begin = 1
-        for count in range(1, len(lines) + 1):
-            try:
-                document = tomllib.loads("".join(lines[:count]))
-            except tomllib.TOMLDecodeError:
-                continue  # in the middle of a value of several lines
-            if any(found == wanted for found, _ in flatten(document)):
-                return begin
-            begin = count + 1
+        begin = _beginning(lines, wanted)
+        if begin is not None:
+            return begin
         wanted = _LAST_PART.sub("", wanted)
     return 1
+
+
+def _beginning(lines: Sequence[str], wanted: str) -> int | None:
+    """The line where ``wanted`` begins, found by bisection: once set, a name stays set. None if nothing sets it."""
+    without, having = 0, len(lines)  # counts of lines
+    if not _sets(lines, having, wanted):
+        return None
+    while True:
+        middle = (without + having) // 2
+        nearby = (*range(middle, having), *range(middle - 1, without, -1))
+        for count in nearby:  # a count in the middle of a value of several lines is no TOML, and says nothing
+            found = _sets(lines, count, wanted) if count > without else None
+            if found is not None:
+                break
+        else:
+            return without + 1
+        if found:
+            having = count
+        else:
+            without = count
+
+
+def _sets(lines: Sequence[str], count: int, wanted: str) -> bool | None:
+    """Whether the first ``count`` lines set ``wanted``; None if they are no TOML."""
+    try:
+        document = tomllib.loads("".join(lines[:count]))
+    except tomllib.TOMLDecodeError:
+        return None
+    return any(found == wanted for found, _ in flatten(document))

@@ -36,7 +36,7 @@ def lines_named(path: Path, text: str) -> Iterator[None]:
     """Errors about a key of the file ``path`` get its line."""
     try:
         yield
-    except FileError:
+    except (FileError, InputFileError):
         raise  # about another file, which it names
     except GivewayError as error:
         raise InputFileError(path, line_of(text, error.field), error) from None

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import functools
 import math
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from giveway import native
-from giveway.errors import FileError, GivewayError, UnknownNameError
+from giveway.errors import GivewayError, UnknownNameError
 from giveway.robot import Robot, read_robot
+from giveway.table_files import entry_unit, read_table_file
 
 __all__ = ["Value", "Variable", "VariableTable", "parse_assignments", "table"]
 
 Value = float | int | bool
-SCHEMA_VERSION = 1
 _TRUE, _FALSE = {"true", "1", "yes", "on"}, {"false", "0", "no", "off"}
 
 
@@ -98,17 +97,23 @@ class VariableTable:
         """Every entry of ``values`` checked and converted."""
         return {name: self.check(name, value) for name, value in values.items()}
 
+    def robot_value(self, robot: Robot, variable: Variable) -> Value:
+        """What ``robot`` states for ``variable``, checked; the error names the line of the robot file."""
+        assert variable.robot_path is not None
+        try:
+            return self.check(variable.name, robot.value(variable.robot_path, variable.robot_index))
+        except GivewayError as error:
+            if error.field != f"{self.model}.{variable.name}":
+                raise  # the file does not have it
+            raise robot.refusal(variable.robot_path, error.allowed) from None
+
     def robot_values(self, robot: Robot) -> dict[str, Value]:
         """The values of ``robot`` for every parameter that the table takes from a robot file."""
         values: dict[str, Value] = {}
         for variable in self:
             if variable.robot_path is None:
                 continue
-            value = robot.value(variable.robot_path, variable.robot_index)
-            try:
-                values[variable.name] = self.check(variable.name, value)
-            except GivewayError as error:
-                raise FileError(robot.path, f"{variable.robot_path}: {error}") from None
+            values[variable.name] = self.robot_value(robot, variable)
         if "outline.count" in self:  # the one number that a robot file states by the length of a list
             values["outline.count"] = self.check("outline.count", robot.count("outline.x"))
         return values
@@ -156,12 +161,7 @@ def table(model: str) -> VariableTable:
 
 @functools.cache
 def _read_table(path: Path, robot_path: Path) -> VariableTable:
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
-    if document.get("schema_version") != SCHEMA_VERSION:
-        raise FileError(path, f"schema_version is {document.get('schema_version')}", f"need {SCHEMA_VERSION}")
+    document = read_table_file(path)
     robot = read_robot(robot_path)
     variables: list[Variable] = []
     for entry in document["variable"]:
@@ -170,7 +170,7 @@ def _read_table(path: Path, robot_path: Path) -> VariableTable:
     return VariableTable(document["model"]["name"], variables)
 
 
-def _expand(entry: dict[str, Any], robot: Robot) -> Iterator[Variable]:
+def _expand(entry: Mapping[str, Any], robot: Robot) -> Iterator[Variable]:
     """The scalars of one table entry: ``count = 3`` makes ``name[0]`` to ``name[2]``."""
     count = entry.get("count")
     for index in range(count if count is not None else 1):
@@ -185,7 +185,7 @@ def _expand(entry: dict[str, Any], robot: Robot) -> Iterator[Variable]:
             name=entry["name"] if count is None else f"{entry['name']}[{index}]",
             type=entry["type"],
             causality=entry["causality"],
-            unit=entry.get("unit", "1" if entry["type"] == "real" else ""),
+            unit=entry_unit(entry),
             minimum=float(entry.get("minimum", -math.inf)),
             maximum=float(entry.get("maximum", math.inf)),
             start=start,

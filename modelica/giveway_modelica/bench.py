@@ -7,7 +7,6 @@ Hunt and Crossley.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -80,7 +79,7 @@ class Bench:
         from scipy.integrate import solve_ivp
         from scipy.optimize import brentq
 
-        known = {name: entry["value"] for name, entry in numbers(tomllib.loads(ROBOT.read_text()))}
+        known = {name: entry.values[0] for name, entry in numbers(ROBOT)}
         plate_kg = known["bumper_plate_mass"]
         carriage_kg = known["slider_mass"] - plate_kg
         drive_n = known["slider_mass"] * GRAVITY_MPS2 if self.weight else 0.0

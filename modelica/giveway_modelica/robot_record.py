@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+
+from giveway.robot import Entry, read_robot
 
 # Types of Modelica.Units.SI; a number whose unit has none there is a Real with that unit.
 SI_TYPES = {
@@ -26,44 +26,39 @@ SI_TYPES = {
 LINE = 160
 
 
-def numbers(table: Mapping[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Each entry of a robot file that has a value, as ``("wheel_radius", entry)``."""
-    for key, entry in table.items():
-        if isinstance(entry, dict):
-            if "value" in entry:
-                yield "_".join((*path, key)), entry
-            else:
-                yield from numbers(entry, (*path, key))
+def numbers(robot: Path) -> Iterator[tuple[str, Entry]]:
+    """Each number of the robot file ``robot`` under the name that it has in the record: ``wheel_radius``."""
+    for name, entry in read_robot(robot).entries():
+        yield name.replace(".", "_"), entry
 
 
-def declaration(name: str, entry: Mapping[str, Any]) -> str:
+def declaration(name: str, entry: Entry) -> str:
     """One line of the record: type, value, and what is known of the value."""
-    value, unit = entry["value"], entry["unit"]
-    counted = isinstance(value, int) and unit == "1"
-    kind = "Integer" if counted else SI_TYPES.get(unit, "Real")
-    attributes = f'(unit="{unit}")' if kind == "Real" else ""
-    size = f"[{len(value)}]" if isinstance(value, list) else ""
+    counted = isinstance(entry.values[0], int) and entry.unit == "1"
+    kind = "Integer" if counted else SI_TYPES.get(entry.unit, "Real")
+    attributes = f'(unit="{entry.unit}")' if kind == "Real" else ""
+    size = f"[{len(entry.values)}]" if entry.is_list else ""
     if size and attributes:
         attributes = f"(each {attributes[1:]}"
-    text = "{" + ", ".join(repr(float(v)) for v in value) + "}" if size else repr(value if counted else float(value))
-    note = f"; {entry['note']}" if "note" in entry else ""
-    described = f"{entry['provenance']}, {entry['confidence']} confidence{note}".replace("\\", "\\\\").replace('"', "'")
+    values = [repr(value if counted else float(value)) for value in entry.values]
+    text = "{" + ", ".join(values) + "}" if size else values[0]
+    note = f"; {entry.note}" if entry.note else ""
+    described = f"{entry.provenance}, {entry.confidence} confidence{note}".replace("\\", "\\\\").replace('"', "'")
     return f'  parameter {kind} {name}{size}{attributes}={text} "{described}";\n'
 
 
 def record(robot: Path) -> str:
     """The text of Parameters/<Name>.mo for the robot file ``robot``."""
-    with robot.open("rb") as file:
-        table = tomllib.load(file)
-    name = table["robot"]["name"]
+    name = read_robot(robot).name
+    entries = list(numbers(robot))
     rows = "".join(
-        f"<tr><td>{key}</td><td>{entry['unit']}</td><td>{entry['provenance']}</td><td>{_html(entry['source'])}</td></tr>\n"
-        for key, entry in numbers(table)
+        f"<tr><td>{key}</td><td>{entry.unit}</td><td>{entry.provenance}</td><td>{_html(entry.source)}</td></tr>\n"
+        for key, entry in entries
     )
     return (
         f'within GiveWay.Parameters;\nrecord {name} "Numbers of {name}, made from robots/{robot.name}"\n'
         "  extends Modelica.Icons.Record;\n  import Modelica.Units.SI;\n"
-        + "".join(declaration(key, entry) for key, entry in numbers(table))
+        + "".join(declaration(key, entry) for key, entry in entries)
         + '  annotation (\n    Documentation(info="<html>\n'
         f"<p>Made from robots/{robot.name} by <code>python -m giveway_modelica record</code>: not to be edited.\n"
         "Given: printed in the paper; sourced: found elsewhere; fitted: to the paper's results; assumed: estimated."

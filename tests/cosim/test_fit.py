@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway.errors import FileError
+from giveway.errors import InputFileError
 from giveway.fitting.parameters import FREE, from_unit, limits, to_unit
 from giveway.fitting.quantities import QUANTITIES, Bench
 from giveway.fitting.record import read_record, robot_text
@@ -112,7 +112,7 @@ def test_wrong_input_is_told(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "half.toml").write_text(ROBOT.read_text(encoding="utf-8").replace("[servo.kp]", "[servo.gain]"))
     for arguments, words in (
         (("--out", "new.toml", "--samples", "0"), "samples: 0"),
-        (("--out", "new.toml", "--robot", "half.toml"), "servo.kp is missing"),
+        (("--out", "new.toml", "--robot", "half.toml"), "servo.gain: gain is unknown"),
         (("--out", str(tmp_path)), "is not a file"),
     ):
         done = cli("fit", *arguments)
@@ -124,7 +124,7 @@ def test_wrong_input_is_told(cli: Cli, tmp_path: Path) -> None:
 def test_an_entry_without_a_value_is_refused(committed: Fit, tmp_path: Path) -> None:
     robot = tmp_path / "robot.toml"
     robot.write_text(ROBOT.read_text(encoding="utf-8").replace("[servo.kd]\nvalue = ", "[servo.kd]\nnumber = "))
-    with pytest.raises(FileError, match=r"servo\.kd is missing"):
+    with pytest.raises(InputFileError, match=r"servo\.kd\.number: number is unknown"):
         robot_text(robot, committed, "robot.fit.json")
 
 

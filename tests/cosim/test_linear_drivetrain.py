@@ -27,7 +27,7 @@ from giveway.drivetrain import (
     response,
 )
 from giveway.drivetrain_analysis import analyse
-from giveway.errors import FileError, GivewayError
+from giveway.errors import GivewayError, InputFileError
 from giveway.robot import read_robot
 from PIL import Image
 from sampled_drivetrain import TICK_S, largest_multiplier, simulate
@@ -222,7 +222,7 @@ def test_the_robot_file_counts(tmp_path: Path) -> None:
     soft, stiff = (analyse(*read(path)).cases["gear stuck"].poles[0].frequency_hz for path in (None, robot))
     assert stiff == pytest.approx(2.0 * soft, rel=1e-9)
     robot.write_text(text.replace(f"value = {stiffness}", f"value = {-stiffness}"))
-    with pytest.raises(FileError, match=rf"stiff\.toml.*drivetrain\.stiffness.*-{stiffness:g}"):
+    with pytest.raises(InputFileError, match=rf"stiff\.toml.*drivetrain\.stiffness.*-{stiffness:g}"):
         read(robot)
 
 

@@ -29,19 +29,30 @@ def test_only_the_entry_changes(tmp_path: Path) -> None:
     (tmp_path / "new.toml").write_text(new)
     read = read_robot(tmp_path / "new.toml")
     assert read.value("roller.coulomb_torque") == 0.25
-    assert read.unit("roller.coulomb_torque") == "N.m"
+    assert dict(read.entries())["roller.coulomb_torque"].text == "0.25 N.m"
 
 
 def test_comments_and_odd_layouts_stay(tmp_path: Path) -> None:
     text = (
-        "# mine\nschema_version = 1 # first\nroller.b = { value = 1.0, unit = 'N.m' } # inline\n[other.x]\nvalue = 3\n"
+        "# mine\nschema_version = 1 # first\n"
+        "roller.radius = { value = 1.0, unit = 'mm' } # inline\n[servo.kp]\nvalue = 3\nunit = 'N.m/rad'\n"
     )
     (tmp_path / "robot.toml").write_text(text)
-    new = changed_robot(tmp_path / "robot.toml", {"roller.b": NEW, "other.x": NEW})
-    for kept in ("# mine", "schema_version = 1 # first", "# inline", "unit = 'N.m'"):
+    new = changed_robot(tmp_path / "robot.toml", {"roller.radius": NEW, "servo.kp": NEW})
+    for kept in ("# mine", "schema_version = 1 # first", "# inline", "unit = 'mm'"):
         assert kept in new
 
 
 def test_what_is_not_there_is_not_added() -> None:
     with pytest.raises(FileError, match=r"roller\.coulomb is missing.*roller\.coulomb_torque"):
         changed_robot(native.robot(), {"roller.coulomb": NEW})
+
+
+def test_the_new_value_is_written_in_the_unit_of_the_file(tmp_path: Path) -> None:
+    text = native.robot().read_text().replace('value = 0.2\nunit = "N.m"', 'value = 200.0\nunit = "N.mm"')
+    path = tmp_path / "robot.toml"
+    path.write_text(text)
+    assert read_robot(path).value("roller.coulomb_torque") == 0.2
+    path.write_text(changed_robot(path, {"roller.coulomb_torque": NEW}))
+    assert 'value = 250.0\nunit = "N.mm"' in path.read_text()
+    assert read_robot(path).value("roller.coulomb_torque") == 0.25

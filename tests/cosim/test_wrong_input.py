@@ -72,9 +72,9 @@ def test_a_folder_with_someone_elses_files_is_left_alone(cli: Cli, tmp_path: Pat
 def test_broken_robot_files_name_the_key(cli: Cli, tmp_path: Path) -> None:
     robot = tmp_path / "robot.toml"
     for text, word in {
-        "schema_version = 7\n": "schema_version is 7",
+        "schema_version = 7\n": "robot.toml:1: schema_version: 7",
         "schema_version = 1\n[base.mass]\nvalue = 20.0\nunit = 'kg'\n": "is missing",
-        "not toml at all": "is not TOML",
+        "not toml at all": "robot.toml:1: not TOML",
     }.items():
         robot.write_text(text)
         done = cli(*RUN, "--robot", "robot.toml")
