@@ -28,6 +28,9 @@ MAXIMUM_TRACE_VALUES = 100_000_000  # kept in memory: 0.8 GB of numbers
 class Scenario:
     """One co-simulation of controller and testbed.
 
+    Nothing collides with the robot unless ``testbed`` says so by ``"slider.present": True``, with what the slider shall
+    be beside it; `giveway.approach.meet` gives all of that for a hit at a place and speed.
+
     Attributes:
         name: a short name, for manifests and figures.
         duration_s: simulated time in s, above 0 and at most 3600.
@@ -69,6 +72,11 @@ class Scenario:
             whole("seed", self.seed, 0, 2**31 - 1)
         if self.body_region is not None:
             body_region(self.body_region)  # refuses an unknown one
+        if "slider.present" not in self.testbed:
+            for name, value in self.testbed.items():
+                if name.startswith(("slider.", "rope.")):
+                    allowed = "only what collides has it: set slider.present = True, too"
+                    raise GivewayError(f"testbed.{name}", value, allowed)
         # Copies, so that a frozen scenario cannot change behind the caller's back.
         object.__setattr__(self, "testbed", MappingProxyType(dict(self.testbed)))
         object.__setattr__(self, "controller", MappingProxyType(dict(self.controller)))
@@ -96,6 +104,7 @@ class Scenario:
         if model == "testbed":
             overrides = self.testbed
             values["bumper.kind"] = BUMPERS[self.bumper]
+            values["slider.present"] = False
             if "bumper.kind" in overrides:
                 allowed = "one place to choose the bumper: the scenario's bumper, on the command line --bumper"
                 raise GivewayError("testbed.bumper.kind", overrides["bumper.kind"], allowed)

@@ -13,9 +13,10 @@ Cli = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def short(bumper: str = "magnetic", **changes: object) -> giveway.Scenario:
-    """The motionless experiment up to shortly after the detection."""
+    """The motionless experiment up to shortly after the detection; ``testbed`` is added to its own."""
     scenario = giveway.experiment("motionless").scenario(bumper)
-    return dataclasses.replace(scenario, **{"duration_s": 0.5, **changes})  # type: ignore[arg-type]
+    testbed = {**scenario.testbed, **changes.pop("testbed", {})}  # type: ignore[dict-item]
+    return dataclasses.replace(scenario, **{"duration_s": 0.5, "testbed": testbed, **changes})  # type: ignore[arg-type]
 
 
 def folder_content(folder: Path) -> Sequence[str]:

@@ -49,8 +49,23 @@ def test_a_scenario_cannot_be_changed_through_the_callers_dict() -> None:
 
 def test_bumper_and_seed_become_parameters_and_overrides_win() -> None:
     scenario = giveway.Scenario("x", 1.0, bumper="spring", seed=7, testbed={"base.mass": 40.0})
-    assert scenario.parameters("testbed") == {"bumper.kind": 1, "electronics.seed": 7, "base.mass": 40.0}
+    assert scenario.parameters("testbed") == {
+        "bumper.kind": 1, "slider.present": False, "electronics.seed": 7, "base.mass": 40.0,
+    }  # fmt: skip
     assert scenario.parameters("controller") == {}
+
+
+def test_nothing_collides_unless_asked() -> None:
+    bare = giveway.Scenario("x", 1.0)
+    assert bare.parameters("testbed")["slider.present"] is False
+    result = giveway.run(bare)
+    assert result.traces["testbed.truth.contact_force"].max() == 0.0
+    assert result.metric("false detections").value == 0
+    asked = giveway.Scenario("x", 1.0, testbed={"slider.present": True, "slider.mass": 5.0})
+    assert asked.parameters("testbed")["slider.mass"] == 5.0
+    for name in ("slider.mass", "rope.attached"):
+        with pytest.raises(GivewayError, match=rf"testbed\.{name}.*slider\.present"):
+            giveway.Scenario("x", 1.0, testbed={name: 1})
 
 
 def test_overrides_from_python_are_checked_too() -> None:

@@ -65,6 +65,7 @@ def scenario(
         math.ceil(1e3 * (tare_s + plan.ramp_s + STEADY_S + AFTER_S)) / 1e3,
         bumper=bumper,
         testbed={
+            "slider.present": True,
             "slider.mass": SLIDER_KG,
             "slider.run_up": 0.0,
             "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),

@@ -33,7 +33,10 @@ CAPTION = (
 
 def scenario(bumper: str, duration_s: float = DURATION_S) -> Scenario:
     """The experiment with ``bumper`` ("none", "spring" or "magnetic") on the slider."""
-    return Scenario("motionless", duration_s, bumper=bumper, controller={"supervisor.after_settled": HOLD})
+    testbed = {"slider.present": True}
+    return Scenario(
+        "motionless", duration_s, bumper=bumper, testbed=testbed, controller={"supervisor.after_settled": HOLD}
+    )
 
 
 def reproduce(effort: Effort) -> Findings:

@@ -45,6 +45,7 @@ def scenario(bumper: str, after_contact_s: float = ESCAPE_S) -> Scenario:
     controller = table("controller")
     tare_s = float(controller["estimator.tare_ticks"].start or 0) * float(controller["controller.period"].start or 0.0)
     testbed = {
+        "slider.present": True,
         "slider.mass": SLIDER_KG,
         "slider.run_up": 0.0,
         "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),

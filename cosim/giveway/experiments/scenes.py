@@ -141,6 +141,7 @@ def scenario(name: str) -> Scenario:
         bumper="none",
         testbed={
             **_obstacle(scene, start, way_m),
+            "slider.present": True,
             "slider.mass": scene.mass_kg,
             "slider.friction": scene.friction_n,
             "slider.run_up": 0.0,
