@@ -10,42 +10,37 @@ void *reveal(std::uintptr_t hidden) { return hidden == 0 ? nullptr : reinterpret
 
 } // namespace
 
-Handles::~Handles() {
-    for (std::atomic<Slot *> &chunk : chunks_) {
-        delete[] chunk.exchange(nullptr);
-    }
+Handles::Slot *Handles::slot(std::size_t index) {
+    Slot *chunk = index < chunk_size ? first_ : further_[index >> chunk_bits];
+    return chunk == nullptr ? nullptr : &chunk[index & (chunk_size - 1)];
 }
 
-// A handle is (generation << index_bits) | index, with a generation of at least 1, so no handle is null; each time that
-// a slot is used again its generation grows.
-Handles::Slot *Handles::slot(std::uintptr_t handle) const {
-    const std::size_t index = handle & ((std::uintptr_t{1} << index_bits) - 1);
-    Slot *chunk = chunks_[index >> chunk_bits].load(std::memory_order_acquire);
-    if (chunk == nullptr) {
+// A handle is (generation << index_bits) | index, with a generation of at least 1, so no handle is null; every handle that is
+// given out has the next generation.
+void *Handles::object_of(std::uintptr_t handle) {
+    const Slot *found = slot(index_of(handle));
+    if (found == nullptr || found->handle.load(std::memory_order_acquire) != handle) {
         return nullptr;
     }
-    Slot *found = &chunk[index & (chunk_size - 1)];
-    return found->handle.load(std::memory_order_acquire) == handle ? found : nullptr;
+    return reveal(found->object.load(std::memory_order_relaxed));
 }
 
-// The chunks live as long as the library: a handle may be asked for at any time.
 std::size_t Handles::take_free_index() {
     if (first_free_ != 0) {
         const std::size_t index = first_free_ - 1;
-        Slot *chunk = chunks_[index >> chunk_bits].load(std::memory_order_relaxed);
-        first_free_ = chunk[index & (chunk_size - 1)].next_free;
+        first_free_ = slot(index)->next_free;
         return index;
     }
     const std::size_t index = used_;
     if (index == chunk_size * chunk_count) {
         return index;
     }
-    if ((index & (chunk_size - 1)) == 0) {
+    if (slot(index) == nullptr) {
         Slot *chunk = new (std::nothrow) Slot[chunk_size];
         if (chunk == nullptr) {
             return chunk_size * chunk_count;
         }
-        chunks_[index >> chunk_bits].store(chunk, std::memory_order_release);
+        further_[index >> chunk_bits] = chunk;
     }
     ++used_;
     return index;
@@ -58,35 +53,56 @@ void *Handles::add(void *object) {
         unlock();
         return nullptr;
     }
-    Slot &free = chunks_[index >> chunk_bits].load(std::memory_order_relaxed)[index & (chunk_size - 1)];
     constexpr std::uintptr_t one_generation = std::uintptr_t{1} << index_bits;
-    std::uintptr_t handle = free.handle.load(std::memory_order_relaxed) + one_generation;
-    if (handle < one_generation) {
-        handle += one_generation; // the generations of a 32-bit machine come round after 4096
+    last_ += one_generation;
+    if (last_ == 0) {
+        last_ = one_generation; // the generations of a 32-bit machine come round after 4096
     }
-    handle = (handle & ~(one_generation - 1)) | index;
+    const std::uintptr_t handle = last_ | index;
+    Slot &free = *slot(index);
     free.object.store(hide(object), std::memory_order_relaxed);
     free.handle.store(handle, std::memory_order_release);
+    ++alive_;
     unlock();
     return reinterpret_cast<void *>(handle);
 }
 
-void *Handles::find(const void *handle) const {
-    const Slot *found = slot(reinterpret_cast<std::uintptr_t>(handle));
-    return found == nullptr ? nullptr : reveal(found->object.load(std::memory_order_relaxed));
+// The first chunk is always there. Others come and go, so nobody reads them without the lock.
+void *Handles::find(const void *handle) {
+    const auto number = reinterpret_cast<std::uintptr_t>(handle);
+    if (index_of(number) < chunk_size) {
+        return object_of(number);
+    }
+    lock();
+    void *object = object_of(number);
+    unlock();
+    return object;
 }
 
 void *Handles::remove(void *handle) {
     const auto number = reinterpret_cast<std::uintptr_t>(handle);
     lock();
-    Slot *found = slot(number);
-    void *object = found == nullptr ? nullptr : reveal(found->object.exchange(0, std::memory_order_relaxed));
+    void *object = object_of(number);
     if (object != nullptr) {
-        found->next_free = first_free_;
-        first_free_ = (number & ((std::uintptr_t{1} << index_bits) - 1)) + 1;
+        Slot &freed = *slot(index_of(number));
+        freed.object.store(0, std::memory_order_relaxed);
+        freed.next_free = first_free_;
+        first_free_ = index_of(number) + 1;
+        if (--alive_ == 0 && used_ > chunk_size) {
+            give_memory_back();
+        }
     }
     unlock();
     return object;
+}
+
+void Handles::give_memory_back() {
+    for (Slot *&chunk : further_) {
+        delete[] chunk;
+        chunk = nullptr;
+    }
+    used_ = 0;
+    first_free_ = 0;
 }
 
 } // namespace giveway

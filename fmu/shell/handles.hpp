@@ -1,6 +1,9 @@
 // What an importer holds instead of a pointer, so that a handle that was freed, or never was one, is noticed and not followed.
 //
-// Finding is lock-free and costs two loads; making and freeing may happen in several threads at once.
+// Making, finding and freeing may happen in several threads at once; finding one of the first thousand takes no lock.
+//
+// A table is a static object that nothing has to destroy: a destructor at exit needs start files in the shared library that
+// run it when the library is unloaded, and not every linker brings them. An empty table holds no memory of the heap.
 #pragma once
 
 #include <atomic>
@@ -11,9 +14,8 @@ namespace giveway {
 
 class Handles {
 public:
-    Handles() = default;
-    // When the library is unloaded. Whoever did not free an object has lost it.
-    ~Handles();
+    constexpr Handles() = default;
+    ~Handles() = default; // trivial: see above
     Handles(const Handles &) = delete;
     Handles &operator=(const Handles &) = delete;
 
@@ -21,7 +23,7 @@ public:
     void *add(void *object);
 
     // The object; null if the handle was freed, or was never given out.
-    void *find(const void *handle) const;
+    void *find(const void *handle);
 
     // Frees the handle and gives the object back, to one caller only; null as above.
     void *remove(void *handle);
@@ -39,17 +41,24 @@ private:
         std::size_t next_free = 0;             // index + 1; 0: none
     };
 
-    Slot *slot(std::uintptr_t handle) const;
+    static std::size_t index_of(std::uintptr_t handle) { return handle & ((std::uintptr_t{1} << index_bits) - 1); }
+    // Null if there is no such slot (any more).
+    Slot *slot(std::size_t index);
+    void *object_of(std::uintptr_t handle);
     std::size_t take_free_index();
+    void give_memory_back();
     void lock() {
         while (busy_.test_and_set(std::memory_order_acquire)) {
         }
     }
     void unlock() { busy_.clear(std::memory_order_release); }
 
-    std::atomic<Slot *> chunks_[chunk_count] = {};
+    Slot first_[chunk_size] = {};
+    Slot *further_[chunk_count] = {}; // from the heap, until the table is empty again; the first place is not used
     std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
-    std::size_t used_ = 0;       // slots that were ever used
+    std::uintptr_t last_ = 0; // the generation of the last handle
+    std::size_t alive_ = 0;
+    std::size_t used_ = 0;       // slots that were used since the table was empty
     std::size_t first_free_ = 0; // index + 1
 };
 

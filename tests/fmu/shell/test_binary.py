@@ -17,6 +17,7 @@ from fmu_driver import BINARY_FOLDERS, BUILD, INTEGRATED, MODELS, ROOT, Fmu, fmu
 
 EVERY_FMU = [(model, version) for model in (*MODELS, "lag") for version in (2, 3)]
 GOLDEN = Path(__file__).parent / "golden_references"
+AT_EXIT = {"atexit", "on_exit", "__cxa_atexit", "__cxa_thread_atexit", "__cxa_thread_atexit_impl"}
 C_LIBRARY = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2"}
 
 
@@ -69,8 +70,24 @@ def test_only_the_c_library_is_needed(model: str, tmp_path: Path) -> None:
     assert needed <= C_LIBRARY
 
 
-def test_an_ordinary_library_would_be_noticed() -> None:
-    """The planted fault for the two checks above: a library linked without the FMUs' options."""
+def imported_symbols(library: Path) -> set[str]:
+    command = ["nm", "--dynamic", "--undefined-only", "--format=posix", library]
+    listing = subprocess.run(command, check=True, capture_output=True, text=True)
+    return {line.split()[0].split("@")[0] for line in listing.stdout.splitlines()}
+
+
+@pytest.mark.parametrize("model", [*MODELS, "lag"])
+def test_nothing_is_left_to_do_when_the_process_ends(model: str, tmp_path: Path) -> None:
+    """By then an importer has unloaded the library."""
+    assert not imported_symbols(shared_library(model, 3, tmp_path)) & AT_EXIT
+
+
+def test_an_ordinary_library_would_be_noticed(tmp_path: Path) -> None:
+    """The planted fault for the three checks above: a library without the FMUs' options, and one with a destructor."""
+    late = tmp_path / "late.cpp"
+    late.write_text("struct Late { ~Late(); int a; }; Late::~Late() { a = 1; } Late late;")
+    subprocess.run(["g++", "-shared", "-fPIC", late, "-o", late.with_suffix(".so")], check=True)
+    assert imported_symbols(late.with_suffix(".so")) & AT_EXIT
     library = BUILD / "tests" / "libgiveway_plant_probe.so"
     assert exported_symbols(library) - fmi_functions()
     assert needed_libraries(library) - C_LIBRARY
