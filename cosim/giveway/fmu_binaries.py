@@ -52,6 +52,7 @@ class Binary:
     Attributes:
         machines: "x86_64", "aarch64", "i686"; several in a universal file of macOS.
         exported: names of exported functions, without macOS's leading underscore.
+        imported: names that it takes from other libraries; read for Linux only.
         needed: libraries it asks the loader for.
         newest_glibc: the newest version of the GNU C library that it asks for, such as (2, 17); None if there is none.
     """
@@ -61,6 +62,7 @@ class Binary:
     exported: frozenset[str]
     needed: tuple[str, ...]
     newest_glibc: tuple[int, ...] | None
+    imported: frozenset[str] = frozenset()
 
 
 def read_binary(path: Path) -> Binary:
@@ -83,6 +85,7 @@ def read_binary(path: Path) -> Binary:
             frozenset(str(s.name) for s in elf.exported_symbols),
             tuple(str(name) for name in elf.libraries),
             max(numbers, default=None),
+            frozenset(str(s.name) for s in elf.imported_symbols),
         )
     if lief.is_pe(str(path)):
         pe = lief.PE.parse(str(path))

@@ -361,6 +361,20 @@ def test_each_check_of_binaries_finds_its_fault(
     assert any(words in finding.text and finding.fault == fault for finding in found), [str(f) for f in found]
 
 
+LATE = """int __cxa_atexit(void (*)(void *), void *, void *);
+void late(void *);
+__attribute__((constructor)) void start(void) { __cxa_atexit(late, 0, 0); }"""
+
+
+def test_destructors_that_nobody_runs_at_unloading_are_a_fault(tmp_path: Path) -> None:
+    for options, faults in ((["-nostartfiles"], 1), ([], 0)):  # gcc's start files import __cxa_finalize
+        draft = Draft(3)
+        draft.files[draft.binary] = compiled(tmp_path, LATE, *options)
+        found = [f for f in check_fmu(draft.write(tmp_path / "planted.fmu")) if f.check == "unloading"]
+        assert [f.fault for f in found] == [True] * faults, options
+        assert all("__cxa_atexit without __cxa_finalize" in f.text for f in found)
+
+
 def test_a_source_file_that_another_includes_need_not_be_listed(tmp_path: Path) -> None:
     draft = Draft(3)
     with_sources(draft)
@@ -372,7 +386,7 @@ def test_a_source_file_that_another_includes_need_not_be_listed(tmp_path: Path) 
 
 
 def test_every_check_has_a_planted_fault() -> None:
-    planted = {check for check, *_ in FAULTS} | {"exported symbols", "imported libraries"}
+    planted = {check for check, *_ in FAULTS} | {"exported symbols", "imported libraries", "unloading"}
     assert planted == set(CHECKS) | {"XML", "FMI version"}
 
 

@@ -102,5 +102,6 @@ CHECKS: Mapping[str, tuple[Callable[[TestedFile], Found], bool]] = {
     "machine": (binaries.machines, True),
     "exported symbols": (binaries.exports, True),
     "imported libraries": (binaries.imports, True),
+    "unloading": (binaries.unloading, True),
 }
 """Name -> check, and whether it needs a model description; "XML" and "FMI version" come before them all."""

@@ -13,7 +13,7 @@ from giveway.fmu_description import Description
 if TYPE_CHECKING:
     from giveway.fmu_binaries import Binary
 
-__all__ = ["exports", "imports", "machines", "platforms"]
+__all__ = ["exports", "imports", "machines", "platforms", "unloading"]
 
 
 def _binary_names(file: TestedFile) -> dict[str, list[str]]:
@@ -151,3 +151,19 @@ def imports(file: TestedFile) -> Found:
         for library in binary.needed:
             if not is_of_the_system(binary.system, library) and PurePosixPath(library).name not in beside:
                 yield FAULT, f"{name} needs {library}, which not every machine has and the FMU does not bring"
+
+
+def unloading(file: TestedFile) -> Found:
+    """Destructors that Linux would call at the end of the process, after an importer has unloaded the library."""
+    for name, _, binary in _each_binary(file):
+        # __cxa_finalize, which start files call when the library is unloaded, runs them in time.
+        if (
+            not isinstance(binary, FileError)
+            and "__cxa_atexit" in binary.imported
+            and "__cxa_finalize" not in binary.imported
+        ):
+            yield (
+                FAULT,
+                f"{name} imports __cxa_atexit without __cxa_finalize: its destructors run at the end of the process, "
+                "which crashes if an importer has unloaded it",
+            )
