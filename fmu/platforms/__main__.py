@@ -1,7 +1,8 @@
 """`make platforms`: the FMUs of `make fmus ALL=1` on their platforms, against those of this machine's compiler.
 
 Every library is read: exports, needs, oldest system. Those for Linux and Windows are run, under qemu and wine where
-they are not at home: a coupled collision, and each component by itself. Prints a line for each platform and FMU, then
+they are not at home: a coupled collision, and each component by itself. Each is run twice in one process, the libraries
+unloaded between and after, and the process has to end with exit code 0. Prints a line for each platform and FMU, then
 shows each check failing on a planted fault, and ends with 1 if anything was wrong.
 """
 
@@ -91,8 +92,13 @@ def _runner(platform: str) -> Path:
     return path
 
 
-def run(plan: Plan, name: str, platform: str, launcher: Sequence[str], runner: Path) -> Outputs:
-    """The outputs of a plan on a platform."""
+def run(
+    plan: Plan, name: str, platform: str, launcher: Sequence[str], runner: Path, others: Sequence[str] = ()
+) -> Outputs:
+    """The outputs of a plan on a platform; ``others``: libraries that are loaded and unloaded beside the FMUs'.
+
+    RuntimeError if the process does not end with exit code 0.
+    """
     folder = WORK / platform
     libraries = []
     for fmu in plan.fmus:
@@ -101,14 +107,17 @@ def run(plan: Plan, name: str, platform: str, launcher: Sequence[str], runner: P
         if "windows" not in platform:
             libraries[-1] = f"./{libraries[-1]}"
     path = folder / f"{name}.plan"
-    plan.write(path, [library.replace("/", "\\") if "windows" in platform else library for library in libraries])
+    plan.write(
+        path, [library.replace("/", "\\") if "windows" in platform else library for library in libraries], others
+    )
     environment = {**os.environ, "WINEPREFIX": str(WORK / "wine"), "WINEDEBUG": "-all", "DISPLAY": ""}
     command: list[str | Path] = [*launcher, runner, path.name]
     answer = subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False
     )
     if answer.returncode != 0:
-        raise RuntimeError(f"{name} on {platform}: {answer.stderr.strip()}")
+        said = answer.stderr.strip() or "no message"
+        raise RuntimeError(f"{name} on {platform} ended with exit code {answer.returncode}: {said}")
     return read_outputs(answer.stdout, plan)
 
 
@@ -168,6 +177,22 @@ def check_runs(findings: Findings) -> None:
             text = f"off by {error:.1e} {worst}; {same} of {len(outputs)} outputs the same bits"
             findings.say(f"{platform} {model}", text, [] if error <= PLANT_TOLERANCE else [text])
     plant_faults(findings, expected, controller)
+    plant_late_code(findings)
+
+
+def plant_late_code(findings: Findings) -> None:
+    """A library that is called after it was unloaded must be seen in the exit code of every runner."""
+    for platform, launcher in LAUNCHERS.items():
+        library = WORK / platform / ("late.dll" if "windows" in platform else "late.so")
+        source = library.with_suffix(".c")
+        source.write_text(_LATE_SOURCE)
+        zig("cc", f"--target={TARGETS[platform]}", "-shared", source, "-o", library)
+        runner, plan = _runner(platform), all_runs(FMUS)["bumper"]
+        try:
+            run(plan, "late", platform, launcher, runner, [f"./{library.name}"])
+            findings.say(f"planted fault: late {platform}", "", ["code that runs after it is gone was not seen"])
+        except RuntimeError as error:
+            findings.say(f"planted fault: late {platform}", f"seen: {error}", [])
 
 
 def plant_faults(findings: Findings, expected: Mapping[str, Outputs], controller: Outputs) -> None:
@@ -210,22 +235,49 @@ _PLANTED = {
     "x86_64-linux": (
         "x86_64-linux-gnu.2.34",
         ["-Wl,--build-id"],
-        ("glibc 2.34", "build id", "exports", "libother.so"),
+        ("glibc 2.34", "build id", "exports", "libother.so", "end of the process (__cxa_atexit)"),
     ),
     "aarch64-linux": ("x86_64-linux-gnu.2.17", [], ("processor",)),
-    "x86_64-windows": ("x86_64-windows-gnu", ["-luser32"], ("exports", "needs libother.dll, USER32.dll")),
-    "x86_64-darwin": ("x86_64-macos.14.0", [], ("macOS 14.0", "exports", "needs", "own name")),
+    "x86_64-windows": (
+        "x86_64-windows-gnu",
+        ["-luser32"],
+        ("exports", "needs libother.dll, USER32.dll", "(_crt_atexit)"),
+    ),
+    "x86_64-darwin": ("x86_64-macos.14.0", [], ("macOS 14.0", "exports", "needs", "own name", "(atexit)")),
     "aarch64-darwin": ("aarch64-linux-gnu.2.17", [], ("no library for darwin",)),
 }
 _PLANTED_SOURCE = """
 #ifdef _WIN32
 #include <windows.h>
 __declspec(dllimport) int other(void);
-__declspec(dllexport) int planted(void) { return other() + MessageBoxA(0, "", "", 0); }
+int _crt_atexit(void (*)(void));
+__declspec(dllexport) int planted(void) { return other() + MessageBoxA(0, "", "", 0) + _crt_atexit(0); }
 #else
 #include <pthread.h>
+#include <stdlib.h>
 int other(void);
-int planted(void) { return other() + pthread_detach(pthread_self()); }
+#ifdef __APPLE__
+static void late(void) {}
+int planted(void) { return other() + atexit(late); }
+#else
+int __cxa_atexit(void (*)(void *), void *, void *);
+int planted(void) { return other() + pthread_detach(pthread_self()) + __cxa_atexit(0, 0, 0); }
+#endif
+#endif
+"""
+# Registers a function for the end of the process, as a static object with a destructor does. On Linux and Windows.
+_LATE_SOURCE = """
+static void late(void) {}
+#ifdef _WIN32
+#include <windows.h>
+int _crt_atexit(void (*)(void));
+BOOL WINAPI DllMain(HINSTANCE self, DWORD reason, void *reserved)
+{
+    return reason != DLL_PROCESS_ATTACH || _crt_atexit(late) == 0;
+}
+#else
+int __cxa_atexit(void (*)(void *), void *, void *);
+__attribute__((constructor)) static void start(void) { __cxa_atexit((void (*)(void *))late, 0, 0); }
 #endif
 """
 

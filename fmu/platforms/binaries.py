@@ -30,6 +30,14 @@ C_LIBRARIES = {
 }
 # What zig's linker exports of every macOS library, for the library itself.
 LINKER_SYMBOLS = {"__dso_handle", "_mh_dylib_header"}
+# A function that is registered with one of these is called at the end of the process, or of a thread, when an importer
+# may long have unloaded the library: nothing of ours needs one. Windows' start files keep a table of the library's own
+# (_register_onexit_function), which they run when it is unloaded.
+AT_EXIT = {
+    *("atexit", "on_exit", "at_quick_exit", "__cxa_atexit", "__cxa_at_quick_exit"),
+    *("__cxa_thread_atexit", "__cxa_thread_atexit_impl", "_tlv_atexit"),
+    *("_onexit", "_crt_atexit", "_crt_at_quick_exit", "__dllonexit"),
+}
 PROCESSORS = {
     "linux": {"x86_64": "X86_64", "aarch64": "AARCH64"},
     "windows": {"x86_64": "AMD64"},
@@ -52,6 +60,7 @@ def fmi_functions(headers: Path) -> set[str]:
 
 def _elf(binary: Any) -> dict[str, Any]:
     exported = {s.name for s in binary.dynamic_symbols if s.exported}
+    imported = {s.name for s in binary.dynamic_symbols if s.imported}
     needed = [entry.name for entry in binary.dynamic_entries if entry.tag == lief.ELF.DynamicEntry.TAG.NEEDED]
     versions = [
         a.name for requirement in binary.symbols_version_requirement for a in requirement.get_auxiliary_symbols()
@@ -60,21 +69,25 @@ def _elf(binary: Any) -> dict[str, Any]:
     faults = [] if newest <= GLIBC else [f"needs glibc {'.'.join(map(str, newest))}"]
     if any(note.type == lief.ELF.Note.TYPE.GNU_BUILD_ID for note in binary.notes):
         faults.append("has a build id")
-    return {"exported": exported, "needed": needed, "since": "glibc " + ".".join(map(str, newest)), "faults": faults}
+    since = "glibc " + ".".join(map(str, newest))
+    return {"exported": exported, "imported": imported, "needed": needed, "since": since, "faults": faults}
 
 
 def _pe(binary: Any) -> dict[str, Any]:
     exported = {entry.name for entry in binary.get_export().entries}
     needed = [entry.name for entry in binary.imports]
+    imported = {entry.name for library in binary.imports for entry in library.entries}
     major, minor = (
         binary.optional_header.major_operating_system_version,
         binary.optional_header.minor_operating_system_version,
     )
-    return {"exported": exported, "needed": needed, "since": f"Windows {major}.{minor}", "faults": []}
+    since = f"Windows {major}.{minor}"
+    return {"exported": exported, "imported": imported, "needed": needed, "since": since, "faults": []}
 
 
 def _macho(binary: Any) -> dict[str, Any]:
     exported = {s.name.removeprefix("_") for s in binary.exported_symbols} - LINKER_SYMBOLS
+    imported = {s.name.removeprefix("_") for s in binary.imported_symbols}
     needed = [library.name for library in binary.libraries if library.command == lief.MachO.LoadCommand.TYPE.LOAD_DYLIB]
     oldest = list(binary.build_version.minos)
     faults = [] if oldest == MACOS else [f"needs macOS {oldest[0]}.{oldest[1]}"]
@@ -84,7 +97,8 @@ def _macho(binary: Any) -> dict[str, Any]:
     signed = binary.has_code_signature
     if binary.header.cpu_type == lief.MachO.Header.CPU_TYPE.ARM64 and not signed:
         faults.append("is not signed, which Apple silicon demands")
-    return {"exported": exported, "needed": needed, "since": f"macOS {oldest[0]}.{oldest[1]}", "faults": faults}
+    since = f"macOS {oldest[0]}.{oldest[1]}"
+    return {"exported": exported, "imported": imported, "needed": needed, "since": since, "faults": faults}
 
 
 def inspect(data: bytes, platform: str, wanted: set[str]) -> dict[str, Any]:
@@ -114,6 +128,9 @@ def inspect(data: bytes, platform: str, wanted: set[str]) -> dict[str, Any]:
     if found["exported"] != wanted:
         odd = sorted(found["exported"] ^ wanted)
         faults.append(f"exports {len(found['exported'])} functions, not the {len(wanted)} of FMI: {', '.join(odd[:3])}")
+    late = sorted(found["imported"] & AT_EXIT)
+    if late:
+        faults.append(f"registers code for the end of the process ({', '.join(late)}), when the library may be gone")
     foreign = [name for name in found["needed"] if not C_LIBRARIES[system].fullmatch(name)]
     if foreign:
         faults.append(f"needs {', '.join(foreign)}")

@@ -98,19 +98,25 @@ class Plan:
                 self.lines.append(f"read {instance} {kind} {reference}")
                 self.columns.append((instance, name, kind))
 
-    def write(self, path: Path, libraries: Sequence[str]) -> None:
-        """``libraries``: how the runner finds the library of each FMU."""
-        head = [f"fmu {library} {fmu.token}" for library, fmu in zip(libraries, self.fmus, strict=True)]
+    def write(self, path: Path, libraries: Sequence[str], others: Sequence[str] = ()) -> None:
+        """``libraries``: how the runner finds the library of each FMU; ``others`` are only loaded and unloaded."""
+        head = [f"library {other}" for other in others]
+        head += [f"fmu {library} {fmu.token}" for library, fmu in zip(libraries, self.fmus, strict=True)]
         rows = [" ".join(_value(kind, values[k]) for kind, values in self.drives) for k in range(self.steps)]
         run = f"run {self.steps} {_value('r', self.step_s)}"
         path.write_text("\n".join([*head, *self.lines, run, *rows, ""]), encoding="ascii")
 
 
 def read_outputs(text: str, plan: Plan) -> dict[tuple[int, str], NDArray[np.float64] | NDArray[np.int64]]:
-    """Column of each output, by instance and name: shape (steps,)."""
+    """Column of each output, by instance and name: shape (steps,). ``text`` holds the run twice, with the same bits."""
     rows = [line.split() for line in text.splitlines()]
-    if [len(row) for row in rows] != [len(plan.columns)] * plan.steps:
-        raise ValueError(f"{len(rows)} rows of outputs, but the plan has {plan.steps} of {len(plan.columns)} values")
+    if [len(row) for row in rows] != [len(plan.columns)] * (2 * plan.steps):
+        raise ValueError(
+            f"{len(rows)} rows of outputs, but two runs have {2 * plan.steps} of {len(plan.columns)} values"
+        )
+    rows, again = rows[: plan.steps], rows[plan.steps :]
+    if again != rows:
+        raise ValueError("the second run in the same process, after a reload, has other outputs than the first")
     found: dict[tuple[int, str], NDArray[np.float64] | NDArray[np.int64]] = {}
     for column, (instance, name, kind) in enumerate(plan.columns):
         words = [row[column] for row in rows]

@@ -3,8 +3,12 @@
  *
  *     run_fmus PLAN > OUTPUTS
  *
+ * Twice in one process the libraries are loaded, run, freed and unloaded, so the outputs come twice. Then the process ends
+ * as any does: exit code 0 says that nothing of the libraries is needed once they are gone.
+ *
  * PLAN, one item a line, I, J: instances in the order of their lines; K: r, i or b; VALUE: a real's bits in 16 hexadecimal
  * digits, else a number:
+ *     library LIBRARY            is loaded and unloaded with the others, and nothing else
  *     fmu LIBRARY TOKEN          LIBRARY is ignored by a program that holds its one FMU inside (-DGIVEWAY_LINKED)
  *     set I K REFERENCE VALUE    before the initialisation
  *     connect I REFERENCE J REFERENCE K    from an output of I to an input of J, just before each step of J
@@ -46,6 +50,11 @@ typedef struct {
     fmi3Instance instance;
 } fmu_t;
 
+typedef struct {
+    char path[512];
+    void *handle;
+} library_t;
+
 /* An input or output of an instance. */
 typedef struct {
     unsigned instance;
@@ -59,6 +68,8 @@ typedef union {
     bool boolean;
 } value_t;
 
+static library_t libraries[max_instances];
+static unsigned library_count;
 static fmu_t fmus[max_instances];
 static unsigned fmu_count;
 static port_t from[max_items], to[max_items], driven[max_items], shown[max_items];
@@ -92,6 +103,10 @@ static void *open_library(const char *path)
     (void)path;
     return NULL;
 }
+static void close_library(const library_t *library)
+{
+    (void)library;
+}
 #else
 static void *symbol(void *library, const char *name)
 {
@@ -121,14 +136,45 @@ static void *open_library(const char *path)
     }
     return library;
 }
+
+static void close_library(const library_t *library)
+{
+#ifdef _WIN32
+    const bool closed = FreeLibrary((HMODULE)library->handle) && GetModuleHandleA(library->path) == NULL;
+#else
+    const bool closed = dlclose(library->handle) == 0 && dlopen(library->path, RTLD_NOW | RTLD_NOLOAD) == NULL;
 #endif
+    if (!closed) {
+        fail(library->path, "it is still there after it was unloaded");
+    }
+}
+#endif
+
+static void *load_library(const char *path)
+{
+    if (library_count == max_instances) {
+        fail(path, "too many libraries");
+    }
+    library_t *library = &libraries[library_count++];
+    snprintf(library->path, sizeof library->path, "%s", path);
+    library->handle = open_library(path);
+    return library->handle;
+}
+
+static void unload_libraries(void)
+{
+    while (library_count > 0) {
+        close_library(&libraries[--library_count]);
+    }
+    fmu_count = connection_count = driven_count = shown_count = 0;
+}
 
 static void load(const char *path, const char *token)
 {
     if (fmu_count == max_instances) {
         fail(path, "too many FMUs");
     }
-    void *library = open_library(path);
+    void *library = load_library(path);
     fmu_t *fmu = &fmus[fmu_count++];
     (void)library;
     fmu->instantiate = LOAD(library, fmi3InstantiateCoSimulation);
@@ -268,20 +314,19 @@ static void run(FILE *plan, unsigned steps, double size)
     }
 }
 
-int main(int count, char **arguments)
+/* Runs the plan once, from its first line to its last. */
+static void run_plan(FILE *plan)
 {
-    FILE *plan = count == 2 ? fopen(arguments[1], "r") : NULL;
     char word[max_text], text[max_text];
     unsigned i, j, a, b;
     char kind;
-    if (plan == NULL) {
-        fail("usage", "run_fmus PLAN, and PLAN can be read");
-    }
     while (fscanf(plan, "%511s", word) == 1) {
         if (driven_count == max_items || shown_count == max_items || connection_count == max_items) {
             fail("plan", "too many lines");
         }
-        if (strcmp(word, "fmu") == 0 && fscanf(plan, "%511s %511s", word, text) == 2) {
+        if (strcmp(word, "library") == 0 && fscanf(plan, "%511s", text) == 1) {
+            (void)load_library(text);
+        } else if (strcmp(word, "fmu") == 0 && fscanf(plan, "%511s %511s", word, text) == 2) {
             load(word, text);
         } else if (strcmp(word, "set") == 0 && fscanf(plan, "%u %c %u %511s", &i, &kind, &a, text) == 4) {
             set(port_of(i, kind, a), value_of(kind, text));
@@ -294,10 +339,24 @@ int main(int count, char **arguments)
             shown[shown_count++] = port_of(i, kind, a);
         } else if (strcmp(word, "run") == 0 && fscanf(plan, "%u %511s", &a, text) == 2) {
             run(plan, a, real_of(text));
-            return 0;
+            return;
         } else {
             fail("plan", word);
         }
     }
     fail("plan", "it does not end in run");
+}
+
+int main(int count, char **arguments)
+{
+    FILE *plan = count == 2 ? fopen(arguments[1], "r") : NULL;
+    if (plan == NULL) {
+        fail("usage", "run_fmus PLAN, and PLAN can be read");
+    }
+    for (int pass = 0; pass < 2; ++pass) {
+        rewind(plan);
+        run_plan(plan);
+        unload_libraries();
+    }
+    return 0;
 }
