@@ -209,6 +209,28 @@ def test_thrown_up_it_falls_freely(library: ctypes.CDLL) -> None:
     assert all(t == pytest.approx(lands, abs=1e-9) for t, i in run.events if i >= FLOOR)
 
 
+@pytest.mark.parametrize("com_height", [0.15, 0.5])
+@pytest.mark.parametrize(("angle", "rate"), [(0.03, 0.0), (-0.03, 0.0), (0.0, 0.4), (0.0, -0.4), (-0.05, 0.3)])
+@pytest.mark.parametrize(("tilt", "tilt_rate"), [(PITCH, PITCH_RATE), (ROLL, ROLL_RATE)])
+def test_the_margin_is_that_of_an_inverted_pendulum(
+    library: ctypes.CDLL, tilt: int, tilt_rate: int, angle: float, rate: float, com_height: float
+) -> None:
+    """Over the line between two wheels, R/2 away, the base falls as exp(w t), w^2 = M g h/I with I about that line
+    (parallel axes); what counts is the place of the centre of mass plus its speed over w. In closed form."""
+    p = replace(ROBOT, slider_present=0, com_height=com_height, tilt_inertia=1.7)
+    plant = TippingPlant(library, p)
+    x, modes = plant.start()
+    x[tilt], x[tilt_rate] = angle, rate
+    inertia = p.tilt_inertia + p.mass * (com_height**2 + (0.5 * p.wheel_distance) ** 2)
+    growth = math.sqrt(p.mass * GRAVITY * com_height / inertia)
+    reach = com_height * (math.sin(angle) + rate * math.cos(angle) / growth)
+    # To x by the pitch, to -y by the roll; wheels stand at 0, 120 and 240 deg, the lines opposite to them.
+    towards = 0.0 if tilt == PITCH else -0.5 * math.pi
+    over = max(-reach * math.cos(towards - 2.0 * math.pi * i / 3.0) for i in range(3))
+    expected = 1.0 - over / (0.5 * p.wheel_distance)
+    assert plant.tipping_outputs(x, Inputs(), modes)["margin"] == pytest.approx(expected, rel=1e-12)
+
+
 def rearing(plant: TippingPlant, margin: float) -> tuple[np.ndarray, np.ndarray]:
     """On the two rear wheels, nose up by 6 deg and rising at the rate that makes this margin."""
     p = plant.p

@@ -1,0 +1,216 @@
+"""Where the window of each metric begins and ends, and the tip margin by statics: in Python and in the batch library.
+
+The traces are those of synthetic_collision.py with single rows changed; every expected number follows by hand. Rows are
+1 ms apart, the contact begins at row 100 and ends after row 299, the detection is at row 150.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+import synthetic_collision as synthetic
+import xarray
+from giveway import metrics
+from giveway.body_regions import BodyRegion, body_region
+from native_metrics import evaluate as native
+
+CONTACT, DETECTED, LAST_TOUCH = 100, 150, 299
+PARAMETERS = {
+    "testbed": {
+        **synthetic.PARAMETERS["testbed"], "bumper.kind": 1, "bumper.travel": 0.12, "base.tipping": False,
+        "base.mass": 40.0, "base.com_height": 0.3, "contact.height": 0.5, "push.height": 0.7,
+    },
+    "controller": synthetic.PARAMETERS["controller"],
+}  # fmt: skip
+Numbers = dict[str, tuple[float, float]]
+Evaluate = Callable[..., Numbers]
+
+
+def python(
+    traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]], region: BodyRegion | None = None
+) -> Numbers:
+    found = (*metrics.collision(traces, parameters), *metrics.design(traces, parameters, region))
+    return {m.name: tuple(math.nan if v is None else v for v in (m.value, m.truth)) for m in found}  # type: ignore[misc]
+
+
+@pytest.fixture(params=[python, native], ids=["python", "native"])
+def evaluate(request: pytest.FixtureRequest) -> Evaluate:
+    found: Evaluate = request.param
+    return found
+
+
+Rows = int | slice
+Changes = Mapping[str, list[tuple[Rows, float]]]
+
+
+def changed(columns: Changes, **arguments: Any) -> xarray.Dataset:
+    """The traces with these rows of these columns at these values; a column that is missing is 0 elsewhere."""
+    traces = synthetic.traces(**arguments)
+    nothing = np.zeros(traces.sizes["time"])
+    for name in ("testbed.truth.latched", "testbed.push.force_x", "testbed.push.force_y"):
+        traces[name] = ("time", nothing.astype(bool) if name.endswith("latched") else nothing.copy())
+    for name, rows in columns.items():
+        for row, value in rows:
+            traces[name].values[row] = value
+    return traces
+
+
+def test_every_number_of_the_closed_form(evaluate: Evaluate) -> None:
+    found = evaluate(changed({}), PARAMETERS, body_region("lower leg"))
+    expected = {
+        "contact speed": 0.5, "false detections": 0.0, "detection time": 50.0, "force direction": -160.0,
+        "direction error": -10.0, "contact point x": 130.0, "contact point y": 90.0, "location error": 50.0,
+        "force at detection": 30.0, "impulse at detection": 51 * 0.03,  # rows 100 to 150, both in it
+        "peak contact force": 40.0, "bumper compression": 30.0, "peak wheel torque": 4.0,
+        "peak torque, any sign": 6.0, "escape distance": 0.5, "energy residual": 1e-6, "transient force": 40.0,
+        "lasting force": 0.0, "longest contact": 0.199, "transient force share": 40.0 / 260.0,
+        "lasting force share": 0.0, "bottoming margin": 90.0, "contacts": 1.0, "rebound speed": 0.5,
+        "re-latches": 0.0, "re-latch time": math.nan,
+    }  # fmt: skip
+    truth = {
+        "force direction": -150.0, "contact point x": 100.0, "contact point y": 50.0, "force at detection": 40.0,
+        "impulse at detection": 2.0, "escape distance": 0.48,
+    }  # fmt: skip
+    # Sums of some hundred rows, and differences of directions near 180 deg.
+    near = {"rel": 1e-12, "abs": 1e-12, "nan_ok": True}
+    assert {name: found[name][0] for name in expected} == pytest.approx(expected, **near)
+    assert {name: found[name][1] for name in truth} == pytest.approx(truth, **near)
+
+
+def test_the_peak_torque_is_that_of_the_first_350_ms(evaluate: Evaluate) -> None:
+    late = {"testbed.truth.wheel_torque[1]": [(CONTACT + 349, -5.0), (CONTACT + 351, -7.0)]}
+    assert evaluate(changed(late), PARAMETERS)["peak wheel torque"][0] == 5.0
+
+
+@pytest.mark.parametrize(("beside_deg", "peak_nm"), [(1.0, 4.0), (-1.0, 9.0)])
+def test_a_wheel_counts_from_half_of_the_largest_share_on(
+    evaluate: Evaluate, beside_deg: float, peak_nm: float
+) -> None:
+    # Without a moment, a force d beside the rolling direction of wheel 1 loads wheel 2 with cos(120 deg - d)/cos(d)
+    # of what wheel 1 gets, the other way round: half at d = 0.
+    angle = synthetic.DIRECTION_RAD + math.radians(beside_deg)
+    columns: dict[str, list[tuple[Rows, float]]] = {"testbed.truth.wheel_torque[2]": [(CONTACT + 20, 9.0)]}
+    for axis, share in (("x", math.cos(angle)), ("y", math.sin(angle))):
+        columns[f"testbed.truth.contact_impulse_{axis}"] = [(DETECTED, 2.0 * share)]
+        columns[f"testbed.truth.contact_base_{axis}"] = [(slice(None), 0.0)]
+    assert evaluate(changed(columns), PARAMETERS)["peak wheel torque"][0] == peak_nm
+
+
+@pytest.mark.parametrize("cause", ["contact", "push"])
+@pytest.mark.parametrize(("after", "false"), [(249, 0.0), (251, 1.0)])
+def test_a_detection_is_false_250_ms_after_the_last_touch(
+    evaluate: Evaluate, cause: str, after: int, false: float
+) -> None:
+    late: Changes = {"controller.detection.count": [(slice(LAST_TOUCH + after, None), 2.0)]}
+    push: Changes = {"testbed.push.force_y": [(LAST_TOUCH, -1.0)]}
+    traces = changed(late) if cause == "contact" else changed({**late, **push}, hit=False)
+    assert evaluate(traces, PARAMETERS)["false detections"][0] == false
+
+
+def test_the_estimate_is_compared_with_the_force_of_its_window(evaluate: Evaluate) -> None:
+    # A window of 10 rows ends at the detection; of its force of 40 N, the first is doubled, the one before not.
+    rows = ((DETECTED - 10, 1e6), (DETECTED - 9, 80.0))
+    columns = {
+        f"testbed.truth.contact_force_{axis}": [(row, force * share) for row, force in rows]
+        for axis, share in (("x", math.cos(synthetic.DIRECTION_RAD)), ("y", math.sin(synthetic.DIRECTION_RAD)))
+    }
+    assert evaluate(changed(columns), PARAMETERS)["force at detection"][1] == pytest.approx(44.0, rel=1e-12)
+
+
+def test_a_contact_lasts_when_it_is_longer_than_half_a_second(evaluate: Evaluate) -> None:
+    force = {"testbed.truth.contact_force": [(CONTACT + 499, 60.0), (CONTACT + 501, 50.0)]}
+    found = evaluate(changed(force), PARAMETERS)
+    assert (found["transient force"][0], found["lasting force"][0]) == (60.0, 50.0)
+    assert found["longest contact"][0] == pytest.approx(0.501, rel=1e-12)
+
+
+@pytest.mark.parametrize(("gap", "longest_s"), [(499, 0.698), (501, 0.199)])
+def test_a_contact_goes_on_after_less_than_half_a_second(evaluate: Evaluate, gap: int, longest_s: float) -> None:
+    found = evaluate(changed({"testbed.truth.contact_force": [(LAST_TOUCH + gap, 50.0)]}), PARAMETERS)
+    assert found["longest contact"][0] == pytest.approx(longest_s, rel=1e-12)
+    assert (found["transient force"][0], found["lasting force"][0]) == (
+        (40.0, 50.0) if gap < 500 else (50.0, 0.0)
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("rows", "known"), [(499, False), (501, True)])
+def test_the_lasting_force_is_known_half_a_second_after_the_contact(evaluate: Evaluate, rows: int, known: bool) -> None:
+    found = evaluate(changed({}).isel(time=slice(0, CONTACT + rows + 1)), PARAMETERS, body_region("lower leg"))
+    for name in ("lasting force", "lasting force share"):
+        assert found[name][0] == pytest.approx(0.0 if known else math.nan, nan_ok=True)
+
+
+def test_contact_and_rebound_speed_are_of_the_rows_next_to_the_contact(evaluate: Evaluate) -> None:
+    traces = changed({})
+    speed = np.full(traces.sizes["time"] - 1, 9.0)
+    speed[CONTACT - 2], speed[LAST_TOUCH + 1] = 0.7, 0.3
+    way = np.concatenate([[0.0], np.cumsum(1e-3 * speed)])
+    for axis, share in (("x", 0.6), ("y", -0.8)):
+        traces[f"testbed.truth.nose_{axis}"].values[:] = share * way
+    found = evaluate(traces, PARAMETERS)
+    # Ways of some metres, 1 ms apart: rounding of 1e-12.
+    assert found["contact speed"][0] == pytest.approx(0.7, rel=1e-11)
+    assert found["rebound speed"][0] == pytest.approx(0.3, rel=1e-11)
+
+
+def test_re_latching_is_counted_from_the_contact(evaluate: Evaluate) -> None:
+    latched = {"testbed.truth.latched": [(slice(0, 120), 1.0), (slice(350, 400), 1.0), (500, 1.0)]}
+    found = evaluate(changed(latched), PARAMETERS)
+    assert found["re-latches"][0] == 2.0
+    assert found["re-latch time"][0] == pytest.approx(250.0, rel=1e-12)
+
+
+def least_share_of_a_wheel(moment_x: float, moment_y: float, heading_rad: float) -> float:
+    """Three times the least load of a wheel over the weight; ``moment``: sum of height times horizontal force, N m.
+
+    The wheels stand at the corners of an equilateral triangle; their loads hold the weight and the moments about the
+    base's centre at floor level: sum N = m g, sum N x = moment_x, sum N y = moment_y.
+    """
+    testbed = PARAMETERS["testbed"]
+    weight, distance = testbed["base.mass"] * 9.81, testbed["wheel.distance"]
+    azimuth = heading_rad + np.arange(3) * 2.0 * math.pi / 3.0
+    places = np.stack([np.ones(3), distance * np.cos(azimuth), distance * np.sin(azimuth)])
+    loads = np.linalg.solve(places, [weight, moment_x, moment_y])
+    return float(3.0 * loads.min() / weight)
+
+
+@pytest.mark.parametrize("heading_rad", [0.0, 0.5, -2.0])
+@pytest.mark.parametrize("what", ["contact", "push", "acceleration", "all"])
+def test_the_tip_margin_is_that_of_the_least_loaded_wheel(evaluate: Evaluate, what: str, heading_rad: float) -> None:
+    testbed = PARAMETERS["testbed"]
+    traces = changed({}, heading_rad=heading_rad)
+    moment = np.zeros(2)
+    for i, axis in enumerate("xy"):
+        force = (-30.0, 11.0)[i] if what in ("contact", "all") else 0.0
+        push = (5.0, 25.0)[i] if what in ("push", "all") else 0.0
+        acceleration = (0.4, -0.3)[i] if what in ("acceleration", "all") else 0.0
+        traces[f"testbed.truth.contact_force_{axis}"].values[:] = force
+        traces[f"testbed.push.force_{axis}"].values[:] = push
+        traces[f"testbed.truth.v{axis}"].values[:] = acceleration * traces["time"].values
+        moment[i] = testbed["contact.height"] * force + testbed["push.height"] * push
+        moment[i] -= testbed["base.com_height"] * testbed["base.mass"] * acceleration
+    expected = least_share_of_a_wheel(*moment, heading_rad)
+    assert 0.4 < expected < 0.95
+    # Speeds of 0.4 m/s, 1 ms apart: rounding of 1e-13 in the acceleration.
+    assert evaluate(traces, PARAMETERS)["tip margin"][0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_tip_margin_is_the_least_of_the_run(evaluate: Evaluate) -> None:
+    traces = changed({f"testbed.truth.contact_force_{axis}": [(slice(None), 0.0)] for axis in "xy"})
+    assert evaluate(traces, PARAMETERS)["tip margin"][0] == 1.0
+    traces["testbed.push.force_x"].values[700] = 100.0
+    expected = least_share_of_a_wheel(70.0, 0.0, 0.0)
+    assert evaluate(traces, PARAMETERS)["tip margin"][0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_base_that_tips_measures_its_margin_itself(evaluate: Evaluate) -> None:
+    traces = changed({})
+    traces["testbed.truth.tip_margin"] = traces["time"] + 0.25
+    tipping = {**PARAMETERS, "testbed": {**PARAMETERS["testbed"], "base.tipping": True}}
+    assert evaluate(traces, tipping)["tip margin"][0] == 0.25
+    traces["testbed.truth.tip_margin"] = traces["time"] + 1.25
+    assert evaluate(traces, tipping)["tip margin"][0] == 1.0
