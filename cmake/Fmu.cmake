@@ -1,7 +1,8 @@
-# giveway_add_fmu(NAME controller SOURCES ... [LIBRARIES ...] [TABLE file] [ROBOT file] [OUTPUT dir]
+# giveway_add_fmu(NAME controller SOURCES ... [LIBRARIES ...] [TABLE file] [SHARES file] [ROBOT file] [OUTPUT dir]
 #                 [LICENCES NAME=FILE ...] [SHIP FILE ...])
 #
 # SHIP: the files of the model and of what it is linked to, for an FMU that an importer can compile; the shell's are added.
+# SHARES: the table that TABLE shares entries with.
 # The equations of the documentation page are read from equations.txt beside the caller's CMakeLists.txt, if there is one.
 #
 # Builds the model as static library giveway_<name>_model (for the batch library and tests), giveway_<name>.so, one binary for
@@ -17,7 +18,7 @@ set(GIVEWAY_CODEGEN "${CMAKE_COMMAND}" -E env "PYTHONPATH=${GIVEWAY_CODEGEN_DIR}
                     "${Python3_EXECUTABLE}" -m giveway_codegen)
 
 function(giveway_add_fmu)
-  cmake_parse_arguments(ARG "" "NAME;TABLE;ROBOT;OUTPUT" "SOURCES;LIBRARIES;LICENCES;SHIP" ${ARGN})
+  cmake_parse_arguments(ARG "" "NAME;TABLE;SHARES;ROBOT;OUTPUT" "SOURCES;LIBRARIES;LICENCES;SHIP" ${ARGN})
   if(NOT ARG_TABLE)
     set(ARG_TABLE "${CMAKE_CURRENT_SOURCE_DIR}/variables.toml")
   endif()
@@ -27,7 +28,8 @@ function(giveway_add_fmu)
   set(_generated "${CMAKE_CURRENT_BINARY_DIR}/generated_${ARG_NAME}")
   set(_code "${_generated}/${ARG_NAME}_variables.hpp" "${_generated}/${ARG_NAME}_variables.cpp"
             "${_generated}/${ARG_NAME}_fmu.cpp")
-  set(_generated_files ${_code} "${_generated}/fmi2/modelDescription.xml" "${_generated}/fmi3/modelDescription.xml"
+  set(_table_written_out "${_generated}/${ARG_NAME}.variables.toml")
+  set(_generated_files ${_code} "${_table_written_out}" "${_generated}/fmi2/modelDescription.xml" "${_generated}/fmi3/modelDescription.xml"
                        "${_generated}/common/documentation/index.html")
   set(_options "")
   set(_equations "${CMAKE_CURRENT_SOURCE_DIR}/equations.txt")
@@ -44,7 +46,7 @@ function(giveway_add_fmu)
     OUTPUT ${_generated_files}
     COMMAND ${GIVEWAY_CODEGEN} sources --name ${ARG_NAME} --table "${ARG_TABLE}" --robot "${ARG_ROBOT}"
             --version ${PROJECT_VERSION} ${_options} --out "${_generated}"
-    DEPENDS "${ARG_TABLE}" "${ARG_ROBOT}" ${_equations} ${ARG_SHIP} ${GIVEWAY_CODEGEN_FILES}
+    DEPENDS "${ARG_TABLE}" ${ARG_SHARES} "${ARG_ROBOT}" ${_equations} ${ARG_SHIP} ${GIVEWAY_CODEGEN_FILES}
     COMMENT "Generating sources of ${ARG_NAME} from its variable table"
     VERBATIM)
 
@@ -105,6 +107,6 @@ function(giveway_add_fmu)
     add_dependencies(fmu_binaries ${_module})
     add_dependencies(fmus fmu_${ARG_NAME})
     install(FILES ${_fmus} DESTINATION giveway/native COMPONENT native)
-    install(FILES "${ARG_TABLE}" DESTINATION giveway/native RENAME ${ARG_NAME}.variables.toml COMPONENT native)
+    install(FILES "${_table_written_out}" DESTINATION giveway/native COMPONENT native)
   endif()
 endfunction()

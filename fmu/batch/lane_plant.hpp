@@ -1,6 +1,10 @@
 // The planar plant of several designs side by side, over fixed steps. Numbers go in and out as rows of lanes() doubles, one per design.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
 #include "outputs.hpp"
 
 namespace giveway::batch {
@@ -14,20 +18,25 @@ struct LaneStart {
     double first_contact_s; // negative: none yet
 };
 
-// What decides which code a design runs through: designs side by side share it.
-struct Structure {
-    explicit Structure(const plant::Parameters<double>& p)
-        : roller_model(p.roller_model), bumper_kind(p.bumper_kind), bumper_mount(p.bumper_mount), latch_model(p.latch_model), nose_shape(p.nose_shape),
-          slider_present(p.slider_present), wall_present(p.wall_present), rope_attached(p.rope_attached), outline_body(p.outline_body),
-          outline_wheels(p.outline_wheels), outline_count(p.outline_count) {}
+// What decides which code a design runs through, every parameter that is a choice or a count: designs side by side share it.
+class Structure {
+public:
+    explicit Structure(const plant::Parameters<double>& p) {
+        std::size_t used = 0;
+        const auto keep = [&](const char*, const auto& value) {
+            using Value = std::remove_cvref_t<decltype(value)>;
+            if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
+                choices_.at(used++) = static_cast<std::int32_t>(value);
+            }
+        };
+        plant::visit_parameters(keep, p);
+        keep("outline_body", p.outline_body);
+        keep("outline_wheels", p.outline_wheels);
+    }
     friend auto operator<=>(const Structure&, const Structure&) = default;
 
-    plant::RollerModel roller_model;
-    plant::BumperKind bumper_kind;
-    plant::BumperMount bumper_mount;
-    plant::LatchModel latch_model;
-    plant::NoseShape nose_shape;
-    std::int32_t slider_present, wall_present, rope_attached, outline_body, outline_wheels, outline_count;
+private:
+    std::array<std::int32_t, 16> choices_{};
 };
 
 class LanePlant {

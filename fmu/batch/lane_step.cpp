@@ -31,31 +31,31 @@ double together(double a, double b) { return 1.0 / (1.0 / a + 1.0 / b); }
 // Slider, bumper, contact, rope and wall.
 void slider(Stiffest& s, const plant::Parameters<double>& p, double v) {
     const bool plate = p.has_plate();
-    const double carriage = plate && !p.plate_on_robot() ? p.slider_mass - p.plate_mass : p.slider_mass;
-    const double nose = plate && !p.plate_on_robot() ? p.plate_mass : p.slider_mass; // what meets the robot
-    const double met = p.plate_on_robot() ? p.plate_mass : p.mass;
+    const double carriage = plate && !p.plate_on_robot() ? p.slider_mass - p.bumper_plate_mass : p.slider_mass;
+    const double nose = plate && !p.plate_on_robot() ? p.bumper_plate_mass : p.slider_mass; // what meets the robot
+    const double met = p.plate_on_robot() ? p.bumper_plate_mass : p.base_mass;
     const double contact = together(nose, met);
     s.vibration(p.contact_stiffness, contact);
     s.decay(p.contact_stiffness * p.contact_damping * v * std::sqrt(contact / p.contact_stiffness), contact);
     const double peak = v * std::sqrt(p.contact_stiffness * contact);
-    s.decay(p.contact_friction * peak / p.contact_friction_speed, together(p.slider_mass, p.mass / 3.0));
+    s.decay(p.contact_friction * peak / p.contact_friction_speed, together(p.slider_mass, p.base_mass / 3.0));
     s.decay(p.slider_friction / p.slider_friction_speed + p.slider_damping, carriage);
     if (plate) {
-        const double guided = together(p.plate_mass, p.plate_on_robot() ? p.mass : carriage);
-        s.vibration(p.spring_rate, guided);
-        s.vibration(p.stop_stiffness, guided);
-        s.decay(p.bumper_damping + p.guide_friction / p.guide_friction_speed, guided);
-        s.decay(p.stop_stiffness * p.stop_damping * v * std::sqrt(guided / p.stop_stiffness), guided);
+        const double guided = together(p.bumper_plate_mass, p.plate_on_robot() ? p.base_mass : carriage);
+        s.vibration(p.bumper_spring_rate, guided);
+        s.vibration(p.bumper_stop_stiffness, guided);
+        s.decay(p.bumper_damping + p.bumper_guide_friction / p.bumper_guide_friction_speed, guided);
+        s.decay(p.bumper_stop_stiffness * p.bumper_stop_damping * v * std::sqrt(guided / p.bumper_stop_stiffness), guided);
         if (p.has_continuous_latch()) {
-            s.vibration(2.0 * p.latch_force / p.latch_gap, guided);
+            s.vibration(2.0 * p.bumper_latch_force / p.bumper_latch_gap, guided);
         }
     }
     if (p.rope_attached != 0) {
-        const double pulled = together(carriage, p.hanging_mass);
+        const double pulled = together(carriage, p.rope_hanging_mass);
         s.vibration(p.rope_stiffness, pulled);
         s.decay(p.rope_damping, pulled);
-        s.vibration(p.floor_stiffness, p.hanging_mass);
-        s.decay(p.floor_stiffness * p.floor_damping * v * std::sqrt(p.hanging_mass / p.floor_stiffness), p.hanging_mass);
+        s.vibration(p.rope_floor_stiffness, p.rope_hanging_mass);
+        s.decay(p.rope_floor_stiffness * p.rope_floor_damping * v * std::sqrt(p.rope_hanging_mass / p.rope_floor_stiffness), p.rope_hanging_mass);
     }
     if (p.wall_present != 0) {
         s.vibration(p.wall_stiffness, carriage);
@@ -68,8 +68,8 @@ void slider(Stiffest& s, const plant::Parameters<double>& p, double v) {
 double greatest_impact_speed(const plant::Parameters<double>& p, double slider_speed_mps, double base_speed_mps) {
     double square = slider_speed_mps * slider_speed_mps;
     if (p.rope_attached != 0) {
-        const double fall = std::clamp(p.run_up, 0.0, p.drop_height);
-        square += 2.0 * plant::gravity_mps2 * fall * p.hanging_mass / (p.hanging_mass + p.slider_mass);
+        const double fall = std::clamp(p.slider_run_up, 0.0, p.rope_drop_height);
+        square += 2.0 * plant::gravity_mps2 * fall * p.rope_hanging_mass / (p.rope_hanging_mass + p.slider_mass);
     }
     return std::sqrt(square) + base_speed_mps;
 }
@@ -78,12 +78,12 @@ int lane_steps_per_tick(const plant::Parameters<double>& p, double impact_speed_
     Stiffest s;
     const double v = impact_speed_mps;
     // Wheels: drivetrain between motor and base, rollers under the base. A wheel's share of the base is a third.
-    const double share = p.mass / 3.0;
+    const double share = p.base_mass / 3.0;
     const double wheel = p.wheel_inertia + share * p.wheel_radius * p.wheel_radius;
-    s.vibration(p.drivetrain_stiffness, together(p.motor_inertia, wheel));
-    s.decay(p.drivetrain_damping, together(p.motor_inertia, wheel));
-    s.decay(p.gear_viscous, p.motor_inertia);
-    const double coulomb = p.roller_torque / p.roller_radius;
+    s.vibration(p.drivetrain_stiffness, together(p.drivetrain_motor_inertia, wheel));
+    s.decay(p.drivetrain_damping, together(p.drivetrain_motor_inertia, wheel));
+    s.decay(p.drivetrain_gear_viscous, p.drivetrain_motor_inertia);
+    const double coulomb = p.roller_coulomb_torque / p.roller_radius;
     if (p.roller_model == plant::RollerModel::bristle) {
         for (const double sigma : p.roller_presliding_stiffness) {
             s.vibration(sigma, share);
@@ -92,7 +92,7 @@ int lane_steps_per_tick(const plant::Parameters<double>& p, double impact_speed_
         }
         s.decay(p.roller_presliding_damping, share);
     } else {
-        s.decay(coulomb * p.roller_slope / p.roller_radius, share);
+        s.decay(coulomb * p.roller_tanh_slope / p.roller_radius, share);
     }
     if (p.slider_present != 0) {
         slider(s, p, v);

@@ -68,7 +68,7 @@ template <class T> struct Inertia3 {
 
 // Body, wheels and rollers, without a bumper plate.
 template <class T> Inertia3<T> base_inertia(const Parameters<T>& p) {
-    Inertia3<T> inertia{p.mass, T(0.0), T(0.0), p.mass, T(0.0), p.yaw_inertia};
+    Inertia3<T> inertia{p.base_mass, T(0.0), T(0.0), p.base_mass, T(0.0), p.base_yaw_inertia};
     for (int i = 0; i < wheel_count; ++i) {
         inertia.add(p.wheel_traction[i] * p.wheel_inertia, wheel_row(p, i));
         inertia.add(p.wheel_traction[i] * p.roller_inertia, roller_row(p, i));

@@ -33,7 +33,7 @@ Contact<T> locate_disc(const Parameters<T>& p, const Derived<T>& d, const Nose<T
     Vector2<T> plate_velocity{T(0.0), T(0.0)};
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - compression * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - compression * outward;
         const T distance = dot(nose.centre - plate, outward);
         closest = {distance, outward, nose.centre - distance * outward};
         plate_velocity = T(-1.0) * compression_rate * outward;
@@ -41,7 +41,7 @@ Contact<T> locate_disc(const Parameters<T>& p, const Derived<T>& d, const Nose<T
         closest = closest_point(p, d, nose.centre);
     }
     const Vector2<T> relative = velocity + omega * turned(closest.point) + plate_velocity - nose.velocity;
-    return {p.nose_radius - closest.distance, dot(relative, closest.normal), closest.normal, closest.point,
+    return {p.contact_nose_radius - closest.distance, dot(relative, closest.normal), closest.normal, closest.point,
             dot(relative, turned(closest.normal))};
 }
 
@@ -65,7 +65,7 @@ template <class T> struct Touch {
 template <class T> Touch<T> touch_edge(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T engaged) {
     const Vector2<T> normal = T(-1.0) * nose.travel;
     const Vector2<T> along = turned(normal);
-    const Vector2<T> tip = nose.centre + p.nose_radius * nose.travel;
+    const Vector2<T> tip = nose.centre + p.contact_nose_radius * nose.travel;
     Touch<T> sum{};
     sum.contact.depth = T(-1e300);
     sum.contact.normal = normal;
@@ -98,14 +98,14 @@ template <class T> Touch<T> touch_edge(const Parameters<T>& p, const Derived<T>&
 template <class T>
 Contact<T> locate_contact(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T compression,
                           T compression_rate) {
-    return p.nose_shape == NoseShape::edge ? touch_edge(p, d, nose, velocity, omega, T(0.0)).contact
+    return p.contact_nose_shape == NoseShape::edge ? touch_edge(p, d, nose, velocity, omega, T(0.0)).contact
                                            : locate_disc(p, d, nose, velocity, omega, compression, compression_rate);
 }
 
 template <class T>
 Touch<T> touch(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T compression, T compression_rate,
                T engaged) {
-    if (p.nose_shape == NoseShape::edge) {
+    if (p.contact_nose_shape == NoseShape::edge) {
         return touch_edge(p, d, nose, velocity, omega, engaged);
     }
     const Contact<T> contact = locate_disc(p, d, nose, velocity, omega, compression, compression_rate);

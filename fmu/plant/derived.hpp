@@ -20,20 +20,20 @@ template <class T> struct Derived {
 
 template <class T> Derived<T> derive(const Parameters<T>& p) {
     Derived<T> d{};
-    const auto rail = math::sincos(p.rail_direction);
+    const auto rail = math::sincos(p.slider_direction);
     d.rail_x = rail.cos;
     d.rail_y = rail.sin;
-    d.origin_x = p.target_x - rail.cos * (p.run_up + p.nose_radius);
-    d.origin_y = p.target_y - rail.sin * (p.run_up + p.nose_radius);
-    const auto mount = math::sincos(p.mount_azimuth);
+    d.origin_x = p.slider_target_x - rail.cos * (p.slider_run_up + p.contact_nose_radius);
+    d.origin_y = p.slider_target_y - rail.sin * (p.slider_run_up + p.contact_nose_radius);
+    const auto mount = math::sincos(p.bumper_mount_azimuth);
     d.plate_x = mount.cos;
     d.plate_y = mount.sin;
     const T slider_mass = p.slider_mass;
-    d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.plate_mass : slider_mass;
+    d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.bumper_plate_mass : slider_mass;
     d.roller_plastic_fraction = T(1.0) - p.roller_elastic_fraction;
-    d.rope_pretension_length = T(p.hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
-    const T tipping_inertia = p.tilt_inertia + p.mass * (math::square(p.com_height) + math::square(T(0.5) * p.wheel_distance));
-    d.tip_rate = math::sqrt(p.mass * T(gravity_mps2) * p.com_height / tipping_inertia);
+    d.rope_pretension_length = T(p.rope_hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
+    const T tipping_inertia = p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) + math::square(T(0.5) * p.wheel_distance));
+    d.tip_rate = math::sqrt(p.base_mass * T(gravity_mps2) * p.base_com_height / tipping_inertia);
     d.wheel_half_length = math::sqrt(math::max(T(0.0), math::square(T(p.wheel_radius)) - math::square(p.contact_height - p.wheel_radius)));
     d.base_inertia = base_inertia(p).factors();
     for (int i = 0; i < p.outline_count; ++i) {

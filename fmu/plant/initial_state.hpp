@@ -25,8 +25,8 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
     x[slider_speed] = p.slider_present != 0 ? start.slider_speed : T(0.0);
     x[weight_speed] = p.rope_attached != 0 ? x[slider_speed] : T(0.0);
     if (p.slider_present != 0 && p.has_plate() && !p.has_ideal_latch()) {
-        const T outward = p.preload + (p.has_continuous_latch() ? p.latch_force : T(0.0));
-        x[compression] = T(-1.0) * outward / (p.spring_rate + p.stop_stiffness);
+        const T outward = p.bumper_preload + (p.has_continuous_latch() ? p.bumper_latch_force : T(0.0));
+        x[compression] = T(-1.0) * outward / (p.bumper_spring_rate + p.bumper_stop_stiffness);
     }
     m.latched = p.has_ideal_latch() ? T(1.0) : T(0.0);
 
@@ -69,11 +69,11 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
         x[i] = planar[i];
     }
     // Level, on wheels that bear its weight in equal parts; each grips with what its drive gives.
-    x[base_heave] = T(-gravity_mps2 / wheel_count) * p.mass / p.floor_contact_stiffness;
+    x[base_heave] = T(-gravity_mps2 / wheel_count) * p.base_mass / p.wheel_floor_stiffness;
     m.on_floor = {T(1.0), T(1.0), T(1.0)};
     for (int i = 0; i < wheel_count; ++i) {
         x[wheel_spin + i] = x[motor_speed + i];
-        x[grip + i] = T(-1.0) * p.drivetrain_stiffness * x[motor_angle + i] / (p.wheel_radius * p.grip_stiffness);
+        x[grip + i] = T(-1.0) * p.drivetrain_stiffness * x[motor_angle + i] / (p.wheel_radius * p.wheel_grip_stiffness);
     }
 }
 

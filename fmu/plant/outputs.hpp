@@ -26,17 +26,17 @@ T slider_energy(T energy, const std::array<T, N>& x, const Evaluation<T, N>& e, 
     const T half = T(0.5);
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
         const Vector2<T> speed = e.velocity + x[base_omega] * turned(plate) - x[compression_rate] * outward;
-        energy = energy + half * p.plate_mass * dot(speed, speed);
+        energy = energy + half * p.bumper_plate_mass * dot(speed, speed);
     }
     if (p.slider_present != 0) {
         energy = energy + half * d.carriage_mass * math::square(x[slider_speed]);
         if (p.has_plate() && !p.plate_on_robot()) {
-            energy = energy + half * p.plate_mass * math::square(x[slider_speed] - x[compression_rate]);
+            energy = energy + half * p.bumper_plate_mass * math::square(x[slider_speed] - x[compression_rate]);
         }
         if (p.rope_attached != 0) {
-            energy = energy + half * p.hanging_mass * math::square(x[weight_speed]);
+            energy = energy + half * p.rope_hanging_mass * math::square(x[weight_speed]);
         }
         energy = energy + e.bumper.stored + e.rope.stored + e.contact_force.stored;
         if (p.wall_present != 0) {
@@ -48,11 +48,11 @@ T slider_energy(T energy, const std::array<T, N>& x, const Evaluation<T, N>& e, 
 
 template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
     const T half = T(0.5);
-    T energy = half * p.mass * dot(e.velocity, e.velocity) + half * p.yaw_inertia * math::square(x[base_omega]);
+    T energy = half * p.base_mass * dot(e.velocity, e.velocity) + half * p.base_yaw_inertia * math::square(x[base_omega]);
     for (int i = 0; i < wheel_count; ++i) {
         const T roller_speed = (T(wheel_cos[i]) * e.velocity.x + T(wheel_sin[i]) * e.velocity.y) / p.roller_radius;
         energy = energy + half * p.wheel_traction[i] * (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
-                 half * p.motor_inertia * math::square(x[motor_speed + i]) +
+                 half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
                  half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
         if (p.roller_model == RollerModel::bristle) {
             energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[bristle + i]);
@@ -64,13 +64,13 @@ template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>&
 template <class T> T stored_energy(const TippingVector<T>& x, const TippingEvaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
     const T half = T(0.5);
     const Stance<T>& s = e.stance;
-    const Vector3<T> mass_centre = p.com_height * s.up;
+    const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector3<T> velocity = s.velocity_of(mass_centre);
-    const T tilting = p.tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
-    T energy = half * p.mass * dot(velocity, velocity) + p.mass * T(gravity_mps2) * (x[base_heave] + mass_centre.z) + e.floor_stored +
-               half * tilting * (math::square(x[body_roll_rate]) + math::square(x[body_pitch_rate])) + half * p.yaw_inertia * math::square(s.yaw_rate);
+    const T tilting = p.base_tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
+    T energy = half * p.base_mass * dot(velocity, velocity) + p.base_mass * T(gravity_mps2) * (x[base_heave] + mass_centre.z) + e.floor_stored +
+               half * tilting * (math::square(x[body_roll_rate]) + math::square(x[body_pitch_rate])) + half * p.base_yaw_inertia * math::square(s.yaw_rate);
     for (int i = 0; i < wheel_count; ++i) {
-        energy = energy + half * p.wheel_inertia * math::square(x[wheel_spin + i]) + half * p.motor_inertia * math::square(x[motor_speed + i]) +
+        energy = energy + half * p.wheel_inertia * math::square(x[wheel_spin + i]) + half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
                  half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
     }
     return slider_energy(energy, x, e, p, d);
@@ -97,13 +97,13 @@ template <class E, class T, std::size_t N> Outputs<T> outputs(const E& e, const 
         o.wheel_load = e.load;
         o.tip_margin = tip_margin(e.stance, p, d);
     } else {
-        o.wheel_load.fill(p.mass * T(gravity_mps2) / T(wheel_count));
+        o.wheel_load.fill(p.base_mass * T(gravity_mps2) / T(wheel_count));
         o.tip_margin = T(1.0);
     }
     const Vector2<T> point = to_world(e.heading, reach);
     o.contact_point_x = x[base_x] + point.x;
     o.contact_point_y = x[base_y] + point.y;
-    const T travel = x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.nose_radius;
+    const T travel = x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.contact_nose_radius;
     o.nose_x = d.origin_x + travel * d.rail_x;
     o.nose_y = d.origin_y + travel * d.rail_y;
     o.bumper_force = e.internal_force;

@@ -78,13 +78,13 @@ void slider_rates(Evaluation<T, N>& e, const std::array<T, N>& x, const Modes<T>
         if (p.has_plate() && !p.plate_on_robot()) {
             const T alone = (drive - e.bumper.force) / d.carriage_mass;
             e.rate[slider_speed] = free * alone + lock * whole;
-            e.rate[compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.plate_mass);
-            e.internal_force = free * e.bumper.force + lock * (decelerating + p.plate_mass * whole);
+            e.rate[compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.bumper_plate_mass);
+            e.internal_force = free * e.bumper.force + lock * (decelerating + p.bumper_plate_mass * whole);
         }
         e.rate[compression] = free * x[compression_rate];
         if (p.rope_attached != 0) {
             e.rate[weight_drop] = x[weight_speed];
-            e.rate[weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.hanging_mass;
+            e.rate[weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.rope_hanging_mass;
         }
     }
 }
@@ -163,22 +163,22 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
     if (p.plate_on_robot()) {
         // Point mass on a guide along `outward`: across the guide, and along it while locked, it adds to the base's inertia.
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
         const Planar3<T> along = wrench_direction(outward, plate);
         const Planar3<T> across = wrench_direction(turned(outward), plate);
         const T centripetal = omega * omega;
         Inertia3<T> inertia = base_inertia(p);
-        inertia.add(p.plate_mass, across);
-        inertia.add(lock * p.plate_mass, along);
+        inertia.add(p.bumper_plate_mass, across);
+        inertia.add(lock * p.bumper_plate_mass, along);
         const T across_turning = T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[compression_rate];
         const T along_turning = T(-1.0) * centripetal * dot(plate, outward);
         const T pull = dot(force, outward);
-        wrench = wrench + (T(-1.0) * p.plate_mass * across_turning) * across;
-        wrench = wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.plate_mass * along_turning)) * along;
+        wrench = wrench + (T(-1.0) * p.bumper_plate_mass * across_turning) * across;
+        wrench = wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.bumper_plate_mass * along_turning)) * along;
         acceleration = inertia.solve(wrench);
         const T guide = dot(along, acceleration) + along_turning;
-        e.rate[compression_rate] = free * (guide - (pull + e.bumper.force) / p.plate_mass);
-        e.internal_force = free * e.bumper.force + lock * (p.plate_mass * guide - pull);
+        e.rate[compression_rate] = free * (guide - (pull + e.bumper.force) / p.bumper_plate_mass);
+        e.internal_force = free * e.bumper.force + lock * (p.bumper_plate_mass * guide - pull);
     } else {
         acceleration = d.base_inertia.solve(wrench);
     }
@@ -216,13 +216,13 @@ void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Mod
     g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
     g[event_end_stop] = T(1.0);
     if (slider && p.has_ideal_latch()) {
-        const T holding = p.latch_force + p.preload - internal_force();
+        const T holding = p.bumper_latch_force + p.bumper_preload - internal_force();
         g[event_end_stop] = math::select(math::less(T(0.5), m.latched), holding, x[compression]);
     } else if (slider && p.has_plate()) {
         g[event_end_stop] = x[compression];
     }
-    g[event_bottom_stop] = slider && p.has_plate() ? x[compression] - p.travel : T(-1.0);
-    g[event_landing] = slider && p.rope_attached != 0 ? x[weight_drop] - p.drop_height : T(-1.0);
+    g[event_bottom_stop] = slider && p.has_plate() ? x[compression] - p.bumper_travel : T(-1.0);
+    g[event_landing] = slider && p.rope_attached != 0 ? x[weight_drop] - p.rope_drop_height : T(-1.0);
     g[event_wall] = slider && p.wall_present != 0 ? T(-1.0) * (x[slider_position] + p.wall_distance) : T(-1.0);
 }
 
@@ -288,20 +288,20 @@ void planar_transition(const Evaluation<T, N>& e, std::array<T, N>& x, Modes<T>&
     T impulse;
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.mount_x, p.mount_y} - x[compression] * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
         const Planar3<T> along = wrench_direction(outward, plate);
         Inertia3<T> inertia = base_inertia(p);
-        inertia.add(p.plate_mass, wrench_direction(turned(outward), plate));
-        inertia.add(p.plate_mass, along);
-        const Planar3<T> change = inertia.solve((T(-1.0) * p.plate_mass * rate) * along);
+        inertia.add(p.bumper_plate_mass, wrench_direction(turned(outward), plate));
+        inertia.add(p.bumper_plate_mass, along);
+        const Planar3<T> change = inertia.solve((T(-1.0) * p.bumper_plate_mass * rate) * along);
         const Vector2<T> change_world = to_world(e.heading, Vector2<T>{change.x, change.y});
         x[base_vx] = x[base_vx] + change_world.x;
         x[base_vy] = x[base_vy] + change_world.y;
         x[base_omega] = x[base_omega] + change.z;
-        impulse = p.plate_mass * (dot(along, change) + rate);
+        impulse = p.bumper_plate_mass * (dot(along, change) + rate);
     } else {
-        x[slider_speed] = x[slider_speed] - p.plate_mass / p.slider_mass * rate;
-        impulse = T(p.plate_mass) * d.carriage_mass / p.slider_mass * rate;
+        x[slider_speed] = x[slider_speed] - p.bumper_plate_mass / p.slider_mass * rate;
+        impulse = T(p.bumper_plate_mass) * d.carriage_mass / p.slider_mass * rate;
     }
     x[dissipated] = x[dissipated] + T(0.5) * impulse * rate;
     x[compression] = math::select(now, T(0.0), x[compression]);

@@ -21,8 +21,8 @@ template <class T> T bristle_rate(T v, T z, T stiffness, T limit, T elastic_frac
 
 // What a roller's friction comes to in steady motion at speed v (28); a bristle sticks to as much as Coulomb friction near rest.
 template <class T> T steady_friction(const Parameters<T>& p, int wheel, T v) {
-    const T coulomb = p.wheel_load[wheel] * p.roller_torque / p.roller_radius;
-    const T steady = math::tanh(p.roller_slope * math::abs(v) / p.roller_radius);
+    const T coulomb = p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
+    const T steady = math::tanh(p.roller_tanh_slope * math::abs(v) / p.roller_radius);
     if (p.roller_model == RollerModel::tanh) {
         return coulomb * steady;
     }

@@ -20,8 +20,8 @@ RopeForces<T> rope_forces(const Parameters<T>& p, const Derived<T>& d, const Mod
     const T taut = math::acting(m.rope_taut, extension);
     const T spring = taut * p.rope_stiffness * extension;
     const T tension = math::max(T(0.0), spring + taut * p.rope_damping * rate);
-    const auto floor = stop_force(m.landed, p.floor_stiffness, p.floor_damping, drop - p.drop_height, drop_speed);
-    const T stored = T(0.5) * spring * extension + floor.stored - p.hanging_mass * T(gravity_mps2) * drop;
+    const auto floor = stop_force(m.landed, p.rope_floor_stiffness, p.rope_floor_damping, drop - p.rope_drop_height, drop_speed);
+    const T stored = T(0.5) * spring * extension + floor.stored - p.rope_hanging_mass * T(gravity_mps2) * drop;
     return {extension, tension, floor.force, (tension - spring) * rate + floor.dissipation, stored};
 }
 

@@ -96,13 +96,13 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
 
     Vector3<T> force = push;
     Vector3<T> moment = cross(push_point, push); // about the base's centre at floor level
-    const T nominal_load = p.mass * T(gravity_mps2) / T(wheel_count);
+    const T nominal_load = p.base_mass * T(gravity_mps2) / T(wheel_count);
     for (int i = 0; i < wheel_count; ++i) {
         const Footing<T> f = footing(x, p, s, i);
         e.wheel_speed[i] = f.wheel_speed;
         e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
         e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
-        const auto floor = stop_force(m.on_floor[i], p.floor_contact_stiffness, p.floor_contact_damping, f.depth, f.depth_rate);
+        const auto floor = stop_force(m.on_floor[i], p.wheel_floor_stiffness, p.wheel_floor_damping, f.depth, f.depth_rate);
         e.depth[i] = f.depth;
         e.load[i] = floor.force;
         e.floor_stored = e.floor_stored + floor.stored;
@@ -112,8 +112,8 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
         const T axial_speed = dot(f.radial, f.velocity);
         const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
         const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
-        const T grip_rate = bristle_rate(slip, x[grip + i], p.grip_stiffness, p.grip_friction * nominal_load, p.roller_elastic_fraction, d.roller_plastic_fraction);
-        const T traction = T(-1.0) * share * (p.grip_stiffness * x[grip + i] + p.grip_damping * grip_rate);
+        const T grip_rate = bristle_rate(slip, x[grip + i], p.wheel_grip_stiffness, p.wheel_grip_friction * nominal_load, p.roller_elastic_fraction, d.roller_plastic_fraction);
+        const T traction = T(-1.0) * share * (p.wheel_grip_stiffness * x[grip + i] + p.wheel_grip_damping * grip_rate);
         e.roller_force[i] = share * roller.force;
         const Vector3<T> at_floor = traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
         // About its axle the wheel takes the floor's moment, and the body the drive's; and the body carries the spin around with it.
@@ -149,18 +149,18 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
     slider_rates(e, x, m, p, d, force_world.x * d.rail_x + force_world.y * d.rail_y, loss);
 
     // Newton and Euler at the centre of mass. A wheel's own spin is accounted for by itself.
-    const Vector3<T> mass_centre = p.com_height * s.up;
+    const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector3<T> torque = moment - cross(mass_centre, force);
-    const T tilting = p.tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
+    const T tilting = p.base_tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
     const T roll_rate = x[body_roll_rate];
     const T pitch_rate = x[body_pitch_rate];
-    const T roll_acceleration = (dot(torque, s.forward) + (tilting - p.yaw_inertia) * pitch_rate * s.yaw_rate) / tilting;
-    const T pitch_acceleration = (dot(torque, s.left) + (p.yaw_inertia - tilting) * roll_rate * s.yaw_rate) / tilting;
-    const T yaw_acceleration = dot(torque, s.up) / p.yaw_inertia;
+    const T roll_acceleration = (dot(torque, s.forward) + (tilting - p.base_yaw_inertia) * pitch_rate * s.yaw_rate) / tilting;
+    const T pitch_acceleration = (dot(torque, s.left) + (p.base_yaw_inertia - tilting) * roll_rate * s.yaw_rate) / tilting;
+    const T yaw_acceleration = dot(torque, s.up) / p.base_yaw_inertia;
     const Vector3<T> turning_rate = roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
     const Vector3<T> weight{T(0.0), T(0.0), T(-gravity_mps2)};
     const Vector3<T> acceleration =
-        (T(1.0) / p.mass) * force + weight - cross(turning_rate, mass_centre) - cross(s.turning, cross(s.turning, mass_centre));
+        (T(1.0) / p.base_mass) * force + weight - cross(turning_rate, mass_centre) - cross(s.turning, cross(s.turning, mass_centre));
 
     const Vector2<T> acceleration_world = to_world(e.heading, acceleration.plan());
     e.rate[base_x] = x[base_vx];
@@ -239,7 +239,7 @@ template <class T> void accept_inputs(const TippingVector<T>& x, const Inputs<T>
 // What is left, of all of it, before the base goes over if nothing but its weight acts from now on: 1 level and at rest, 0 at the point of no return.
 // Over the line between two wheels the base is an inverted pendulum; of its motion the part that grows, tilt + rate / d.tip_rate, decides.
 template <class T> T tip_margin(const Stance<T>& s, const Parameters<T>& p, const Derived<T>& d) {
-    const Vector3<T> mass_centre = p.com_height * s.up;
+    const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector2<T> bound = mass_centre.plan() + (T(1.0) / d.tip_rate) * cross(s.turning, mass_centre).plan();
     T farthest = T(-1e300);
     for (int i = 0; i < wheel_count; ++i) { // over the line that is opposite to wheel i

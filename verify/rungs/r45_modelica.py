@@ -52,7 +52,9 @@ def _compared(context: Context, models: Path) -> dict[str, float]:
     program = out / "compare"
     plant = context.root / "fmu" / "plant"
     objects = [out / f"{model}.o" for model in MODELS]
-    options = ("-std=c++20", "-O2", "-ffp-contract=off", f"-I{plant}", f"-I{plant.parent / 'math'}", f"-I{out}")
+    generated = context.root / "build" / "fmu" / "plant" / "generated"  # by `make build`
+    folders = (plant, plant.parent / "math", generated, out)
+    options = ("-std=c++20", "-O2", "-ffp-contract=off", *(f"-I{folder}" for folder in folders))
     context.run(context.which(CXX), *options, models / "compare.cpp", *objects, "-lm", "-o", program)
     answer = context.run(program).stdout
     found = {name: float(value) for name, value in re.findall(r"(\w+) (\S+)", answer)}

@@ -7,10 +7,10 @@ import shutil
 import sys
 from pathlib import Path
 
-from . import cpp, documentation, fmi, icon, source_code
+from . import cpp, documentation, fmi, icon, plant, source_code, toml
 from .errors import TableError
 from .package import PLATFORMS, write_fmu
-from .table import Table, read_table
+from .table import Table, expanded, read_table
 
 
 def _pictures(table: Table) -> dict[str, bytes]:
@@ -60,7 +60,13 @@ def _write_sources(arguments: argparse.Namespace) -> None:
         "fmi3/modelDescription.xml": fmi.fmi3_model_description(table, arguments.version),
         "common/documentation/index.html": documentation.page(table, arguments.version, arguments.equations),
     }
-    contents = {name: text.encode() for name, text in {**code, **texts}.items()}
+    # For those who compile the model, or read its table without codegen; no file of a source-code FMU.
+    aside = {
+        f"{table.name}.variables.toml": toml.text(expanded(arguments.table), f"Variables of the {table.name} FMU.")
+    }
+    if table.plant_parameters:
+        aside[f"{table.name}_plant_parameters.hpp"] = plant.reader_header(table)
+    contents = {name: text.encode() for name, text in {**code, **texts, **aside}.items()}
     contents.update(_pictures(table))
     if shipped:
         contents.update(_shipped(table, shipped, code))
@@ -70,6 +76,11 @@ def _write_sources(arguments: argparse.Namespace) -> None:
         path = arguments.out / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
+
+
+def _write_plant_parameters(arguments: argparse.Namespace) -> None:
+    arguments.out.parent.mkdir(parents=True, exist_ok=True)
+    arguments.out.write_text(plant.parameters_header(read_table(arguments.table, arguments.robot)), encoding="utf-8")
 
 
 def _pairs(option: str, entries: list[str]) -> dict[str, Path]:
@@ -101,6 +112,11 @@ def _parser() -> argparse.ArgumentParser:
     sources.add_argument("--ship", type=Path, nargs="*", default=[], help="source files of a source-code FMU")
     sources.add_argument("--out", type=Path, required=True, help="folder to write to")
     sources.set_defaults(run=_write_sources)
+    parameters = commands.add_parser("plant-parameters", help="the plant's parameters as a C++ header")
+    parameters.add_argument("--table", type=Path, required=True, help="the testbed's variables.toml")
+    parameters.add_argument("--robot", type=Path, required=True, help="robot file with start values")
+    parameters.add_argument("--out", type=Path, required=True, help="header to write")
+    parameters.set_defaults(run=_write_plant_parameters)
     package = commands.add_parser("package", help="the .fmu file")
     package.add_argument("--fmi", type=int, choices=(2, 3), required=True)
     package.add_argument("--generated", type=Path, required=True, help="folder that `sources` wrote to")

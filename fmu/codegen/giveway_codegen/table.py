@@ -7,7 +7,7 @@ import math
 import re
 import tomllib
 import uuid
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from .errors import TableError
 from .types import Quantity, quantity_of
 from .units import DISPLAY_UNITS, base_units, default_display_unit
 
-__all__ = ["Group", "Table", "Variable", "read_table"]
+__all__ = ["Group", "Table", "Variable", "expanded", "read_table"]
 
 SCHEMA_VERSION = 1
 TIME_REFERENCE = 0  # the independent variable of FMI 3
@@ -23,15 +23,20 @@ INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
 
 Value = float | int | bool
 
-_MODEL_KEYS = {"name", "description", "step_size_s"}
+_MODEL_KEYS = {"name", "description", "step_size_s", "shares"}
+# What a shared entry may say for itself; the rest is that of the other table's entry.
+_SHARED_KEYS = {"reference", "shared", "description", "minimum", "maximum", "dependencies"}
 _STATE_KEYS = {"reference", "name", "count", "unit", "display_unit", "nominal", "dependencies", "description"}
 _INDICATOR_KEYS = {"reference", "name", "count", "description"}
 # A state and its derivative: der(x) has the reference of x plus this.
 DERIVATIVE_OFFSET = 1000
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
-    "allow_nonfinite", "dependencies", "description", "display_unit",
+    "allow_nonfinite", "dependencies", "description", "display_unit", "plant",
 }  # fmt: skip
+# Types of plant parameters by the types of their variables; an integer may also be an enumeration.
+_PLANT_TYPES = {"real": ("number", "divisor"), "integer": ("whole",), "boolean": ("whole",)}
+_ENUMERATION = re.compile(r"[A-Z][A-Za-z]*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
 
 
@@ -65,6 +70,8 @@ class Group:
     variables: tuple[Variable, ...]
     role: str | None = None  # of a local variable: "state", "derivative" or "indicator"
     display_unit: str | None = None  # what an importer may show instead of the unit
+    # Type of the plant's parameter of this name, if it is one; nothing that an importer sees, so not in the token.
+    plant: str | None = field(default=None, repr=False)
 
     @property
     def quantity(self) -> Quantity | None:
@@ -104,6 +111,11 @@ class Table:
     def has_equations(self) -> bool:
         """States, so Model Exchange beside Co-Simulation."""
         return any(group.role == "state" for group in self.groups)
+
+    @property
+    def plant_parameters(self) -> list[Group]:
+        """The groups that are parameters of the plant."""
+        return [group for group in self.groups if group.plant is not None]
 
     def followed(self, group: Group) -> list[Variable]:
         """What ``group``, an output or a derivative, depends on within the same instant: inputs and states."""
@@ -156,7 +168,7 @@ class _Entry:
     def __init__(self, file: Path, position: int, raw: dict[str, Any]) -> None:
         self.file = file
         self.raw = raw
-        self.label = str(raw.get("name", f"number {position}"))
+        self.label = str(raw.get("name", raw.get("shared", f"number {position}")))
 
     def fail(self, key: str, message: str) -> TableError:
         return TableError(f"{self.file}: variable {self.label}: {key}: {message}")
@@ -238,6 +250,14 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
         raise entry.fail("dependencies", "only an output has them")
     dependencies = _dependencies(entry) if "dependencies" in raw else None
 
+    plant = raw.get("plant")
+    if plant is not None:
+        known = _PLANT_TYPES[kind]
+        enumeration = kind == "integer" and isinstance(plant, str) and _ENUMERATION.fullmatch(plant)
+        if causality != "parameter" or not (plant in known or enumeration):
+            other = " or an enumeration" if kind == "integer" else ""
+            raise entry.fail("plant", f"{plant!r}, but must be {' or '.join(known)}{other}, and of a parameter")
+
     starts = _starts(entry, kind, unit, causality, count, robot, robot_file)
     for start, _ in starts:
         if start is None or kind == "boolean":
@@ -251,6 +271,7 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     return Group(
         name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
         dependencies, " ".join(description.split()), variables, display_unit=_display_unit(entry, unit),
+        plant=plant,
     )  # fmt: skip
 
 
@@ -376,9 +397,37 @@ def _robot_value(
     return value[index] if index < len(value) else 0
 
 
+def expanded(table_file: Path) -> dict[str, Any]:
+    """The table's document, with the entries that it shares with another table written out."""
+    document = _read_toml(table_file)
+    shares = document.get("model", {}).pop("shares", None)
+    if shares is not None and not isinstance(shares, str):
+        raise TableError(f"{table_file}: model: shares: {shares!r}, but must be the path of a table")
+    theirs: dict[str, dict[str, Any]] = {}
+    if shares is not None:
+        theirs = {raw["name"]: raw for raw in expanded(table_file.parent / shares)["variable"]}
+    variables = document.get("variable", [])
+    for position, raw in enumerate(variables):
+        if "shared" in raw:
+            variables[position] = _written_out(_Entry(table_file, position + 1, raw), theirs)
+    return document
+
+
+def _written_out(entry: _Entry, theirs: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """A shared entry: theirs, with what it states itself."""
+    name = entry.raw["shared"]
+    if name not in theirs:
+        raise entry.fail("shared", f"{name!r}, but must be a variable of the table that `shares` of [model] names")
+    for key in entry.raw:
+        if key not in _SHARED_KEYS:
+            raise entry.fail(key, f"not in an entry with `shared`; it may have {', '.join(sorted(_SHARED_KEYS))}")
+    own = {key: value for key, value in entry.raw.items() if key != "shared"}
+    return theirs[name] | {"reference": None} | own
+
+
 def read_table(table_file: Path, robot_file: Path) -> Table:
     """The checked table; TableError if anything is wrong."""
-    document = _read_toml(table_file)
+    document = expanded(table_file)
     robot = _read_toml(robot_file)
     model = document.get("model", {})
     for key in model:

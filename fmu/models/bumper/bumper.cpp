@@ -8,6 +8,7 @@
 #include <new>
 
 #include "bumper_system.hpp"
+#include "bumper_plant_parameters.hpp"
 #include "bumper_variables.hpp"
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
@@ -140,18 +141,7 @@ private:
 
     [[nodiscard]] plant::Parameters<double> parameters() const {
         plant::Parameters<double> p{};
-        p.bumper_kind = static_cast<plant::BumperKind>(v_.bumper_kind);
-        p.latch_model = static_cast<plant::LatchModel>(v_.bumper_latch_model);
-        p.spring_rate = v_.bumper_spring_rate;
-        p.preload = v_.bumper_preload;
-        p.bumper_damping = v_.bumper_damping;
-        p.guide_friction = v_.bumper_guide_friction;
-        p.guide_friction_speed = v_.bumper_guide_friction_speed;
-        p.travel = v_.bumper_travel;
-        p.stop_stiffness = v_.bumper_stop_stiffness;
-        p.stop_damping = v_.bumper_stop_damping;
-        p.latch_force = v_.bumper_latch_force;
-        p.latch_gap = v_.bumper_latch_gap;
+        read_plant_parameters(v_, p);
         return p;
     }
 

@@ -32,7 +32,7 @@ public:
     void set_faces(const Faces& faces, double time_s) {
         follow_faces(faces, time_s);
         const double c = compression(time_s);
-        const double beyond = c - parameters_.travel;
+        const double beyond = c - parameters_.bumper_travel;
         modes_.end_stop = c < 0.0 || (c <= 0.0 && compression_rate() <= 0.0) ? 1.0 : 0.0;
         modes_.bottom_stop = beyond > 0.0 || (beyond >= 0.0 && compression_rate() > 0.0) ? 1.0 : 0.0;
     }
@@ -50,7 +50,7 @@ public:
     [[nodiscard]] bool end_stop() const { return modes_.end_stop > 0.5; }
     [[nodiscard]] bool bottom_stop() const { return modes_.bottom_stop > 0.5; }
     [[nodiscard]] bool latched(double time_s) const {
-        return parameters_.has_ideal_latch() ? end_stop() : parameters_.has_continuous_latch() && compression(time_s) < parameters_.latch_gap;
+        return parameters_.has_ideal_latch() ? end_stop() : parameters_.has_continuous_latch() && compression(time_s) < parameters_.bumper_latch_gap;
     }
 
     // The ideal latch is the continuous one with no reach: all of its force while the plate is at its end stop, none beyond. It lets go where
@@ -59,8 +59,8 @@ public:
         const double c = compression(time_s);
         auto bumper = plant::bumper_force(parameters_, modes_, c, compression_rate());
         if (parameters_.has_ideal_latch()) {
-            bumper.force += modes_.end_stop * parameters_.latch_force;
-            bumper.stored += modes_.end_stop * parameters_.latch_force * c;
+            bumper.force += modes_.end_stop * parameters_.bumper_latch_force;
+            bumper.stored += modes_.end_stop * parameters_.bumper_latch_force * c;
         }
         return bumper;
     }
@@ -76,7 +76,7 @@ public:
 
     void indicators(double time_s, const double*, double* value) override {
         value[event_end_stop] = compression(time_s);
-        value[event_bottom_stop] = compression(time_s) - parameters_.travel;
+        value[event_bottom_stop] = compression(time_s) - parameters_.bumper_travel;
     }
 
     void transition(double, double*, const int* fired) override {

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "drivetrain_system.hpp"
+#include "drivetrain_plant_parameters.hpp"
 #include "drivetrain_variables.hpp"
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
@@ -205,15 +206,9 @@ private:
 
     [[nodiscard]] plant::Parameters<double> parameters() const {
         plant::Parameters<double> p{};
-        p.motor_inertia = v_.drivetrain_motor_inertia;
-        p.drivetrain_stiffness = v_.drivetrain_stiffness;
-        p.drivetrain_damping = v_.drivetrain_damping;
-        p.gear_coulomb = v_.drivetrain_gear_coulomb;
-        p.gear_stiction = v_.drivetrain_gear_stiction;
-        p.gear_viscous = v_.drivetrain_gear_viscous;
-        p.torque_limit = v_.drivetrain_torque_limit;
-        p.roller_torque = v_.load_coulomb;
-        p.roller_slope = v_.load_tanh_slope;
+        read_plant_parameters(v_, p);
+        p.roller_coulomb_torque = v_.load_coulomb;
+        p.roller_tanh_slope = v_.load_tanh_slope;
         return p;
     }
 

@@ -71,7 +71,7 @@ public:
         e.rate[load_speed] = (e.sensed - e.friction + torques_.environment) / load_.inertia;
         e.rate[work_in] = (e.net + e.sensed) * x[motor_speed] + torques_.environment * x[load_speed];
         e.rate[dissipated] = plant::gear_dissipation(p, direction_, x[motor_speed]) + p.drivetrain_damping * slip * slip + e.friction * x[load_speed];
-        e.stored = 0.5 * (p.motor_inertia * x[motor_speed] * x[motor_speed] + load_.inertia * x[load_speed] * x[load_speed] +
+        e.stored = 0.5 * (p.drivetrain_motor_inertia * x[motor_speed] * x[motor_speed] + load_.inertia * x[load_speed] * x[load_speed] +
                           p.drivetrain_stiffness * wind_up * wind_up);
         return e;
     }

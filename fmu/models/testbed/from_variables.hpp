@@ -7,95 +7,19 @@
 #include "drives.hpp"
 #include "initial_state.hpp"
 #include "model.hpp"
+#include "testbed_plant_parameters.hpp"
 #include "testbed_variables.hpp"
 
 namespace giveway::testbed {
 
 inline plant::Parameters<double> plant_parameters(const Variables& v) {
     plant::Parameters<double> p{};
-    p.mass = v.base_mass;
-    p.yaw_inertia = v.base_yaw_inertia;
-    p.wheel_radius = v.wheel_radius;
-    p.wheel_distance = v.wheel_distance;
-    p.wheel_inertia = v.wheel_inertia;
-    p.roller_radius = v.roller_radius;
-    p.roller_inertia = v.roller_inertia;
+    read_plant_parameters(v, p);
     p.wheel_load = {1.0, 1.0, 1.0};
     p.wheel_traction = {1.0, 1.0, 1.0};
-    p.tipping = v.base_tipping ? 1 : 0;
-    p.tilt_inertia = v.base_tilt_inertia;
-    p.com_height = v.base_com_height;
-    p.floor_contact_stiffness = v.wheel_floor_stiffness;
-    p.floor_contact_damping = v.wheel_floor_damping;
-    p.grip_friction = v.wheel_grip_friction;
-    p.grip_stiffness = v.wheel_grip_stiffness;
-    p.grip_damping = v.wheel_grip_damping;
-    p.push_height = v.push_height;
-    p.roller_model = static_cast<plant::RollerModel>(v.roller_model);
-    p.roller_torque = v.roller_coulomb_torque;
-    p.roller_slope = v.roller_tanh_slope;
-    std::copy_n(v.roller_presliding_stiffness, 3, p.roller_presliding_stiffness.begin());
-    p.roller_presliding_damping = v.roller_presliding_damping;
-    p.roller_stribeck_speed = v.roller_stribeck_speed;
-    p.roller_elastic_fraction = v.roller_elastic_fraction;
-    p.motor_inertia = v.drivetrain_motor_inertia;
-    p.drivetrain_stiffness = v.drivetrain_stiffness;
-    p.drivetrain_damping = v.drivetrain_damping;
-    p.gear_coulomb = v.drivetrain_gear_coulomb;
-    p.gear_stiction = v.drivetrain_gear_stiction;
-    p.gear_viscous = v.drivetrain_gear_viscous;
-    p.torque_limit = v.drivetrain_torque_limit;
-    p.slider_present = v.slider_present ? 1 : 0;
-    p.slider_mass = v.slider_mass;
-    p.slider_friction = v.slider_friction;
-    p.slider_friction_speed = v.slider_friction_speed;
-    p.slider_damping = v.slider_damping;
-    p.rail_direction = v.slider_direction;
-    p.target_x = v.slider_target_x;
-    p.target_y = v.slider_target_y;
-    p.run_up = v.slider_run_up;
-    p.wall_present = v.wall_present ? 1 : 0;
-    p.wall_distance = v.wall_distance;
-    p.wall_stiffness = v.wall_stiffness;
-    p.wall_damping = v.wall_damping;
-    p.rope_attached = v.rope_attached ? 1 : 0;
-    p.hanging_mass = v.rope_hanging_mass;
-    p.rope_stiffness = v.rope_stiffness;
-    p.rope_damping = v.rope_damping;
-    p.drop_height = v.rope_drop_height;
-    p.floor_stiffness = v.rope_floor_stiffness;
-    p.floor_damping = v.rope_floor_damping;
-    p.bumper_kind = static_cast<plant::BumperKind>(v.bumper_kind);
-    p.bumper_mount = static_cast<plant::BumperMount>(v.bumper_mount);
-    p.latch_model = static_cast<plant::LatchModel>(v.bumper_latch_model);
-    p.plate_mass = v.bumper_plate_mass;
-    p.spring_rate = v.bumper_spring_rate;
-    p.preload = v.bumper_preload;
-    p.bumper_damping = v.bumper_damping;
-    p.guide_friction = v.bumper_guide_friction;
-    p.guide_friction_speed = v.bumper_guide_friction_speed;
-    p.travel = v.bumper_travel;
-    p.stop_stiffness = v.bumper_stop_stiffness;
-    p.stop_damping = v.bumper_stop_damping;
-    p.latch_force = v.bumper_latch_force;
-    p.latch_gap = v.bumper_latch_gap;
-    p.mount_x = v.bumper_mount_x;
-    p.mount_y = v.bumper_mount_y;
-    p.mount_azimuth = v.bumper_mount_azimuth;
-    p.nose_shape = static_cast<plant::NoseShape>(v.contact_nose_shape);
-    p.nose_radius = v.contact_nose_radius;
-    p.contact_stiffness = v.contact_stiffness;
-    p.contact_damping = v.contact_damping;
-    p.contact_friction = v.contact_friction;
-    p.contact_friction_speed = v.contact_friction_speed;
-    p.contact_height = v.contact_height;
     // What a cut at the contact's height goes through; without wheels the body reaches to the floor.
     p.outline_body = !v.outline_wheels || v.contact_height >= v.outline_clearance ? 1 : 0;
     p.outline_wheels = v.outline_wheels && v.contact_height < 2.0 * v.wheel_radius ? 1 : 0;
-    p.wheel_width = v.wheel_width;
-    p.outline_count = v.outline_count;
-    std::copy_n(v.outline_x, plant::max_outline_vertices, p.outline_x.begin());
-    std::copy_n(v.outline_y, plant::max_outline_vertices, p.outline_y.begin());
     return p;
 }
 

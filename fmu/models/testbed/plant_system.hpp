@@ -49,7 +49,7 @@ public:
     // In continuous time: a gear that breaks away is left to the event that follows.
     void follow_inputs(const plant::Inputs<double>& inputs) { inputs_ = inputs; }
 
-    [[nodiscard]] bool tips() const { return parameters_.tipping != 0; }
+    [[nodiscard]] bool tips() const { return parameters_.base_tipping != 0; }
     // The model does not go further: the base is about to lie down.
     [[nodiscard]] bool overturned() const { return modes_.overturned > 0.5; }
     [[nodiscard]] const plant::Modes<double>& modes() const { return modes_; }

@@ -46,8 +46,8 @@ _SIN = [math.sin(2.0 * math.pi * i / 3.0) for i in range(3)]
 class Parameters:
     """SI units. The defaults are Trikey's numbers where the robot file has them."""
 
-    mass: float = 34.7
-    yaw_inertia: float = 1.31
+    base_mass: float = 34.7
+    base_yaw_inertia: float = 1.31
     wheel_radius: float = 0.1016
     wheel_distance: float = 0.24
     wheel_inertia: float = 0.002798
@@ -57,59 +57,59 @@ class Parameters:
     roller_model: int = ROLLER_BRISTLE
     roller_radius: float = 0.009525
     roller_inertia: float = 1.23e-6
-    roller_torque: float = 0.2  # B_r, N m
-    roller_slope: float = 0.4  # alpha, s/rad
+    roller_coulomb_torque: float = 0.2  # B_r, N m
+    roller_tanh_slope: float = 0.4  # alpha, s/rad
     # sigma0, N/m
     roller_presliding_stiffness: list[float] = field(default_factory=lambda: [25900.0] * 3)
     roller_presliding_damping: float = 20.0  # sigma1, N s/m
     roller_stribeck_speed: float = 0.002  # v_S, m/s
     roller_elastic_fraction: float = 0.7  # rho_ba
-    motor_inertia: float = 0.0523
+    drivetrain_motor_inertia: float = 0.0523
     drivetrain_stiffness: float = 668.0
     drivetrain_damping: float = 1.0
-    gear_coulomb: float = 2.8
-    gear_stiction: float = 3.0
-    gear_viscous: float = 0.02
-    torque_limit: float = 20.0
+    drivetrain_gear_coulomb: float = 2.8
+    drivetrain_gear_stiction: float = 3.0
+    drivetrain_gear_viscous: float = 0.02
+    drivetrain_torque_limit: float = 20.0
     slider_present: int = 1
     slider_mass: float = 9.08
-    rail_direction: float = 0.0  # psi, rad
-    target_x: float = -0.176092
-    target_y: float = 0.0
-    run_up: float = 0.0382
-    nose_radius: float = 0.03
+    slider_direction: float = 0.0  # psi, rad
+    slider_target_x: float = -0.176092
+    slider_target_y: float = 0.0
+    slider_run_up: float = 0.0382
+    contact_nose_radius: float = 0.03
     slider_friction: float = 1.0
     slider_friction_speed: float = 0.01
     slider_damping: float = 0.0
     rope_attached: int = 1
-    hanging_mass: float = 4.54
+    rope_hanging_mass: float = 4.54
     rope_stiffness: float = 1.0e4
     rope_damping: float = 150.0
-    drop_height: float = 0.3
-    floor_stiffness: float = 1.0e5
-    floor_damping: float = 1.0  # e_f, s/m
+    rope_drop_height: float = 0.3
+    rope_floor_stiffness: float = 1.0e5
+    rope_floor_damping: float = 1.0  # e_f, s/m
     bumper_kind: int = KIND_SPRING
     bumper_mount: int = MOUNT_SLIDER
-    latch_model: int = LATCH_CONTINUOUS
-    plate_mass: float = 0.5
-    preload: float = 2.0
-    spring_rate: float = 723.0
+    bumper_latch_model: int = LATCH_CONTINUOUS
+    bumper_plate_mass: float = 0.5
+    bumper_preload: float = 2.0
+    bumper_spring_rate: float = 723.0
     bumper_damping: float = 5.0
-    guide_friction: float = 0.5
-    guide_friction_speed: float = 0.01
-    travel: float = 0.12
-    stop_stiffness: float = 2.0e4
-    stop_damping: float = 0.5
-    latch_force: float = 33.0
-    latch_gap: float = 0.001
-    mount_x: float = -0.25
-    mount_y: float = 0.0
-    mount_azimuth: float = math.pi  # of the outward unit vector a, base frame
+    bumper_guide_friction: float = 0.5
+    bumper_guide_friction_speed: float = 0.01
+    bumper_travel: float = 0.12
+    bumper_stop_stiffness: float = 2.0e4
+    bumper_stop_damping: float = 0.5
+    bumper_latch_force: float = 33.0
+    bumper_latch_gap: float = 0.001
+    bumper_mount_x: float = -0.25
+    bumper_mount_y: float = 0.0
+    bumper_mount_azimuth: float = math.pi  # of the outward unit vector a, base frame
     contact_stiffness: float = 1.06e4
     contact_damping: float = 0.3
     contact_friction: float = 0.0
     contact_friction_speed: float = 0.01
-    nose_shape: int = NOSE_DISC
+    contact_nose_shape: int = NOSE_DISC
     contact_height: float = 0.05
     outline_body: int = 1
     outline_wheels: int = 0
@@ -119,14 +119,14 @@ class Parameters:
     wall_stiffness: float = 2.0e5
     wall_damping: float = 1.0
     # Those of a base that tips are used by tipping_reference.py.
-    tipping: int = 0
-    tilt_inertia: float = 2.0
-    com_height: float = 0.414
-    floor_contact_stiffness: float = 2.0e5
-    floor_contact_damping: float = 2.0
-    grip_friction: float = 0.7
-    grip_stiffness: float = 2.0e6
-    grip_damping: float = 400.0
+    base_tipping: int = 0
+    base_tilt_inertia: float = 2.0
+    base_com_height: float = 0.414
+    wheel_floor_stiffness: float = 2.0e5
+    wheel_floor_damping: float = 2.0
+    wheel_grip_friction: float = 0.7
+    wheel_grip_stiffness: float = 2.0e6
+    wheel_grip_damping: float = 400.0
     push_height: float = 0.414
     outline: list[tuple[float, float]] = field(
         default_factory=lambda: [(0.352184, 0.0), (-0.176092, 0.305), (-0.176092, -0.305)]
@@ -216,20 +216,20 @@ class Reference:
 
     def __init__(self, p: Parameters) -> None:
         self.p = p
-        self.ex, self.ey = math.cos(p.rail_direction), math.sin(p.rail_direction)
+        self.ex, self.ey = math.cos(p.slider_direction), math.sin(p.slider_direction)
         self.on_robot = p.bumper_mount == MOUNT_ROBOT and p.bumper_kind != KIND_NONE
         self.has_latch = p.bumper_kind == KIND_MAGNETIC
-        self.ideal = self.has_latch and p.latch_model == LATCH_IDEALISED
-        self.carriage_mass = p.slider_mass - (0.0 if self.on_robot else p.plate_mass)
+        self.ideal = self.has_latch and p.bumper_latch_model == LATCH_IDEALISED
+        self.carriage_mass = p.slider_mass - (0.0 if self.on_robot else p.bumper_plate_mass)
         self.aim = (
-            p.target_x - self.ex * (p.run_up + p.nose_radius),
-            p.target_y - self.ey * (p.run_up + p.nose_radius),
+            p.slider_target_x - self.ex * (p.slider_run_up + p.contact_nose_radius),
+            p.slider_target_y - self.ey * (p.slider_run_up + p.contact_nose_radius),
         )
-        self.rope_preload = p.hanging_mass * GRAVITY / p.rope_stiffness
-        self.axis = (math.cos(p.mount_azimuth), math.sin(p.mount_azimuth))
-        masses = [p.mass, p.mass, p.yaw_inertia]
+        self.rope_preload = p.rope_hanging_mass * GRAVITY / p.rope_stiffness
+        self.axis = (math.cos(p.bumper_mount_azimuth), math.sin(p.bumper_mount_azimuth))
+        masses = [p.base_mass, p.base_mass, p.base_yaw_inertia]
         masses += [p.wheel_inertia] * 3 + [p.roller_inertia] * 3
-        masses += [self.carriage_mass] * 2 + [p.plate_mass] * 2 + [p.hanging_mass]
+        masses += [self.carriage_mass] * 2 + [p.bumper_plate_mass] * 2 + [p.rope_hanging_mass]
         self.masses = np.array(masses)
         self.parts = parts_of_outline(p)
         self.template = np.zeros((self.SIZE, self.SIZE))
@@ -271,8 +271,8 @@ class Reference:
         p = self.p
         ct, st = math.cos(x[2]), math.sin(x[2])
         ax, ay = ct * self.axis[0] - st * self.axis[1], st * self.axis[0] + ct * self.axis[1]
-        rx = ct * p.mount_x - st * p.mount_y - ax * c
-        ry = st * p.mount_x + ct * p.mount_y - ay * c
+        rx = ct * p.bumper_mount_x - st * p.bumper_mount_y - ax * c
+        ry = st * p.bumper_mount_x + ct * p.bumper_mount_y - ay * c
         vx = x[3] - x[5] * ry - ax * cdot
         vy = x[4] + x[5] * rx - ay * cdot
         return x[0] + rx, x[1] + ry, vx, vy, ax, ay
@@ -308,14 +308,14 @@ class Reference:
             bx, by = x[3] - x[5] * ry, x[4] + x[5] * rx
         depth_rate = (bx - ux) * nx + (by - uy) * ny
         slip = -(bx - ux) * ny + (by - uy) * nx
-        return p.nose_radius - distance, depth_rate, slip, qx, qy, nx, ny
+        return p.contact_nose_radius - distance, depth_rate, slip, qx, qy, nx, ny
 
     def touching(self, x: np.ndarray) -> list[tuple[float, ...]]:
         """As `contact`, for each point that may carry force: one of a disc, every corner of an edge; deepest first."""
-        if self.p.nose_shape == NOSE_DISC:
+        if self.p.contact_nose_shape == NOSE_DISC:
             return [self.contact(x)]
         cx, cy, ux, uy = self.nose(x)
-        cx, cy = cx + self.p.nose_radius * self.ex, cy + self.p.nose_radius * self.ey
+        cx, cy = cx + self.p.contact_nose_radius * self.ex, cy + self.p.contact_nose_radius * self.ey
         ct, st = math.cos(x[2]), math.sin(x[2])
         points = []
         for part in self.parts:
@@ -337,8 +337,8 @@ class Reference:
     def roller(self, i: int, z: float, v: float) -> tuple[float, float]:
         """Friction force at the floor and the bristle's rate."""
         p = self.p
-        level = p.wheel_load[i] * p.roller_torque / p.roller_radius
-        moving = math.tanh(p.roller_slope * abs(v) / p.roller_radius)
+        level = p.wheel_load[i] * p.roller_coulomb_torque / p.roller_radius
+        moving = math.tanh(p.roller_tanh_slope * abs(v) / p.roller_radius)
         if p.roller_model == ROLLER_TANH:
             return level * math.copysign(moving, v), 0.0
         w = math.exp(-((v / p.roller_stribeck_speed) ** 2))
@@ -356,7 +356,7 @@ class Reference:
     def latch(self, c: float) -> float:
         if not self.has_latch or self.ideal:
             return 0.0
-        return self.p.latch_force / (1.0 + max(c, 0.0) / self.p.latch_gap) ** 2
+        return self.p.bumper_latch_force / (1.0 + max(c, 0.0) / self.p.bumper_latch_gap) ** 2
 
     # --- Right-hand side --------------------------------------------------------------------------
 
@@ -404,13 +404,13 @@ class Reference:
                 )
                 dissipated += f_i * v_radial - stored_rate
 
-            drive = max(-p.torque_limit, min(p.torque_limit, u.motor_torque[i]))
+            drive = max(-p.drivetrain_torque_limit, min(p.drivetrain_torque_limit, u.motor_torque[i]))
             direction = modes.gear[i]
             if direction:
                 w_m = x[9 + i]
-                gear = p.gear_coulomb * direction + p.gear_viscous * w_m
+                gear = p.drivetrain_gear_coulomb * direction + p.drivetrain_gear_viscous * w_m
                 rate[6 + i] = w_m
-                rate[9 + i] = (drive - t_i - gear) / p.motor_inertia
+                rate[9 + i] = (drive - t_i - gear) / p.drivetrain_motor_inertia
                 work += drive * w_m
                 dissipated += gear * w_m
 
@@ -433,10 +433,10 @@ class Reference:
                     dissipated += (tension - p.rope_stiffness * ext) * ext_rate
                 floor = 0.0
                 if modes.landed:
-                    depth = x[20] - p.drop_height
-                    floor = one_sided(p.floor_stiffness, depth, x[21], p.floor_damping)
-                    dissipated += (floor - p.floor_stiffness * depth) * x[21]
-                load[13] = p.hanging_mass * GRAVITY - tension - floor
+                    depth = x[20] - p.rope_drop_height
+                    floor = one_sided(p.rope_floor_stiffness, depth, x[21], p.rope_floor_damping)
+                    dissipated += (floor - p.rope_floor_stiffness * depth) * x[21]
+                load[13] = p.rope_hanging_mass * GRAVITY - tension - floor
             rail = p.slider_friction * math.tanh(x[19] / p.slider_friction_speed) + p.slider_damping * x[19]
             dissipated += rail * x[19]
             wall = 0.0
@@ -477,19 +477,19 @@ class Reference:
             load[self.LOCK] = -centrifugal
         else:
             c, cdot = x[22], x[23]
-            force = p.preload + p.spring_rate * c + p.bumper_damping * cdot + self.latch(c)
-            slide = p.guide_friction * math.tanh(cdot / p.guide_friction_speed)
+            force = p.bumper_preload + p.bumper_spring_rate * c + p.bumper_damping * cdot + self.latch(c)
+            slide = p.bumper_guide_friction * math.tanh(cdot / p.bumper_guide_friction_speed)
             force += slide
             dissipated += (p.bumper_damping * cdot + slide) * cdot
             if modes.end_stop and not self.ideal:
-                stop = one_sided(p.stop_stiffness, -c, -cdot, p.stop_damping)
+                stop = one_sided(p.bumper_stop_stiffness, -c, -cdot, p.bumper_stop_damping)
                 force -= stop
-                dissipated += (stop - p.stop_stiffness * -c) * -cdot
+                dissipated += (stop - p.bumper_stop_stiffness * -c) * -cdot
             if modes.bottom_stop:
-                depth = c - p.travel
-                stop = one_sided(p.stop_stiffness, depth, cdot, p.stop_damping)
+                depth = c - p.bumper_travel
+                stop = one_sided(p.bumper_stop_stiffness, depth, cdot, p.bumper_stop_damping)
                 force += stop
-                dissipated += (stop - p.stop_stiffness * depth) * cdot
+                dissipated += (stop - p.bumper_stop_stiffness * depth) * cdot
             matrix[self.LOCK, self.LOCK] = 1.0
             for column, value in extension.items():
                 load[column] += force * value
@@ -503,7 +503,7 @@ class Reference:
             qx, qy = touching[0][3:5]
             total = [0.0, 0.0, 0.0]  # normal force, and its moments about the world's axes
             for depth, depth_rate, slip, rx, ry, nx, ny in touching:
-                if not modes.contact or (p.nose_shape == NOSE_EDGE and depth <= 0.0):
+                if not modes.contact or (p.contact_nose_shape == NOSE_EDGE and depth <= 0.0):
                     continue
                 normal = one_sided(p.contact_stiffness, depth, depth_rate, p.contact_damping)
                 shear = p.contact_friction * normal * math.tanh(slip / p.contact_friction_speed)
@@ -555,39 +555,41 @@ class Reference:
     def stored_energy(self, x: np.ndarray, modes: Modes) -> float:
         p = self.p
         ct, st = math.cos(x[2]), math.sin(x[2])
-        energy = 0.5 * p.mass * (x[3] ** 2 + x[4] ** 2) + 0.5 * p.yaw_inertia * x[5] ** 2
+        energy = 0.5 * p.base_mass * (x[3] ** 2 + x[4] ** 2) + 0.5 * p.base_yaw_inertia * x[5] ** 2
         for i in range(3):
             ci, si = ct * _COS[i] - st * _SIN[i], st * _COS[i] + ct * _SIN[i]
             if p.wheel_traction[i]:
                 wheel = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
                 roller = (ci * x[3] + si * x[4]) / p.roller_radius
                 energy += 0.5 * p.wheel_inertia * wheel**2 + 0.5 * p.roller_inertia * roller**2
-            energy += 0.5 * p.motor_inertia * x[9 + i] ** 2
+            energy += 0.5 * p.drivetrain_motor_inertia * x[9 + i] ** 2
             energy += 0.5 * p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) ** 2
             if p.roller_model == ROLLER_BRISTLE:
                 energy += 0.5 * p.roller_presliding_stiffness[i] * x[15 + i] ** 2
         _, _, pvx, pvy, _, _ = self.plate(x)
-        energy += 0.5 * self.carriage_mass * x[19] ** 2 + 0.5 * p.plate_mass * (pvx**2 + pvy**2)
+        energy += 0.5 * self.carriage_mass * x[19] ** 2 + 0.5 * p.bumper_plate_mass * (pvx**2 + pvy**2)
         if not p.slider_present:
             return energy
         if p.rope_attached:
-            energy += 0.5 * p.hanging_mass * x[21] ** 2 - p.hanging_mass * GRAVITY * x[20]
+            energy += 0.5 * p.rope_hanging_mass * x[21] ** 2 - p.rope_hanging_mass * GRAVITY * x[20]
             if modes.rope_taut:
                 energy += 0.5 * p.rope_stiffness * self.rope(x)[0] ** 2
             if modes.landed:
-                energy += 0.5 * p.floor_stiffness * (x[20] - p.drop_height) ** 2
+                energy += 0.5 * p.rope_floor_stiffness * (x[20] - p.rope_drop_height) ** 2
         if p.bumper_kind != KIND_NONE:
             c = x[22]
-            energy += p.preload * c + 0.5 * p.spring_rate * c**2
+            energy += p.bumper_preload * c + 0.5 * p.bumper_spring_rate * c**2
             if self.has_latch and not self.ideal:
-                energy += p.latch_force * (c if c < 0.0 else p.latch_gap * c / (p.latch_gap + c))
+                energy += p.bumper_latch_force * (c if c < 0.0 else p.bumper_latch_gap * c / (p.bumper_latch_gap + c))
             if modes.end_stop and not self.ideal:
-                energy += 0.5 * p.stop_stiffness * c**2
+                energy += 0.5 * p.bumper_stop_stiffness * c**2
             if modes.bottom_stop:
-                energy += 0.5 * p.stop_stiffness * (c - p.travel) ** 2
+                energy += 0.5 * p.bumper_stop_stiffness * (c - p.bumper_travel) ** 2
         if modes.contact:
             depths = [point[0] for point in self.touching(x)]
-            energy += 0.5 * p.contact_stiffness * sum(d**2 for d in depths if p.nose_shape == NOSE_DISC or d > 0.0)
+            energy += (
+                0.5 * p.contact_stiffness * sum(d**2 for d in depths if p.contact_nose_shape == NOSE_DISC or d > 0.0)
+            )
         if modes.walled:
             energy += 0.5 * p.wall_stiffness * (x[18] + p.wall_distance) ** 2
         return energy
@@ -600,27 +602,29 @@ class Reference:
         ci, si = math.cos(x[2] + 2.0 * math.pi * i / 3.0), math.sin(x[2] + 2.0 * math.pi * i / 3.0)
         wheel_speed = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
         torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (x[9 + i] - wheel_speed)
-        return max(-p.torque_limit, min(p.torque_limit, u.motor_torque[i])) - torque
+        return max(-p.drivetrain_torque_limit, min(p.drivetrain_torque_limit, u.motor_torque[i])) - torque
 
     def indicators(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> list[float]:
         p = self.p
         g = [0.0] * INDICATORS
         for i in range(3):
             direction = modes.gear[i]
-            g[i] = x[9 + i] * direction if direction else p.gear_stiction - abs(self.gear_surplus(i, x, u))
+            g[i] = x[9 + i] * direction if direction else p.drivetrain_gear_stiction - abs(self.gear_surplus(i, x, u))
         if p.slider_present:
             g[CONTACT] = self.touching(x)[0][0]
             if p.wall_present:
                 g[WALL] = -x[18] - p.wall_distance
             if p.rope_attached:
                 g[ROPE] = self.rope(x)[0]
-                g[LANDING] = x[20] - p.drop_height
+                g[LANDING] = x[20] - p.rope_drop_height
             if p.bumper_kind != KIND_NONE:
                 if self.ideal and modes.latched:
-                    g[BUMPER] = p.latch_force + p.preload - self.evaluate(t, x, u, modes)["internal_force"]
+                    g[BUMPER] = (
+                        p.bumper_latch_force + p.bumper_preload - self.evaluate(t, x, u, modes)["internal_force"]
+                    )
                 else:
                     g[BUMPER] = x[22]
-                g[BOTTOM] = x[22] - p.travel
+                g[BOTTOM] = x[22] - p.bumper_travel
         return g
 
     def event_direction(self, index: int, modes: Modes) -> int:
@@ -651,7 +655,7 @@ class Reference:
             if modes.gear[index]:
                 x[9 + index] = 0.0
             surplus = self.gear_surplus(index, x, u)
-            stays = modes.gear[index] and abs(surplus) <= self.p.gear_stiction
+            stays = modes.gear[index] and abs(surplus) <= self.p.drivetrain_gear_stiction
             modes.gear[index] = 0 if stays else int(math.copysign(1.0, surplus))
         elif index == CONTACT:
             modes.contact = 1 - modes.contact
@@ -723,7 +727,7 @@ class Reference:
         modes = modes.copy()
         for i in range(3):
             surplus = self.gear_surplus(i, x, u)
-            if modes.gear[i] == 0 and abs(surplus) > self.p.gear_stiction:
+            if modes.gear[i] == 0 and abs(surplus) > self.p.drivetrain_gear_stiction:
                 modes.gear[i] = int(math.copysign(1.0, surplus))
         return modes
 

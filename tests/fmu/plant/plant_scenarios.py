@@ -38,13 +38,13 @@ COLLISIONS = {
         KIND_MAGNETIC,
         MOUNT_SLIDER,
         LATCH_IDEALISED,
-        {"rope_attached": 0, "slider_mass": 4.0, "latch_force": 10.0},
+        {"rope_attached": 0, "slider_mass": 4.0, "bumper_latch_force": 10.0},
     ),
     "idealised latch closes again on robot": (
         KIND_MAGNETIC,
         MOUNT_ROBOT,
         LATCH_IDEALISED,
-        {"rope_attached": 0, "slider_mass": 4.0, "latch_force": 10.0},
+        {"rope_attached": 0, "slider_mass": 4.0, "bumper_latch_force": 10.0},
     ),
     # Hits a corner: the contact point runs around the vertex while the robot turns.
     "vertex, tanh rollers, rubbing": (
@@ -54,8 +54,8 @@ COLLISIONS = {
         {
             "roller_model": ROLLER_TANH,
             "contact_friction": 0.3,
-            "target_x": -0.177,
-            "target_y": 0.29,
+            "slider_target_x": -0.177,
+            "slider_target_y": 0.29,
         },
     ),
     # The spring is too soft and the drop too short: bottoming stop and landing weight.
@@ -63,7 +63,7 @@ COLLISIONS = {
         KIND_SPRING,
         MOUNT_SLIDER,
         LATCH_CONTINUOUS,
-        {"spring_rate": 150.0, "travel": 0.03, "drop_height": 0.05},
+        {"bumper_spring_rate": 150.0, "bumper_travel": 0.03, "rope_drop_height": 0.05},
     ),
     # Low enough that the wheels are all there is: the nose meets the end of wheel 1, off its middle, and slips off it.
     "on a wheel, rubbing": (
@@ -75,8 +75,8 @@ COLLISIONS = {
             "outline_wheels": 1,
             "contact_height": 0.03,
             "contact_friction": 0.3,
-            "target_x": -0.183,
-            "target_y": 0.25,
+            "slider_target_x": -0.183,
+            "slider_target_y": 0.25,
         },
     ),
     # Between the wheels, body and all: the nose comes to lie in the corner of body and wheel.
@@ -84,26 +84,32 @@ COLLISIONS = {
         KIND_SPRING,
         MOUNT_SLIDER,
         LATCH_CONTINUOUS,
-        {"outline_wheels": 1, "contact_height": 0.1016, "target_x": -0.176092, "target_y": 0.12, "run_up": 0.06},
+        {
+            "outline_wheels": 1,
+            "contact_height": 0.1016,
+            "slider_target_x": -0.176092,
+            "slider_target_y": 0.12,
+            "slider_run_up": 0.06,
+        },
     ),
     # Along a whole side: both corners press, and the robot lays itself against the edge.
     "long edge on a side": (
         KIND_NONE,
         MOUNT_SLIDER,
         LATCH_CONTINUOUS,
-        {"nose_shape": NOSE_EDGE, "rail_direction": 0.03, "run_up": 0.02},
+        {"contact_nose_shape": NOSE_EDGE, "slider_direction": 0.03, "slider_run_up": 0.02},
     ),
     "long edge on wheels, spring": (
         KIND_SPRING,
         MOUNT_SLIDER,
         LATCH_CONTINUOUS,
         {
-            "nose_shape": NOSE_EDGE,
+            "contact_nose_shape": NOSE_EDGE,
             "outline_wheels": 1,
             "contact_height": 0.12,
             "contact_friction": 0.2,
-            "rail_direction": -0.1,
-            "run_up": 0.08,
+            "slider_direction": -0.1,
+            "slider_run_up": 0.08,
         },
     ),
     # A light dummy bounces off against the wall behind it.
@@ -121,11 +127,13 @@ def collision(
 ) -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
     """Slider at 0.5 m/s, 6 mm before the robot, off its centre; the robot stands, unpowered."""
     kind, mount, latch, other = case
-    p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, run_up=0.006)
-    p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, target_y=0.05, mount_y=0.04)
+    p = Parameters(bumper_kind=kind, bumper_mount=mount, bumper_latch_model=latch, slider_run_up=0.006)
+    p = replace(
+        p, slider_target_x=-0.25 if mount == MOUNT_ROBOT else -0.176092, slider_target_y=0.05, bumper_mount_y=0.04
+    )
     p = replace(
         p,
-        mount_azimuth=math.pi + 0.1,
+        bumper_mount_azimuth=math.pi + 0.1,
         roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4],
         contact_friction=0.1,
     )
@@ -144,7 +152,7 @@ def disconnected(p: Parameters) -> Parameters:
         p,
         drivetrain_stiffness=0.0,
         drivetrain_damping=0.0,
-        roller_torque=0.0,
+        roller_coulomb_torque=0.0,
         roller_presliding_stiffness=[0.0] * 3,
         roller_presliding_damping=0.0,
         roller_model=ROLLER_TANH,
@@ -160,8 +168,8 @@ def still(p: Parameters) -> tuple[Reference, np.ndarray, Modes]:
     modes = Modes(latched=int(reference.ideal))
     if p.bumper_kind != KIND_NONE and not reference.ideal:
         # preload + latch + k c = end-stop force
-        latch = p.latch_force if p.bumper_kind == KIND_MAGNETIC else 0.0
-        x[22] = -(p.preload + latch) / (p.spring_rate + p.stop_stiffness)
+        latch = p.bumper_latch_force if p.bumper_kind == KIND_MAGNETIC else 0.0
+        x[22] = -(p.bumper_preload + latch) / (p.bumper_spring_rate + p.bumper_stop_stiffness)
         modes.end_stop = 1
     return reference, x, modes
 
@@ -187,7 +195,7 @@ def pushed() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
 
 def driven() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
     """Motor torques that step up, reverse and vanish; one beyond the torque limit."""
-    p = Parameters(slider_present=0, torque_limit=12.0)
+    p = Parameters(slider_present=0, drivetrain_torque_limit=12.0)
     reference, x, modes = still(p)
     torques = [
         (0.0, (0.0, 0.0, 0.0)),

@@ -1,13 +1,14 @@
 // The plant behind a flat C interface, for the Python tests in this folder only (loaded by ctypes).
 //
-// Parameters are set by the names they have in parameters.hpp. Those that were never set are NaN
-// (reals) or -1 (choices), so that a forgotten one shows in every comparison.
+// Parameters are set by the names they have in the plant. Those that were never set are NaN
+// (reals) or 255 (choices), so that a forgotten one shows in every comparison.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <limits>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 #include "hybrid_integrator.hpp"
@@ -27,117 +28,29 @@ using Modes = plant::Modes<double>;
 constexpr int mode_count = 10;
 constexpr int input_count = 7;
 
-struct Real {
-    const char* name;
-    double Parameters::* member;
-};
-struct RealPerWheel {
-    const char* name;
-    std::array<double, plant::wheel_count> Parameters::* member;
-};
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+constexpr int unset_choice = 255;
 
-#define REAL(name) {#name, &Parameters::name}
-constexpr Real reals[] = {
-    REAL(mass),
-    REAL(yaw_inertia),
-    REAL(wheel_radius),
-    REAL(wheel_distance),
-    REAL(wheel_inertia),
-    REAL(roller_radius),
-    REAL(roller_inertia),
-    REAL(roller_torque),
-    REAL(roller_slope),
-    REAL(roller_presliding_damping),
-    REAL(roller_stribeck_speed),
-    REAL(roller_elastic_fraction),
-    REAL(motor_inertia),
-    REAL(drivetrain_stiffness),
-    REAL(drivetrain_damping),
-    REAL(gear_coulomb),
-    REAL(gear_stiction),
-    REAL(gear_viscous),
-    REAL(torque_limit),
-    REAL(slider_mass),
-    REAL(slider_friction),
-    REAL(slider_friction_speed),
-    REAL(slider_damping),
-    REAL(rail_direction),
-    REAL(target_x),
-    REAL(target_y),
-    REAL(run_up),
-    REAL(wall_distance),
-    REAL(wall_stiffness),
-    REAL(wall_damping),
-    REAL(hanging_mass),
-    REAL(rope_stiffness),
-    REAL(rope_damping),
-    REAL(drop_height),
-    REAL(floor_stiffness),
-    REAL(floor_damping),
-    REAL(plate_mass),
-    REAL(spring_rate),
-    REAL(preload),
-    REAL(bumper_damping),
-    REAL(guide_friction),
-    REAL(guide_friction_speed),
-    REAL(travel),
-    REAL(stop_stiffness),
-    REAL(stop_damping),
-    REAL(latch_force),
-    REAL(latch_gap),
-    REAL(mount_x),
-    REAL(mount_y),
-    REAL(mount_azimuth),
-    REAL(nose_radius),
-    REAL(contact_stiffness),
-    REAL(contact_damping),
-    REAL(contact_friction),
-    REAL(contact_friction_speed),
-    REAL(contact_height),
-    REAL(wheel_width),
-    REAL(tilt_inertia),
-    REAL(com_height),
-    REAL(floor_contact_stiffness),
-    REAL(floor_contact_damping),
-    REAL(grip_friction),
-    REAL(grip_stiffness),
-    REAL(grip_damping),
-    REAL(push_height),
-};
-constexpr RealPerWheel per_wheel[] = {REAL(wheel_load), REAL(wheel_traction),
-                                      REAL(roller_presliding_stiffness)};
-#undef REAL
-
-// True if `name` is a choice; sets it.
-bool set_choice(Parameters& p, const char* name, int value) {
-    const auto is = [name](const char* other) { return std::strcmp(name, other) == 0; };
-    if (is("roller_model")) {
-        p.roller_model = static_cast<plant::RollerModel>(value);
-    } else if (is("bumper_kind")) {
-        p.bumper_kind = static_cast<plant::BumperKind>(value);
-    } else if (is("bumper_mount")) {
-        p.bumper_mount = static_cast<plant::BumperMount>(value);
-    } else if (is("latch_model")) {
-        p.latch_model = static_cast<plant::LatchModel>(value);
-    } else if (is("slider_present")) {
-        p.slider_present = value;
-    } else if (is("rope_attached")) {
-        p.rope_attached = value;
-    } else if (is("wall_present")) {
-        p.wall_present = value;
-    } else if (is("tipping")) {
-        p.tipping = value;
-    } else if (is("nose_shape")) {
-        p.nose_shape = static_cast<plant::NoseShape>(value);
-    } else if (is("outline_body")) {
-        p.outline_body = value;
-    } else if (is("outline_wheels")) {
-        p.outline_wheels = value;
-    } else {
-        return false;
-    }
-    return true;
+// visit(name, member) for every parameter, those beside the table included.
+template <class Visitor> void visit_all(Visitor&& visit, Parameters& p) {
+    plant::visit_parameters(visit, p);
+    visit("wheel_load", p.wheel_load);
+    visit("wheel_traction", p.wheel_traction);
+    visit("outline_body", p.outline_body);
+    visit("outline_wheels", p.outline_wheels);
 }
+
+void set_number(double& into, const double* values, int count) { into = count == 1 ? values[0] : into; }
+template <std::size_t N> void set_number(std::array<double, N>& into, const double* values, int count) {
+    std::copy_n(values, std::min(count, static_cast<int>(N)), into.begin());
+}
+template <class Choice> void set_number(Choice& into, const double* values, int) { into = static_cast<Choice>(static_cast<int>(values[0])); }
+
+bool count_fits(const double&, int count) { return count == 1; }
+template <std::size_t N> bool count_fits(const std::array<double, N>&, int count) {
+    return N == plant::max_outline_vertices ? count >= 3 && count <= static_cast<int>(N) : count == static_cast<int>(N);
+}
+template <class Choice> bool count_fits(const Choice&, int count) { return count == 1; }
 
 plant::StateVector<double> state_from(const double* x) {
     plant::StateVector<double> state = {};
@@ -213,18 +126,16 @@ private:
 EXPORT void* probe_new() {
     auto* probe = new (std::nothrow) Probe;
     if (probe != nullptr) {
-        constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-        for (const auto& real : reals) {
-            probe->p.*real.member = unset;
-        }
-        for (const auto& real : per_wheel) {
-            (probe->p.*real.member).fill(unset);
-        }
-        for (const char* name : {"roller_model", "bumper_kind", "bumper_mount", "latch_model",
-                                 "slider_present", "rope_attached", "wall_present", "tipping", "nose_shape",
-                                 "outline_body", "outline_wheels"}) {
-            set_choice(probe->p, name, -1);
-        }
+        const auto forget = [](const char*, auto& member) {
+            if constexpr (std::is_same_v<decltype(member), double&>) {
+                member = unset;
+            } else if constexpr (requires { member.fill(unset); }) {
+                member.fill(unset);
+            } else {
+                member = static_cast<std::remove_reference_t<decltype(member)>>(unset_choice);
+            }
+        };
+        visit_all(forget, probe->p);
     }
     return probe;
 }
@@ -236,34 +147,18 @@ EXPORT const char* probe_error(void* handle) { return static_cast<Probe*>(handle
 // 0, or 1 if there is no parameter of this name and count.
 EXPORT int probe_set(void* handle, const char* name, const double* values, int count) {
     auto& p = static_cast<Probe*>(handle)->p;
-    if (std::strcmp(name, "outline_x") == 0 || std::strcmp(name, "outline_y") == 0) {
-        if (count < 3 || count > plant::max_outline_vertices) {
-            return 1;
+    bool found = false;
+    const auto set = [&](const char* other, auto& member) {
+        if (std::strcmp(name, other) == 0 && count_fits(member, count)) {
+            set_number(member, values, count);
+            found = true;
         }
-        auto& target = name[8] == 'x' ? p.outline_x : p.outline_y;
-        std::copy_n(values, count, target.begin());
+    };
+    visit_all(set, p);
+    if (found && std::strncmp(name, "outline_x", 9) == 0) {
         p.outline_count = count;
-    } else if (count == plant::wheel_count) {
-        const auto* found =
-            std::find_if(std::begin(per_wheel), std::end(per_wheel),
-                         [name](const auto& r) { return std::strcmp(r.name, name) == 0; });
-        if (found == std::end(per_wheel)) {
-            return 1;
-        }
-        std::copy_n(values, count, (p.*found->member).begin());
-    } else if (count == 1) {
-        const auto* found = std::find_if(std::begin(reals), std::end(reals), [name](const auto& r) {
-            return std::strcmp(r.name, name) == 0;
-        });
-        if (found != std::end(reals)) {
-            p.*found->member = values[0];
-        } else if (!set_choice(p, name, static_cast<int>(values[0]))) {
-            return 1;
-        }
-    } else {
-        return 1;
     }
-    return 0;
+    return found ? 0 : 1;
 }
 
 // Call after the last probe_set.

@@ -20,25 +20,25 @@ from kkt_reference import (
 )
 
 _NOT_SCALED = {
-    "rail_direction",
-    "target_x",
-    "target_y",
-    "mount_x",
-    "mount_y",
-    "mount_azimuth",
+    "slider_direction",
+    "slider_target_x",
+    "slider_target_y",
+    "bumper_mount_x",
+    "bumper_mount_y",
+    "bumper_mount_azimuth",
     "contact_friction",
     "wall_distance",
 }
 
 
 def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roller: int) -> Parameters:
-    p = Parameters(bumper_kind=kind, bumper_mount=mount, latch_model=latch, roller_model=roller)
+    p = Parameters(bumper_kind=kind, bumper_mount=mount, bumper_latch_model=latch, roller_model=roller)
     for f in fields(p):
         if f.type == "float" and f.name not in _NOT_SCALED and not f.name.startswith("fault"):
             setattr(p, f.name, getattr(p, f.name) * rng.uniform(0.5, 2.0))
     p.roller_elastic_fraction = rng.uniform(0.1, 0.9)
     p.slider_damping = rng.uniform(0.0, 3.0)
-    p.gear_stiction = p.gear_coulomb * rng.uniform(1.0, 1.5)
+    p.drivetrain_gear_stiction = p.drivetrain_gear_coulomb * rng.uniform(1.0, 1.5)
     p.contact_friction = rng.uniform(0.0, 0.6)
     p.wheel_load = rng.uniform(0.5, 1.5, 3).tolist()
     p.roller_presliding_stiffness = rng.uniform(1.0e4, 6.0e4, 3).tolist()
@@ -46,14 +46,14 @@ def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roll
         p.wheel_traction[rng.integers(3)] = 0.0
     p.slider_present = int(rng.random() > 0.05)
     p.rope_attached = int(rng.random() > 0.2)
-    p.rail_direction, p.mount_azimuth = rng.uniform(-math.pi, math.pi, 2)
-    p.target_x, p.target_y = rng.uniform(-1.0, 1.0, 2)
-    p.mount_x, p.mount_y = rng.uniform(-0.3, 0.3, 2)
+    p.slider_direction, p.bumper_mount_azimuth = rng.uniform(-math.pi, math.pi, 2)
+    p.slider_target_x, p.slider_target_y = rng.uniform(-1.0, 1.0, 2)
+    p.bumper_mount_x, p.bumper_mount_y = rng.uniform(-0.3, 0.3, 2)
     p.wall_present = int(rng.random() < 0.3)
     p.contact_height = rng.uniform(0.0, 2.0 * p.wheel_radius)
     p.outline_body, p.outline_wheels = ((1, 0), (1, 1), (0, 1))[rng.choice(3, p=(0.6, 0.2, 0.2))]
     if not (kind != KIND_NONE and mount == MOUNT_ROBOT):
-        p.nose_shape = int(rng.random() < 0.3)
+        p.contact_nose_shape = int(rng.random() < 0.3)
     if rng.random() < 0.7:  # else the triangle
         angles = np.sort(rng.uniform(0.0, 2.0 * math.pi, rng.integers(5, 17)))
         angles[:3] = 0.0, 2.1, 4.2  # the centre stays inside
@@ -77,7 +77,7 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
     x[12:15] = rng.uniform(-20.0, 20.0, 3)
     x[6:9] = x[12:15] + rng.normal(0.0, 0.01, 3)
     x[9:12] = np.where(np.array(modes.gear) == 0, 0.0, rng.normal(0.0, 3.0, 3))
-    level = p.roller_torque / p.roller_radius / np.array(p.roller_presliding_stiffness)
+    level = p.roller_coulomb_torque / p.roller_radius / np.array(p.roller_presliding_stiffness)
     x[15:18] = level * rng.uniform(-1.2, 1.2, 3)
     if rng.random() < 0.3:  # near rest: within the bristle's elastic range
         x[3:6] *= 1e-3
@@ -87,7 +87,7 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
             x[20], x[21] = x[18] + rng.normal(0.0, 3e-3), x[19] + rng.normal(0.0, 0.05)
         if not r.plate_locked(modes):
             x[22], x[23] = (
-                rng.choice([rng.uniform(-2e-3, 2e-3), rng.uniform(0.0, 1.2 * p.travel)]),
+                rng.choice([rng.uniform(-2e-3, 2e-3), rng.uniform(0.0, 1.2 * p.bumper_travel)]),
                 rng.normal(0.0, 0.5),
             )
     # Bring the robot to where the nose just touches it, from 5 mm short to 20 mm deep.
@@ -96,7 +96,7 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
     _, _, _, _, out_x, out_y = r.plate(x)
     if r.on_robot:
         plate = np.array(r.plate(x)[0:2])
-        away = p.nose_radius - depth
+        away = p.contact_nose_radius - depth
         side = rng.normal(0.0, 0.1)
         wanted = np.array([nose_x - away * out_x - side * out_y, nose_y - away * out_y + side * out_x])
         x[0:2] += wanted - plate
@@ -115,7 +115,7 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
             touch = corner
         else:
             touch = corner + rng.random() * along
-        centre = touch + (p.nose_radius - depth) * normal
+        centre = touch + (p.contact_nose_radius - depth) * normal
         ct, st = math.cos(x[2]), math.sin(x[2])
         x[0] = nose_x - (ct * centre[0] - st * centre[1])
         x[1] = nose_y - (st * centre[0] + ct * centre[1])
@@ -130,7 +130,7 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
 def description(r: Reference, modes: Modes) -> str:
     p = r.p
     kind = {KIND_NONE: "none", KIND_MAGNETIC: "magnetic"}.get(p.bumper_kind, "spring")
-    latch = "idealised" if p.latch_model == LATCH_IDEALISED else "continuous"
+    latch = "idealised" if p.bumper_latch_model == LATCH_IDEALISED else "continuous"
     mount = "robot" if p.bumper_mount == MOUNT_ROBOT else "slider"
     return (
         f"{kind} {latch} on {mount}, roller {p.roller_model}, traction {p.wheel_traction}, "

@@ -41,7 +41,7 @@ def test_energy_balance_closes(library, name, rtol, atol, bound):
     residual = run.states[:, 24] - run.states[:, 25] - (np.array(stored) - stored[0])
     turned_over = run.states[-1, 25] if not reference.p.wall_present else 5.0 * run.states[-1, 25]  # bounces five times
     assert turned_over > 0.1  # J
-    kinked = reference.p.nose_shape or reference.p.outline_wheels
+    kinked = reference.p.contact_nose_shape or reference.p.outline_wheels
     assert np.abs(residual).max() < (KINKED[rtol, atol, bound] if kinked else bound) * turned_over
 
 
@@ -56,7 +56,7 @@ def test_the_velocity_term_does_no_work(library):
         x[0:6] = rng.normal(0.0, 2.0, 6)
         rate = Plant(library, p).rhs(x, Inputs(), Modes())
         wheels = 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
-        turning = wheels / (p.mass + wheels) * x[5]
+        turning = wheels / (p.base_mass + wheels) * x[5]
         speed = np.hypot(x[3], x[4])
         # Some ten operations on numbers of this size.
         assert rate[3:6] == pytest.approx([-turning * x[4], turning * x[3], 0.0], abs=1e-13 * (1.0 + speed * abs(x[5])))
@@ -87,13 +87,13 @@ def test_free_spinning_base_keeps_its_energy(library):
 def test_slider_momentum_is_the_contact_impulse(library, name):
     """Rope off, rail smooth: along the rail the contact is the slider's only force."""
     reference, x, modes, inputs = collision(COLLISIONS[name])
-    p = replace(reference.p, rope_attached=0, slider_friction=0.0, slider_damping=0.0, rail_direction=0.2)
+    p = replace(reference.p, rope_attached=0, slider_friction=0.0, slider_damping=0.0, slider_direction=0.2)
     x[20:22], modes.rope_taut = 0.0, 0
     run = Plant(library, p).simulate(x, modes, np.linspace(0.0, 0.6, 61), inputs)
     s = run.states
-    plate = 0.0 if p.bumper_mount == MOUNT_ROBOT else p.plate_mass * (p.bumper_kind != 0)
+    plate = 0.0 if p.bumper_mount == MOUNT_ROBOT else p.bumper_plate_mass * (p.bumper_kind != 0)
     momentum = (p.slider_mass - plate) * s[:, 19] + plate * (s[:, 19] - s[:, 23])
-    impulse = s[:, 26] * np.cos(p.rail_direction) + s[:, 27] * np.sin(p.rail_direction)
+    impulse = s[:, 26] * np.cos(p.slider_direction) + s[:, 27] * np.sin(p.slider_direction)
     # Both are integrated with the same errors: only rounding and the relatching's plastic impact
     # could part them.
     assert impulse[-1] > 1.0
@@ -104,15 +104,15 @@ def test_slider_momentum_is_the_contact_impulse(library, name):
 def test_robot_momentum_is_the_contact_impulse(library, mount):
     """Rolling freely, hit through its centre: base, wheels, rollers (and plate) take the whole
     impulse."""
-    p = replace(disconnected(Parameters(bumper_mount=mount)), slider_present=1, run_up=0.006)
-    p = replace(p, target_x=-0.25 if mount == MOUNT_ROBOT else p.target_x)
+    p = replace(disconnected(Parameters(bumper_mount=mount)), slider_present=1, slider_run_up=0.006)
+    p = replace(p, slider_target_x=-0.25 if mount == MOUNT_ROBOT else p.slider_target_x)
     reference = Reference(p)
     x = np.zeros(STATES)
     x[19] = x[21] = 0.5
     run = Plant(library, p).simulate(x, Modes(rope_taut=1), np.linspace(0.0, 0.6, 61), [(0.0, Inputs())])
     s = run.states
-    moved = p.mass + 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
-    momentum = moved * s[:, 3] + (p.plate_mass * (s[:, 3] + s[:, 23]) if reference.on_robot else 0.0)
+    moved = p.base_mass + 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
+    momentum = moved * s[:, 3] + (p.bumper_plate_mass * (s[:, 3] + s[:, 23]) if reference.on_robot else 0.0)
     assert s[-1, 26] > 1.0
     assert np.abs(momentum - s[:, 26]).max() < 1e-8 * s[-1, 26]
 
@@ -132,7 +132,7 @@ def test_impulse_and_spin_are_the_integrals_of_the_contact_force(library):
     weights = np.ones(len(fx))
     weights[1:-1:2], weights[2:-1:2] = 4.0, 2.0
     integral = [step / 3.0 * weights @ force for force in (fx, fy, moment)]
-    inertia = p.yaw_inertia + 3.0 * p.wheel_inertia * (p.wheel_distance / p.wheel_radius) ** 2
+    inertia = p.base_yaw_inertia + 3.0 * p.wheel_inertia * (p.wheel_distance / p.wheel_radius) ** 2
     end = run.states[-1]
     assert np.all(np.abs(end[[26, 27, 5]]) > [1.0, 0.01, 0.05])
     # The force has a corner where the contact closes: Simpson errs there by step^2 times its slope

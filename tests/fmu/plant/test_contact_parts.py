@@ -10,7 +10,7 @@ import pytest
 from kkt_reference import CONTACT, KIND_NONE, NOSE_EDGE, STATES, WALL, Inputs, Modes, Parameters
 from plant_probe import Plant
 
-STILL = Parameters(bumper_kind=KIND_NONE, rope_attached=0, run_up=0.0, slider_friction=0.0)
+STILL = Parameters(bumper_kind=KIND_NONE, rope_attached=0, slider_run_up=0.0, slider_friction=0.0)
 SPACING = 1e-4  # m, of the sampled outline
 
 
@@ -57,20 +57,20 @@ def inside_body(p: Parameters, q: np.ndarray) -> bool:
 
 @pytest.mark.parametrize(("body", "height"), [(1, 0.12), (1, 0.1016), (0, 0.02), (0, 0.18)])
 def test_closest_point_of_body_and_wheels_against_a_sampled_outline(library, body: int, height: float) -> None:
-    p = replace(STILL, outline_wheels=1, outline_body=body, contact_height=height, nose_radius=0.02)
+    p = replace(STILL, outline_wheels=1, outline_body=body, contact_height=height, contact_nose_radius=0.02)
     samples, rng, wheels = sampled_sections(p), np.random.default_rng(3), 0
     for q in rng.uniform(-0.5, 0.5, (300, 2)):
         if rectangle(p, q) or (body and inside_body(p, q)):
             continue
-        plant = Plant(library, replace(p, target_x=q[0] + p.nose_radius, target_y=q[1]))
+        plant = Plant(library, replace(p, slider_target_x=q[0] + p.contact_nose_radius, slider_target_y=q[1]))
         x = np.zeros(STATES)
         depth = plant.indicators(x, Inputs(), Modes())[CONTACT]
         out = plant.outputs(x, Inputs(), Modes())
         point = np.array([out["contact_base_x"], out["contact_base_y"]])
         distances = np.linalg.norm(samples - q, axis=1)
         # Samples 0.1 mm apart: the sampled distance is too long by at most half of that.
-        assert p.nose_radius - depth == pytest.approx(distances.min(), abs=0.5 * SPACING)
-        assert np.linalg.norm(point - q) == pytest.approx(p.nose_radius - depth, abs=1e-12)
+        assert p.contact_nose_radius - depth == pytest.approx(distances.min(), abs=0.5 * SPACING)
+        assert np.linalg.norm(point - q) == pytest.approx(p.contact_nose_radius - depth, abs=1e-12)
         assert np.linalg.norm(samples - point, axis=1).min() < SPACING
         wheels += abs(np.hypot(*point) - p.wheel_distance) < 0.03
     assert wheels > 15  # else the body would have been tested alone
@@ -79,16 +79,16 @@ def test_closest_point_of_body_and_wheels_against_a_sampled_outline(library, bod
 def test_a_hand_on_the_floor_meets_the_wheel_not_the_body(library) -> None:
     """At 2 cm the wheel's cut is 2 sqrt(r^2 - (r - 2 cm)^2) long; a nose along the rolling direction meets its end."""
     height, gap = 0.02, 0.01
-    p = replace(STILL, outline_wheels=1, outline_body=0, contact_height=height, rail_direction=math.pi / 2.0)
+    p = replace(STILL, outline_wheels=1, outline_body=0, contact_height=height, slider_direction=math.pi / 2.0)
     half = math.sqrt(p.wheel_radius**2 - (p.wheel_radius - height) ** 2)
-    plant = Plant(library, replace(p, target_x=p.wheel_distance, target_y=-half - gap))
+    plant = Plant(library, replace(p, slider_target_x=p.wheel_distance, slider_target_y=-half - gap))
     assert plant.indicators(np.zeros(STATES), Inputs(), Modes())[CONTACT] == pytest.approx(-gap, abs=1e-12)
 
 
 def test_a_side_against_an_edge_is_held_at_both_ends(library) -> None:
     """Pressed 1 mm deep and straight: each corner of the side takes k times 1 mm, the moments cancel."""
     depth = 1e-3
-    p = replace(STILL, nose_shape=NOSE_EDGE, target_x=min(x for x, _ in STILL.outline) + depth)
+    p = replace(STILL, contact_nose_shape=NOSE_EDGE, slider_target_x=min(x for x, _ in STILL.outline) + depth)
     plant = Plant(library, p)
     modes = Modes(contact=1)
     out = plant.outputs(np.zeros(STATES), Inputs(), modes)
@@ -103,7 +103,7 @@ def test_a_side_against_an_edge_is_held_at_both_ends(library) -> None:
 
 
 def bounce(library, damping: float) -> tuple[Parameters, np.ndarray, list[tuple[float, int]], np.ndarray, np.ndarray]:
-    p = replace(STILL, slider_mass=5.0, wall_present=1, wall_distance=0.01, wall_damping=damping, run_up=1.0)
+    p = replace(STILL, slider_mass=5.0, wall_present=1, wall_distance=0.01, wall_damping=damping, slider_run_up=1.0)
     x = np.zeros(STATES)
     x[19] = -0.4
     times = np.linspace(0.0, 0.1, 10001)
@@ -134,7 +134,7 @@ def test_a_damped_wall_takes_what_it_dissipates(library) -> None:
 
 
 def test_without_a_wall_nothing_stops_the_slider(library) -> None:
-    p = replace(STILL, run_up=1.0)
+    p = replace(STILL, slider_run_up=1.0)
     x = np.zeros(STATES)
     x[19] = -0.4
     run = Plant(library, p).simulate(x, Modes(), np.array([0.0, 0.1]), [(0.0, Inputs())])

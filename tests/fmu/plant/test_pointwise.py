@@ -95,14 +95,14 @@ def test_the_random_states_reach_every_element():
             seen["contact, spinning"] += e["contact_normal"] > 0.0 and abs(x[5]) > 1.0
             seen["rope"] += e["tension"] > 0.0
             seen["slack"] += bool(p.slider_present and p.rope_attached and not modes.rope_taut)
-            seen["landed"] += bool(modes.landed and x[20] > p.drop_height)
+            seen["landed"] += bool(modes.landed and x[20] > p.rope_drop_height)
             seen["end stop"] += bool(modes.end_stop and x[22] < 0.0)
             seen["wall"] += bool(modes.walled and x[18] < -p.wall_distance)
             seen["wheels"] += bool(p.outline_wheels and e["contact_normal"] > 0.0)
-            seen["edge"] += bool(p.nose_shape and e["contact_normal"] > 0.0)
-            seen["bottom stop"] += bool(modes.bottom_stop and x[22] > p.travel)
+            seen["edge"] += bool(p.contact_nose_shape and e["contact_normal"] > 0.0)
+            seen["bottom stop"] += bool(modes.bottom_stop and x[22] > p.bumper_travel)
             seen["latched"] += bool(modes.latched)
-            seen["torque limit"] += max(map(abs, u.motor_torque)) > p.torque_limit
+            seen["torque limit"] += max(map(abs, u.motor_torque)) > p.drivetrain_torque_limit
             seen["stuck"] += 0 in modes.gear
             seen["sliding"] += any(modes.gear)
             seen["lifted wheel"] += 0.0 in p.wheel_traction
@@ -195,8 +195,8 @@ def test_outputs(library):
                     "contact_base_y": base.imag,
                 }
                 expected |= {
-                    "nose_x": nose[0] + p.nose_radius * reference.ex,
-                    "nose_y": nose[1] + p.nose_radius * reference.ey,
+                    "nose_x": nose[0] + p.contact_nose_radius * reference.ex,
+                    "nose_y": nose[1] + p.contact_nose_radius * reference.ey,
                 }
             for name, value in expected.items():
                 assert found[name] == pytest.approx(value, rel=TOLERANCE, abs=TOLERANCE), (
@@ -233,7 +233,7 @@ def test_initial_state_is_steady(library):
         motion = rng.uniform(-1.0, 1.0, 7)
         motion[6] = 0.0
         # At rest stuck rollers may be loaded, by up to half of what they bear.
-        bear = p.roller_torque / p.roller_radius / np.array(p.roller_presliding_stiffness)
+        bear = p.roller_coulomb_torque / p.roller_radius / np.array(p.roller_presliding_stiffness)
         offset = rng.uniform(-0.5, 0.5, 3) * bear if combination[1] == "rest" else np.zeros(3)
         motion[3:6] *= {"rest": 0.0, "moving": (1.0, 1.0, 0.0), "turning": (0.0, 0.0, 1.0)}[combination[1]]
         x, modes = plant.initial_state([*motion.tolist(), *offset.tolist()], Inputs())
@@ -248,7 +248,7 @@ def test_initial_state_is_steady(library):
         assert np.abs(rate[3:6]).max() < 1e-10
         assert np.abs(rate[15:18]).max() < 1e-10
         if p.rope_attached:  # the slider is let go; the weight hangs still on the pretensioned rope
-            assert e["tension"] == pytest.approx(p.hanging_mass * GRAVITY, rel=1e-12)
+            assert e["tension"] == pytest.approx(p.rope_hanging_mass * GRAVITY, rel=1e-12)
             assert np.abs(rate[20:22]).max() < 1e-10
         else:
             assert np.abs(rate[18:24]).max() < 1e-10

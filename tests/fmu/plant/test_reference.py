@@ -26,7 +26,7 @@ def test_free_spinning_base_moves_as_the_closed_form_says():
     work."""
     p = disconnected(Parameters())
     kappa = 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
-    kappa /= p.mass + kappa
+    kappa /= p.base_mass + kappa
     x = np.zeros(STATES)
     x[3:6] = 0.3, -0.2, 2.0
     end = Reference(p).simulate(x, Modes(), np.array([0.0, 3.0]), [(0.0, Inputs())]).states[-1]
@@ -62,7 +62,7 @@ def test_static_push_is_shared_between_wheels_and_rollers():
 def test_unloaded_state_is_an_equilibrium():
     for mount in (MOUNT_SLIDER, MOUNT_ROBOT):
         for kind in (KIND_NONE, KIND_SPRING, KIND_MAGNETIC):
-            p = Parameters(bumper_mount=mount, bumper_kind=kind, rope_attached=0, latch_model=LATCH_IDEALISED)
+            p = Parameters(bumper_mount=mount, bumper_kind=kind, rope_attached=0, bumper_latch_model=LATCH_IDEALISED)
             r, x, modes = still(p)
             assert np.abs(r.rhs(0.0, x, Inputs(), modes)).max() < 1e-12
 
@@ -103,12 +103,12 @@ def test_closest_point_against_a_finely_sampled_outline():
 
 
 def test_relatching_conserves_momentum_and_accounts_for_its_loss():
-    p = Parameters(bumper_kind=KIND_MAGNETIC, latch_model=LATCH_IDEALISED, rope_attached=0)
+    p = Parameters(bumper_kind=KIND_MAGNETIC, bumper_latch_model=LATCH_IDEALISED, rope_attached=0)
     r = Reference(p)
     x = np.zeros(STATES)
     x[19], x[23] = 0.2, -0.6
     after = r.relatch(x)
-    momentum = (p.slider_mass - p.plate_mass) * 0.2 + p.plate_mass * 0.8
+    momentum = (p.slider_mass - p.bumper_plate_mass) * 0.2 + p.bumper_plate_mass * 0.8
     assert after[19] * p.slider_mass == pytest.approx(momentum, rel=1e-12)
-    reduced = p.plate_mass * (p.slider_mass - p.plate_mass) / p.slider_mass
+    reduced = p.bumper_plate_mass * (p.slider_mass - p.bumper_plate_mass) / p.slider_mass
     assert after[25] == pytest.approx(0.5 * reduced * 0.6**2, rel=1e-12)

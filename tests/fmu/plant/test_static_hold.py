@@ -24,8 +24,8 @@ SETTLED_S, HELD_S = 5.0, 10.0
 # Stiction equal to Coulomb friction and the Stribeck speed as in the robot file.
 ROBOT = Parameters(
     slider_present=0,
-    gear_coulomb=2.8,
-    gear_stiction=2.8,
+    drivetrain_gear_coulomb=2.8,
+    drivetrain_gear_stiction=2.8,
     roller_stribeck_speed=0.0025,
     roller_presliding_stiffness=[2.2e4, 2.6e4, 3.0e4],
 )
@@ -100,5 +100,5 @@ def test_holds_at_its_resonance(library, direction, frequency):
 def test_without_enough_stiction_it_does_not_hold(library):
     """10 N make 0.68 N m at a wheel through the centre: 0.1 N m of stiction cannot hold that, and
     the test sees it."""
-    weak = replace(ROBOT, gear_coulomb=0.1, gear_stiction=0.1)
+    weak = replace(ROBOT, drivetrain_gear_coulomb=0.1, drivetrain_gear_stiction=0.1)
     assert motion(library, weak, *SIDES[1], DITHERS["none"]) > 1e-3

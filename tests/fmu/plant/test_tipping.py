@@ -28,22 +28,29 @@ from tipping_reference import (
 )
 
 FLOOR, TILT = 9, 12
-ROBOT = Parameters(tipping=1, bumper_kind=KIND_NONE, rope_attached=0, contact_height=0.45)
+ROBOT = Parameters(base_tipping=1, bumper_kind=KIND_NONE, rope_attached=0, contact_height=0.45)
 # Nothing rolls, slides or slips: only tipping is left.
-HELD = replace(ROBOT, slider_present=0, gear_coulomb=500.0, gear_stiction=500.0, roller_torque=20.0, grip_friction=10.0)
+HELD = replace(
+    ROBOT,
+    slider_present=0,
+    drivetrain_gear_coulomb=500.0,
+    drivetrain_gear_stiction=500.0,
+    roller_coulomb_torque=20.0,
+    wheel_grip_friction=10.0,
+)
 
 
 def random_case(rng: np.random.Generator) -> tuple[Parameters, np.ndarray, Inputs, np.ndarray]:
     """Within some degrees and millimetres of the floor, the nose on the outline, every mode on or off."""
     p = replace(
         ROBOT,
-        com_height=rng.uniform(0.1, 0.6),
-        tilt_inertia=rng.uniform(1.0, 3.0),
+        base_com_height=rng.uniform(0.1, 0.6),
+        base_tilt_inertia=rng.uniform(1.0, 3.0),
         contact_height=rng.uniform(0.0, 0.6),
         push_height=rng.uniform(0.0, 0.6),
         contact_friction=rng.uniform(0.0, 0.5),
         wheel_inertia=rng.uniform(0.001, 0.02),
-        rail_direction=rng.uniform(-3.0, 3.0),
+        slider_direction=rng.uniform(-3.0, 3.0),
         roller_model=int(rng.integers(2)),
         slider_present=int(rng.random() < 0.9),
     )
@@ -67,7 +74,7 @@ def random_case(rng: np.random.Generator) -> tuple[Parameters, np.ndarray, Input
     k = int(rng.integers(len(part)))
     a, b = np.array(part[k]), np.array(part[(k + 1) % len(part)])
     normal = np.array([b[1] - a[1], a[0] - b[0]]) / np.linalg.norm(b - a)
-    local = a + rng.random() * (b - a) + (p.nose_radius - rng.uniform(-2e-3, 10e-3)) * normal
+    local = a + rng.random() * (b - a) + (p.contact_nose_radius - rng.uniform(-2e-3, 10e-3)) * normal
     ct, st = math.cos(x[2]), math.sin(x[2])
     nose = np.array(r.planar.nose(x)[0:2])
     axis = p.contact_height * np.array([math.sin(x[PITCH]) * math.cos(x[ROLL]), -math.sin(x[ROLL])])
@@ -126,7 +133,9 @@ def residual(plant: TippingPlant, run: TippingRun, u: Inputs) -> np.ndarray:
 
 
 def test_energy_closes_through_a_collision_that_lifts_wheels(library: ctypes.CDLL) -> None:
-    p = replace(ROBOT, slider_mass=9.08, target_y=0.05, run_up=0.006, contact_height=0.55, contact_friction=0.1)
+    p = replace(
+        ROBOT, slider_mass=9.08, slider_target_y=0.05, slider_run_up=0.006, contact_height=0.55, contact_friction=0.1
+    )
     plant = TippingPlant(library, p)
     x, modes = plant.start([0.0] * 6 + [1.0])
     times = np.linspace(0.0, 0.6, 301)
@@ -142,7 +151,7 @@ def test_it_stands_at_rest(library: ctypes.CDLL) -> None:
     plant = TippingPlant(library, replace(ROBOT, slider_present=0))
     x, modes = plant.start()
     out = plant.tipping_outputs(x, Inputs(), modes)
-    assert [out[f"load {i}"] for i in range(3)] == pytest.approx([ROBOT.mass * GRAVITY / 3.0] * 3, rel=1e-12)
+    assert [out[f"load {i}"] for i in range(3)] == pytest.approx([ROBOT.base_mass * GRAVITY / 3.0] * 3, rel=1e-12)
     assert out["margin"] == pytest.approx(1.0, abs=1e-12)
     assert np.abs(plant.tipping_rhs(x, Inputs(), modes)).max() < 1e-10
 
@@ -174,19 +183,19 @@ def test_the_front_wheel_lifts_where_force_times_height_is_weight_times_half_the
     """
     p = replace(HELD, push_height=height)
     plant = TippingPlant(library, p)
-    limit = p.mass * GRAVITY * 0.5 * p.wheel_distance / height
+    limit = p.base_mass * GRAVITY * 0.5 * p.wheel_distance / height
     below = tilted(plant, 0.9 * limit)
     assert below.events == []
     end = below.states[-1]
     out = plant.tipping_outputs(end, Inputs(), below.modes[-1])
     # The same statics of the leaning robot, exactly: moments about the line through the two rear wheels' lowest points.
-    shift = -p.com_height * math.sin(end[PITCH])
+    shift = -p.base_com_height * math.sin(end[PITCH])
     lean_height = height * math.cos(end[PITCH])
-    expected = (p.mass * GRAVITY * (0.5 * p.wheel_distance - shift) - 0.9 * limit * lean_height) / (
+    expected = (p.base_mass * GRAVITY * (0.5 * p.wheel_distance - shift) - 0.9 * limit * lean_height) / (
         1.5 * p.wheel_distance
     )
     # Sinking in of the wheels (a few mm) against heights and distances, and what still rings of 100 N steps.
-    assert out["load 0"] == pytest.approx(expected, abs=0.01 * p.mass * GRAVITY / 3.0)
+    assert out["load 0"] == pytest.approx(expected, abs=0.01 * p.base_mass * GRAVITY / 3.0)
     above = tilted(plant, 1.1 * limit)
     assert above.events[0][1] == FLOOR
     assert (above.events[-1][1], above.modes[-1, 7]) == (TILT, 1.0)
@@ -244,7 +253,7 @@ def rearing(plant: TippingPlant, margin: float) -> tuple[np.ndarray, np.ndarray]
         q, _ = reference.coordinates(y)
         rear = np.array([-0.5 * p.wheel_distance, 0.0, 0.0])
         # The point at the floor between the rear wheels stands still; they bear the weight.
-        y[HEAVE] = -0.5 * p.wheel_distance * math.sin(q[4]) - 0.5 * p.mass * GRAVITY / p.floor_contact_stiffness
+        y[HEAVE] = -0.5 * p.wheel_distance * math.sin(q[4]) - 0.5 * p.base_mass * GRAVITY / p.wheel_floor_stiffness
         ct, st = math.cos(q[4]), math.sin(q[4])
         y[3], y[HEAVE_RATE] = -rate * (ct * rear[2] - st * rear[0]), rate * (ct * rear[0] + st * rear[2])
         y[SPIN : SPIN + 3] = [
@@ -296,7 +305,7 @@ def test_a_wheel_that_lifts_forgets_its_bristles_and_one_that_lands_keeps_the_re
 
 def test_a_trajectory_with_lifting_wheels_against_lagrange_in_scipy(library: ctypes.CDLL) -> None:
     """Pushed hard off the centre for 60 ms, gears held. Both integrate to 1e-9, anew from each lift and touch-down."""
-    p = replace(HELD, grip_stiffness=2.0e5, floor_contact_stiffness=5.0e4, push_height=0.6)
+    p = replace(HELD, wheel_grip_stiffness=2.0e5, wheel_floor_stiffness=5.0e4, push_height=0.6)
     plant, reference = TippingPlant(library, p), TippingReference(p)
     x, modes = plant.start()
     inputs = [(0.0, Inputs(push_force=(-350.0, 60.0), push_point=(0.3, 0.05))), (0.06, Inputs())]
@@ -346,12 +355,12 @@ def test_on_stiff_wheels_with_everything_at_floor_level_it_is_the_planar_robot(l
 
     def errors(stiffness: float) -> np.ndarray:
         p = replace(
-            ROBOT, com_height=1e-3, contact_height=1e-3, roller_inertia=1e-12, run_up=0.006, target_y=0.05,
-            grip_friction=100.0,
-            floor_contact_stiffness=stiffness, grip_stiffness=stiffness, grip_damping=2e-4 * stiffness,
+            ROBOT, base_com_height=1e-3, contact_height=1e-3, roller_inertia=1e-12, slider_run_up=0.006,
+            slider_target_y=0.05, wheel_grip_friction=100.0,
+            wheel_floor_stiffness=stiffness, wheel_grip_stiffness=stiffness, wheel_grip_damping=2e-4 * stiffness,
         )  # fmt: skip
         times = np.linspace(0.0, 0.25, 126)
-        tipping, planar = TippingPlant(library, p), Plant(library, replace(p, tipping=0))
+        tipping, planar = TippingPlant(library, p), Plant(library, replace(p, base_tipping=0))
         x, modes = tipping.start([0.0] * 6 + [0.5])
         full = tipping.run(x, modes, times, [(0.0, Inputs())]).states
         start = np.zeros(28)

@@ -56,7 +56,7 @@ def test_the_collisions_are_collisions():
             assert [i for _, i in run.events].count(BUMPER) == 1 + ("closes again" in name), name
         if reference.p.wall_present:
             assert [i for _, i in run.events].count(WALL) > 3, name
-        if reference.p.nose_shape:  # both ends of a side came to press, each by itself
+        if reference.p.contact_nose_shape:  # both ends of a side came to press, each by itself
             touching = [
                 sum(depth > 0.0 for depth, *_ in reference.touching(s))
                 for s, m in zip(run.states, run.modes, strict=True)

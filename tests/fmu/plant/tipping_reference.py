@@ -56,14 +56,14 @@ class TippingReference:
         self.p = p
         self.planar = Reference(p)
         self.axles = [np.array([math.cos(a), math.sin(a), 0.0]) for a in AZIMUTHS]
-        without_spin = p.tilt_inertia - 1.5 * p.wheel_inertia
-        self.inertia = np.diag([without_spin, without_spin, p.yaw_inertia])
+        without_spin = p.base_tilt_inertia - 1.5 * p.wheel_inertia
+        self.inertia = np.diag([without_spin, without_spin, p.base_yaw_inertia])
 
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
         p = self.p
-        centre = point_rates(q, np.array([0.0, 0.0, p.com_height]))
+        centre = point_rates(q, np.array([0.0, 0.0, p.base_com_height]))
         w = rotation_rates(q)
-        m = p.mass * centre.T @ centre + w.T @ self.inertia @ w
+        m = p.base_mass * centre.T @ centre + w.T @ self.inertia @ w
         for i, axle in enumerate(self.axles):
             spin = -(axle @ w)  # in space: against the body, less what the body turns about the axle
             spin[6 + i] += 1.0
@@ -85,8 +85,8 @@ class TippingReference:
     def energy(self, x: np.ndarray) -> float:
         """Kinetic and of gravity, of body and wheels."""
         q, v = self.coordinates(x)
-        height = q[2] + (turn(q) @ np.array([0.0, 0.0, self.p.com_height]))[2]
-        return float(0.5 * v @ self.mass_matrix(q) @ v + self.p.mass * GRAVITY * height)
+        height = q[2] + (turn(q) @ np.array([0.0, 0.0, self.p.base_com_height]))[2]
+        return float(0.5 * v @ self.mass_matrix(q) @ v + self.p.base_mass * GRAVITY * height)
 
     def lowest(self, q: np.ndarray, i: int) -> np.ndarray:
         """Lowest point of a wheel's rim, body axes: where the rim's height is stationary."""
@@ -98,7 +98,7 @@ class TippingReference:
 
     def grip_rate(self, i: int, z: float, slip: float) -> float:
         p = self.p
-        share = p.grip_stiffness * abs(z) / (p.grip_friction * p.mass * GRAVITY / 3.0)
+        share = p.wheel_grip_stiffness * abs(z) / (p.wheel_grip_friction * p.base_mass * GRAVITY / 3.0)
         creep = 0.0
         if z * slip > 0.0:
             y = min(1.0, max(0.0, (share - p.roller_elastic_fraction) / (1.0 - p.roller_elastic_fraction)))
@@ -122,7 +122,13 @@ class TippingReference:
         rates = point_rates(q, axis)[0:2]
         rates[:, 3] += -(st * lx + ct * ly), ct * lx - st * ly
         relative = rates @ v - np.array([ux, uy])
-        return p.nose_radius - distance, normal @ relative, relative @ np.array([-normal[1], normal[0]]), normal, rates
+        return (
+            p.contact_nose_radius - distance,
+            normal @ relative,
+            relative @ np.array([-normal[1], normal[0]]),
+            normal,
+            rates,
+        )
 
     def rhs(
         self, x: np.ndarray, u: Inputs, gear: list[int], contact: int, on_floor: list[int]
@@ -132,9 +138,9 @@ class TippingReference:
         q, v = self.coordinates(x)
         r = turn(q)
         force = np.zeros(9)
-        force[2] -= p.mass * GRAVITY
+        force[2] -= p.base_mass * GRAVITY
         # Gravity acts at the centre of mass.
-        force[3:6] -= p.mass * GRAVITY * point_rates(q, np.array([0.0, 0.0, p.com_height]))[2, 3:6]
+        force[3:6] -= p.base_mass * GRAVITY * point_rates(q, np.array([0.0, 0.0, p.base_com_height]))[2, 3:6]
         work = loss = 0.0
         rate = np.zeros(STATES)
         loads, depths = [], []
@@ -151,27 +157,25 @@ class TippingReference:
             height = q[2] + (r @ point)[2]
             depths.append(-height)
             load = (
-                one_sided(p.floor_contact_stiffness, -height, -velocity[2], p.floor_contact_damping)
-                if on_floor[i]
-                else 0.0
+                one_sided(p.wheel_floor_stiffness, -height, -velocity[2], p.wheel_floor_damping) if on_floor[i] else 0.0
             )
-            loss += (load - (p.floor_contact_stiffness * -height if on_floor[i] else 0.0)) * -velocity[2]
+            loss += (load - (p.wheel_floor_stiffness * -height if on_floor[i] else 0.0)) * -velocity[2]
             loads.append(load)
-            share = load / (p.mass * GRAVITY / 3.0)
+            share = load / (p.base_mass * GRAVITY / 3.0)
             friction, bristle_rate = self.planar.roller(i, x[15 + i], velocity @ radial)
             grip_rate = self.grip_rate(i, x[GRIP + i], velocity @ rolling)
-            traction = -share * (p.grip_stiffness * x[GRIP + i] + p.grip_damping * grip_rate)
+            traction = -share * (p.wheel_grip_stiffness * x[GRIP + i] + p.wheel_grip_damping * grip_rate)
             at_floor = traction * rolling - share * friction * radial + np.array([0.0, 0.0, load])
             force += rates.T @ at_floor
             loss -= traction * (velocity @ rolling) - share * friction * (velocity @ radial)
             torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (x[9 + i] - v[6 + i])
             force[6 + i] += torque
             loss += p.drivetrain_damping * (x[9 + i] - v[6 + i]) ** 2
-            drive = max(-p.torque_limit, min(p.torque_limit, u.motor_torque[i]))
+            drive = max(-p.drivetrain_torque_limit, min(p.drivetrain_torque_limit, u.motor_torque[i]))
             rate[15 + i], rate[GRIP + i] = on_floor[i] * bristle_rate, on_floor[i] * grip_rate
             rate[6 + i], rate[12 + i] = x[9 + i], v[6 + i]
-            held = p.gear_coulomb * gear[i] + p.gear_viscous * x[9 + i]
-            rate[9 + i] = (drive - torque - held) / p.motor_inertia if gear[i] else 0.0
+            held = p.drivetrain_gear_coulomb * gear[i] + p.drivetrain_gear_viscous * x[9 + i]
+            rate[9 + i] = (drive - torque - held) / p.drivetrain_motor_inertia if gear[i] else 0.0
             work += drive * x[9 + i]
             loss += held * x[9 + i]
         push = np.array([*u.push_force, 0.0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import fmpy
@@ -137,6 +138,75 @@ def test_an_element_must_not_take_anothers_reference(tmp_path: Path) -> None:
     text = table(variable(reference="3", count="3")) + "[[variable]]\n" + variable(name='"third"')
     result = generate(tmp_path, text)
     assert "variable third: reference: 5 is taken by group.second[2]" in result.stderr
+
+
+SHARED = table(variable()).replace("[model]", '[model]\nshares = "theirs.toml"') + "[[variable]]\n"
+
+
+def shared(folder: Path, entry: str) -> subprocess.CompletedProcess[str]:
+    """Generated from a table whose last entry is shared with one that has `group.third`."""
+    theirs = table(variable(name='"group.third"', reference="7", description='"Theirs"'))
+    (folder / "theirs.toml").write_text(theirs)
+    return generate(folder, SHARED + entry)
+
+
+def test_a_shared_entry_is_the_other_tables_but_for_its_reference_and_what_it_states(tmp_path: Path) -> None:
+    assert shared(tmp_path, 'reference = 9\nshared = "group.third"\nmaximum = 1.5').returncode == 0
+    own = table(variable()) + "[[variable]]\n"
+    own += variable(name='"group.third"', reference="9", description='"Theirs"', maximum="1.5")
+    alone = tmp_path / "alone"
+    alone.mkdir()
+    assert generate(alone, own).returncode == 0
+    for name in ("lag_variables.cpp", "fmi3/modelDescription.xml"):  # the token included
+        assert (tmp_path / "out" / name).read_text() == (alone / "out" / name).read_text()
+    written_out = tomllib.loads((tmp_path / "out" / "lag.variables.toml").read_text())
+    assert written_out == tomllib.loads(own)
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ('reference = 9\nshared = "group.fourth"', "group.fourth: shared: 'group.fourth', but must be a variable"),
+        ('shared = "group.third"', "group.third: reference: None, but must be a whole number"),
+        ('reference = 9\nshared = "group.third"\nunit = "N"', "group.third: unit: not in an entry with `shared`"),
+        ('reference = 9\nshared = "group.third"\nmaximum = 0.5', "group.third: start: 1.0 is outside 0.0 to 0.5"),
+    ],
+)
+def test_a_wrong_shared_entry_is_named(tmp_path: Path, entry: str, message: str) -> None:
+    result = shared(tmp_path, entry)
+    assert result.returncode == 1
+    assert f"variables.toml: variable {message}" in result.stderr
+
+
+def plant_header(folder: Path) -> str:
+    options = ["--table", folder / "variables.toml", "--robot", folder / "robot.toml", "--out", folder / "plant.hpp"]
+    command = [sys.executable, "-m", "giveway_codegen", "plant-parameters", *options]
+    subprocess.run(command, cwd=ROOT / "fmu" / "codegen", check=True)
+    return (folder / "plant.hpp").read_text()
+
+
+def test_a_plant_parameter_has_its_variables_name_and_the_type_that_the_table_states(tmp_path: Path) -> None:
+    text = table(variable(plant='"divisor"', description='"Speed"')) + "[[variable]]\n"
+    text += variable(name='"group.sides"', reference="20", count="3", plant='"number"') + "\n[[variable]]\n"
+    choice = {"type": '"integer"', "unit": None, "start": "1", "minimum": "0", "maximum": "2"}
+    text += variable(name='"group.kind"', reference="30", plant='"BumperKind"', **choice)
+    assert generate(tmp_path, text).returncode == 0
+    header = plant_header(tmp_path)
+    assert "math::Divisor<T> group_second; // Speed [m/s]" in header
+    assert "std::array<T, 3> group_sides;" in header
+    assert "BumperKind group_kind;" in header
+    assert header.count("    visit(") == 3
+    reader = (tmp_path / "out" / "lag_plant_parameters.hpp").read_text()
+    assert "p.group_second = v.group_second;" in reader
+    assert "std::copy_n(v.group_sides, p.group_sides.size(), p.group_sides.begin());" in reader
+    assert "p.group_kind = static_cast<plant::BumperKind>(v.group_kind);" in reader
+
+
+@pytest.mark.parametrize("plant", ['"whole"', '"BumperKind"', "true"])
+def test_a_plant_parameters_type_has_to_fit_the_variables(tmp_path: Path, plant: str) -> None:
+    result = generate(tmp_path, table(variable(plant=plant)))
+    assert "variable group.second: plant: " in result.stderr
+    assert "must be number or divisor, and of a parameter" in result.stderr
 
 
 def test_wrong_files_and_models_are_named(tmp_path: Path) -> None:

@@ -1,0 +1,79 @@
+"""C++: the plant's parameters as the variable tables state them, and how they get their values."""
+
+from __future__ import annotations
+
+from .table import Group, Table
+
+__all__ = ["parameters_header", "reader_header"]
+
+_TYPES = {"number": "T", "divisor": "math::Divisor<T>", "whole": "std::int32_t"}
+
+
+def _member(group: Group) -> str:
+    element = _TYPES.get(group.plant or "", group.plant)
+    kind = element if group.count is None else f"std::array<{element}, {group.count}>"
+    unit = f" [{group.unit}]" if group.unit else ""
+    return f"    {kind} {group.identifier}; // {group.description}{unit}"
+
+
+def parameters_header(table: Table) -> str:
+    """The struct of all plant parameters of the testbed's table, and a walk over them."""
+    groups = table.plant_parameters
+    members = "\n".join(_member(group) for group in groups)
+    visits = "\n".join(f'    visit("{group.identifier}", structs.{group.identifier}...);' for group in groups)
+    return f"""// Generated from the variable table of {table.name}; do not edit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "choices.hpp"
+#include "scalar.hpp"
+
+namespace giveway::plant {{
+
+// SI units.
+template <class T> struct TableParameters {{
+{members}
+}};
+
+// visit(name, member of each struct ...) for one parameter after the other.
+template <class Visitor, class... Structs> constexpr void visit_parameters(Visitor&& visit, Structs&... structs) {{
+{visits}
+}}
+
+}} // namespace giveway::plant
+"""
+
+
+def _assignment(group: Group) -> str:
+    name = group.identifier
+    if group.count is not None:
+        return f"    std::copy_n(v.{name}, p.{name}.size(), p.{name}.begin());"
+    if group.plant in ("number", "divisor"):
+        return f"    p.{name} = v.{name};"
+    target = _TYPES.get(group.plant or "", f"plant::{group.plant}")
+    return f"    p.{name} = static_cast<{target}>(v.{name});"
+
+
+def reader_header(table: Table) -> str:
+    """How the plant parameters that a model's table has get the values of its variables."""
+    lines = "\n".join(_assignment(group) for group in table.plant_parameters)
+    return f"""// Generated from the variable table of {table.name}; do not edit.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "plant_parameters.hpp"
+#include "{table.name}_variables.hpp"
+
+namespace giveway::{table.name} {{
+
+// Those that this table does not have keep their values.
+inline void read_plant_parameters(const Variables& v, plant::TableParameters<double>& p) {{
+{lines}
+}}
+
+}} // namespace giveway::{table.name}
+"""

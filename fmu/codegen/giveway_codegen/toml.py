@@ -1,0 +1,37 @@
+"""Writes a table as TOML: what the Python package reads, with shared entries written out."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+__all__ = ["text"]
+
+
+def text(document: dict[str, Any], comment: str) -> str:
+    """A document of plain values, tables and lists of tables, without nesting beyond that."""
+    lines = [f"# {comment}", *_pairs({key: value for key, value in document.items() if not _is_table(value)})]
+    for key, value in document.items():
+        if isinstance(value, dict):
+            lines += ["", f"[{key}]", *_pairs(value)]
+        elif _is_table(value):
+            for entry in value:
+                lines += ["", f"[[{key}]]", *_pairs(entry)]
+    return "\n".join(lines) + "\n"
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict) or (isinstance(value, list) and bool(value) and isinstance(value[0], dict))
+
+
+def _pairs(values: dict[str, Any]) -> list[str]:
+    return [f"{key} = {_value(value)}" for key, value in values.items()]
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(_pairs(value)) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(_value(item) for item in value) + "]"
+    # What JSON writes of strings, numbers and booleans is TOML, too.
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
