@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import logging
+import os
 import sys
+import traceback
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
 from giveway import __version__
-from giveway.errors import GivewayError, SimulationError, UnknownNameError, one_line
+from giveway.errors import GivewayError, SimulationError, UnknownNameError, WriteError, one_line
+from giveway.failures import DEBUG_VARIABLE, unforeseen
 from giveway.fmu_commands import fmu_app
 from giveway.scenario import BUMPERS
 from giveway.study_commands import study_app, sweep_designs
@@ -52,6 +58,13 @@ SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of the sens
 RobotOption = Annotated[Path | None, typer.Option("--robot", metavar="FILE", help="Robot file (TOML).")]
 
 
+@dataclass
+class _Settings:
+    """Options that stand before the command."""
+
+    debug: bool = False
+
+
 def _show_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"giveway {__version__}")
@@ -60,11 +73,16 @@ def _show_version(wanted: bool) -> None:
 
 @app.callback()
 def _options(
+    context: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version.")
     ] = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Log what happens to stderr.")] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", envvar=DEBUG_VARIABLE, help="Show the traceback of what nobody foresaw.")
+    ] = False,
 ) -> None:
+    context.obj.debug = debug
     if verbose:
         logging.basicConfig(stream=sys.stderr, level=logging.DEBUG, format="%(name)s: %(message)s")
 
@@ -260,7 +278,7 @@ def fit(
     import json
 
     from giveway import native
-    from giveway.files import check_file, replace_file
+    from giveway.files import check_file, replace_files
     from giveway.fitting import record
     from giveway.fitting.quantities import Bench
     from giveway.fitting.search import STAGES, search
@@ -279,7 +297,7 @@ def fit(
     command = " ".join(
         ("giveway fit", *([f"--robot {robot}"] if robot else []), f"--out {out}", f"--samples {samples}")
     )
-    with replace_file(out) as new_robot, replace_file(residuals) as new_residuals:
+    with replace_files(out, residuals) as (new_robot, new_residuals):
         new_robot.write_text(text, encoding="utf-8")
         new_residuals.write_text(json.dumps(record.record(found, command), indent=2) + "\n", encoding="utf-8")
     print_columns("Targets; residuals in tolerances", record.TARGET_HEADER, record.target_rows(found))
@@ -422,22 +440,39 @@ def main() -> None:
 
 
 def _main(arguments: list[str]) -> int:
+    settings = _Settings()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a path may hold what the terminal cannot show
+            stream.reconfigure(errors="backslashreplace")
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning
-            code = app(args=arguments, standalone_mode=False)
+            code = app(args=arguments, standalone_mode=False, obj=settings)
+        sys.stdout.flush()
     except GivewayError as error:
-        under_way = isinstance(error, SimulationError) and error.time_s > 0.0
-        return _fail(str(error), FAILED if under_way else WRONG_INPUT)
+        on_its_way = isinstance(error, WriteError) or (isinstance(error, SimulationError) and error.time_s > 0.0)
+        return _fail(str(error), FAILED if on_its_way else WRONG_INPUT)
     except (KeyboardInterrupt, typer.Abort):
         typer.echo("giveway: interrupted; nothing was written", err=True)
         return INTERRUPTED
+    except BrokenPipeError:  # whoever read the output has read enough
+        _leave_stdout()
+        return FAILED
     except Exception as error:
         # Typer's usage errors (missing argument, unknown option or command) know how to say themselves.
-        if not hasattr(error, "format_message"):
-            raise
-        return _fail(one_line(error.format_message()), WRONG_INPUT)
+        if hasattr(error, "format_message"):
+            message = one_line(error.format_message())
+            return _fail(message, WRONG_INPUT) if message else WRONG_INPUT  # none: the help was shown instead
+        if settings.debug:
+            traceback.print_exception(error)
+        return _fail(unforeseen(error, arguments), FAILED)
     return code if isinstance(code, int) else 0
+
+
+def _leave_stdout() -> None:
+    """Nothing more goes to a standard output that does not take it, at the end of the process neither."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _show_warning(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -13,6 +14,9 @@ __all__ = [
     "NativeMissingError",
     "SimulationError",
     "UnknownNameError",
+    "WriteError",
+    "one_line",
+    "system_words",
 ]
 
 _MAX_LISTED = 12
@@ -63,6 +67,19 @@ class FileError(GivewayError):
         return one_line(f"{self.field}: {self.value}{hint}")
 
 
+class WriteError(FileError):
+    """A file or folder that could not be written on the way: the disk is full, a limit is reached, it went away.
+
+    Attributes:
+        path: what was to be written.
+        cause: what the system said.
+    """
+
+    def __init__(self, path: Path | str, cause: OSError, hint: str = "") -> None:
+        super().__init__(path, f"cannot be written: {system_words(cause)}", hint)
+        self.path, self.cause = Path(path), cause
+
+
 class InputFileError(GivewayError):
     """A value in a file that is not usable: the message begins with file and line.
 
@@ -110,6 +127,11 @@ class SimulationError(GivewayError):
 def nearest_names(name: str, known: Iterable[str]) -> list[str]:
     """Up to three names of ``known`` that look like ``name``."""
     return difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
+
+
+def system_words(error: OSError) -> str:
+    """What the system says about ``error``, without number and file: "No space left on device"."""
+    return os.strerror(error.errno) if error.errno else str(error)
 
 
 def one_line(text: str) -> str:

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import FileError, SimulationError
+from giveway.errors import FileError, SimulationError, WriteError
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -88,12 +88,17 @@ def open_fmu(path: Path) -> FmuFile:
 def _unpack(path: Path, _modified_ns: int) -> FmuFile:
     import fmpy
 
-    folder = Path(tempfile.mkdtemp(prefix="giveway-fmu-"))
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="giveway-fmu-"))
+    except OSError as error:
+        raise WriteError(tempfile.gettempdir(), error) from error
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     try:
         fmpy.extract(str(path), unzipdir=str(folder))
         # Our own build validates the description; doing so in every process would cost more than a run.
         description: ModelDescription = fmpy.read_model_description(str(folder), validate=False)
+    except OSError as error:
+        raise WriteError(folder, error) from error
     except Exception as error:  # FMPy raises plain Exception for anything wrong with a file
         raise FileError(path, f"is not a usable FMU: {error}") from None
     version = int(str(description.fmiVersion)[0])

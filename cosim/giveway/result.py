@@ -73,7 +73,8 @@ class Result:
         metadata = {"schema_version": str(SCHEMA_VERSION), "scenario": self.manifest["scenario"]["name"]}
         schema = pyarrow.schema(fields, metadata=metadata)
         data = pyarrow.table([array.values for array in columns.values()], schema=schema)
-        pyarrow.parquet.write_table(data, folder / TRACES_FILE, compression="zstd")
+        with (folder / TRACES_FILE).open("wb") as file:  # pyarrow itself refuses a path that is not UTF-8
+            pyarrow.parquet.write_table(data, file, compression="zstd")
         metrics = {"schema_version": SCHEMA_VERSION, "metrics": [asdict(metric) for metric in self.metrics]}
         write_text(folder / METRICS_FILE, json.dumps(metrics, indent=2, allow_nan=False) + "\n")
         write_text(folder / MANIFEST_FILE, json.dumps(self.manifest, indent=2, allow_nan=False) + "\n")
@@ -91,7 +92,8 @@ def load(folder: Path | str) -> Result:
     metrics = tuple(Metric(**{**entry, "name": RENAMED.get(entry["name"], entry["name"])}) for entry in entries)
     path = folder / TRACES_FILE
     try:
-        data = pyarrow.parquet.read_table(path)
+        with path.open("rb") as file:
+            data = pyarrow.parquet.read_table(file)
     except (OSError, pyarrow.ArrowException) as error:
         raise FileError(path, f"cannot be read: {error}") from None
     variables: dict[str, Any] = {}

@@ -66,8 +66,8 @@ def study_show(
     from giveway.study import answers, command
 
     found = answers.load(folder)
-    written = command.write_all(found, simulate_chosen=False)
     _print_answers(found)
+    written = command.write_all(found, simulate_chosen=False)
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 

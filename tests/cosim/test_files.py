@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from cosim_helpers import folder_content
-from giveway.errors import FileError
+from giveway.errors import FileError, WriteError
 from giveway.files import check_output, replace_folder, write_text
 
 
@@ -64,7 +64,7 @@ def test_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.Monkey
         raise OSError("no space left on device")
 
     monkeypatch.setattr("giveway.files.Path.replace", full_disk)
-    with pytest.raises(OSError, match="no space"):
+    with pytest.raises(WriteError, match="no space"):
         write_text(path, "new")
     assert path.read_text() == "old"
     assert folder_content(tmp_path) == ["report.html"]

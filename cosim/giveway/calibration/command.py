@@ -9,7 +9,7 @@ from giveway.calibration.motion_log import MotionLog, read_log
 from giveway.calibration.roller_friction import Calibration, Estimate
 from giveway.calibration.roller_friction import calibrate as calibrate_rollers
 from giveway.errors import GivewayError
-from giveway.files import check_file, replace_file
+from giveway.files import check_file, replace_files
 from giveway.robot import read_robot
 from giveway.robot_changes import NewValue, changed_robot
 
@@ -39,7 +39,7 @@ def calibrate_robot(logs: Sequence[Path], robot: Path, out: Path) -> tuple[Calib
     text = changed_robot(robot, _new_values(calibration, read))
     from giveway.report.calibration import write_residuals
 
-    with replace_file(picture) as new_picture, replace_file(out) as new_robot:
+    with replace_files(picture, out) as (new_picture, new_robot):
         write_residuals(new_picture, calibration)
         new_robot.write_text(text, encoding="utf-8")
     return calibration, (out, picture)

@@ -113,12 +113,14 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
     Raises:
         GivewayError: the study cannot be run as it is; nothing was run.
         FileError: the folder holds something else, is in use, or cannot be written.
+        WriteError: the disk refused on the way; the parts before it are kept.
     """
     from giveway.checks import whole
     from giveway.study.native_part import default_threads
 
     threads = default_threads() if threads is None else whole("threads", threads, 1, 1024)
     folder = Path(folder)
+    Store.check(folder)
     design_count = setup.plan.size(setup.varied)
     expected = design_count * max(1, setup.tolerance_count) * len(setup.cases)
     check_disk(setup, expected, folder)  # before the designs are made: they may be too many for the memory as well

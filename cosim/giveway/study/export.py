@@ -89,10 +89,10 @@ def export_table(answers: Answers, path: Path) -> None:
     for design, reason in answers.reason.items():
         reasons[design] = reason
     columns["reason"] = reasons
-    with replace_file(path) as temporary:
+    with replace_file(path) as temporary, temporary.open("wb") as file:
         # NaN (it did not happen) becomes an empty cell.
         arrays = {name: pyarrow.array(values, from_pandas=True) for name, values in columns.items()}
-        pyarrow.csv.write_csv(pyarrow.table(arrays), temporary)
+        pyarrow.csv.write_csv(pyarrow.table(arrays), file)
 
 
 def _named(name: str, unit: str) -> str:

@@ -125,7 +125,7 @@ def read_part(path: Path, columns: list[str]) -> Any:
     import pyarrow.parquet
 
     try:
-        with pyarrow.parquet.ParquetFile(path, memory_map=False) as part:
+        with path.open("rb") as file, pyarrow.parquet.ParquetFile(file) as part:
             there = set(part.schema_arrow.names)
             stored = [name if name in there else former_name(name) or name for name in columns]
             return part.read(columns=stored).select(stored).rename_columns(columns)

@@ -22,8 +22,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import FileError
-from giveway.files import read_json, replace_file, write_text
+from giveway.errors import FileError, WriteError, system_words
+from giveway.files import check_file, read_json, replace_file, write_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,13 +62,13 @@ class Store:
     def __init__(self, folder: Path, fingerprint: str) -> None:
         """Open ``folder``, made if it is not there; FileError if it holds something else or is in use."""
         self.folder = folder
-        self._check(folder)
+        self.check(folder)
         try:
             self.parts_folder = folder / PARTS / fingerprint[:16]
             self.parts_folder.mkdir(parents=True, exist_ok=True)
             self._lock = self._take_lock()
         except OSError as error:
-            raise FileError(folder, f"cannot be written: {error.strerror}") from None
+            raise FileError(folder, f"cannot be written: {system_words(error)}") from None
         self._remove_leftovers()
 
     def _remove_leftovers(self) -> None:
@@ -80,13 +80,15 @@ class Store:
                 left.unlink(missing_ok=True)
 
     @staticmethod
-    def _check(folder: Path) -> None:
+    def check(folder: Path) -> None:
+        """Refuse, before any work is done, a folder that is no place for a study."""
         if folder.exists() and not folder.is_dir():
             raise FileError(folder, "is a file", "give a folder to write to")
         if folder.is_dir() and any(path.name[0] != "." and path.name != PARTS for path in folder.iterdir()):
             if not (folder / MANIFEST_FILE).is_file():
                 raise FileError(folder, "is not empty and holds no study", "give a new or an empty folder")
             read_manifest(folder)
+        check_file(folder / MANIFEST_FILE)
 
     def _take_lock(self) -> IO[str]:
         lock = (self.folder / LOCK_FILE).open("a+", encoding="utf-8")
@@ -140,11 +142,11 @@ class Store:
 
         path = self.parts_folder / f"part-{first:09d}-{first + table.num_rows:09d}.parquet"
         try:
-            with replace_file(path) as temporary:
-                pyarrow.parquet.write_table(table, temporary, compression="zstd")
-        except OSError as error:
+            with replace_file(path) as temporary, temporary.open("wb") as file:
+                pyarrow.parquet.write_table(table, file, compression="zstd")
+        except WriteError as error:
             hint = "all parts before it are kept; the same command goes on"
-            raise FileError(path, f"cannot be written: {error.strerror or error}", hint) from None
+            raise WriteError(path, error.cause, hint) from error
         handle = os.open(self.parts_folder, os.O_RDONLY)
         try:
             os.fsync(handle)
