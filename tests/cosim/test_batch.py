@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import giveway
 import numpy as np
@@ -355,16 +356,28 @@ def endless() -> giveway.Scenario:
     return short(duration_s=3000.0, step_s=0.01)
 
 
-def test_ctrl_c_keeps_the_part_of_a_run_that_was_computed() -> None:
+def test_ctrl_c_keeps_every_row_of_a_run_that_was_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended: list[tuple[int, float]] = []
+    execute = batch._Batch.execute
+
+    def observed(self: batch._Batch, *arguments: Any) -> bool:
+        interrupted = execute(self, *arguments)
+        ended.append((int(self.results["rows"][0]), float(self.results["time_s"][0])))
+        return interrupted
+
+    monkeypatch.setattr(batch._Batch, "execute", observed)
     scenario = short(duration_s=250.0)
     result = batch.run(scenario, interrupt_once())
+    ((rows, at_s),) = ended
     assert result.interrupted
-    simulated = result.manifest["simulated_s"]
-    assert 0.0 < simulated < 250.0
-    whole = batch.run(dataclasses.replace(scenario, duration_s=0.1))
+    # Cancelled where the next row would have been made; all before it are there.
+    assert rows > 1
+    assert at_s == pytest.approx(rows * scenario.step_s, rel=1e-12)
+    assert result.traces.sizes["time"] == rows
+    assert result.manifest["simulated_s"] == result.traces["time"].values[-1]
+    whole = batch.run(dataclasses.replace(scenario, duration_s=rows * scenario.step_s))
     for name, trace in whole.traces.data_vars.items():
-        rows = min(len(trace), result.traces.sizes["time"])
-        assert trace.values[:rows].tobytes() == result.traces[name].values[:rows].tobytes()
+        assert trace.values[:rows].tobytes() == result.traces[name].values.tobytes(), name
 
 
 def test_ctrl_c_keeps_the_runs_that_are_done_and_ends_soon() -> None:

@@ -327,6 +327,8 @@ static void test_batches(void) {
     for (int i = 0; i < RUNS; ++i) {
         CHECK(results[i].status == GWB_CANCELLED);
         CHECK(says(&results[i], "cancelled"));
+        /* It ended where the next row would have been made. */
+        CHECK(fabs(results[i].time_s - results[i].rows * specs[i].step_s) < 1e-9);
     }
     CHECK(results[0].rows + results[1].rows > 0 && results[RUNS - 1].rows == 0);
     /* Finishing alone cancels, too. */
