@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
-from arc_logs import ALPHA, B_R, R_W, STEP_S, Swing, arc_log, csv_lines, sine
+from arc_logs import ALPHA, B_R, R_W, STEP_S, Swing, arc_log, csv_lines, sine, world_torques
 from cosim_helpers import Cli, folder_content
-from giveway import native
+from giveway import batch, native
+from giveway.approach import Approach, edge_middle, meet, outline_of
 from giveway.calibration.motion_log import MotionLog
 from giveway.calibration.roller_fit import RestZone, fit, half_widths, prepare
 from giveway.calibration.roller_friction import Calibration, UnidentifiableError, calibrate
 from giveway.calibration.torque_model import TorqueModel
 from giveway.errors import GivewayError
+from giveway.experiments.roller_calibration import ARCS, RECORDED, arc_scenario, log_of
 from giveway.robot import Robot, read_robot
 from giveway.robot_changes import NewValue, changed_robot
+from giveway.variables import table
 from PIL import Image
 
 GOOD = arc_log((1.0, 0.0, 0.0), sine(1.5, 0.1), 30.0)
@@ -105,12 +109,92 @@ def test_two_logs_have_their_own_tares(robot: Robot) -> None:
     assert [log.name for log in both.logs] == ["arc.csv", "other.csv"]
 
 
-def test_a_short_push_does_not_carry_the_fit_away(robot: Robot, good: Calibration) -> None:
-    torque = GOOD.torque_nm.copy()
-    torque[4000:4500] += 1.5  # one second of a hand on the robot
-    pushed = calibrate([dataclasses.replace(GOOD, torque_nm=torque)], robot)
-    assert pushed.coulomb_torque_nm.value == pytest.approx(B_R, rel=0.05)
-    assert pushed.coulomb_torque_nm.half_width > good.coulomb_torque_nm.half_width
+def pushed(log: MotionLog, rows: slice, torque_nm: Sequence[float]) -> MotionLog:
+    torque = log.torque_nm.copy()
+    torque[rows] += torque_nm
+    return dataclasses.replace(log, torque_nm=torque)
+
+
+def part(log: MotionLog, rows: slice, name: str) -> MotionLog:
+    return MotionLog(name, log.time_s[rows], log.wheel_angle_rad[rows], log.torque_nm[rows])
+
+
+# From 8 s on, 1 and 9 s of a hand that turns the robot; a blow of 0.1 s; 1 s of half a newton, which may pass.
+@pytest.mark.parametrize(
+    ("rows", "torque_nm", "until_s"),
+    [
+        (slice(4000, 4500), (1.5, 1.5, 1.5), 9.0),
+        (slice(4000, 8500), (1.5, 1.5, 1.5), 17.0),
+        (slice(4000, 4050), (4.0, -4.0, 0.0), 8.1),
+        (slice(4000, 4500), (0.05, -0.05, 0.0), None),
+    ],
+)
+def test_a_log_in_which_something_was_hit_is_refused_with_the_time(
+    rows: slice, torque_nm: tuple[float, float, float], until_s: float | None, robot: Robot
+) -> None:
+    touched = pushed(GOOD, rows, torque_nm)
+    other = arc_log((1.0, 1.0, 0.0), sine(1.5, 0.1), 20.0, name="other.csv")
+    if until_s is None:
+        calibrate([other, touched], robot)
+        return
+    with pytest.raises(UnidentifiableError, match=r"^arc\.csv: from .* something touched the robot") as refusal:
+        calibrate([other, touched], robot)
+    begin, end = (float(number) for number in re.findall(r"from ([\d.]+) to ([\d.]+) s", str(refusal.value))[0])
+    # The low-pass (0.05 s) smears each end by some 0.1 s; times are told to 0.1 s.
+    assert (begin, end) == pytest.approx((8.0, until_s), abs=0.15)
+    if until_s < 10.0:  # what is left serves as well
+        left = [part(touched, slice(0, 3900), "before.csv"), part(touched, slice(rows.stop + 100, None), "after.csv")]
+        assert calibrate(left, robot).coulomb_torque_nm.holds(B_R)
+
+
+def test_a_hit_of_the_testbeds_robot_is_found(robot: Robot) -> None:
+    """A slider of 9 kg at 0.3 m/s, 8 s into the first arc of 4.2; the same drive without it is free motion."""
+    arc = next(iter(ARCS))
+    free = arc_scenario(arc, "bristle rollers", robot, seed=1)
+    everything = {v.name: v.start for v in table("testbed").select("parameter") if v.start is not None}
+    testbed = {**everything, **free.testbed, "bumper.kind": 0}
+    point = edge_middle(outline_of(testbed), 0)
+    tare_s = 0.1  # then the plan's clock starts
+    hit = meet(Approach(point, 0.3, time_s=8.0), testbed, free.plan, tare_s)
+    runs = batch.run_many([free, dataclasses.replace(free, testbed={**free.testbed, **hit})], traces=RECORDED)
+    assert calibrate([log_of("free.csv", runs, 0, robot)], robot).explained > 0.9
+    with pytest.raises(UnidentifiableError, match=r"^hit\.csv: from (7\.9|8\.0) to"):
+        calibrate([log_of("hit.csv", runs, 1, robot)], robot)
+
+
+def test_the_same_log_twice_is_refused(robot: Robot) -> None:
+    with pytest.raises(UnidentifiableError, match=r"arc\.csv: is given twice"):
+        calibrate([GOOD, GOOD], robot)
+    later = dataclasses.replace(GOOD, name="later.csv", time_s=GOOD.time_s + 60.0)
+    with pytest.raises(UnidentifiableError, match=r"later\.csv: has the same content as arc\.csv"):
+        calibrate([GOOD, later], robot)
+
+
+def with_friction(law: Callable[[np.ndarray], np.ndarray]) -> MotionLog:
+    """`GOOD` with rollers of another law."""
+    torque, _ = world_torques(GOOD.wheel_angle_rad, STEP_S, law)
+    return dataclasses.replace(GOOD, torque_nm=torque + np.random.default_rng(1).normal(0.0, 0.03, torque.shape))
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (
+            lambda rate: B_R * np.tanh(20.0 * rate),
+            ("does not grow with the speed: 0.2 N m", "roller.coulomb_torque to 0.2"),
+        ),
+        (lambda rate: B_R * np.tanh(20.0 * rate) * np.exp(-np.abs(rate) / 5.0), ("falls with the speed",)),
+        (lambda rate: 0.0 * rate, ("does not show", "0.0032 N m of noise")),
+        (lambda rate: 0.02 * rate, ("too slow", "grows with the speed", "B_r alpha = 0.02 N m s/rad")),
+    ],
+)
+def test_rollers_of_another_law_are_refused_for_what_they_are(
+    law: Callable[[np.ndarray], np.ndarray], words: Sequence[str], robot: Robot
+) -> None:
+    with pytest.raises(UnidentifiableError) as refusal:
+        calibrate([with_friction(law)], robot)
+    for word in words:
+        assert word in str(refusal.value)
 
 
 def test_uneven_sampling(robot: Robot) -> None:

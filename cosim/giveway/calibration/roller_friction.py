@@ -18,8 +18,9 @@ steps, in the base frame, where the Jacobians are constant:
    move by with other widths of the zone of step 2 and of the low-pass of step 1. The numbers of the rigid part (mass,
    radii) count as exact.
 
-A log that leaves the friction force more uncertain than the detector's leak in motion forgives is refused, with what to
-do about it.
+Logs that are no free motion are refused: the same log twice, and one in which something touched the robot
+(`disturbance`). So is a log that leaves the friction force more uncertain than the detector's leak in motion forgives,
+with what to do about it.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.calibration.disturbance import Limits, find_disturbance
+from giveway.calibration.friction_curve import FrictionCurve, friction_curve
 from giveway.calibration.roller_fit import (
     LONGEST_STEP_S,
     SMOOTHING_S,
@@ -55,6 +58,9 @@ __all__ = ["Calibration", "Estimate", "FittedLog", "UnidentifiableError", "calib
 
 EXPLAINED_MIN = 0.5  # below, something else than (27) makes most of the torque
 ALIKE = 1.5  # speeds within this factor show the tanh at one point
+NEAR_REST = 3.0  # widths of the zone near rest: a log that shows rollers so slow has been slow enough
+LEVEL = 0.1  # share by which friction over the speed may fall and still counts as constant
+FLAT = 2.65  # tanh(2.65) = 0.99
 VARIATIONS = ((0.7, 1.0), (1.5, 1.0), (1.0, 2.0))
 """Widths of the zone near rest and of the low-pass, relative to those of the fit, whose results give the spread."""
 
@@ -159,15 +165,24 @@ class Calibration:
 def calibrate(logs: Sequence[MotionLog], robot: Robot) -> Calibration:
     """Fit B_r and alpha to ``logs`` of free motion of ``robot``.
 
-    Raises UnidentifiableError if they cannot tell B_r or alpha; it says what is missing.
+    Raises UnidentifiableError if they cannot tell B_r or alpha; it says what is missing. The same log twice, and a log
+    in which something touched the robot, are refused likewise.
     """
     if not logs:
         raise GivewayError("logs", "none", "at least one log")
+    _check_different(logs)
     data = _Data.of(logs, robot)
     samples = data.samples()
     used = data.used(samples)
     _check_motion(data, samples, used)
     found = fit(samples, used, data.model)
+    if touched := find_disturbance(samples, used, found, data.model, data.limits):
+        raise UnidentifiableError(
+            logs[touched.log].name,
+            f"from {touched.begin_s:.1f} to {touched.end_s:.1f} s something touched the robot: up to "
+            f"{touched.force_n:.0f} N that free motion does not explain",
+            "cut that out and give what is before and after as logs of their own, or drive again",
+        )
     noise = half_widths(found)[:2]
     spread = _spread(data, found)
     coulomb, slope = (Estimate(float(found.x[i]), float(noise[i]), float(spread[i])) for i in range(2))
@@ -178,6 +193,17 @@ def calibrate(logs: Sequence[MotionLog], robot: Robot) -> Calibration:
     return Calibration(coulomb, slope, uncertainty, found.explained, found.blocks, found.block_s, fitted)
 
 
+def _check_different(logs: Sequence[MotionLog]) -> None:
+    """Refuse a log that says what another one said, under whatever name and from whatever time on."""
+    for index, log in enumerate(logs):
+        for other in logs[:index]:
+            if np.array_equal(log.torque_nm, other.torque_nm) and np.array_equal(
+                log.wheel_angle_rad, other.wheel_angle_rad
+            ):
+                reason = f"has the same content as {other.name}" if log.name != other.name else "is given twice"
+                raise UnidentifiableError(log.name, reason, "give each log once: twice it would seem twice as sure")
+
+
 @dataclass(frozen=True)
 class _Data:
     """The logs and what of the robot belongs to them."""
@@ -186,7 +212,7 @@ class _Data:
     model: TorqueModel
     zone: RestZone
     torque_limit_nm: float
-    leak_n: float
+    limits: Limits
 
     @classmethod
     def of(cls, logs: Sequence[MotionLog], robot: Robot) -> _Data:
@@ -199,8 +225,13 @@ class _Data:
             TorqueModel.of(robot),
             RestZone.of(robot),
             float(robot.value("drivetrain.torque_sensor_limit")),
-            float(robot.value("detector.leak_motion")),
+            Limits(float(robot.value("detector.leak_motion")), float(robot.value("detector.impulse_threshold"))),
         )
+
+    @property
+    def leak_n(self) -> float:
+        """What the detector forgives in motion, N."""
+        return self.limits.leak_n
 
     @property
     def names(self) -> str:
@@ -272,6 +303,13 @@ def _refusal(
     one_way = all((rates[:, roller] > 0.0).mean() in (0.0, 1.0) for roller in range(rates.shape[1]))
     if one_way and (uncertain or found.explained < EXPLAINED_MIN):
         return "every roller turns one way only: friction and zero of the sensors look alike", "drive forth and back"
+    curve = friction_curve(samples, used, data.model, data.zone.speed_mps / data.model.roller_radius_m)
+    if found.explained < EXPLAINED_MIN and curve.all_nm < data.leak_n * data.model.wheel_radius_m:
+        small_nm = curve.all_nm / data.model.wheel_radius_m * data.model.roller_radius_m
+        return (
+            f"the friction of the rollers does not show: without any, (27) leaves {curve.all_nm:.2g} N m of noise",
+            f"B_r is not above some {small_nm:.1g} N m, and the detector forgives a force of {data.leak_n:g} N",
+        )
     if found.explained < EXPLAINED_MIN:
         return (
             f"(27) explains {max(0.0, 100.0 * found.explained):.0f} % of the torques",
@@ -283,17 +321,22 @@ def _refusal(
     if not uncertain:
         return None
     seconds = sum(float(rows.sum()) * s.step_s for s, rows in zip(samples, used, strict=True))
-    missing, remedy = _too_little(data, found, rates, seconds)
+    missing, remedy = _too_little(data, found, rates, seconds, curve)
     by = f"uncertain by {uncertainty_n:.2g} N" if math.isfinite(uncertainty_n) else "undetermined"
     reason = f"at some speed the friction force of a roller would be {by}; the detector forgives {data.leak_n:g} N"
     return f"{missing} ({reason})", remedy
 
 
-def _too_little(data: _Data, found: Fit, rates: NDArray[np.float64], seconds: float) -> tuple[str, str]:
+def _too_little(
+    data: _Data, found: Fit, rates: NDArray[np.float64], seconds: float, curve: FrictionCurve
+) -> tuple[str, str]:
     """Why the friction stays uncertain: from where on the tanh the used roller rates lie."""
     moving = np.abs(rates[np.abs(rates) * data.model.roller_radius_m > data.zone.speed_mps])
     slowest, fastest = np.quantile(moving, (0.05, 0.95))
     rim = 1e3 * data.model.roller_radius_m
+    level = found.x[1] * slowest > 1.5  # tanh(1.5) = 0.91: its slope has hardly been seen
+    if level and slowest * data.model.roller_radius_m <= NEAR_REST * data.zone.speed_mps:
+        return _does_not_grow(found, curve, rim)
     if not enough_blocks(found):
         blocks = f"{found.blocks} blocks of {found.block_s:.2g} s for {len(found.x)} numbers"
         return f"too short: {seconds:.3g} s away from rest make {blocks}", "drive longer"
@@ -308,12 +351,28 @@ def _too_little(data: _Data, found: Fit, rates: NDArray[np.float64], seconds: fl
             f"B_r alpha = {found.x[0] * found.x[1]:.3g} N m s/rad shows",
             "drive faster",
         )
-    if found.x[1] * slowest > 1.5:  # tanh(1.5) = 0.91: its slope has hardly been seen
+    if level:
         return (
             f"never slow: from {rim * slowest:.3g} mm/s on the friction is B_r alone, and alpha does not show",
             "drive slower, or in sines that pass through low speeds",
         )
     return "too noisy", "drive longer"
+
+
+def _does_not_grow(found: Fit, curve: FrictionCurve, rim: float) -> tuple[str, str]:
+    """What to say of rollers whose friction is level, or falls, from the slowest speed on that is not rest."""
+    first, last = float(curve.torque_nm[0]), float(curve.torque_nm[-1])
+    over = f"{rim * curve.rate[0]:.3g} to {rim * curve.rate[-1]:.3g} mm/s"
+    if last < (1.0 - LEVEL) * first:
+        return (
+            f"the friction falls with the speed: from {first:.2g} to {last:.2g} N m over {over}",
+            "(28) knows no such rollers, and longer or slower drives do not change that",
+        )
+    return (
+        f"the friction does not grow with the speed: {found.x[0]:.3g} N m over {over}, slower ones count as at rest",
+        f"there is no alpha to be found: set roller.coulomb_torque to {found.x[0]:.3g} N m and roller.tanh_slope to "
+        f"{FLAT / curve.rate[0]:.2g} s/rad or more by hand",
+    )
 
 
 def _fitted(
