@@ -18,6 +18,7 @@ import numpy as np
 from giveway.checks import finite, whole
 from giveway.errors import GivewayError
 from giveway.plan import Plan, Rest
+from giveway.stated_contact import StatedContact
 from giveway.variables import Value
 
 if TYPE_CHECKING:
@@ -28,8 +29,10 @@ if TYPE_CHECKING:
 __all__ = [
     "Approach",
     "Approaches",
+    "Meetings",
     "edge_middle",
     "meet",
+    "meet_as_stated",
     "meet_many",
     "outline_of",
     "outward_normal",
@@ -151,6 +154,13 @@ def meet(
         GivewayError: naming the field of `Approach` that cannot be met: the point is not on the outline, slider and
             robot do not approach there, the weight cannot make the slider so fast, or they would touch before.
     """
+    return meet_as_stated(approach, testbed, plan, path_start_s)[0]
+
+
+def meet_as_stated(
+    approach: Approach, testbed: Mapping[str, Value], plan: Plan, path_start_s: float = 0.0
+) -> tuple[dict[str, float | bool], StatedContact, float]:
+    """What `meet` gives, the contact that it is meant to make, and when that will be, s (the rope decides, too)."""
     direction_rad = math.nan if approach.direction_rad is None else approach.direction_rad
     many = Approaches(
         np.array([approach.point_m]),
@@ -158,14 +168,16 @@ def meet(
         np.array([direction_rad]),
         None if approach.time_s is None else np.array([approach.time_s]),
     )
-    found, refused = meet_many(many, testbed, plan, np.array([path_start_s]))
-    if refused:
-        raise refused[0]
-    return {
+    met = meet_many(many, testbed, plan, np.array([path_start_s]))
+    if met.refused:
+        raise met.refused[0]
+    slider = {
         "slider.present": True,
-        **{name: float(values[0]) for name, values in found.items()},
+        **{name: float(values[0]) for name, values in met.slider.items()},
         "rope.attached": approach.rope,
     }
+    stated = StatedContact(float(met.contact_speed_mps[0]), approach.point_m, approach.time_s)
+    return slider, stated, float(met.time_s[0])
 
 
 @dataclass(frozen=True)
@@ -184,10 +196,27 @@ class Approaches:
     time_s: Numbers | None
 
 
+@dataclass(frozen=True)
+class Meetings:
+    """How many runs meet.
+
+    Attributes:
+        slider: each of the testbed's ``slider.*`` that makes them meet, shape (n,).
+        contact_speed_mps: of the nose relative to the base, shape (n,).
+        time_s: of the contacts, shape (n,).
+        refused: why a run cannot be met, by its index.
+    """
+
+    slider: dict[str, Numbers]
+    contact_speed_mps: Numbers
+    time_s: Numbers
+    refused: dict[int, GivewayError]
+
+
 def meet_many(
     approaches: Approaches, testbed: Mapping[str, Value | Numbers], plan: Plan, path_start_s: Numbers
-) -> tuple[dict[str, Numbers], dict[int, GivewayError]]:
-    """`meet` for n runs at once: each of ``slider.*`` that it sets, shape (n,), and the reason of each run refused.
+) -> Meetings:
+    """`meet` for n runs at once.
 
     ``testbed`` may hold arrays of shape (n,), but for the outline, which all runs share; ``path_start_s`` is one.
     """
@@ -234,7 +263,8 @@ def meet_many(
         "slider.run_up": run_up.length_m,
         "slider.speed": run_up.start_mps,
     }
-    return met, refused
+    relative = np.hypot(*(approaches.speed_mps[:, None] * along - velocity).T)
+    return Meetings(met, relative, run_up.duration_s, refused)
 
 
 def _each(function: Callable[[float], float], values: Numbers) -> Numbers:

@@ -24,6 +24,7 @@ from giveway.checks import finite, whole
 from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
 from giveway.master import Progress, Record, plan_table, push_table
 from giveway.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
+from giveway.plan_limits import check_plan, limits_of
 from giveway.variables import Value, Variable, table
 
 if TYPE_CHECKING:
@@ -331,7 +332,9 @@ def _plan(scenario: Scenario) -> NDArray[np.float64]:
 
 def _parameters(index: int, scenario: Scenario) -> dict[str, dict[str, Value]]:
     try:
-        return {model: scenario.parameters(model) for model in native.MODELS}
+        found = {model: scenario.parameters(model) for model in native.MODELS}
+        check_plan(scenario.plan, limits_of(found["controller"]))
+        return found
     except GivewayError as error:
         error.field = f"run {index}: {error.field}"
         raise

@@ -116,7 +116,7 @@ def measure(repeats: int) -> list[tuple[str, ...]]:
 def _fmpy_loop(scenario: giveway.Scenario) -> tuple[float, float]:
     for _ in range(FMPY_RUNS):
         result = giveway.run(scenario)
-    peak_n = result.metric("peak contact force").value
+    peak_n = result.metric("peak force of the run").value
     return np.nan if peak_n is None else peak_n, 0.0
 
 
@@ -128,7 +128,7 @@ def _fixed_or_exact(scenario: giveway.Scenario, method: str, lanes: int | None, 
 
     def run() -> tuple[float, float]:
         found = prepared.run(threads=threads, method=method, lanes=lanes)
-        return float(found["peak contact force"][0]), float(found["plant step"][0])
+        return float(found["peak force of the run"][0]), float(found["plant step"][0])
 
     return _Way(f"{name}, {threads} thread{plural}", runs, run)
 
@@ -190,8 +190,8 @@ def accuracy(count: int = ACCURACY_RUNS, seed: int = ACCURACY_SEED) -> tuple[lis
     scenarios = random_collisions(count, seed)
     exact = batch.run_many(scenarios)
     fixed = batch.run_many(scenarios, method="fixed-step")
-    hit = exact["peak contact force"].values > 0.0
-    error = np.abs(fixed["peak contact force"].values[hit] / exact["peak contact force"].values[hit] - 1.0)
+    hit = exact["peak force of the run"].values > 0.0
+    error = np.abs(fixed["peak force of the run"].values[hit] / exact["peak force of the run"].values[hit] - 1.0)
     ticks = detection_rows(fixed) - detection_rows(exact)
     one_only = np.isnan(detection_rows(fixed)) != np.isnan(detection_rows(exact))
     off = np.flatnonzero((np.nan_to_num(ticks) != 0.0) | one_only)
@@ -210,7 +210,7 @@ def accuracy(count: int = ACCURACY_RUNS, seed: int = ACCURACY_SEED) -> tuple[lis
         ),
     ]
     lines = [
-        f"design {index}: {scenarios[index].bumper}, peak force {float(exact['peak contact force'][index]):.1f} N, "
+        f"design {index}: {scenarios[index].bumper}, peak force {float(exact['peak force of the run'][index]):.1f} N, "
         f"detected after {float(fixed['detection time'][index]):.1f} ms, event-exact after "
         f"{float(exact['detection time'][index]):.1f} ms"
         for index in off

@@ -9,7 +9,10 @@ from types import MappingProxyType
 __all__ = ["RENAMED", "current_name", "former_name"]
 
 # "Travel" is what a bumper has (`testbed.bumper.travel`), "compression" what a collision uses of it.
-RENAMED: Mapping[str, str] = MappingProxyType({"bumper travel": "bumper compression"})
+# The peak of a run may belong to a later contact than the first, which has a peak of its own.
+RENAMED: Mapping[str, str] = MappingProxyType(
+    {"bumper travel": "bumper compression", "peak contact force": "peak force of the run"}
+)
 
 
 def current_name(field: str, name: str) -> str:

@@ -24,6 +24,9 @@ __all__ = ["Collision", "Metric", "collision", "design"]
 PEAK_WINDOW_S = 0.35
 LOADED_SHARE = 0.5
 CAUSE_WINDOW_S = 0.25
+CONTACT_GAP_S = 0.1
+TRACKING, FAULT = 1, 6  # controller.mode
+FIRST_PEAK = "peak force of the first contact"
 PUSH_FORCES = ("testbed.push.force_x", "testbed.push.force_y")
 WHEELS = 3
 GRAVITY_MPS2 = 9.81  # the plant's
@@ -226,7 +229,7 @@ class Collision:
 
     def peak_force(self) -> Metric:
         """Largest true contact force of the run, N."""
-        return Metric("peak contact force", float(self["testbed.truth.contact_force"].max()), "N", decimals=1)
+        return Metric("peak force of the run", float(self["testbed.truth.contact_force"].max()), "N", decimals=1)
 
     def peak_torque(self) -> Metric:
         """Largest wheel torque in the impact's direction within 0.35 s of contact, N m.
@@ -270,6 +273,57 @@ class Collision:
         compression_m = float(self["testbed.truth.bumper_compression"].max())
         return Metric("bumper compression", 1e3 * compression_m, "mm", decimals=1)
 
+    # What happened otherwise than asked
+
+    def contact_time(self) -> Metric:
+        """Time of the first cover contact, s."""
+        return Metric("contact time", self.contact_s, "s", decimals=3)
+
+    def first_contact(self) -> tuple[Metric, Metric]:
+        """True contact point in the first row of the first contact, base frame, mm."""
+        row = self.until_detection().start
+        there = self.contact_s is not None and row < len(self.time_s) and bool(self["testbed.truth.contact"][row])
+        x, y = (1e3 * float(self[f"testbed.truth.contact_base_{axis}"][row]) if there else None for axis in "xy")
+        return Metric("first contact x", x, "mm", decimals=1), Metric("first contact y", y, "mm", decimals=1)
+
+    def robot_speed(self) -> Metric:
+        """Speed of the base in the last row before contact, m/s."""
+        row = self.until_detection().start - 1
+        there = self.contact_s is not None and row >= 0
+        speed = math.hypot(*(self[f"testbed.truth.v{axis}"][row] for axis in "xy")) if there else None
+        return Metric("robot speed at contact", speed, "m/s", decimals=3)
+
+    def plan_deviation(self) -> tuple[Metric, Metric]:
+        """Largest distance (mm) and angle (deg) of the controller's reference from the plan while it tracks, up to its
+        first reaction: a plan within the reference's limits is followed exactly."""
+        mode = self["controller.mode"]
+        rows = (mode == TRACKING) & ~np.maximum.accumulate(mode > TRACKING)
+        dx, dy, turned = (
+            (self[f"controller.reference.{name}"] - self[f"controller.plan.{name}"])[rows]
+            for name in ("x", "y", "theta")
+        )
+        away, turned = np.hypot(dx, dy), np.abs((np.degrees(turned) + 180.0) % 360.0 - 180.0)
+        return (
+            Metric("distance from the plan", 1e3 * float(away.max(initial=0.0)), "mm", decimals=1),
+            Metric("angle from the plan", float(turned.max(initial=0.0)), "deg", decimals=1),
+        )
+
+    def saturation(self) -> tuple[Metric, Metric, Metric]:
+        """Largest sensed torque over what counts as saturated, largest motor torque over its limit, both of any wheel
+        as the rows show it, 1; and how long the controller was in its mode 6, sensor fault, s."""
+        testbed, controller = self._parameters["testbed"], self._parameters["controller"]
+        sensed_limit = min(float(testbed["electronics.torque_range"]), float(controller["sensor_check.torque_limit"]))
+        sensed = float(np.abs(self.wheels("testbed.sensor.torque")).max()) / sensed_limit
+        motor = float(np.abs(self.wheels("testbed.truth.motor_torque")).max()) / float(
+            testbed["drivetrain.torque_limit"]
+        )
+        faulty = float((self["controller.mode"] == FAULT).sum()) * (self.time_s[1] - self.time_s[0])
+        return (
+            Metric("sensed torque share", sensed, "1"),
+            Metric("motor torque share", motor, "1"),
+            Metric("time in sensor fault", faulty, "s", decimals=3),
+        )
+
     # Numbers of a design
 
     def person(self, region: BodyRegion | None) -> tuple[Metric, ...]:
@@ -298,15 +352,25 @@ class Collision:
         left = float(testbed["bumper.travel"]) - float(self["testbed.truth.bumper_compression"].max())
         return Metric("bottoming margin", 1e3 * left if testbed["bumper.kind"] else None, "mm", decimals=1)
 
-    def rebound(self) -> tuple[Metric, Metric]:
-        """How often a contact began, and the speed of the nose relative to the robot after the first one, m/s."""
-        contact = self["testbed.truth.contact"].astype(np.int8)
-        count = float((np.diff(contact, prepend=0) > 0).sum()) if self.contact_s is not None else None
+    def contacts(self) -> tuple[Metric, Metric, Metric]:
+        """How many contacts there were, the largest true force of the first (N), and the speed of the nose relative to
+        the robot after it (m/s). Touches less than 0.1 s apart are one contact: a bumper's plate bounces."""
+        names = (("contacts", "1", 0), (FIRST_PEAK, "N", 1), ("rebound speed", "m/s", 3))
+        if self.contact_s is None:
+            empty = [Metric(name, None, unit, decimals=decimals) for name, unit, decimals in names]
+            return empty[0], empty[1], empty[2]
         start = self.until_detection().start
-        left = np.flatnonzero(contact[start:] == 0)
-        row = start + int(left[0]) if left.size and self.contact_s is not None else len(self.time_s)
-        speed = self._nose_speed(row) if row + 1 < len(self.time_s) else None
-        return Metric("contacts", count, "1", decimals=0), Metric("rebound speed", speed, "m/s", decimals=3)
+        rows = start + np.flatnonzero(self["testbed.truth.contact"][start:])
+        before = np.concatenate([[self.contact_s], self.time_s[rows][:-1]])
+        number = 1 + np.cumsum(self.time_s[rows] - before[: len(rows)] >= CONTACT_GAP_S)
+        first = rows[number == 1]
+        count = float(number[-1]) if rows.size else 1.0
+        peak = float(self["testbed.truth.contact_force"][first].max(initial=0.0))
+        after = int(first[-1]) + 1 if first.size else start
+        speed = self._nose_speed(after) if after + 1 < len(self.time_s) else None
+        values = (count, peak, speed)
+        found = [Metric(*name[:1], value, name[1], decimals=name[2]) for name, value in zip(names, values, strict=True)]
+        return found[0], found[1], found[2]
 
     def _nose_speed(self, row: int) -> float:
         """Of the nose relative to the base from ``row`` to the next, m/s."""
@@ -363,9 +427,21 @@ class Collision:
 def design(
     traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]], region: BodyRegion | None = None
 ) -> tuple[Metric, ...]:
-    """What a bumper design is judged by beyond `collision`; a batch computes it natively."""
+    """What a bumper design is judged by beyond `collision`, and what happened otherwise than asked; a batch computes
+    it natively."""
     hit = Collision(traces, parameters)
-    return (*hit.person(region), hit.bottoming_margin(), *hit.rebound(), *hit.relatching(), hit.tip_margin())
+    return (
+        *hit.person(region),
+        hit.bottoming_margin(),
+        hit.contacts()[2],
+        *hit.relatching(),
+        hit.tip_margin(),
+        *hit.first_contact(),
+        hit.robot_speed(),
+        *hit.plan_deviation(),
+        *hit.saturation(),
+        hit.contact_time(),
+    )
 
 
 def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]) -> tuple[Metric, ...]:
@@ -380,13 +456,19 @@ def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]
         *hit.location(),
         hit.magnitude(),
         hit.impulse(),
-        hit.peak_force(),
+        *_peaks(hit),
         hit.bumper_compression(),
         hit.peak_torque(),
         hit.peak_torque_any(),
         hit.escape(),
         hit.energy_residual(),
     )
+
+
+def _peaks(hit: Collision) -> tuple[Metric, Metric, Metric]:
+    """How many contacts, the peak of the first and that of the run."""
+    count, first, _ = hit.contacts()
+    return count, first, hit.peak_force()
 
 
 def _wrapped(degrees: float) -> float:

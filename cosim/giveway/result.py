@@ -11,6 +11,7 @@ from giveway.errors import FileError
 from giveway.files import read_json, replace_folder, write_text
 from giveway.metric_names import RENAMED, current_name
 from giveway.metrics import Metric
+from giveway.run_warnings import RunWarning
 
 if TYPE_CHECKING:
     import xarray
@@ -33,11 +34,13 @@ class Result:
             the attributes ``units`` and ``long_name`` come from the variable tables.
         metrics: what the run is judged by, in the order of the printed table.
         manifest: versions, hashes, seeds, parameters, solver options, scenario.
+        warnings: what happened otherwise than asked.
     """
 
     traces: xarray.Dataset
     metrics: tuple[Metric, ...]
     manifest: dict[str, Any]
+    warnings: tuple[RunWarning, ...] = ()
 
     @property
     def interrupted(self) -> bool:
@@ -75,7 +78,11 @@ class Result:
         data = pyarrow.table([array.values for array in columns.values()], schema=schema)
         with (folder / TRACES_FILE).open("wb") as file:  # pyarrow itself refuses a path that is not UTF-8
             pyarrow.parquet.write_table(data, file, compression="zstd")
-        metrics = {"schema_version": SCHEMA_VERSION, "metrics": [asdict(metric) for metric in self.metrics]}
+        metrics = {
+            "schema_version": SCHEMA_VERSION,
+            "metrics": [asdict(metric) for metric in self.metrics],
+            "warnings": [asdict(warning) for warning in self.warnings],
+        }
         write_text(folder / METRICS_FILE, json.dumps(metrics, indent=2, allow_nan=False) + "\n")
         write_text(folder / MANIFEST_FILE, json.dumps(self.manifest, indent=2, allow_nan=False) + "\n")
 
@@ -88,8 +95,11 @@ def load(folder: Path | str) -> Result:
 
     folder = Path(folder)
     manifest = read_json(folder / MANIFEST_FILE, SCHEMA_VERSION, HINT)
-    entries = read_json(folder / METRICS_FILE, SCHEMA_VERSION, HINT)["metrics"]
-    metrics = tuple(Metric(**{**entry, "name": RENAMED.get(entry["name"], entry["name"])}) for entry in entries)
+    judged = read_json(folder / METRICS_FILE, SCHEMA_VERSION, HINT)
+    metrics = tuple(
+        Metric(**{**entry, "name": RENAMED.get(entry["name"], entry["name"])}) for entry in judged["metrics"]
+    )
+    warnings = tuple(RunWarning(**entry) for entry in judged.get("warnings", ()))  # older files have none
     path = folder / TRACES_FILE
     try:
         with path.open("rb") as file:
@@ -101,7 +111,7 @@ def load(folder: Path | str) -> Result:
         attributes = {name: (field.metadata or {}).get(name.encode(), b"").decode() for name in ("units", "long_name")}
         variables[field.name] = ("time", column.to_numpy(), attributes)
     time = variables.pop("time")
-    return Result(xarray.Dataset(variables, coords={"time": time}), metrics, manifest)
+    return Result(xarray.Dataset(variables, coords={"time": time}), metrics, manifest, warnings)
 
 
 def _text_attributes(attributes: dict[Any, Any]) -> dict[str, str]:

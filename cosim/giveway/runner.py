@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import datetime
 import hashlib
 import importlib.metadata
@@ -14,7 +15,9 @@ import xarray
 import giveway
 from giveway import metrics, native
 from giveway.master import Progress, Record, simulate
+from giveway.plan_limits import check_plan_of
 from giveway.result import SCHEMA_VERSION, Result
+from giveway.run_warnings import RunWarning, warnings_of
 from giveway.variables import Value, table
 
 if TYPE_CHECKING:
@@ -28,14 +31,21 @@ EXCHANGE_ORDER = "sequential: sensors, controller, plant"
 
 def run(scenario: Scenario, progress: Progress | None = None) -> Result:
     """Co-simulate ``scenario``; see `giveway.run`."""
+    check_plan_of(scenario)
     return judge(scenario, simulate(scenario, progress))
 
 
 def judge(scenario: Scenario, record: Record) -> Result:
-    """``record`` labelled, with its metrics and where it came from."""
+    """``record`` labelled, with its metrics, its warnings and where it came from."""
     traces = _label(record)
     manifest = _manifest(scenario, record)
-    return Result(traces, metrics.collision(traces, manifest["parameters"]), manifest)
+    parameters = manifest["parameters"]
+    found = metrics.collision(traces, parameters)
+    warnings: tuple[RunWarning, ...] = ()
+    if not record.interrupted:  # else nobody knows what would have come
+        warnings = warnings_of(scenario, (*found, *metrics.design(traces, parameters)))
+    manifest["warnings"] = [warning.text for warning in warnings]
+    return Result(traces, found, manifest, warnings)
 
 
 def _label(record: Record) -> xarray.Dataset:
@@ -71,6 +81,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "plan": _describe(scenario.plan),
             "push": None if scenario.push is None else _describe(scenario.push),
             "body_region": scenario.body_region,
+            "contact": None if scenario.contact is None else dataclasses.asdict(scenario.contact),
         },
         "robot": {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()},
         "exchange_order": EXCHANGE_ORDER,

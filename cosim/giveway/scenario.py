@@ -12,6 +12,7 @@ from giveway.checks import finite, whole
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.plan import Plan, Push, Rest
 from giveway.robot import read_robot
+from giveway.stated_contact import StatedContact
 from giveway.variables import Value, table
 
 __all__ = ["BUMPERS", "FMI_VERSIONS", "Scenario"]
@@ -43,6 +44,7 @@ class Scenario:
         fmi_version: 3 or 2.
         robot: a robot file that replaces the one the FMUs were built with, or None.
         body_region: what the contact force is judged as, a name of `giveway.body_regions`, or None.
+        contact: the contact that the parameters are meant to make, or None; another one becomes a warning.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Scenario:
     fmi_version: int = 3
     robot: Path | None = None
     body_region: str | None = None
+    contact: StatedContact | None = None
 
     def __post_init__(self) -> None:
         finite("duration_s", self.duration_s, 0.0, MAXIMUM_DURATION_S, "s")

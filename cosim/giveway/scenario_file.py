@@ -13,11 +13,13 @@ from typing import Any
 
 from giveway.errors import GivewayError
 from giveway.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
+from giveway.plan_limits import check_plan_of
 from giveway.scenario import BUMPERS, Scenario
+from giveway.stated_contact import StatedContact
 from giveway.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.variables import Value, table
 
-__all__ = ["SET_BY", "read_scenario", "scalars", "scenario_of"]
+__all__ = ["PLAN_KEYS", "SET_BY", "read_scenario", "scalars", "scenario_of"]
 
 SCHEMA_VERSION = 1
 NAME_MAX = 80
@@ -30,6 +32,7 @@ _TOP = (
     "plan", "collision", "push", "testbed", "controller",
 )  # fmt: skip
 _POSE = ("x", "y", "heading")
+PLAN_KEYS = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}  # fields of plans, in the file's words
 _PLAN_KEYS = {
     "rest": _POSE,
     "straight": (*_POSE, "speed", "direction", "acceleration"),
@@ -66,7 +69,10 @@ def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | 
     path = Path(path)
     text, document = read_toml(path, "give the path of a scenario file (TOML)")
     with lines_named(path, text):
-        return scenario_of(document, path, bumper, robot)
+        scenario = scenario_of(document, path, bumper, robot)
+        with renamed("plan", **PLAN_KEYS):
+            check_plan_of(scenario)
+        return scenario
 
 
 def scenario_of(
@@ -104,9 +110,20 @@ def scenario_of(
         )
     if not 1 <= len(bare.name) <= NAME_MAX:
         raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")
+    for index, push in enumerate(pushes.pushes if pushes is not None else ()):
+        if push.start_s >= bare.duration_s:
+            allowed = f"a start before the end of the run at {bare.duration_s:g} s"
+            raise GivewayError(f"push[{index}].start", push.start_s, allowed)
     if collision is None:
         return bare
-    return dataclasses.replace(bare, testbed={**bare.testbed, **_collision(collision, bare)})
+    met, contact, time_s = _collision(collision, bare)
+    if time_s >= bare.duration_s:
+        field, found = ("collision.time", time_s) if contact.time_s is not None else ("duration", bare.duration_s)
+        allowed = f"before the end of the run at {bare.duration_s:g} s"
+        if contact.time_s is None:
+            allowed = f"above {time_s:.3g} s, when the weight has pulled the slider to the robot"
+        raise GivewayError(field, found, allowed)
+    return dataclasses.replace(bare, testbed={**bare.testbed, **met}, contact=contact)
 
 
 def _plan(top: Section) -> Plan:
@@ -119,14 +136,13 @@ def _plan(top: Section) -> Plan:
         with renamed("plan", x_m="x", y_m="y"):
             return Rest(section.number("x", 0.0), section.number("y", 0.0), heading)
     speed, acceleration = section.number("speed"), section.number("acceleration", START_ACCELERATION_MPS2)
-    names = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}
     if kind == "straight":
-        with renamed("plan", x_m="x", y_m="y", **names):
+        with renamed("plan", x_m="x", y_m="y", **PLAN_KEYS):
             x, y = section.number("x", 0.0), section.number("y", 0.0)
             return Straight(speed, section.angle("direction", 0.0), x, y, heading, acceleration)
     centre = section.pair("centre", (0.0, 0.0))
     turning = "turning" if section.flag("turning", False) else "fixed"
-    with renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **names):
+    with renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **PLAN_KEYS):
         start = section.angle("start", 0.0)
         return Circle(section.number("diameter"), speed, *centre, start, turning, heading, acceleration)
 
@@ -185,9 +201,9 @@ def scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
             yield f"{prefix}{key}", value
 
 
-def _collision(section: Section, bare: Scenario) -> dict[str, Value]:
-    """The testbed's parameters for the dummy."""
-    from giveway.approach import Approach, edge_middle, meet, outline_of
+def _collision(section: Section, bare: Scenario) -> tuple[dict[str, Value], StatedContact, float]:
+    """The testbed's parameters for the dummy, the contact that they are meant to make, and when that is, s."""
+    from giveway.approach import Approach, edge_middle, meet_as_stated, outline_of
 
     set_already = bare.parameters("testbed")
     mass = section.number("mass", float(table("testbed")["slider.mass"].start or 0.0))
@@ -209,8 +225,8 @@ def _collision(section: Section, bare: Scenario) -> dict[str, Value]:
         time_s = None if rope and "time" not in section.values else section.number("time", MEETING_S)
         direction = section.angle("direction") if "direction" in section.values else None
         approach = Approach(point, section.number("speed"), direction, time_s, rope)
-        met = {"slider.mass": mass} | meet(approach, testbed, bare.plan, _tare_s(bare))
-    return met | _height(section)
+        slider, contact, meeting_s = meet_as_stated(approach, testbed, bare.plan, _tare_s(bare))
+    return {"slider.mass": mass} | slider | _height(section), contact, meeting_s
 
 
 def _height(section: Section) -> dict[str, Value]:

@@ -11,7 +11,7 @@ from giveway.files import write_text
 from giveway.metrics import Metric
 from giveway.result import Result
 
-__all__ = ["cell", "summary", "table_rows", "write_summary"]
+__all__ = ["cell", "summary", "table_rows", "warning_lines", "write_summary"]
 
 SCHEMA_VERSION = 1
 
@@ -24,6 +24,14 @@ def table_rows(results: Mapping[str, Result]) -> list[tuple[str, ...]]:
         unit = "" if metric.unit == "1" else f", {metric.unit}"
         rows.append((f"{metric.name}{unit}", *(cell(result.metrics[index]) for result in results.values())))
     return rows
+
+
+def warning_lines(results: Mapping[str, Result]) -> list[str]:
+    """What happened otherwise than asked, one line each; with the bumper before it where there are several results."""
+    labels = {
+        bumper: f"{'no bumper' if bumper == 'none' else bumper}: " if len(results) > 1 else "" for bumper in results
+    }
+    return [f"{labels[bumper]}{one.text}" for bumper, result in results.items() for one in result.warnings]
 
 
 def cell(metric: Metric) -> str:
@@ -48,6 +56,11 @@ def summary(results: Mapping[str, Result]) -> dict[str, Any]:
             {"bumper": bumper, "name": metric.name, "value": metric.value, "unit": metric.unit, "truth": metric.truth}
             for bumper, result in results.items()
             for metric in result.metrics
+        ],
+        "warnings": [
+            {"bumper": bumper, "code": one.code, "text": one.text}
+            for bumper, result in results.items()
+            for one in result.warnings
         ],
     }
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from giveway.master import Progress
     from giveway.result import Result
 
-__all__ = ["INTERRUPTED", "print_columns", "print_results", "progress_bar", "progress_bars"]
+__all__ = ["INTERRUPTED", "print_columns", "print_results", "print_warnings", "progress_bar", "progress_bars"]
 
 INTERRUPTED = 130  # exit code of a command that Ctrl-C ended
 
@@ -38,11 +38,22 @@ def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str,
 
 
 def print_results(name: str, results: Mapping[str, Result]) -> None:
-    """The metrics of ``results``, a column for each bumper."""
-    from giveway.summary import table_rows
+    """The metrics of ``results``, a column for each bumper, and below them the warnings."""
+    from giveway.summary import table_rows, warning_lines
 
     header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
     print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
+    print_warnings(warning_lines(results))
+
+
+def print_warnings(lines: Sequence[str]) -> None:
+    """What happened otherwise than asked, one line each below "Warnings"; nothing if nothing did."""
+    if lines:
+        typer.secho("Warnings", bold=True)
+    for line in lines:
+        typer.echo(f"  {line}")
+    if lines:
+        typer.echo()
 
 
 @contextmanager

@@ -30,7 +30,7 @@ constexpr gwb_metric_info_t metric_infos[] = {
     {"location error", "mm", 1},
     {"force at detection", "N", 1},
     {"impulse at detection", "N.s", 1},
-    {"peak contact force", "N", 0},
+    {"peak force of the run", "N", 0},
     {"bumper compression", "mm", 0},
     {"peak wheel torque", "N.m", 0},
     {"peak torque, any sign", "N.m", 0},
@@ -54,6 +54,15 @@ constexpr gwb_metric_info_t metric_infos[] = {
     {"re-latches", "1", 0},
     {"re-latch time", "ms", 0},
     {"tip margin", "1", 0},
+    {"peak force of the first contact", "N", 0},
+    {"first contact x", "mm", 0},
+    {"first contact y", "mm", 0},
+    {"robot speed at contact", "m/s", 0},
+    {"distance from the plan", "mm", 0},
+    {"angle from the plan", "deg", 0},
+    {"sensed torque share", "1", 0},
+    {"motor torque share", "1", 0},
+    {"time in sensor fault", "s", 0},
 };
 static_assert(std::size(metric_infos) == GWB_METRIC_COUNT);
 

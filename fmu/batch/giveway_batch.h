@@ -88,12 +88,22 @@ enum {
     GWB_TRANSIENT_SHARE = 26,  /* 1: of the body region's transient limit; infinite where none is allowed and one was */
     GWB_LASTING_SHARE = 27,    /* 1: of the body region's lasting limit */
     GWB_BOTTOMING_MARGIN = 28, /* mm: bumper's travel less its largest compression; negative in the stop */
-    GWB_CONTACTS = 29,         /* 1: times that a contact began, as the rows show it; 1 more than the rebounds */
+    GWB_CONTACTS = 29,         /* 1: contacts; touches less than 0.1 s apart are one: a bumper's plate bounces */
     GWB_REBOUND_SPEED = 30,    /* m/s: of the nose relative to the robot when the first contact has ended */
     GWB_RELATCHES = 31,        /* 1: times that the bumper's magnet caught its plate again */
     GWB_RELATCH_TIME = 32,     /* ms: contact to the first of them */
     GWB_TIP_MARGIN = 33,       /* 1: least of the run; 0: a wheel lifts (on a plane), or it goes over (base.tipping) */
-    GWB_METRIC_COUNT = 34
+    /* What happened otherwise than asked (cosim/giveway/run_warnings.py). */
+    GWB_FIRST_PEAK_FORCE = 34,      /* N: largest true contact force of the first contact; GWB_PEAK_FORCE is the run's */
+    GWB_FIRST_CONTACT_X = 35,       /* mm, base frame: true point in the first row of the first contact */
+    GWB_FIRST_CONTACT_Y = 36,       /* mm */
+    GWB_ROBOT_SPEED = 37,           /* m/s: of the base in the last row before contact */
+    GWB_PLAN_DISTANCE = 38,         /* mm: largest of the reference from the plan while it tracks, up to the first reaction */
+    GWB_PLAN_ANGLE = 39,            /* deg: likewise */
+    GWB_SENSED_TORQUE_SHARE = 40,   /* 1: largest sensed torque over what counts as saturated */
+    GWB_MOTOR_TORQUE_SHARE = 41,    /* 1: largest motor torque over its limit */
+    GWB_FAULT_TIME = 42,            /* s: in the controller's mode 6, sensor fault */
+    GWB_METRIC_COUNT = 43
 };
 
 typedef struct gwb_variable {

@@ -16,6 +16,9 @@ constexpr double peak_window_s = 0.35;
 constexpr double loaded_share = 0.5;
 constexpr double cause_window_s = 0.25;
 constexpr double transient_s = 0.5; // of a contact; what lasts longer is quasi-static
+constexpr double contact_gap_s = 0.1; // touches less than this apart are one contact
+constexpr int mode_tracking = 1;
+constexpr int mode_fault = 6;
 constexpr double gravity_mps2 = 9.81;
 constexpr double pi = 3.14159265358979323846;
 constexpr double wheel_cos[] = {1.0, -0.5, -0.5};
@@ -57,10 +60,12 @@ public:
 
     void all() {
         whole_run();
+        otherwise_than_asked();
         forces_on_a_person();
         tip_margin();
         if (hit_) {
-            rebound();
+            contacts();
+            first_contact();
             relatching();
             contact_speed();
             peak_torques();
@@ -202,19 +207,67 @@ private:
         return 1.0 - farthest / (0.5 * p.wheel_distance_m);
     }
 
-    void rebound() {
-        int contacts = 0;
-        for (std::size_t i = 0; i < count_; ++i) {
-            contacts += s_[i].contact && (i == 0 || !s_[i - 1].contact) ? 1 : 0;
+    // How many contacts there were, the largest force of the first and the speed after it.
+    void contacts() {
+        int contacts = 1;
+        double touched_s = contact_s_;
+        double peak = 0.0;
+        std::size_t left = start_; // one past the last row of the first contact
+        for (std::size_t i = start_; i < count_; ++i) {
+            if (!s_[i].contact) {
+                continue;
+            }
+            contacts += s_[i].time_s - touched_s >= contact_gap_s ? 1 : 0;
+            touched_s = s_[i].time_s;
+            if (contacts == 1) {
+                peak = std::max(peak, s_[i].contact_force);
+                left = i + 1;
+            }
         }
         set(GWB_CONTACTS, contacts);
-        std::size_t left = start_;
-        while (left < count_ && s_[left].contact) {
-            ++left;
-        }
+        set(GWB_FIRST_PEAK_FORCE, peak);
         if (left + 1 < count_) {
             set(GWB_REBOUND_SPEED, nose_speed(left));
         }
+    }
+
+    // Where, and how fast the robot was.
+    void first_contact() {
+        if (start_ < count_ && s_[start_].contact) {
+            set(GWB_FIRST_CONTACT_X, 1e3 * s_[start_].contact_base_x);
+            set(GWB_FIRST_CONTACT_Y, 1e3 * s_[start_].contact_base_y);
+        }
+        if (start_ > 0) {
+            set(GWB_ROBOT_SPEED, Vector{s_[start_ - 1].vx, s_[start_ - 1].vy}.length());
+        }
+    }
+
+    // How far the controller was from its plan before it reacted to anything, and what was at its limits.
+    void otherwise_than_asked() {
+        double distance = 0.0;
+        double angle = 0.0;
+        double sensed = 0.0;
+        double motor = 0.0;
+        int faulty = 0;
+        bool reacted = false;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const Sample& s = s_[i];
+            for (int wheel = 0; wheel < 3; ++wheel) {
+                sensed = std::max(sensed, std::fabs(s.sensed_torque[wheel]));
+                motor = std::max(motor, std::fabs(s.motor_torque[wheel]));
+            }
+            faulty += s.mode == mode_fault ? 1 : 0;
+            reacted = reacted || s.mode > mode_tracking;
+            if (s.mode == mode_tracking && !reacted) {
+                distance = std::max(distance, Vector{s.reference_x - s.plan_x, s.reference_y - s.plan_y}.length());
+                angle = std::max(angle, std::fabs(wrapped(degrees(s.reference_theta - s.plan_theta))));
+            }
+        }
+        set(GWB_PLAN_DISTANCE, 1e3 * distance);
+        set(GWB_PLAN_ANGLE, angle);
+        set(GWB_SENSED_TORQUE_SHARE, sensed / parameters_.sensed_torque_limit_nm);
+        set(GWB_MOTOR_TORQUE_SHARE, motor / parameters_.motor_torque_limit_nm);
+        set(GWB_FAULT_TIME, faulty * (s_[1].time_s - s_[0].time_s));
     }
 
     void relatching() {

@@ -11,7 +11,7 @@ struct Sample {
     double time_s;
     // testbed.truth
     double x, y, theta, vx, vy;
-    double wheel_torque[3];
+    double wheel_torque[3], motor_torque[3], sensed_torque[3];
     double contact_force, contact_force_x, contact_force_y;
     double contact_base_x, contact_base_y;
     double contact_impulse_x, contact_impulse_y;
@@ -25,8 +25,10 @@ struct Sample {
     // controller
     double estimate_force, estimate_force_x, estimate_force_y;
     double detection_direction, detection_point_x, detection_point_y;
-    double reference_x, reference_y;
+    double reference_x, reference_y, reference_theta;
+    double plan_x, plan_y, plan_theta;
     int detection_count;
+    int mode;
     int events;
     bool contact, pushed, latched, rope_taut;
 };
@@ -39,6 +41,7 @@ struct MetricParameters {
     bool tipping;
     double mass_kg, com_height_m, contact_height_m, push_height_m;
     double transient_limit_n, lasting_limit_n; // as in gwb_spec_t
+    double sensed_torque_limit_nm, motor_torque_limit_nm;
 };
 
 // Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least two samples.

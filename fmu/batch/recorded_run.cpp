@@ -256,6 +256,8 @@ void RecordedRun::record(std::uint32_t k, double now_s) {
     s.vx = t.truth_vx;
     s.vy = t.truth_vy;
     std::copy_n(t.truth_wheel_torque, 3, s.wheel_torque);
+    std::copy_n(t.truth_motor_torque, 3, s.motor_torque);
+    std::copy_n(t.sensor_torque, 3, s.sensed_torque);
     s.contact_force = t.truth_contact_force;
     s.contact_force_x = t.truth_contact_force_x;
     s.contact_force_y = t.truth_contact_force_y;
@@ -282,7 +284,12 @@ void RecordedRun::record(std::uint32_t k, double now_s) {
     s.detection_point_y = c.detection_point_y;
     s.reference_x = c.reference_x;
     s.reference_y = c.reference_y;
+    s.reference_theta = c.reference_theta;
+    s.plan_x = c.plan_x;
+    s.plan_y = c.plan_y;
+    s.plan_theta = c.plan_theta;
     s.detection_count = c.detection_count;
+    s.mode = c.mode;
     s.events = t.events;
     s.contact = t.truth_contact;
     s.pushed = t.push_force_x != 0.0 || t.push_force_y != 0.0;
@@ -297,7 +304,8 @@ void RecordedRun::judge() {
     const MetricParameters parameters{t.wheel_radius, t.wheel_distance,
                                           static_cast<double>(c.estimator_average_window) * c.controller_period,
                                           t.bumper_kind != 0, t.bumper_travel, t.base_tipping, t.base_mass, t.base_com_height, t.contact_height,
-                                          t.push_height, spec_.transient_limit_n, spec_.lasting_limit_n};
+                                          t.push_height, spec_.transient_limit_n, spec_.lasting_limit_n,
+                                          std::min(t.electronics_torque_range, c.sensor_check_torque_limit), t.drivetrain_torque_limit};
     evaluate(samples_, result_.rows, parameters, result_.metric, result_.truth);
 }
 

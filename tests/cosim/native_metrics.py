@@ -47,6 +47,8 @@ def evaluate(
         testbed["push.height"],
         0.0 if region is None else region.peak_limit_n,
         0.0 if region is None else region.lasting_limit_n,
+        min(testbed["electronics.torque_range"], controller["sensor_check.torque_limit"]),
+        testbed["drivetrain.torque_limit"],
     ], dtype=float)  # fmt: skip
     metrics = batch.native_metrics()
     value, truth = np.full(len(metrics), math.inf), np.full(len(metrics), math.inf)

@@ -1,7 +1,7 @@
 """A collision in closed form, with every number known by hand, as traces like those of a run.
 
 The robot rests at the origin, heading 0. From t = 0.1 s a constant force of 40 N along the world direction 210 deg acts
-at the base point (0.1, 0.05) for 0.2 s. The controller estimates 30 N along 200 deg and detects 50 ms after contact;
+at the base point (0.1, 0.05) for 0.2 s. The sensors of the wheels' torques have no delay. The controller estimates 30 N along 200 deg and detects 50 ms after contact;
 from then on the reference moves 0.5 m and the base 0.48 m along 210 deg.
 """
 
@@ -24,8 +24,17 @@ REVERSAL_NM = 6.0  # wheel 1 afterwards
 AVERAGE_WINDOW = 10
 
 PARAMETERS: dict[str, dict[str, Any]] = {
-    "testbed": {"wheel.radius": 0.1, "wheel.distance": 0.24},
-    "controller": {"estimator.average_window": AVERAGE_WINDOW, "controller.period": STEP_S},
+    "testbed": {
+        "wheel.radius": 0.1,
+        "wheel.distance": 0.24,
+        "electronics.torque_range": 30.0,
+        "drivetrain.torque_limit": 20.0,
+    },
+    "controller": {
+        "estimator.average_window": AVERAGE_WINDOW,
+        "controller.period": STEP_S,
+        "sensor_check.torque_limit": 25.0,
+    },
 }
 
 
@@ -59,6 +68,9 @@ def traces(*, hit: bool = True, noticed: bool = True, heading_rad: float = 0.0) 
         "controller.detection.point_x": np.where(after, ESTIMATED_POINT_M[0], 0.0),
         "controller.detection.point_y": np.where(after, ESTIMATED_POINT_M[1], 0.0),
         "controller.estimate.force": ESTIMATE_N * touching,
+        "controller.mode": 1 + after.astype(np.int32),  # tracking, reacting
+        "controller.reference.theta": np.zeros_like(time),
+        **{f"controller.plan.{name}": np.zeros_like(time) for name in ("x", "y", "theta")},
     }
     for axis, share in zip("xy", toward, strict=True):
         columns[f"testbed.truth.{axis}"] = 0.48 * escape * share
@@ -72,5 +84,7 @@ def traces(*, hit: bool = True, noticed: bool = True, heading_rad: float = 0.0) 
     for wheel, torque in enumerate(TORQUE_NM):
         reversal = REVERSAL_NM * (time > 0.5) * (wheel == 1) * hit
         columns[f"testbed.truth.wheel_torque[{wheel}]"] = torque * touching + reversal
+        columns[f"testbed.truth.motor_torque[{wheel}]"] = np.zeros_like(time)
+        columns[f"testbed.sensor.torque[{wheel}]"] = torque * touching
     variables = {name: ("time", values) for name, values in columns.items()}
     return xarray.Dataset(variables, coords={"time": ("time", time)})

@@ -40,7 +40,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a study that has been run, a study file, a log and a robot file; FMUs are unpacked by then."""
     folder = tmp_path_factory.mktemp("inputs")
     giveway.run(short(duration_s=0.01))
-    small_study().objective("peak contact force").run(folder / "study")
+    small_study().objective("peak force of the run").run(folder / "study")
     (folder / "study.toml").write_text(
         'schema_version = 1\n[scenario]\nduration = 0.1\n[[collision]]\nname = "a"\nspeed = 0.5\nmass = 5\nedge = 0\n'
     )

@@ -65,11 +65,14 @@ def test_every_number_of_the_closed_form(evaluate: Evaluate) -> None:
         "contact speed": 0.5, "false detections": 0.0, "detection time": 50.0, "force direction": -160.0,
         "direction error": -10.0, "contact point x": 130.0, "contact point y": 90.0, "location error": 50.0,
         "force at detection": 30.0, "impulse at detection": 51 * 0.03,  # rows 100 to 150, both in it
-        "peak contact force": 40.0, "bumper compression": 30.0, "peak wheel torque": 4.0,
+        "peak force of the run": 40.0, "bumper compression": 30.0, "peak wheel torque": 4.0,
         "peak torque, any sign": 6.0, "escape distance": 0.5, "energy residual": 1e-6, "transient force": 40.0,
         "lasting force": 0.0, "longest contact": 0.199, "transient force share": 40.0 / 260.0,
         "lasting force share": 0.0, "bottoming margin": 90.0, "contacts": 1.0, "rebound speed": 0.5,
-        "re-latches": 0.0, "re-latch time": math.nan,
+        "re-latches": 0.0, "re-latch time": math.nan, "peak force of the first contact": 40.0,
+        "first contact x": 100.0, "first contact y": 50.0, "robot speed at contact": 0.0, "distance from the plan": 0.0,
+        "angle from the plan": 0.0, "sensed torque share": 4.0 / 25.0, "motor torque share": 0.0,
+        "time in sensor fault": 0.0, "contact time": 0.1,
     }  # fmt: skip
     truth = {
         "force direction": -150.0, "contact point x": 100.0, "contact point y": 50.0, "force at detection": 40.0,
@@ -162,6 +165,75 @@ def test_re_latching_is_counted_from_the_contact(evaluate: Evaluate) -> None:
     found = evaluate(changed(latched), PARAMETERS)
     assert found["re-latches"][0] == 2.0
     assert found["re-latch time"][0] == pytest.approx(250.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(("gap", "contacts", "first_n"), [(99, 1.0, 60.0), (101, 2.0, 40.0)])
+def test_touches_less_than_a_tenth_of_a_second_apart_are_one_contact(
+    evaluate: Evaluate, gap: int, contacts: float, first_n: float
+) -> None:
+    again = slice(LAST_TOUCH + gap, LAST_TOUCH + gap + 50)
+    touches: Changes = {"testbed.truth.contact": [(again, 1.0)], "testbed.truth.contact_force": [(again, 60.0)]}
+    traces = changed(touches)
+    # 9 m/s after the first touch, 2 m/s after the second.
+    speed = np.where(np.arange(traces.sizes["time"] - 1) < again.start, 9.0, 2.0)
+    way = np.concatenate([[0.0], np.cumsum(1e-3 * speed)])
+    for axis, share in (("x", 0.6), ("y", -0.8)):
+        traces[f"testbed.truth.nose_{axis}"].values[:] = share * way
+    found = evaluate(traces, PARAMETERS)
+    assert (found["contacts"][0], found["peak force of the first contact"][0]) == (contacts, first_n)
+    assert found["peak force of the run"][0] == 60.0
+    assert found["rebound speed"][0] == pytest.approx(2.0 if contacts == 1.0 else 9.0, rel=1e-11)
+
+
+def test_the_place_is_that_of_the_first_row_and_the_robots_speed_of_the_one_before(evaluate: Evaluate) -> None:
+    found = evaluate(
+        changed({
+            "testbed.truth.contact_base_x": [(CONTACT, 0.2), (CONTACT + 1, 0.9)],
+            "testbed.truth.contact_base_y": [(CONTACT, -0.1), (CONTACT + 1, 0.9)],
+            "testbed.truth.vx": [(CONTACT - 2, 9.0), (CONTACT - 1, 0.3), (CONTACT, 9.0)],
+            "testbed.truth.vy": [(CONTACT - 1, -0.4)],
+        }),
+        PARAMETERS,
+    )  # fmt: skip
+    assert (found["first contact x"][0], found["first contact y"][0]) == pytest.approx((200.0, -100.0), rel=1e-12)
+    assert found["robot speed at contact"][0] == pytest.approx(0.5, rel=1e-12)
+
+
+def test_the_plan_is_compared_while_it_is_followed_and_until_the_first_reaction(evaluate: Evaluate) -> None:
+    away: Changes = {
+        # Taring, tracking, reacting, and tracking again.
+        "controller.mode": [
+            (slice(0, 50), 0.0),
+            (slice(50, 150), 1.0),
+            (slice(150, 600), 2.0),
+            (slice(600, None), 1.0),
+        ],
+        "controller.plan.x": [(40, 9.0), (60, 0.03), (149, 0.01), (150, 9.0), (700, 9.0)],
+        "controller.plan.y": [(60, 0.04), (700, 9.0)],
+        "controller.plan.theta": [(70, 2.0 * math.pi + 0.1), (700, 1.0)],
+    }
+    traces = changed(away)
+    for axis in "xy":  # the reference of these rows stands
+        traces[f"controller.reference.{axis}"].values[:150] = 0.0
+    found = evaluate(traces, PARAMETERS)
+    assert found["distance from the plan"][0] == pytest.approx(50.0, rel=1e-12)
+    assert found["angle from the plan"][0] == pytest.approx(math.degrees(0.1), rel=1e-12)
+
+
+def test_what_is_at_its_limit(evaluate: Evaluate) -> None:
+    found = evaluate(
+        changed({
+            "testbed.sensor.torque[2]": [(5, -12.5)],
+            "testbed.truth.motor_torque[0]": [(900, -18.0)],
+            "controller.mode": [(slice(0, 200), 1.0), (slice(200, 207), 6.0), (slice(207, None), 3.0)],
+        }),
+        PARAMETERS,
+    )  # fmt: skip
+    assert found["sensed torque share"][0] == 0.5  # of the 25 N m that count as saturated, not of the range of 30 N m
+    assert found["motor torque share"][0] == 0.9
+    assert found["time in sensor fault"][0] == pytest.approx(0.007, rel=1e-12)
+    narrow = {**PARAMETERS, "testbed": {**PARAMETERS["testbed"], "electronics.torque_range": 20.0}}
+    assert evaluate(changed({}), narrow)["sensed torque share"][0] == 0.2
 
 
 def least_share_of_a_wheel(moment_x: float, moment_y: float, heading_rad: float) -> float:

@@ -95,7 +95,7 @@ def test_nothing_hit_gives_no_numbers_but_no_error() -> None:
     for name in ("detection time", "force direction", "escape distance", "peak wheel torque"):
         assert numbers[name].value is None
     assert numbers["false detections"].value == 0.0
-    assert numbers["peak contact force"].value == 0.0
+    assert numbers["peak force of the run"].value == 0.0
 
 
 def test_unnoticed_hit_has_force_but_no_detection() -> None:

@@ -62,12 +62,12 @@ def test_goals_are_taken_over_runs_as_asked(
 
 def test_the_answers_are_those_of_the_stored_runs(tmp_path: Path) -> None:
     study = small_study().vary(SPRING, values=[600.0, 1200.0]).collision("slow", speed=0.3, edge=1, time=0.12)
-    study.objective("peak contact force").objective("bumper compression", collisions="mean", goal="minimise")
+    study.objective("peak force of the run").objective("bumper compression", collisions="mean", goal="minimise")
     study.constraint("bumper compression", maximum=3.0, unit="cm").tolerance(LATCH, relative=0.3).tolerances(samples=3)
     study.document["part_runs"] = 5  # designs end in the middle of parts
     found = study.run(tmp_path / "study", threads=2)
     runs = stored_runs(tmp_path / "study")
-    peak = runs["peak contact force"].reshape(8, 4, 2)
+    peak = runs["peak force of the run"].reshape(8, 4, 2)
     travel = runs["bumper compression"].reshape(8, 4, 2)
     np.testing.assert_array_equal(found.values[:, 0], peak.max(axis=(1, 2)))
     np.testing.assert_allclose(found.values[:, 1], travel.mean(axis=2).max(axis=1), rtol=1e-15)
@@ -76,7 +76,7 @@ def test_the_answers_are_those_of_the_stored_runs(tmp_path: Path) -> None:
     assert found.complete
     assert set(found.order) == set(np.flatnonzero(found.feasible))
     assert found.pareto[found.order[0]]
-    assert found.table()["peak contact force, worst collision, worst of tolerances"].attrs["units"] == "N"
+    assert found.table()["peak force of the run, worst collision, worst of tolerances"].attrs["units"] == "N"
 
 
 def compared_by_hand(costs: np.ndarray, weights: tuple[float, float]) -> tuple[list[bool], list[int]]:
@@ -104,11 +104,11 @@ def test_goals_and_weights_decide_front_and_ranking(force: str, travel: str, tmp
     orders = []
     for weights in ((1.0, 16.0), (16.0, 1.0)):
         study = small_study().vary(SPRING, values=[400.0, 2500.0])
-        study.objective("peak contact force", goal=force, weight=weights[0])
+        study.objective("peak force of the run", goal=force, weight=weights[0])
         study.objective("bumper compression", goal=travel, weight=weights[1])
         found = study.run(tmp_path / "study", threads=2)  # the second only looks at the runs of the first
         runs = stored_runs(tmp_path / "study")
-        costs = np.stack([runs["peak contact force"], runs["bumper compression"]], axis=1)
+        costs = np.stack([runs["peak force of the run"], runs["bumper compression"]], axis=1)
         costs *= [1.0 if goal == "minimise" else -1.0 for goal in (force, travel)]
         on_front, order = compared_by_hand(costs, weights)
         assert found.pareto.tolist() == on_front
@@ -129,8 +129,8 @@ def test_goals_and_weights_are_read_as_they_are_written() -> None:
 def test_a_constraint_is_met_by_the_worst_of_all_runs(limit: str, bound: float, tmp_path: Path) -> None:
     study = small_study().collision("slow", speed=0.3, edge=1, time=0.12)
     study.tolerance(LATCH, relative=0.5).tolerances(samples=3)
-    found = study.constraint("peak contact force", **{limit: bound}).run(tmp_path / "study", threads=2)
-    peaks = stored_runs(tmp_path / "study")["peak contact force"].reshape(4, 8)
+    found = study.constraint("peak force of the run", **{limit: bound}).run(tmp_path / "study", threads=2)
+    peaks = stored_runs(tmp_path / "study")["peak force of the run"].reshape(4, 8)
     least, most = peaks.min(axis=1), peaks.max(axis=1)
     assert found.feasible.tolist() == (least >= bound if limit == "minimum" else most <= bound).tolist()
     assert ((least < bound) & (most > bound)).any()  # in some design, the best run alone would have done
@@ -145,7 +145,7 @@ def test_a_limit_is_itself_allowed(limit: str, tmp_path: Path) -> None:
 
 
 def test_a_design_with_a_failed_run_is_not_among_the_answers(tmp_path: Path) -> None:
-    study = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).objective("peak contact force")
+    study = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).objective("peak force of the run")
     found = study.run(tmp_path / "study", threads=2)
     assert found.feasible.tolist() == [True, False]
     assert found.failed.tolist() == [0, 1]
@@ -156,7 +156,7 @@ def test_a_design_with_a_failed_run_is_not_among_the_answers(tmp_path: Path) -> 
 
 
 def test_chosen_designs_run_again_as_they_did(tmp_path: Path) -> None:
-    study = small_study().objective("peak contact force")
+    study = small_study().objective("peak force of the run")
     found = study.run(tmp_path / "study", threads=2)
     design = int(found.order[0])
     result = simulate(found.setup, found.runs, tmp_path / "study", design)["front"]
@@ -218,7 +218,7 @@ def test_the_names_of_metrics_are_the_library_s(tmp_path: Path) -> None:
 
 
 def test_an_unfinished_study_has_answers_so_far(tmp_path: Path) -> None:
-    study = small_study(part_runs=2).objective("peak contact force")
+    study = small_study(part_runs=2).objective("peak force of the run")
     study.run(tmp_path / "study", threads=2)
     part_files(tmp_path / "study")[1].unlink()
     found = answers.load(tmp_path / "study")

@@ -41,7 +41,7 @@ high = 60
 metric = "detection time"
 
 [[objective]]
-metric = "peak contact force"
+metric = "peak force of the run"
 
 [report]
 chosen = 1
@@ -79,8 +79,8 @@ def test_from_the_file_to_the_chosen_bumper(
         assert (tmp_path / file).stat().st_size > 0
     say("study", "export", str(folder), "--out", "all.csv")
     assert (tmp_path / "all.csv").read_text(encoding="utf-8").count("\n") == 10
-    assert "peak contact force" in say("run", "bumper.toml", "--out", "run")
-    assert "peak contact force" in say("study", "run", str(folder), "--design", "0")
+    assert "peak force of the run" in say("run", "bumper.toml", "--out", "run")
+    assert "peak force of the run" in say("study", "run", str(folder), "--design", "0")
 
 
 def test_a_file_can_be_checked_without_a_run(

@@ -34,7 +34,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     study.vary("collision.speed", low=0.3, high=0.6).vary("temperature", low=-10.0, high=50.0)
     study.vary("controller.detector.kind", values=[0, 1]).vary("testbed.electronics.seed", low=1, high=1000)
     study.vary("collision.mass", low=5.0, high=15.0)
-    study.designs("latin-hypercube", count=8).objective("peak contact force")
+    study.designs("latin-hypercube", count=8).objective("peak force of the run")
     return study.run(tmp_path_factory.mktemp("export") / "study", threads=2)
 
 
@@ -44,7 +44,7 @@ def stored(answers: Answers, collision: str) -> dict[str, float]:
     assert runs["status"][row] == "ok"
     return {
         name: runs[name][row]
-        for name in ("peak contact force", "bumper compression", "contact impulse", "contact speed")
+        for name in ("peak force of the run", "bumper compression", "contact impulse", "contact speed")
     }
 
 
@@ -63,7 +63,7 @@ def test_an_ssv_is_valid_and_gives_the_fmu_the_design(answers: Answers, tmp_path
     scenario = giveway.Scenario("taken away", 0.2, bumper=bumper, **values)  # type: ignore[arg-type]
     result = giveway.run(scenario)
     expected = stored(answers, "front")
-    assert result.metric("peak contact force").value == pytest.approx(expected["peak contact force"], rel=1e-12)
+    assert result.metric("peak force of the run").value == pytest.approx(expected["peak force of the run"], rel=1e-12)
     assert result.metric("bumper compression").value == pytest.approx(expected["bumper compression"], rel=1e-12)
 
 
@@ -81,7 +81,7 @@ def test_a_scenario_file_runs_as_in_the_study(answers: Answers, collision: str, 
     export_design(answers, DESIGN, tmp_path / "design.toml", collision=collision)
     result = batch.run(giveway.read_scenario(tmp_path / "design.toml"))
     expected = stored(answers, collision)
-    for name in ("peak contact force", "bumper compression", "contact speed"):
+    for name in ("peak force of the run", "bumper compression", "contact speed"):
         # Degrees and back, and the place from its coordinates: the slider's start differs in its last digits.
         assert result.metric(name).value == pytest.approx(expected[name], rel=1e-9), name
 
@@ -109,8 +109,8 @@ def test_a_folder_says_all_by_itself(tmp_path: Path) -> None:
     export_design(answers, 0, tmp_path / "design.toml")
     scenario = giveway.read_scenario(tmp_path / "design.toml")
     assert scenario.parameters("testbed")["base.mass"] == 50.0
-    peak = batch.run(scenario).metric("peak contact force").value
-    assert stored_runs(tmp_path / "study")["peak contact force"][0] == pytest.approx(peak, rel=1e-12)
+    peak = batch.run(scenario).metric("peak force of the run").value
+    assert stored_runs(tmp_path / "study")["peak force of the run"][0] == pytest.approx(peak, rel=1e-12)
 
 
 def test_a_list_of_the_design_is_one_of_designs(answers: Answers, tmp_path: Path) -> None:
@@ -132,7 +132,7 @@ def test_the_table_has_every_design_and_goal(answers: Answers, tmp_path: Path) -
     with (tmp_path / "all.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == len(answers.designs)
-    peaks = [float(row["peak contact force, worst collision [N]"] or math.nan) for row in rows]
+    peaks = [float(row["peak force of the run, worst collision [N]"] or math.nan) for row in rows]
     np.testing.assert_array_equal(peaks, answers.values[:, 0])
 
 

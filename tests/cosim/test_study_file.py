@@ -15,7 +15,7 @@ schema_version = 1
 name = "wrong on purpose"
 
 [scenario]
-duration = 0.3
+duration = 0.7
 bumper = "magnetic"
 
 [[collision]]
@@ -38,7 +38,7 @@ quantity = "testbed.bumper.spring_rate"
 relative = 0.1
 
 [[objective]]
-metric = "peak contact force"
+metric = "peak force of the run"
 
 [[constraint]]
 metric = "bumper compression"
@@ -59,12 +59,12 @@ WRONG = {  # what is replaced, by what, the line, and words of the message
     "count is missing": ("count = 8", "", 13, ("designs.count", "nothing")),
     "option of another kind": ("count = 8", "trajectories = 8", 15, ("designs.trajectories", "unknown")),
     "unknown kind of design": ('"sobol"', '"soboll"', 14, ("designs.kind", "sobol")),
-    "unknown metric": ('"peak contact force"', '"peak contact farce"', 28,
-        ("objective[0].metric", "peak contact force")),
+    "unknown metric": ('"peak force of the run"', '"peak farce of the run"', 28,
+        ("objective[0].metric", "peak force of the run")),
     "unknown method": ('name = "wrong', 'method = "exact"\nname = "wrong', 2, ("method", "event-exact")),
     "unknown key": ("edge = 0", "edge = 0\nheigth = 0.3", 12, ("collision[0].heigth", "height")),
     "no such side": ("edge = 0", "edge = 7", 11, ("collision[0].edge", "from 0 to 2")),
-    "scenario out of range": ("duration = 0.3", "duration = -1.0", 5, ("scenario.duration", "0 to 3600")),
+    "scenario out of range": ("duration = 0.7", "duration = -1.0", 5, ("scenario.duration", "0 to 3600")),
     "relative above one": ("relative = 0.1", "relative = 1.5", 25, ("tolerance[0].relative", "below 1")),
     "tolerance twice": ('relative = 0.1', 'relative = 0.1\nabsolute = 3.0', 25, ("tolerance[0].relative", "one of")),
     "set by the collision": ("testbed.bumper.latch_force", "testbed.slider.mass", 18,
@@ -156,7 +156,7 @@ def test_a_file_that_is_no_csv_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_limit_of_a_body_region_is_its_number() -> None:
-    study = small_study().constraint("peak contact force", maximum="transient limit")
+    study = small_study().constraint("peak force of the run", maximum="transient limit")
     study.document["scenario"]["body_region"] = "lower leg"
     from giveway.body_regions import body_region
 

@@ -19,8 +19,8 @@ def test_fixed_steps_are_runs_of_their_own_and_close(tmp_path: Path) -> None:
     assert (first["plant step"] == 0.0).all()
     assert (second["plant step"] > 0.0).all()
     # 0.5 %: what the method promises of the peak force (fmu/batch/README.md).
-    np.testing.assert_allclose(second["peak contact force"], first["peak contact force"], rtol=5e-3)
-    assert (second["peak contact force"] != first["peak contact force"]).any()
+    np.testing.assert_allclose(second["peak force of the run"], first["peak force of the run"], rtol=5e-3)
+    assert (second["peak force of the run"] != first["peak force of the run"]).any()
 
 
 def test_the_plant_s_step_is_part_of_the_run(tmp_path: Path) -> None:
@@ -36,7 +36,7 @@ def test_limits_of_the_body_region_reach_the_library(tmp_path: Path) -> None:
     study.document["scenario"]["body_region"] = "lower leg"
     sweep(study.setup(), tmp_path / "study", threads=2)
     runs = stored_runs(tmp_path / "study")
-    share = runs["peak contact force"] / body_region("lower leg").peak_limit_n
+    share = runs["peak force of the run"] / body_region("lower leg").peak_limit_n
     # The share's force is that of the rows, every 1 ms; the peak is the integrator's.
     np.testing.assert_allclose(runs["transient force share"], share, rtol=0.05)
 

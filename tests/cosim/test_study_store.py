@@ -89,7 +89,7 @@ def test_equal_designs_run_once(tmp_path: Path) -> None:
     outcome = swept(study.tolerances(samples=1), tmp_path / "study")
     assert (outcome.runs, outcome.ran, outcome.reused) == (8, 4, 4)
     runs = stored_runs(tmp_path / "study")
-    peaks = runs["peak contact force"].reshape(2, 2, 2)
+    peaks = runs["peak force of the run"].reshape(2, 2, 2)
     np.testing.assert_array_equal(peaks[:, 0], peaks[:, 1])
 
 
@@ -136,7 +136,7 @@ def test_failed_designs_are_kept_with_their_reason(tmp_path: Path) -> None:
     # A travel of 0.12 - 0.2 m is below what the model allows: the library says so.
     assert status[0].tolist() == ["ok", "wrong", "ok"]
     assert "travel" in message[0, 1]
-    assert np.isnan(runs["peak contact force"].reshape(3, 3)[1]).all()
+    assert np.isnan(runs["peak force of the run"].reshape(3, 3)[1]).all()
     assert outcome.failed == 5
 
 

@@ -101,7 +101,7 @@ def _compared(results: Mapping[str, Result]) -> Iterator[Row]:
     """What the paper measured, and what it compares."""
     detection, torque, force = (
         {bumper: value(result, metric) for bumper, result in results.items()}
-        for metric in ("detection time", "peak wheel torque", "peak contact force")
+        for metric in ("detection time", "peak wheel torque", "peak force of the run")
     )
     speed = value(results["none"], "contact speed")
     yield Row("slider speed at contact", speed, "m/s", "fitted", 0.5, Target.around(0.5, 0.01), decimals=3)
@@ -134,7 +134,7 @@ def _each(results: Mapping[str, Result]) -> Iterator[Row]:
         label, paper_ms = LABELS[bumper], PAPER_ACCELERATION_MS.get(bumper)
         force, torque, either, escape = (
             value(result, metric)
-            for metric in ("peak contact force", "peak wheel torque", "peak torque, any sign", "escape distance")
+            for metric in ("peak force of the run", "peak wheel torque", "peak torque, any sign", "escape distance")
         )
         half_metre = Target.around(0.5, 0.005)
         yield Row(f"escape of the admittance, {label}", escape, "m", "given", 0.5, half_metre, decimals=3)

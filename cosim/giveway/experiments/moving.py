@@ -118,7 +118,7 @@ def _rows(result: Result, still_nm: float) -> list[Row]:
         ),
         Row("peak torque of either sign", peak_nm, "N.m", fitted, decimals=2),
         Row("peak torque against the motion", motionless.value(result, "peak wheel torque"), "N.m", fitted, decimals=2),
-        Row("peak contact force", motionless.value(result, "peak contact force"), "N", "assumed"),
+        Row("peak force of the run", motionless.value(result, "peak force of the run"), "N", "assumed"),
         Row("largest spring deflection", motionless.value(result, "bumper compression"), "mm", fitted),
         Row("time of the largest spring deflection", deflection_ms, "ms", fitted, 180.0, decimals=0),
         Row("escape of the admittance", escape, "m", "given", 0.5, Target.around(0.5, 0.005), decimals=3),

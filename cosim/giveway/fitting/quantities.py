@@ -159,7 +159,7 @@ class Bench:
 
         times = np.reshape(detection(collisions, np.repeat(thresholds, 3)), (len(runs), 3)).T
         none, spring, magnetic = shaped("peak wheel torque")
-        _none, spring_force, magnetic_force = shaped("peak contact force")
+        _none, spring_force, magnetic_force = shaped("peak force of the run")
         columns = (
             _contact_speed(collisions)[0::3],
             *times,

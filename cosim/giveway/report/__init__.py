@@ -36,7 +36,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
 
     from giveway.report.animation import scene
     from giveway.report.figures import figures
-    from giveway.summary import table_rows
+    from giveway.summary import table_rows, warning_lines
 
     by_bumper = {result.manifest["scenario"]["bumper"]: result for result in results}
     environment = jinja2.Environment(
@@ -49,6 +49,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
         summary=summary,
         header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
         rows=table_rows(by_bumper),
+        warnings=warning_lines(by_bumper),
         figures=figures({BUMPER_LABELS[bumper]: result for bumper, result in by_bumper.items()}),
         # "</" would end the script element early.
         scenes=json.dumps(scenes, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),

@@ -12,7 +12,7 @@ from matplotlib.style import context
 
 from giveway.metrics import WHEELS
 from giveway.report.inline_svg import inline_svg
-from giveway.report.runs import IMPACT_MS, Run
+from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
 
 if TYPE_CHECKING:
@@ -47,12 +47,13 @@ def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
 def _contact_force(runs: list[Run]) -> Figure:
     figure = Figure(figsize=(WIDTH_IN, 3.3), layout="constrained")
     axes = figure.subplots()
+    window = force_window_ms(runs)
     for run in runs:
-        force = run.hit["testbed.truth.contact_force"]
-        axes.plot(run.time_ms[run.impact], force[run.impact], color=run.colour, label=run.label)
+        run.draw_force(axes, window, run.label)
         run.mark_detection(axes)
-    axes.set(xlabel="time since contact (ms)", ylabel="contact force (N)", xlim=IMPACT_MS)
+    axes.set(xlabel="time since contact (ms)", ylabel="contact force (N)", xlim=window)
     axes.set_ylim(bottom=0.0)
+    axes.margins(y=0.12)
     axes.legend(loc="upper right")
     return figure
 

@@ -14,7 +14,7 @@ from matplotlib.style import context
 from matplotlib.transforms import Affine2D
 
 from giveway.report.obstacle import SLIDER_M
-from giveway.report.runs import IMPACT_MS, Run
+from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
 from giveway.summary import table_rows
 
@@ -133,14 +133,15 @@ def _draw_estimate(axes: Axes, run: Run, row: int) -> None:
 
 
 def _forces(axes: Axes, runs: list[Run]) -> None:
+    window = force_window_ms(runs)
     for run in runs:
-        axes.plot(run.time_ms[run.impact], run.hit["testbed.truth.contact_force"][run.impact], color=run.colour)
+        noticed = "not noticed" if run.detected_ms is None else f"noticed after {run.detected_ms:.0f} ms"
+        run.draw_force(axes, window, f"{run.label}: {noticed}")
         run.mark_detection(axes)
-        if run.detected_ms is not None:
-            axes.plot([], [], color=run.colour, label=f"{run.label}: noticed after {run.detected_ms:.0f} ms")
-    axes.set(xlabel="time since contact (ms)", ylabel="contact force (N)", xlim=IMPACT_MS)
+    axes.set(xlabel="time since contact (ms)", ylabel="contact force (N)", xlim=window)
+    axes.margins(y=0.12)
     axes.set_ylim(bottom=0.0)
-    axes.legend(loc="upper right")
+    axes.legend(loc="center", bbox_to_anchor=(0.47, 0.6), fontsize=8)
 
 
 def _escapes(axes: Axes, runs: list[Run]) -> None:

@@ -16,9 +16,16 @@ if TYPE_CHECKING:
 
     from giveway.result import Result
 
-__all__ = ["IMPACT_MS", "Run"]
+__all__ = ["IMPACT_MS", "Run", "force_window_ms"]
 
 IMPACT_MS = (-40.0, 350.0)
+AROUND_PEAK_MS, LATEST_PEAK_MS = 120.0, 3000.0
+
+
+def force_window_ms(runs: list[Run]) -> tuple[float, float]:
+    """Times since contact in which every peak of `Run.peaks` and what surrounds it can be seen, ms."""
+    latest = max((time_ms for run in runs for time_ms, _, _ in run.peaks()), default=0.0)
+    return IMPACT_MS[0], max(IMPACT_MS[1], min(latest, LATEST_PEAK_MS) + AROUND_PEAK_MS)
 
 
 class Run:
@@ -45,6 +52,29 @@ class Run:
     def position(self, source: str) -> NDArray[np.float64]:
         """Travel of ``source`` (x and y traces) along the rail since contact, m."""
         return self.travel(np.stack([self.hit[f"{source}.x"], self.hit[f"{source}.y"]], axis=1))
+
+    def peaks(self) -> list[tuple[float, float, str]]:
+        """Time (ms), force (N) and words of the peak of the first contact, and the run's if a later one is harder."""
+        if self.hit.contact_s is None:
+            return []
+        first, most = (metric.value or 0.0 for metric in (self.hit.contacts()[1], self.hit.peak_force()))
+        force = self.hit["testbed.truth.contact_force"]
+        named = {"the first contact": first} | ({"the run": most} if most > first else {})
+        rows = {name: int(np.argmax(force >= peak)) for name, peak in named.items()}
+        return [
+            (float(self.time_ms[rows[name]]), peak, f"{peak:.0f} N: peak of {name}") for name, peak in named.items()
+        ]
+
+    def draw_force(self, axes: Axes, window_ms: tuple[float, float], label: str) -> None:
+        """The true contact force over the time since contact, with its peaks in words."""
+        rows = (self.time_ms >= window_ms[0]) & (self.time_ms <= window_ms[1])
+        force = self.hit["testbed.truth.contact_force"][rows]
+        axes.plot(self.time_ms[rows], force, color=self.colour, label=label)
+        peaks = [peak for peak in self.peaks() if peak[0] <= window_ms[1]]
+        for (time_ms, force_n, words), side in zip(peaks, ("left", "center"), strict=False):
+            if len(peaks) > 1:
+                text = axes.annotate(words, (time_ms, force_n), (0, 8), textcoords="offset points", ha=side)
+                text.set(color=self.colour, fontsize=8, backgroundcolor="#ffffffc0")
 
     def mark_detection(self, axes: Axes, scale: float = 1.0) -> None:
         if self.detected_ms is not None:

@@ -6,7 +6,7 @@
     study.vary("testbed.bumper.latch_force", low=0.0, high=100.0, levels=11)
     study.tolerance("testbed.bumper.latch_force", relative=0.3)
     study.objective("detection time")
-    study.objective("peak contact force")
+    study.objective("peak force of the run")
     answers = study.run("out/latch")
     print(answers.table())
 

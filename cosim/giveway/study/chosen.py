@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.scenario import BUMPERS
+from giveway.stated_contact import StatedContact
 from giveway.study.runs import RunTable
 from giveway.study.setup import Setup
 
@@ -55,6 +56,15 @@ def scenario_of_run(setup: Setup, table: RunTable, design: int, sample: int = 0,
     base = setup.cases[case].scenario
     bumper = base.bumper if kind is None else list(BUMPERS)[int(kind)]
     seed = settings["testbed"].pop("electronics.seed", base.seed)
+    contact = base.contact
+    if contact is not None:
+        rows = table.rows(np.array([design]), np.array([sample]), case)
+        stated, timed = rows.stated, contact.time_s is not None
+        contact = StatedContact(
+            float(stated.contact_speed_mps[0]),
+            (float(stated.point_x_m[0]), float(stated.point_y_m[0])),
+            float(stated.time_s[0]) if timed else None,
+        )
     return dataclasses.replace(
         base,
         name=f"{setup.name}: design {design}, {setup.cases[case].name}"[:80],
@@ -63,6 +73,7 @@ def scenario_of_run(setup: Setup, table: RunTable, design: int, sample: int = 0,
         seed=None if seed is None else int(seed),
         testbed=settings["testbed"],
         controller=settings["controller"],
+        contact=contact,
     )
 
 

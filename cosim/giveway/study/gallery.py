@@ -100,8 +100,8 @@ def latch_claim(answers: Answers) -> LatchClaim:
     """What the study `examples/studies/magnetic_latch.toml` says about the paper's claim."""
     plate, spring, latch = (np.array(one.levels) for one in answers.setup.varied)
     shape = (len(plate), len(spring), len(latch), answers.runs.samples)
-    runs = read_runs(answers.folder, ["peak contact force", "detection time"])
-    peak, detection = (runs[name].reshape(shape) for name in ("peak contact force", "detection time"))
+    runs = read_runs(answers.folder, ["peak force of the run", "detection time"])
+    peak, detection = (runs[name].reshape(shape) for name in ("peak force of the run", "detection time"))
     hit = answers.setup.cases[0].hit
     mass = float(answers.setup.cases[0].scenario.parameters("testbed")["slider.mass"])
     assert hit is not None
@@ -174,7 +174,7 @@ def sensor_trade(answers: Answers) -> SensorTrade:
     """What the study `examples/studies/sensor_stiffness.toml` says."""
     stiffness, friction = (np.array(one.levels) for one in answers.setup.varied)
     shape = (len(stiffness), len(friction), answers.runs.samples, len(answers.setup.cases))
-    force, detection, place, peak = "force at detection", "detection time", "location error", "peak contact force"
+    force, detection, place, peak = "force at detection", "detection time", "location error", "peak force of the run"
     found = read_runs(answers.folder, [detection, force, f"{force} (true)", place, peak])
     runs = {name: values.reshape(shape) for name, values in found.items()}
     error = np.abs(runs[force] - runs[f"{force} (true)"]) / runs[f"{force} (true)"]

@@ -23,7 +23,7 @@ class Metric:
     """Something that comes out of a run: one column of the results, or how far it is from the truth.
 
     Attributes:
-        name, unit: "peak contact force" in "N".
+        name, unit: "peak force of the run" in "N".
         column: of the results table.
         truth: column of what it is compared with, if it is an error: the absolute difference of both.
     """

@@ -15,7 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.approach import Approaches, edge_middle, meet_many, outline_of
+from giveway.errors import GivewayError
 from giveway.master import plan_table, push_table
+from giveway.plan_limits import LIMIT_NAMES, check_plan, limits_of
+from giveway.run_warnings import Stated, plan_speed
+from giveway.scenario_file import PLAN_KEYS
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Columns, columns
 from giveway.study.setup import Case, Hit, Setup
@@ -38,11 +42,13 @@ class Rows:
         values: of every parameter, shape (n, columns).
         hit: per run, what the slider's start was computed from: speed, time, offset, around, direction, angle,
             point_x, point_y; units of the study file.
+        stated: what the runs are asked to do.
         refused: why a run cannot be, by its index here.
     """
 
     values: NDArray[np.float64]
     hit: dict[str, NDArray[np.float64]]
+    stated: Stated
     refused: dict[int, str]
 
 
@@ -122,16 +128,31 @@ class RunTable:
         warmer = free.pop("temperature") - REFERENCE_TEMPERATURE
         if warmer.any():
             values[:, latch] *= 1.0 + MAGNET_PER_KELVIN * warmer
-        refused: dict[int, str] = {}
+        refused = self._beyond_limits(table, values)
+        speed_mps = np.full(len(design), math.nan)
         if table.case.hit is not None:
-            refused = self._meet(table, values, free)
+            speed_mps, reasons = self._meet(table, values, free)
+            refused = reasons | refused
         values += 0.0  # no negative zeros: equal runs have equal rows
-        return Rows(values, free, refused)
+        return Rows(values, free, _stated(table.case, free, speed_mps), refused)
+
+    def _beyond_limits(self, table: _CaseTable, values: NDArray[np.float64]) -> dict[int, str]:
+        """Why the controller cannot follow the plan, per run: its limits may vary."""
+        where = [self.columns.index[f"controller.{name}"] for name in LIMIT_NAMES]
+        different, which = np.unique(values[:, where], axis=0, return_inverse=True)
+        reasons: dict[int, str] = {}
+        for index, row in enumerate(different):
+            try:
+                check_plan(table.case.scenario.plan, limits_of(dict(zip(LIMIT_NAMES, row.tolist(), strict=True))))
+            except GivewayError as error:
+                error.field = f"scenario.plan.{PLAN_KEYS[error.field.rpartition('.')[2]]}"
+                reasons[index] = str(error)
+        return {run: reasons[int(k)] for run, k in enumerate(which.ravel()) if int(k) in reasons} if reasons else {}
 
     def _meet(
         self, table: _CaseTable, values: NDArray[np.float64], hit: dict[str, NDArray[np.float64]]
-    ) -> dict[int, str]:
-        """Write the slider's start that the hit needs; why runs cannot be met."""
+    ) -> tuple[NDArray[np.float64], dict[int, str]]:
+        """Write the slider's start that the hit needs; the speeds of the contacts, and why runs cannot be met."""
         case_hit = table.case.hit
         assert case_hit is not None
         refused: dict[int, str] = {}
@@ -148,19 +169,23 @@ class RunTable:
             * values[:, controller["controller.controller.period"]]
         )
         with np.errstate(all="ignore"):
-            met, reasons = meet_many(
+            met = meet_many(
                 Approaches(points, hit["speed"], direction, None if case_hit.time_s is None else hit["time"]),
                 testbed,
                 table.case.scenario.plan,
                 tare,
             )
-        for name, found in met.items():
+        for name, found in met.slider.items():
             values[:, self.columns.index[f"testbed.{name}"]] = found
         names = {"point_m": "place", "speed_mps": "speed", "direction_rad": "direction"}
-        for index, error in reasons.items():
+        for index, error in met.refused.items():
             error.field = f"collision.{names.get(error.field, error.field)}"
             refused.setdefault(index, str(error))
-        return refused
+        duration_s = table.case.scenario.duration_s
+        for run in np.flatnonzero(met.time_s >= duration_s).tolist():
+            allowed = f"before the end of the run at {duration_s:g} s"
+            refused.setdefault(run, str(GivewayError("collision.time", f"{met.time_s[run]:g}", allowed)))
+        return met.contact_speed_mps, refused
 
     def keys(self, contexts: list[bytes], rows: Rows, case: int) -> list[bytes]:
         """The key of each row: equal keys are equal runs."""
@@ -172,6 +197,21 @@ class RunTable:
             digest.update(packed[start : start + size])
             found.append(digest.digest())
         return found
+
+
+def _stated(case: Case, hit: dict[str, NDArray[np.float64]], speed_mps: NDArray[np.float64]) -> Stated:
+    """What runs of ``case`` are asked to do."""
+    count, unknown = len(speed_mps), np.full(len(speed_mps), math.nan)
+    planned = plan_speed(case.scenario) if case.hit is not None else None
+    return Stated(
+        speed_mps,
+        hit.get("point_x", unknown),
+        hit.get("point_y", unknown),
+        hit["time"] if case.hit is not None and case.hit.time_s is not None else unknown,
+        unknown if planned is None else np.full(count, planned),
+        contact=np.full(count, case.hit is not None),
+        region=np.full(count, case.scenario.body_region is not None),
+    )
 
 
 def _nominal_hit(hit: Hit | None, count: int) -> dict[str, NDArray[np.float64]]:

@@ -19,14 +19,15 @@ from giveway.batch import METHODS, PLANT_STEP_RANGE_S
 from giveway.body_regions import body_region
 from giveway.checks import finite, whole
 from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
-from giveway.scenario_file import scenario_of
+from giveway.plan_limits import LIMIT_NAMES, check_plan_of
+from giveway.scenario_file import PLAN_KEYS, scenario_of
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
 from giveway.study.metrics import find_metric
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
-from giveway.toml_sections import Section, lines_named, read_toml
+from giveway.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.units import factor
 
 __all__ = ["check", "read"]
@@ -82,6 +83,7 @@ def check(
         _fits_cases(f"vary[{i}].quantity", one.quantity, cases, [v.quantity.name for v in varied])
     for i, tolerance in enumerate(tolerances):
         _fits_cases(f"tolerance[{i}].quantity", tolerance.quantity, cases, [v.quantity.name for v in varied])
+    _check_plans(cases, [*(one.quantity for one in varied), *(one.quantity for one in tolerances)])
     if plan.kind == "one-at-a-time":
         varied = tuple(_with_nominal(i, one, cases) for i, one in enumerate(varied))
     drawn = top.table("tolerances", ("kind", "samples", "noise_seeds")) or Section("tolerances", {}, None)
@@ -119,6 +121,15 @@ def check(
         text=text,
         path=path,
     )
+
+
+def _check_plans(cases: Sequence[Case], quantities: Sequence[Quantity]) -> None:
+    """Refuse a study whose plan no design can follow; where the controller's limits vary, each run is judged."""
+    limits = {columns().index[f"controller.{name}"] for name in LIMIT_NAMES}
+    if not any(limits & set(quantity.columns) for quantity in quantities):
+        with renamed("scenario.plan", **PLAN_KEYS):
+            for case in cases:
+                check_plan_of(case.scenario)
 
 
 def _plant_step(top: Section, method: str) -> float | None:

@@ -92,7 +92,7 @@ static void test_metric_infos(void) {
         CHECK(gwb_metric_info(metric, &info) == 1);
         CHECK(strlen(info.name) > 0 && strlen(info.unit) > 0);
     }
-    CHECK(gwb_metric_info(GWB_PEAK_FORCE, &info) == 1 && strcmp(info.name, "peak contact force") == 0);
+    CHECK(gwb_metric_info(GWB_PEAK_FORCE, &info) == 1 && strcmp(info.name, "peak force of the run") == 0);
 }
 
 static void test_a_run(void) {

@@ -26,6 +26,12 @@ constexpr Column columns[] = {
     {"testbed.truth.wheel_torque[0]", [](Sample& s, double value) { s.wheel_torque[0] = value; }},
     {"testbed.truth.wheel_torque[1]", [](Sample& s, double value) { s.wheel_torque[1] = value; }},
     {"testbed.truth.wheel_torque[2]", [](Sample& s, double value) { s.wheel_torque[2] = value; }},
+    {"testbed.truth.motor_torque[0]", [](Sample& s, double value) { s.motor_torque[0] = value; }},
+    {"testbed.truth.motor_torque[1]", [](Sample& s, double value) { s.motor_torque[1] = value; }},
+    {"testbed.truth.motor_torque[2]", [](Sample& s, double value) { s.motor_torque[2] = value; }},
+    {"testbed.sensor.torque[0]", [](Sample& s, double value) { s.sensed_torque[0] = value; }},
+    {"testbed.sensor.torque[1]", [](Sample& s, double value) { s.sensed_torque[1] = value; }},
+    {"testbed.sensor.torque[2]", [](Sample& s, double value) { s.sensed_torque[2] = value; }},
     COLUMN("testbed.truth.contact_force", contact_force),
     COLUMN("testbed.truth.contact_force_x", contact_force_x),
     COLUMN("testbed.truth.contact_force_y", contact_force_y),
@@ -52,6 +58,11 @@ constexpr Column columns[] = {
     COLUMN("controller.detection.point_y", detection_point_y),
     COLUMN("controller.reference.x", reference_x),
     COLUMN("controller.reference.y", reference_y),
+    COLUMN("controller.reference.theta", reference_theta),
+    COLUMN("controller.plan.x", plan_x),
+    COLUMN("controller.plan.y", plan_y),
+    COLUMN("controller.plan.theta", plan_theta),
+    COLUMN("controller.mode", mode),
     COLUMN("controller.detection.count", detection_count),
     COLUMN("testbed.truth.contact", contact),
     COLUMN("testbed.truth.latched", latched),
@@ -66,7 +77,7 @@ __attribute__((visibility("default"))) std::size_t metrics_column_count() { retu
 __attribute__((visibility("default"))) const char* metrics_column(std::size_t column) { return columns[column].trace; }
 
 // `table`: count rows of columns; `parameters`: wheel radius and distance, averaging window, bumper, its travel, tipping, mass,
-// heights of the centre of mass, the contact and the push, limits of transient and lasting force.
+// heights of the centre of mass, the contact and the push, limits of transient and lasting force, of the sensed and the motors' torque.
 __attribute__((visibility("default"))) void metrics_evaluate(const double* table, std::size_t count, const double* parameters,
                                                              double* value, double* truth) {
     std::vector<Sample> samples(count);
@@ -88,7 +99,9 @@ __attribute__((visibility("default"))) void metrics_evaluate(const double* table
                                .contact_height_m = p[8],
                                .push_height_m = p[9],
                                .transient_limit_n = p[10],
-                               .lasting_limit_n = p[11]};
+                               .lasting_limit_n = p[11],
+                               .sensed_torque_limit_nm = p[12],
+                               .motor_torque_limit_nm = p[13]};
     evaluate(samples.data(), count, all, value, truth);
 }
 }

@@ -1,0 +1,234 @@
+"""Warnings: what happened otherwise than it was asked, and nothing else."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+
+import giveway
+import numpy as np
+import pytest
+from cosim_helpers import short
+from giveway import batch
+from giveway.errors import GivewayError
+from giveway.plan import Straight
+from giveway.report import render
+from giveway.run_warnings import BOUNDS, CODES, METRICS, Stated, masks, warnings_of
+from giveway.scenario_file import scenario_of
+from giveway.stated_contact import StatedContact
+from numpy.typing import NDArray
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+AS_ASKED = {
+    "contact time": 0.5,
+    "contact speed": 0.4,
+    "first contact x": 88.0,
+    "first contact y": 152.0,
+    "robot speed at contact": 0.2,
+    "distance from the plan": 0.01,
+    "angle from the plan": 0.0,
+    "sensed torque share": 0.4,
+    "motor torque share": 0.8,
+    "time in sensor fault": 0.0,
+    "bottoming margin": 30.0,
+    "lasting force": 12.0,
+    "peak force of the first contact": 90.0,
+    "peak force of the run": 90.0,
+}
+STATED = StatedContact(0.4, (0.088, 0.152), 0.5)
+SCENARIO = giveway.Scenario(
+    "stated", 2.0, plan=Straight(0.2, acceleration_mps2=None), body_region="lower leg", contact=STATED
+)
+# What is otherwise; just inside its bound and just beyond.
+OTHERWISE: dict[str, tuple[str, float, float]] = {
+    "no contact": ("contact time", 0.5, math.nan),
+    "contact speed": ("contact speed", 0.4 * 0.981, 0.4 * 0.979),
+    "contact place": ("first contact x", 97.9, 98.1),
+    "contact time": ("contact time", 0.519, 0.521),
+    "robot speed": ("robot speed at contact", 0.2039, 0.2041),
+    "plan not followed": ("distance from the plan", 9.9, 10.1),
+    "torque sensor saturated": ("sensed torque share", 0.999, 1.0),
+    "motor saturated": ("motor torque share", 0.999, float(np.float32(20.0 * (1.0 - 1e-8))) / 20.0),
+    "sensor fault": ("time in sensor fault", 0.0, 0.001),
+    "bumper bottomed": ("bottoming margin", 0.1, -0.1),
+    "lasting force unknown": ("lasting force", 0.0, math.nan),
+    "second hit harder": ("peak force of the run", 90.0, 90.1),
+}
+
+
+def found(scenario: giveway.Scenario = SCENARIO, **changes: float) -> list[str]:
+    numbers = {name: np.array([value]) for name, value in (AS_ASKED | changes).items()}
+    return [code for code, mask in masks(Stated.of(scenario), numbers).items() if mask[0]]
+
+
+def test_every_warning_is_in_the_table() -> None:
+    assert set(OTHERWISE) == set(CODES)
+    assert set(AS_ASKED) == set(METRICS)
+    # The issue's bounds: 2 %, 10 mm, 20 ms.
+    assert (BOUNDS["speed"], BOUNDS["place_mm"], BOUNDS["time_s"]) == (0.02, 10.0, 0.02)
+
+
+@pytest.mark.parametrize(("code", "case"), OTHERWISE.items(), ids=OTHERWISE)
+def test_each_warning_begins_at_its_bound(code: str, case: tuple[str, float, float]) -> None:
+    name, inside, beyond = case
+    assert found() == []
+    assert found(**{name: inside}) == []
+    assert found(**{name: beyond}) == [code]
+
+
+def test_a_heading_that_falls_behind_is_one_too() -> None:
+    assert found(**{"angle from the plan": 1.1}) == ["plan not followed"]
+
+
+def test_what_was_not_stated_is_not_compared() -> None:
+    nothing = dataclasses.replace(SCENARIO, contact=None, body_region=None)
+    far = {"contact time": 1.9, "contact speed": 3.0, "first contact x": 900.0, "robot speed at contact": 3.0}
+    assert found(nothing, **far, **{"lasting force": math.nan}) == []
+    assert found(nothing, **{"contact time": math.nan}) == []
+    only_speed = dataclasses.replace(SCENARIO, contact=StatedContact(0.4))
+    assert found(only_speed, **far) == ["contact speed", "robot speed"]
+
+
+def too_fast(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """0.8 m/s where 0.5 m/s is the limit."""
+    rows = np.zeros((len(time_s), 9))
+    rows[:, 0], rows[:, 3] = 0.8 * time_s, 0.8
+    return rows
+
+
+# A run, the codes that it has, and words of the first line.
+RUNS: dict[str, tuple[giveway.Scenario, list[str], str]] = {
+    "motionless": (short(), [], ""),
+    "hit twice": (short("none", duration_s=0.8), ["second hit harder"], "203 N after 187 N"),
+    "a plan beyond the limits": (
+        short(plan=too_fast, testbed={"slider.present": False}),
+        ["plan not followed"],
+        "limits of controller.reference",
+    ),
+    "sensor at its end": (
+        short("none", testbed={"electronics.torque_range": 3.0}),
+        ["torque sensor saturated"],
+        "torque sensor",
+    ),
+    "motor at its end": (short(testbed={"drivetrain.torque_limit": 5.0}), ["motor saturated"], "largest torque"),
+    "pressed into its stop": (short("spring", testbed={"bumper.travel": 0.01}), ["bumper bottomed"], "mm beyond"),
+    "too short to judge": (short(body_region="lower leg"), ["lasting force unknown"], "0.5 s after the contact"),
+}
+
+
+@pytest.mark.parametrize(("scenario", "codes", "words"), RUNS.values(), ids=RUNS)
+def test_runs_have_the_warnings_that_are_theirs(scenario: giveway.Scenario, codes: list[str], words: str) -> None:
+    result = batch.run(scenario)
+    assert [warning.code for warning in result.warnings] == codes
+    assert words in (result.warnings[0].text if result.warnings else "")
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_example_does_what_it_asks_for(path: Path) -> None:
+    assert batch.run(giveway.read_scenario(path)).warnings == ()
+
+
+TROLLEY = {
+    "schema_version": 1,
+    "duration": 1.0,
+    "collision": {"mass": 12.0, "speed": 0.4, "edge": 0, "offset": 0.05, "time": 0.6},
+}
+
+
+def trolley(**changes: object) -> giveway.Scenario:
+    scenario = scenario_of(TROLLEY, Path("case.toml"))
+    return dataclasses.replace(scenario, testbed={**scenario.testbed, **changes})
+
+
+def test_a_file_states_its_contact() -> None:
+    contact = trolley().contact
+    assert contact is not None
+    assert (contact.speed_mps, contact.time_s) == (pytest.approx(0.4), 0.6)
+    assert contact.point_m == pytest.approx((0.0447, 0.1775), abs=1e-3)
+    assert batch.run(trolley()).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("changes", "codes"),
+    [
+        ({"slider.speed": 0.38}, ["contact speed", "contact time"]),
+        ({"slider.target_x": 0.0747}, ["contact place", "contact time"]),
+        ({"slider.friction": 20.0}, ["no contact"]),
+    ],
+)
+def test_a_change_that_spoils_the_contact_is_told(changes: dict[str, float], codes: list[str]) -> None:
+    assert [warning.code for warning in batch.run(trolley(**changes)).warnings] == codes
+
+
+def test_a_robot_that_still_speeds_up_is_told() -> None:
+    document = {
+        "schema_version": 1,
+        "duration": 1.0,
+        "plan": {"kind": "straight", "speed": 0.4, "direction": 60.0},
+        "collision": {"mass": 12.0, "speed": 0.2, "edge": 0, "time": 0.6},
+    }
+    lags, slow = batch.run(scenario_of(document, Path("case.toml"))).warnings
+    assert (lags.code, slow.code) == ("contact speed", "robot speed")
+    assert "its plan asks for 0.4 m/s" in slow.text
+
+
+@pytest.mark.parametrize(
+    ("collision", "field", "allowed"),
+    [
+        ({"time": 0.15}, "collision.time", "before the end of the run at 0.15 s"),
+        ({"rope": True}, "duration", "above 0.156 s, when the weight has pulled the slider to the robot"),
+    ],
+)
+def test_a_contact_after_the_end_is_refused(collision: dict[str, object], field: str, allowed: str) -> None:
+    document = {**TROLLEY, "duration": 0.15, "collision": {"speed": 0.5, "edge": 0, **collision}}
+    with pytest.raises(GivewayError) as caught:
+        scenario_of(document, Path("case.toml"))
+    assert caught.value.field == field
+    assert allowed in caught.value.allowed
+
+
+def test_a_push_after_the_end_is_refused() -> None:
+    push = {"force": 30.0, "direction": 0.0, "point": [0.1, 0.0], "start": 2.0, "duration": 0.5}
+    with pytest.raises(GivewayError) as caught:
+        scenario_of({"schema_version": 1, "duration": 2.0, "push": [push]}, Path("case.toml"))
+    assert caught.value.field == "push[0].start"
+    assert "before the end of the run at 2 s" in caught.value.allowed
+
+
+def test_warnings_are_kept_and_shown(tmp_path: Path) -> None:
+    result = batch.run(RUNS["hit twice"][0])
+    text = result.warnings[0].text
+    folder = result.save(tmp_path / "run")
+    again = giveway.load(folder)
+    assert again.warnings == result.warnings
+    assert json.loads((folder / "metrics.json").read_text(encoding="utf-8"))["warnings"] == [
+        {"code": "second hit harder", "text": text}
+    ]
+    assert json.loads((folder / "manifest.json").read_text(encoding="utf-8"))["warnings"] == [text]
+    page = render("hit twice", "", [result])
+    assert "<h2>Warnings</h2>" in page
+    assert text in page
+    assert "<h2>Warnings</h2>" not in render("as asked", "", [batch.run(short())])
+
+
+def test_an_interrupted_run_has_none() -> None:
+    calls = []
+
+    def stop(now_s: float, _duration_s: float) -> None:
+        calls.append(now_s)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+
+    scenario = dataclasses.replace(trolley(), duration_s=3.0)
+    result = giveway.run(scenario, stop)
+    assert result.interrupted
+    assert result.warnings == ()
+    assert [one.code for one in warnings_of(scenario, all_metrics(result))] == ["no contact"]
+
+
+def all_metrics(result: giveway.Result) -> list[object]:  # type: ignore[name-defined]
+    from giveway import metrics
+
+    return [*result.metrics, *metrics.design(result.traces, result.manifest["parameters"])]
