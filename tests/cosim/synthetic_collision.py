@@ -1,7 +1,7 @@
 """A collision in closed form, with every number known by hand, as traces like those of a run.
 
 The robot rests at the origin, heading 0. From t = 0.1 s a constant force of 40 N along the world direction 210 deg acts
-at the base point (0.1, 0.05) for 0.2 s. The sensors of the wheels' torques have no delay. The controller estimates 30 N along 200 deg and detects 50 ms after contact;
+at the base point (0.1, 0.05) for 0.2 s. The controller estimates 30 N along 200 deg and detects 50 ms after contact;
 from then on the reference moves 0.5 m and the base 0.48 m along 210 deg.
 """
 
