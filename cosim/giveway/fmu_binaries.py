@@ -1,4 +1,7 @@
-"""What is inside a shared library of Linux, Windows or macOS: machine, exports, libraries it needs (by LIEF)."""
+"""What is inside a shared library of Linux, Windows or macOS: machine, exports, libraries it needs (by LIEF).
+
+The library comes from elsewhere and may be damaged or made to do harm, so LIEF reads it in a process of its own.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,12 @@ from typing import Any
 import fmpy
 
 from giveway.errors import FileError
+from giveway.isolation import IsolatedError, isolated
 
-__all__ = ["PLATFORMS", "Binary", "fmi_functions", "is_of_the_system", "read_binary"]
+__all__ = ["PLATFORMS", "Binary", "fmi_functions", "is_common", "is_of_the_system", "platform_here", "read_binary"]
+
+LARGEST_BYTES = 100_000_000
+READING_S, READING_MB = 8, 1000
 
 # Folder under binaries/ of FMI 2 and 3: (machine, operating system, ending).
 PLATFORMS = {
@@ -43,6 +50,12 @@ _SYSTEM_LIBRARIES = {
     "windows": re.compile(r"(kernel32|ntdll|msvcrt|ucrtbase|advapi32|user32)\.dll|api-ms-win-.*\.dll", re.IGNORECASE),
     "darwin": re.compile(r"/usr/lib/libSystem\.B\.dylib"),
 }
+# Runtimes of compilers: not everywhere, but on nearly every machine that runs other programs.
+_COMMON_LIBRARIES = {
+    "linux": re.compile(r"lib(stdc\+\+|gcc_s|gomp|atomic)\.so(\.\d+)*"),
+    "windows": re.compile(r"(msvcp|vcruntime|concrt)\d+(_\d+)?\.dll", re.IGNORECASE),
+    "darwin": re.compile(r"/usr/lib/lib(c\+\+|c\+\+abi|objc)\..*dylib"),
+}
 
 
 @dataclass(frozen=True)
@@ -66,13 +79,38 @@ class Binary:
 
 
 def read_binary(path: Path) -> Binary:
-    """Read ``path``; FileError if it is no shared library."""
+    """Read ``path``; FileError if it is no shared library, is cut short, or too large to read."""
+    size = path.stat().st_size
+    if size > LARGEST_BYTES:
+        raise FileError(path, f"has {size / 1e6:.0f} MB, too many to look into it")
     import lief
 
-    lief.logging.disable()
+    lief.logging.disable()  # loaded here, so that the process that reads need not
+    try:
+        found = isolated(_read, path, READING_S, READING_MB)
+    except IsolatedError as error:
+        raise FileError(path, f"is damaged: reading it {error}") from None
+    if isinstance(found, str):
+        raise FileError(path, found)
+    return found
+
+
+def _read(path: Path) -> Binary | str:
+    """What is in it, or what is wrong with it."""
+    import lief
+
+    size = path.stat().st_size
     if lief.is_elf(str(path)):
         elf = lief.ELF.parse(str(path))
-        assert elf is not None
+        if elf is None:
+            return DAMAGED
+        header = elf.header
+        end = max(
+            header.section_header_offset + header.numberof_sections * header.section_header_size,
+            *(s.file_offset + s.physical_size for s in elf.segments),
+        )
+        if end > size:
+            return cut_short(end, size)
         versions = [s.symbol_version for s in elf.dynamic_symbols if s.imported and s.symbol_version is not None]
         auxiliary = [v.symbol_version_auxiliary for v in versions if v.has_auxiliary_version]
         names = [str(a.name) for a in auxiliary if a is not None]
@@ -89,14 +127,24 @@ def read_binary(path: Path) -> Binary:
         )
     if lief.is_pe(str(path)):
         pe = lief.PE.parse(str(path))
-        assert pe is not None
+        if pe is None:
+            return DAMAGED
+        end = max((s.pointerto_raw_data + s.sizeof_raw_data for s in pe.sections), default=0)
+        if end > size:
+            return cut_short(end, size)
         exported = frozenset(str(f.name) for f in pe.exported_functions)
         needed = tuple(str(imported.name) for imported in pe.imports)
         return Binary("windows", frozenset({_machine(pe.header.machine)}), exported, needed, None)
     if lief.is_macho(str(path)):
         fat = lief.MachO.parse(str(path))
-        assert fat is not None
+        if fat is None or fat.size == 0:
+            return DAMAGED
         slices = [fat.at(index) for index in range(fat.size)]
+        end = max(
+            (part.fat_offset + s.file_offset + s.file_size for part in slices if part for s in part.segments), default=0
+        )
+        if end > size:
+            return cut_short(end, size)
         return Binary(
             "darwin",
             frozenset(_machine(part.header.cpu_type) for part in slices if part is not None),
@@ -106,7 +154,14 @@ def read_binary(path: Path) -> Binary:
             tuple(sorted({str(lib.name) for part in slices if part for lib in _loaded(part)})),
             None,
         )
-    raise FileError(path, "is no shared library of Linux, Windows or macOS")
+    return "is no shared library of Linux, Windows or macOS"
+
+
+DAMAGED = "is damaged: it begins like a shared library, but cannot be read as one"
+
+
+def cut_short(needed: int, size: int) -> str:
+    return f"is cut short: it has {size} bytes, and its parts end at byte {needed}"
 
 
 def _loaded(macho: Any) -> list[Any]:
@@ -125,6 +180,18 @@ def _machine(value: object) -> str:
 def is_of_the_system(system: str, library: str) -> bool:
     """Whether every machine with that operating system has ``library``."""
     return _SYSTEM_LIBRARIES[system].fullmatch(library) is not None
+
+
+def is_common(system: str, library: str) -> bool:
+    """Whether nearly every machine with that operating system has ``library``: the runtime of a usual compiler."""
+    return _COMMON_LIBRARIES[system].fullmatch(library) is not None
+
+
+def platform_here(version: int) -> str:
+    """The folder below binaries/ that this machine loads from."""
+    if version == 2:
+        return str(fmpy.platform)
+    return str(fmpy.platform_tuple)
 
 
 @functools.cache

@@ -1,36 +1,37 @@
-"""`giveway fmu run`: any FMU, Co-Simulation or Model Exchange, over FMPy; traces as CSV or as a page with plots."""
+"""`giveway fmu run`: any FMU, Co-Simulation or Model Exchange, over FMPy, in a process of its own."""
 
 from __future__ import annotations
 
-import io
-import logging
 import math
-from collections.abc import Callable
-from contextlib import redirect_stdout
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from giveway.checks import finite
-from giveway.errors import GivewayError, SimulationError, UnknownNameError, one_line
-from giveway.files import check_file, replace_file
-from giveway.fmu_info import read_for_use
+from giveway.checks import finite, whole
+from giveway.errors import FileError, GivewayError, UnknownNameError
+from giveway.files import check_file
+from giveway.fmu_archive import Archive, shown
+from giveway.fmu_check import open_safely
+from giveway.fmu_check.binaries import binary_of, needed_functions
+from giveway.fmu_description import Description, effective
+from giveway.fmu_inputs import assigned, read_inputs
+from giveway.fmu_limits import Limits
+from giveway.fmu_process import FmuStoppedError, run_in_child, temporary_folder
 
 if TYPE_CHECKING:
-    from fmpy.model_description import ModelDescription
     from numpy.typing import NDArray
 
-__all__ = ["INTERFACES", "FmuRun", "check_run_output", "run_fmu", "write_run"]
-
-_log = logging.getLogger(__name__)
+__all__ = ["INTERFACES", "FmuRun", "FmuStoppedError", "check_run_output", "run_fmu"]
 
 INTERFACES = {"cs": "CoSimulation", "me": "ModelExchange"}
 ENDINGS = (".csv", ".html")
-LONGEST_S, MOST_ROWS = 1e6, 2_000_000
+MOST_STEPS = 2_000_000
 DEFAULT_STOP_S, DEFAULT_STEPS = 1.0, 500
-PLOTTED_VARIABLES, POINTS_SHOWN = 60, 2000
+LONGEST_WAIT_S = 1e7
+_UNPLOTTABLE = ("String", "Binary", "Clock")
+_FEW = 5  # variables that are recorded of an FMU without outputs
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,9 @@ class FmuRun:
     Attributes:
         traces: structured array; field "time" in s, then one field per recorded variable.
         units: per variable, "" if it has none.
+        plotted: what the user asked to see; empty: the usual.
+        note: what was chosen otherwise than the FMU's default experiment has it; empty if nothing.
+        stopped: what happened to the FMU's process after the run was complete; empty if it ended well.
     """
 
     path: Path
@@ -48,6 +52,9 @@ class FmuRun:
     traces: NDArray[Any]
     units: dict[str, str]
     description: str
+    plotted: tuple[str, ...] = ()
+    note: str = ""
+    stopped: str = ""
 
 
 def check_run_output(out: Path) -> None:
@@ -62,191 +69,181 @@ def run_fmu(
     interface: str | None = None,
     stop_s: float | None = None,
     step_s: float | None = None,
-    assignments: list[str] | None = None,
+    assignments: Sequence[str] | None = None,
     progress: Callable[[float, float], None] | None = None,
+    *,
+    inputs: Path | None = None,
+    plot: Sequence[str] = (),
+    limits: Limits | None = None,
+    time_limit_s: float | None = None,
+    most_steps: int = MOST_STEPS,
 ) -> FmuRun:
-    """Run the FMU at ``path`` from its start values, inputs held.
+    """Run the FMU at ``path`` from its start values, in a process of its own, after a check that it is safe to unpack.
 
     Args:
         interface: "cs" or "me"; None: Co-Simulation if it has one.
-        stop_s: simulated time in s; None: the FMU's default experiment, else 1 s.
-        step_s: communication step, in Model Exchange the output interval, in s; None: the FMU's own, else a 500th of
-            the time.
+        stop_s: simulated time at the end in s; None: the FMU's default experiment, else 1 s.
+        step_s: communication step, in Model Exchange the output interval, in s; None: that of the FMU's default
+            experiment, doubled until there are no more than ``most_steps``, else its fixed internal step, else a 500th
+            of the time.
         assignments: "NAME=VALUE" for inputs and parameters.
-        progress: called after each step with the simulated time and the duration, in s.
+        progress: called now and then with the simulated time and the end, in s.
+        inputs: CSV file of inputs over time; see `fmu_inputs.read_inputs`. Others are held.
+        plot: names, or patterns with * and ?, of what is recorded beside the outputs, and drawn.
+        limits: of what is unpacked.
+        time_limit_s: of the wall, 0.1 to 1e7 s; None: as long as it takes.
+        most_steps: 1 to 1e9.
+
+    Raises GivewayError for wrong input, FileError for a file that is refused, SimulationError if the FMU refuses or
+    fails, FmuStoppedError if it crashes or takes too long. Nothing is left in the temporary folder.
     """
-    import fmpy
+    whole("--max-steps", most_steps, 1, 1_000_000_000)
+    if time_limit_s is not None:
+        finite("--time-limit", time_limit_s, 0.1, LONGEST_WAIT_S, "s")
+    archive, description = open_safely(path, limits)
+    with archive:
+        kind = _interface(path, description, interface)
+        times = _times(description, kind, stop_s, step_s, most_steps)
+        values = assigned(description, assignments or ())
+        signals = None if inputs is None else read_inputs(inputs, description)
+        output, plotted = _recorded(description, plot)
+        _check_binary(archive, description, kind)
+        with temporary_folder() as folder:
+            archive.extract(folder.path / "fmu")
+            if signals is not None:
+                import numpy as np
 
-    description = read_for_use(path)
-    kind = _interface(description, interface)
-    start_s, stop, step = _times(description, stop_s, step_s)
-    values = _assigned(description, assignments or [])
-    printed = io.StringIO()
-
-    def log(_environment: object, status: int, _category: bytes, text: bytes) -> None:
-        message = text.decode("utf-8", "replace")
-        _log.log(logging.WARNING if status else logging.DEBUG, "%s: %s", path.name, message)
-        print(message)
-
-    def stepped(time_s: float, _recorder: object) -> bool:
-        if progress is not None:
-            progress(time_s, stop)
-        return True
-
-    # FMPy's proxy for the messages of FMI 2 keeps a pointer to the last logger that was registered, of any instance,
-    # also after that logger is gone. So none is registered: FMPy then prints what it is told, and that is caught here.
-    logger = log if str(description.fmiVersion).startswith("3") else None
-    try:
-        with redirect_stdout(printed):
-            traces = fmpy.simulate_fmu(
-                str(path), validate=False, start_time=start_s, stop_time=stop, output_interval=step, fmi_type=kind,
-                start_values=values, logger=logger, step_finished=stepped, model_description=description,
-            )  # fmt: skip
-    except Exception as error:  # FMPy raises its own and plain Exceptions
-        words = printed.getvalue().splitlines()[-3:]
-        raise SimulationError(path.name, one_line(" ".join([str(error), *words])), start_s) from None
-    named = {variable.name: variable for variable in description.modelVariables}
-    units = {n: (named[n].unit or "") if n in named else "" for n in traces.dtype.names if n != "time"}
-    return FmuRun(path, kind, step, traces, units, description.description or description.modelName)
+                np.save(folder.path / "input.npy", signals, allow_pickle=False)
+            job = {
+                "interface": kind,
+                "start_s": times.start,
+                "stop_s": times.stop,
+                "step_s": times.step,
+                "values": values,
+                "output": output,
+                "has_input": signals is not None,
+            }
+            traces, stopped = run_in_child(path.name, folder, job, time_limit_s, progress)
+    names = [name for name in traces.dtype.names or () if name != "time"]
+    units = {name: effective(description, description.by_name[name], "unit") for name in names}
+    about = description.attributes.get("description") or description.attributes.get("modelName", "")
+    return FmuRun(path, kind, times.step, traces, units, about, plotted, times.note, stopped)
 
 
-def _interface(description: ModelDescription, wanted: str | None) -> str:
-    found = {"cs": description.coSimulation, "me": description.modelExchange}
-    offered = [name for name, interface in found.items() if interface is not None]
-    if wanted is None and offered:
+def _interface(path: Path, description: Description, wanted: str | None) -> str:
+    offered = [name for name, interface in INTERFACES.items() if interface in description.interfaces]
+    if not offered:
+        alone = "ScheduledExecution" in description.interfaces
+        reason = (
+            "has Scheduled Execution alone: a scheduler of the importer activates its parts by clocks"
+            if alone
+            else "has no interface"
+        )
+        raise FileError(path, f"cannot be run: it {reason}", "this runs Co-Simulation and Model Exchange")
+    if wanted is None:
         return INTERFACES[offered[0]]
     if wanted not in offered:
-        raise GivewayError("--interface", wanted, f"{' or '.join(offered) or 'nothing'}: what this FMU has")
+        raise GivewayError("--interface", wanted, f"{' or '.join(offered)}: what this FMU has")
     return INTERFACES[wanted]
 
 
-def _times(description: ModelDescription, stop_s: float | None, step_s: float | None) -> tuple[float, float, float]:
-    experiment = description.defaultExperiment
-    start, own_stop, own_step = (
-        None if experiment is None or value is None else float(value)
-        for value in ((experiment.startTime, experiment.stopTime, experiment.stepSize) if experiment else (None,) * 3)
+@dataclass(frozen=True)
+class _Times:
+    start: float
+    stop: float
+    step: float
+    note: str
+
+
+def _times(description: Description, kind: str, stop_s: float | None, step_s: float | None, most_steps: int) -> _Times:
+    experiment = description.experiment
+    begin = _own(experiment.get("startTime"), "startTime") or 0.0
+    own_stop = _own(experiment.get("stopTime"), "stopTime")
+    own_step = _own(experiment.get("stepSize"), "stepSize") or _own(
+        description.interfaces[kind].get("fixedInternalStepSize"), "fixedInternalStepSize"
     )
-    begin = start or 0.0
-    stop = finite("--stop", own_stop or begin + DEFAULT_STOP_S if stop_s is None else stop_s, begin, LONGEST_S, "s")
+    stop = finite("--stop", (begin + DEFAULT_STOP_S if own_stop is None else own_stop) if stop_s is None else stop_s)
     if not stop > begin:
         raise GivewayError("--stop", stop, f"a time in s after the start at {begin:g} s")
-    step = finite(
-        "--step", own_step or (stop - begin) / DEFAULT_STEPS if step_s is None else step_s, 1e-9, stop - begin, "s"
-    )
-    if (stop - begin) / step > MOST_ROWS:
-        raise GivewayError("--step", step, f"at least {(stop - begin) / MOST_ROWS:g} s: no more than {MOST_ROWS} steps")
-    return begin, stop, step
+    span, note = stop - begin, ""
+    if step_s is not None:
+        step = finite("--step", step_s, min(1e-9, span), span, "s")
+        if span / step > most_steps:
+            allowed = f"at least {span / most_steps:g} s: no more than {most_steps} steps, unless --max-steps allows"
+            raise GivewayError("--step", step, allowed)
+        return _Times(begin, stop, step, note)
+    step = own_step if own_step is not None and 0.0 < own_step <= span else span / DEFAULT_STEPS
+    wanted = step
+    while span / step > most_steps:
+        step *= 2.0
+    if step > wanted:
+        note = f"steps of {step:g} s, not {wanted:g} s: those would be more than {most_steps} (--step, --max-steps)"
+    return _Times(begin, stop, step, note)
 
 
-def _assigned(description: ModelDescription, assignments: list[str]) -> dict[str, float | bool | str]:
-    """Checked against the bounds in the model description, before anything runs."""
-    settable = {
-        v.name: v for v in description.modelVariables if v.causality in ("input", "parameter", "structuralParameter")
-    }
-    values: dict[str, float | bool | str] = {}
-    for assignment in assignments:
-        name, equals, text = assignment.partition("=")
-        if not equals:
-            raise GivewayError("--set", assignment, "NAME=VALUE")
-        if name not in settable:
-            raise UnknownNameError("--set", name, settable)
-        variable = settable[name]
-        if variable.type == "Boolean":
-            if text.lower() not in ("true", "false", "1", "0"):
-                raise GivewayError(name, text, "true or false")
-            values[name] = text.lower() in ("true", "1")
-        elif variable.type in ("String", "Binary"):
-            values[name] = text
-        else:
-            values[name] = _checked_number(variable, text)
-    return values
-
-
-def _checked_number(variable: Any, text: str) -> float:
-    low = -math.inf if variable.min is None else float(variable.min)
-    high = math.inf if variable.max is None else float(variable.max)
-    whole = not variable.type.startswith(("Real", "Float"))
-    unit = f" {variable.unit}" if variable.unit else ""
-    allowed = f"a {'whole' if whole else 'finite'} number from {low:g} to {high:g}{unit}"
+def _own(text: str | None, name: str) -> float | None:
+    """A number of the FMU's default experiment."""
+    if text is None:
+        return None
     try:
         value = float(text)
     except ValueError:
-        raise GivewayError(variable.name, text, allowed) from None
-    if not math.isfinite(value) or not low <= value <= high or (whole and value != int(value)):
-        raise GivewayError(variable.name, text, allowed)
-    return int(value) if whole else value
+        value = math.nan
+    if not math.isfinite(value):
+        raise GivewayError(f"{name} in modelDescription.xml", shown(text, 40), "a finite number")
+    return value
 
 
-def write_run(out: Path, run: FmuRun) -> None:
-    """Write ``out``: FILE.csv with every recorded variable, or FILE.html with a plot per unit."""
-    with replace_file(out) as temporary:
-        if out.suffix == ".csv":
-            _write_csv(temporary, run.traces)
-        else:
-            temporary.write_text(_page(run), encoding="utf-8")
+def _recorded(description: Description, plot: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
+    """Names of what is recorded, and of what the user wants to see."""
+    numeric = {v.name: v for v in description.variables if v.type not in _UNPLOTTABLE and v.causality != "independent"}
+    plotted: dict[str, None] = {}
+    for pattern in plot:
+        expression = re.compile(re.escape(pattern).replace(r"\*", ".*").replace(r"\?", "."), re.DOTALL)
+        found = [pattern] if pattern in numeric else [name for name in numeric if expression.fullmatch(name)]
+        if not found:
+            raise UnknownNameError("--plot", pattern, numeric)
+        plotted |= dict.fromkeys(found)
+    outputs = [v.name for v in numeric.values() if v.causality == "output"]
+    if not outputs and not plotted:
+        by_key = {description.key(v): v for v in numeric.values()}
+        states = [
+            by_key[int(v.get("derivative"))].name for v in numeric.values() if _is_state(v.get("derivative"), by_key)
+        ]
+        outputs = (states or list(numeric))[:_FEW]
+    return list(dict.fromkeys([*outputs, *plotted])), tuple(plotted)
 
 
-def _write_csv(path: Path, traces: NDArray[Any]) -> None:
-    import csv
-
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(traces.dtype.names or ())
-        for row in traces:
-            writer.writerow(value.item() if isinstance(value, np.generic) else value for value in row)
+def _is_state(derivative: str, by_key: dict[int, Any]) -> bool:
+    return derivative.isascii() and derivative.isdigit() and int(derivative[:20]) in by_key
 
 
-def _page(run: FmuRun) -> str:
-    """One self-contained page. Variables that never change are listed, not drawn."""
-    from html import escape
+def _check_binary(archive: Archive, description: Description, kind: str) -> None:
+    """FileError unless the FMU has a library that this machine can load, with the functions of the interface."""
+    from giveway.fmu_binaries import PLATFORMS, platform_here
 
-    from giveway.report.inline_svg import inline_svg
-
-    moving: dict[str, list[str]] = {}
-    still = []
-    for name, unit in run.units.items():
-        values = run.traces[name]
-        if values.ndim == 1 and values.dtype.kind in "fiub" and np.any(values != values[0]):
-            kind = "switches" if values.dtype == np.bool_ else unit
-            moving.setdefault(kind, []).append(name)
-        else:
-            still.append(name)
-    figures = []
-    for number, (unit, names) in enumerate(sorted(moving.items())):
-        shown = names[:PLOTTED_VARIABLES]
-        more = f"<p>and {len(names) - len(shown)} more, in the CSV</p>" if len(names) > len(shown) else ""
-        figures.append(inline_svg(_figure(run.traces, unit, shown), f"plot{number}") + more)
-    title = escape(run.path.name)
-    constant = ", ".join(escape(f"{name} = {run.traces[name][0]}") for name in still) or "none"
-    style = "body{font-family:sans-serif;max-width:70rem;margin:2rem auto;color:#2b2f36}svg{max-width:100%;height:auto}"
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-        f"<style>{style}</style></head>\n"
-        f"<body><h1>{title}</h1><p>{escape(run.description)}</p><p>{run.interface}, {len(run.traces)} rows, "
-        f"{run.step_s:g} s apart, to {run.traces['time'][-1]:g} s.</p>\n{''.join(figures)}\n"
-        f"<h2>Constant</h2><p>{constant}</p></body></html>\n"
-    )
-
-
-def _figure(traces: NDArray[Any], unit: str, names: list[str]) -> Any:
-    from matplotlib.figure import Figure
-    from matplotlib.style import context
-
-    from giveway.report.style import STYLE
-
-    every = max(1, len(traces) // POINTS_SHOWN)
-    with context(STYLE):
-        figure = Figure(figsize=(9.0, 3.2), layout="constrained")
-        axes = figure.add_subplot()
-        for name in names:
-            values = traces[name][::every]
-            axes.plot(
-                traces["time"][::every],
-                values.astype(float),
-                label=name,
-                drawstyle="steps-post" if values.dtype.kind in "bi" else None,
-            )
-        axes.set_xlabel("time (s)")
-        axes.set_ylabel(unit or "value")
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7, ncols=1 + len(names) // 20)
-    return figure
+    platform = platform_here(description.version)
+    if platform not in PLATFORMS[description.version]:
+        raise FileError(archive.path, f"cannot be run on this machine: FMI {description.version} has no name for it")
+    machine, system, ending = PLATFORMS[description.version][platform]
+    identifier = description.interfaces[kind].get("modelIdentifier", "")
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", identifier):
+        raise FileError(archive.path, f"cannot be run: its model identifier {shown(identifier)!r} is not a name in C")
+    name = f"binaries/{platform}/{identifier}{ending}"
+    if name not in archive.files:
+        parts = [n.split("/") for n in archive.files if n.startswith("binaries/")]
+        others = ", ".join(sorted({shown(p[1]) for p in parts if len(p) > 2})) or "none at all"
+        raise FileError(
+            archive.path, f"cannot be run on this machine: {name} is missing", f"it has binaries for {others}"
+        )
+    binary = binary_of(archive, name)
+    if isinstance(binary, FileError):
+        raise FileError(archive.path, f"cannot be run: {name} {binary.value}")
+    if binary.system != system or machine not in binary.machines:
+        raise FileError(
+            archive.path, f"cannot be run: {name} is for {binary.system}, {'/'.join(sorted(binary.machines))}"
+        )
+    missing = sorted(needed_functions(description.version, (kind,)) - binary.exported)
+    if missing:
+        more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+        raise FileError(archive.path, f"cannot be run: {name} does not export {missing[0]}{more}")

@@ -93,10 +93,8 @@ def parameter_set(bumper: str, robot: Robot | None = None, *, sequential: bool =
 
 
 def _description(model: str) -> Description:
-    from lxml import etree
-
     with zipfile.ZipFile(native.fmu(model, FMI_VERSION)) as archive:
-        return read_description(etree.fromstring(archive.read("modelDescription.xml")))
+        return read_description(archive.read("modelDescription.xml"))
 
 
 def _text(root: Any) -> bytes:

@@ -145,6 +145,34 @@ FAULTS: list[tuple[str, int, Plant, str, bool]] = [
         "ModelExchange names the source file a.c",
         True,
     ),
+    (
+        "layered standards",
+        3,
+        lambda d: d.files.update({"extra/org.somebody/fmi-ls-manifest.xml": b"<a/>"}),
+        "extra/org.somebody/fmi-ls-manifest.xml has no fmi-ls-name",
+        False,
+    ),
+    (
+        "numbers",
+        3,
+        lambda d: d.edit('valueReference="101"', 'valueReference="x"'),
+        "valueReference is 'x', not a whole number",
+        True,
+    ),
+    (
+        "numbers",
+        2,
+        lambda d: (d.edit("<ModelStructure>", "<Structure>"), d.edit("</ModelStructure>", "</Structure>")),
+        "there is no element ModelStructure",
+        True,
+    ),
+    (
+        "variable names",
+        3,
+        lambda d: d.edit('name="plate.force"', 'name="plate force"'),
+        "plate force is no name of the convention 'structured'",
+        True,
+    ),
     ("identity", 2, lambda d: d.edit('guid="{', 'guid="" lost="{'), "is empty", True),
     (
         "identity",
@@ -349,13 +377,15 @@ def test_the_exit_code_says_whether_there_is_a_fault(
         ("exported symbols", "int nothing;", "does not export fmi3DoStep", True),
         ("exported symbols", "int nothing;", "exports 1 symbols that are not FMI's (nothing)", False),
         ("imported libraries", "void deflate(void); void f(void) { deflate(); }", "needs libz.so.1, which not", True),
+        ("imported libraries", "int nothing; /* libstdc++ */", "needs libstdc++.so.6: nearly every machine", False),
     ],
 )
 def test_each_check_of_binaries_finds_its_fault(
     check: str, source: str, words: str, fault: bool, tmp_path: Path
 ) -> None:
     draft = Draft(3)
-    libraries = ["-Wl,--no-as-needed", "-l:libz.so.1"] if "deflate" in source else []
+    library = "libz.so.1" if "deflate" in source else "libstdc++.so.6" if "libstdc++" in source else None
+    libraries = ["-Wl,--no-as-needed", f"-l:{library}"] if library else []
     draft.files[draft.binary] = compiled(tmp_path, source, *libraries)
     found = [f for f in check_fmu(draft.write(tmp_path / "planted.fmu")) if f.check == check]
     assert any(words in finding.text and finding.fault == fault for finding in found), [str(f) for f in found]
@@ -387,6 +417,7 @@ def test_a_source_file_that_another_includes_need_not_be_listed(tmp_path: Path) 
 
 def test_every_check_has_a_planted_fault() -> None:
     planted = {check for check, *_ in FAULTS} | {"exported symbols", "imported libraries", "unloading"}
+    planted |= {"limits", "links"}  # test_fmu_hostile.py
     assert planted == set(CHECKS) | {"XML", "FMI version"}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from giveway.errors import GivewayError, SimulationError
 from giveway.fmu import Instance, open_fmu
 from giveway.fmu_run import run_fmu
 from giveway.variables import table as variable_table
+from stub_fmus import files, library, pack
 
 DRIVE = ["carrier.velocity=0.2", "bumper.kind=1"]  # the carrier's face moves into the plate's
 
@@ -26,10 +28,10 @@ def test_a_run_is_written_as_csv_and_as_a_page(version: int, interface: str, tmp
         assert _main(["fmu", "run", file, *options, "--set", "motor.torque=6", "--out", str(tmp_path / name)]) == 0
     with (tmp_path / "run.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
-    time = np.array([float(row["time"]) for row in rows])
+    time = np.array([float(row["time [s]"]) for row in rows])
     assert time[-1] == pytest.approx(0.2)
     assert len(rows) >= 101
-    torque = np.array([float(row["sensor.torque"]) for row in rows])
+    torque = np.array([float(row["sensor.torque [N.m]"]) for row in rows])
     assert np.ptp(torque) > 0.1
     page = (tmp_path / "run.html").read_text()
     assert page.count("<svg") >= 3  # one plot per unit that moves
@@ -98,3 +100,127 @@ def test_info_says_what_it_is(capsys: pytest.CaptureFixture[str]) -> None:
         "giveway testbed",
     ):
         assert words in said
+
+
+# --- Inputs over time, and what is drawn
+
+# y follows u, and steps counts: what is drawn by default is y.
+BODIES = (
+    ("fmi3SetFloat64", "if (*vr == 1) input = *value; return 0;"),
+    (
+        "fmi3GetFloat64",
+        "for (size_t i = 0; i < n; ++i) value[i] = vr[i] == 4 ? 2 * input : vr[i] == 1 ? input : 7; return 0;",
+    ),
+    ("fmi3GetInt32", "*value = ++count; return 0;"),
+)
+SIGNATURES = {
+    "fmi3SetFloat64(void)": "fmi3SetFloat64(void *c, const unsigned *vr, size_t n, const double *value, size_t m)",
+    "fmi3GetInt32(void)": "fmi3GetInt32(void *c, const unsigned *vr, size_t n, int *value, size_t m)",
+}
+
+
+@pytest.fixture(scope="module")
+def follower(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An FMU whose output y is twice its input u, and whose output steps counts how often it is asked."""
+    binary = library(3, BODIES, extra="static double input; static int count;", signatures=tuple(SIGNATURES.items()))
+    return pack(tmp_path_factory.mktemp("follower") / "follower.fmu", files(binary=binary))
+
+
+def _inputs(path: Path, text: str) -> Path:
+    path.write_text(text)
+    return path
+
+
+def test_inputs_come_from_a_file(follower: Path, tmp_path: Path) -> None:
+    """Between rows reals are interpolated; where the time stands still they jump."""
+    inputs = _inputs(tmp_path / "in.csv", "time [s],u [N],on\n0,0,false\n0.5,1,true\n0.5,3,true\n1,3,0\n")
+    run = run_fmu(follower, inputs=inputs)
+    # A step takes the input at its beginning; at 0.5 s that is the value after the jump.
+    before = np.concatenate([[0.0], np.arange(0.0, 0.45, 0.1) * 2.0, np.full(5, 3.0)])
+    np.testing.assert_allclose(run.traces["y"], 2.0 * before, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "has no row of values"),
+        ("time,u\n", "has no row of values"),
+        ("t,u\n0,1\n", ":1: first column: t is not allowed; allowed: time or time [s]"),
+        ("time [ms],u\n0,1\n", ":1: first column: time [ms]"),
+        ("time,v\n0,1\n", ":1: column: v is unknown"),
+        ("time,y\n0,1\n", ":1: column: y is unknown"),
+        ("time,u [kN]\n0,1\n", ":1: unit of u: kN is not allowed; allowed: N"),
+        ("time,u,u\n0,1,2\n", "two columns of the same name"),
+        ("time,u\n0,1\n1\n", ":3: row: 1 cells is not allowed; allowed: 2"),
+        ("time,u\n0,1\n\n-1,1\n", ":4: time: -1 is not allowed"),
+        ("time,u\n0,nan\n", ":2: u: nan is not allowed"),
+        ("time,on\n0,maybe\n", ":2: on: maybe is not allowed; allowed: true or false"),
+    ],
+)
+def test_an_input_file_that_is_wrong_is_named_with_its_line(
+    text: str, words: str, follower: Path, tmp_path: Path
+) -> None:
+    path = _inputs(tmp_path / "in.csv", text)
+    with pytest.raises(GivewayError) as caught:
+        run_fmu(follower, inputs=path)
+    assert str(caught.value).startswith(str(path))
+    assert words in str(caught.value)
+
+
+def test_an_input_file_that_is_not_there_is_named(follower: Path, tmp_path: Path) -> None:
+    with pytest.raises(GivewayError, match="no such file"):
+        run_fmu(follower, inputs=tmp_path / "none.csv")
+
+
+def test_columns_carry_units_and_can_be_read_again(follower: Path, tmp_path: Path) -> None:
+    out = tmp_path / "run.csv"
+    assert _main(["fmu", "run", str(follower), "--plot", "u", "--set", "u=1", "--out", str(out)]) == 0
+    lines = out.read_text().splitlines()
+    assert lines[0] == "time [s],u [N],y [N],steps"
+    again = tmp_path / "again.csv"
+    again.write_text("\n".join(",".join(line.split(",")[:2]) for line in lines) + "\n")
+    run = run_fmu(follower, inputs=again)
+    assert len(run.traces) == 11
+
+
+def _page_of(follower: Path, out: Path, *options: str) -> str:
+    inputs = _inputs(out.with_name("in.csv"), "time,u\n0,0\n1,1\n")
+    arguments = ["fmu", "run", str(follower), "--input", str(inputs), *options, "--out", str(out)]
+    assert _main(arguments) == 0
+    return out.read_text()
+
+
+def _labels(page: str) -> set[str]:
+    return set(re.findall(r"<!-- (\S+) -->", page))
+
+
+def test_outputs_are_drawn_and_counters_are_not(follower: Path, tmp_path: Path) -> None:
+    page = _page_of(follower, tmp_path / "run.html")
+    assert page.count("<svg") == 1
+    assert {"y", "N"} <= _labels(page)
+    assert "steps" not in _labels(page)
+    assert "<h2>Not drawn</h2><p>steps (--plot NAME draws them)</p>" in page
+
+
+def test_the_user_says_what_is_drawn(follower: Path, tmp_path: Path) -> None:
+    page = _page_of(follower, tmp_path / "run.html", "--plot", "s*", "--plot", "?")
+    assert {"y", "u", "steps"} <= _labels(page)
+    assert "Not drawn" not in page
+    with pytest.raises(GivewayError, match=r"--plot: stops is unknown.*did you mean steps"):
+        run_fmu(follower, plot=["stops"])
+
+
+def test_counters_are_drawn_if_there_is_nothing_else(follower: Path, tmp_path: Path) -> None:
+    out = tmp_path / "run.html"
+    assert _main(["fmu", "run", str(follower), "--out", str(out)]) == 0
+    assert "steps" in _labels(out.read_text())
+
+
+def test_real_outputs_of_the_testbed_come_before_its_switches(tmp_path: Path) -> None:
+    out = tmp_path / "run.html"
+    assert _main(["fmu", "run", str(native.fmu("testbed", 3)), "--stop", "0.3", "--out", str(out)]) == 0
+    page = out.read_text()
+    assert "solver.steps" not in _labels(page)
+    assert "truth.vx" in _labels(page) or "truth.x" in _labels(page)
+    listed = page.split("<h2>Not drawn</h2>")[1].split("</p>")[0]
+    assert "solver.steps" in listed

@@ -1,24 +1,29 @@
 """`giveway fmu check`: what is wrong with an FMU, from the zip file down to the libraries its binaries need.
 
-A finding is a fault (an importer may refuse the file, or read something else than was meant) or a note (legal, but
-worth a look).
+What each finding means is in `severity`. `refusals` is the part of it that `giveway fmu run` and `info` ask for: what
+makes a file unsafe to unpack, or unreadable.
 """
 
 from __future__ import annotations
 
-import zipfile
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 from giveway.errors import FileError
+from giveway.fmu_archive import Archive, ArchiveError, OverLimitError, shown
 from giveway.fmu_check import archive, binaries, description, documents, structure, units
-from giveway.fmu_check.common import DESCRIPTION, UNREADABLE, Found, TestedFile
-from giveway.fmu_description import read_description
+from giveway.fmu_check.common import DESCRIPTION, Found, TestedFile
+from giveway.fmu_check.severity import Severity
+from giveway.fmu_description import Description, VersionError, read_description
+from giveway.fmu_limits import Limits
+from giveway.fmu_xml import Budget, XmlError, read_xml
 
-__all__ = ["CHECKS", "Finding", "check_fmu"]
+__all__ = ["CHECKS", "Check", "Finding", "Severity", "check_fmu", "open_safely"]
+
+MOST_OF_ONE_KIND = 50  # findings of one check and severity; the rest is counted
+_FMI_XML = (DESCRIPTION, documents.BUILD_DESCRIPTION, documents.TERMINALS)
 
 
 @dataclass(frozen=True)
@@ -26,82 +31,132 @@ class Finding:
     """One thing that a check found.
 
     Attributes:
-        check: its name, a key of `CHECKS`.
-        fault: else it is a note.
+        check: its name, a key of `CHECKS`, or "limits", "XML" or "FMI version".
     """
 
     check: str
-    fault: bool
+    severity: Severity
     text: str
 
+    @property
+    def fault(self) -> bool:
+        return self.severity is Severity.FAULT
+
     def __str__(self) -> str:
-        return f"{'fault' if self.fault else 'note'} [{self.check}] {self.text}"
+        return f"{self.severity.value} [{self.check}] {self.text}"
 
 
-def check_fmu(path: Path) -> list[Finding]:
+@dataclass(frozen=True)
+class Check:
+    """One check.
+
+    Attributes:
+        needs_description: it is left out if there is no model description that can be read.
+        refuses: its faults make a file unsafe to unpack or impossible to run: `giveway fmu run` refuses it.
+    """
+
+    function: Callable[[TestedFile], Found]
+    needs_description: bool = True
+    refuses: bool = False
+
+    def findings(self, name: str, file: TestedFile) -> Iterator[Finding]:
+        """Of each severity at most `MOST_OF_ONE_KIND`, and how many more there are."""
+        count: Counter[Severity] = Counter()
+        for severity, text in self.function(file):
+            count[severity] += 1
+            if count[severity] <= MOST_OF_ONE_KIND:
+                yield Finding(name, severity, text)
+        for severity, number in count.items():
+            if number > MOST_OF_ONE_KIND:
+                yield Finding(name, severity, f"and {number - MOST_OF_ONE_KIND:,} more of this kind")
+
+
+def check_fmu(path: Path, limits: Limits | None = None) -> list[Finding]:
     """All findings of all checks; FileError if ``path`` cannot be opened at all."""
     try:
-        opened = zipfile.ZipFile(path)
-    except (OSError, zipfile.BadZipFile) as error:
-        raise FileError(path, f"is not a zip file that can be read: {error}", "give an .fmu file") from None
-    with opened, TemporaryDirectory(prefix="giveway-check-") as folder:
-        found: list[Finding] = []
-        names = tuple(info.filename for info in opened.infolist() if not info.is_dir())
-        parsed, broken = _parse(opened, names)
-        found += [Finding("XML", True, text) for text in broken]
-        described = None
-        if DESCRIPTION in parsed:
-            try:
-                described = read_description(parsed[DESCRIPTION].getroot())
-            except (AttributeError, TypeError, ValueError, IndexError) as error:
-                found.append(Finding("XML", True, f"{DESCRIPTION} is not a model description: {error}"))
-        if described is not None and described.version not in (2, 3):
-            version = described.attributes.get("fmiVersion")
-            found.append(Finding("FMI version", True, f"{version!r}; this checks FMI 2 and FMI 3"))
-            described = None
-        file = TestedFile(opened, names, parsed, described, Path(folder))
-        for name, (check, needs_description) in CHECKS.items():
-            if described is not None or not needs_description:
-                found += [Finding(name, fault, text) for fault, text in check(file)]
+        opened = Archive(path, limits)
+    except OverLimitError as error:
+        return [Finding("limits", Severity.FAULT, f"{error.value}; {error.allowed}")]
+    with opened:
+        file, found = _read(opened)
+        for name, check in CHECKS.items():
+            if file.description is not None or not check.needs_description:
+                found += check.findings(name, file)
         return found
 
 
-def _parse(archive: zipfile.ZipFile, names: tuple[str, ...]) -> tuple[dict[str, Any], list[str]]:
-    """Every XML file as a tree, and what cannot be parsed. No entity is expanded and nothing is fetched."""
-    from lxml import etree
+def open_safely(path: Path, limits: Limits | None = None) -> tuple[Archive, Description]:
+    """The FMU open for unpacking, and its model description.
 
-    parsed: dict[str, Any] = {}
-    broken: list[str] = []
-    for name in names:
-        if not name.lower().endswith(".xml"):
-            continue
-        parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False)
+    Raises FileError with the first reason why it is unsafe to unpack, or why its description cannot be read.
+    """
+    opened = Archive(path, limits)
+    try:
+        file, found = _read(opened)
+        for name, check in CHECKS.items():
+            if check.refuses:
+                found += check.findings(name, file)
+        faults = [finding for finding in found if finding.fault]
+        if faults:
+            others = f"; {len(faults) - 1} more" if len(faults) > 1 else ""
+            hint = f"`giveway fmu check` says more{others}"
+            raise FileError(path, f"is refused: {faults[0].text}", hint)
+        assert file.description is not None
+    except BaseException:
+        opened.close()
+        raise
+    return opened, file.description
+
+
+def _read(opened: Archive) -> tuple[TestedFile, list[Finding]]:
+    """FMI's own XML files as a stream, and what is wrong with them. No entity is expanded and nothing is fetched."""
+    file = TestedFile(opened)
+    found: list[Finding] = []
+    budget = Budget(opened.limits)
+    sound = set()
+    for name in (n for n in file.names if n in _FMI_XML or documents.is_manifest(n)):
+        chunks = opened.chunks(opened.files[name])
         try:
-            parsed[name] = etree.ElementTree(etree.fromstring(archive.read(name), parser))
-        except (etree.XMLSyntaxError, ValueError, *UNREADABLE) as error:
-            broken.append(f"{name}: {error}")
-    return parsed, broken
+            if name == DESCRIPTION:
+                file.description = read_description(chunks, budget)
+            else:
+                read_xml(chunks, budget, lambda *_: None, lambda: None)
+            sound.add(name)
+        except VersionError as error:
+            text = f"{shown(error.version)!r}; this checks FMI 2 and FMI 3"
+            found.append(Finding("FMI version", Severity.FAULT, text))
+        except XmlError as error:
+            found.append(Finding("XML", Severity.FAULT, f"{shown(name)}: {shown(str(error), 400)}"))
+        except ArchiveError as error:
+            found.append(Finding("XML", Severity.FAULT, str(error.value)))
+    file.sound = frozenset(sound)
+    return file, found
 
 
-CHECKS: Mapping[str, tuple[Callable[[TestedFile], Found], bool]] = {
-    "zip method": (archive.zip_method, False),
-    "zip names": (archive.zip_names, False),
-    "zip order": (archive.zip_order, False),
-    "layout": (archive.layout, False),
-    "schema": (documents.schema, True),
-    "build description": (documents.build_description, True),
-    "identity": (description.identity, True),
-    "names and references": (description.names_and_references, True),
-    "start values": (description.start_values, True),
-    "start presence": (description.start_presence, True),
-    "units": (units.units, True),
-    "model structure": (structure.structure, True),
-    "event indicators": (structure.event_indicators, True),
-    "FMPy": (description.fmpy_validation, True),
-    "platforms": (binaries.platforms, True),
-    "machine": (binaries.machines, True),
-    "exported symbols": (binaries.exports, True),
-    "imported libraries": (binaries.imports, True),
-    "unloading": (binaries.unloading, True),
+CHECKS: Mapping[str, Check] = {
+    "limits": Check(archive.limits, needs_description=False, refuses=True),
+    "zip names": Check(archive.zip_names, needs_description=False, refuses=True),
+    "links": Check(archive.links, needs_description=False, refuses=True),
+    "zip method": Check(archive.zip_method, needs_description=False, refuses=True),
+    "zip order": Check(archive.zip_order, needs_description=False),
+    "layout": Check(archive.layout, needs_description=False, refuses=True),
+    "numbers": Check(description.numbers),
+    "schema": Check(documents.schema),
+    "layered standards": Check(documents.manifests),
+    "build description": Check(documents.build_description),
+    "identity": Check(description.identity),
+    "variable names": Check(description.variable_names),
+    "names and references": Check(description.names_and_references),
+    "start values": Check(description.start_values),
+    "start presence": Check(description.start_presence),
+    "units": Check(units.units),
+    "model structure": Check(structure.structure),
+    "event indicators": Check(structure.event_indicators),
+    "FMPy": Check(description.fmpy_validation),
+    "platforms": Check(binaries.platforms),
+    "machine": Check(binaries.machines),
+    "exported symbols": Check(binaries.exports),
+    "imported libraries": Check(binaries.imports),
+    "unloading": Check(binaries.unloading),
 }
-"""Name -> check, and whether it needs a model description; "XML" and "FMI version" come before them all."""
+"""By name; "XML" and "FMI version" come before them all."""

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import PurePosixPath
+from collections.abc import Collection, Iterator
+from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from giveway.errors import FileError
+from giveway.fmu_archive import Archive, shown
 from giveway.fmu_check.common import FAULT, NOTE, Found, TestedFile
-from giveway.fmu_description import Description
 
 if TYPE_CHECKING:
     from giveway.fmu_binaries import Binary
 
-__all__ = ["exports", "imports", "machines", "platforms", "unloading"]
+__all__ = ["binary_of", "exports", "imports", "machines", "needed_functions", "platforms", "unloading"]
 
 
 def _binary_names(file: TestedFile) -> dict[str, list[str]]:
@@ -31,13 +32,13 @@ def platforms(file: TestedFile) -> Found:
 
     description = file.described()
     found = _binary_names(file)
-    identifiers = sorted({a.get("modelIdentifier", "") for a in description.interfaces.values()})
+    identifiers = sorted({shown(a.get("modelIdentifier", "")) for a in description.interfaces.values()})
     if not found and not any(name.startswith("sources/") for name in file.names):
         yield FAULT, "there is neither a binary nor source code"
     known = PLATFORMS[description.version]
     for platform, names in found.items():
         if platform not in known:
-            yield NOTE, f"binaries/{platform} is no platform that FMI {description.version} names"
+            yield NOTE, f"binaries/{shown(platform)} is no platform that FMI {description.version} names"
             continue
         for identifier in identifiers:
             wanted = f"binaries/{platform}/{identifier}{known[platform][2]}"
@@ -47,7 +48,7 @@ def platforms(file: TestedFile) -> Found:
 
 def _each_binary(file: TestedFile) -> Iterator[tuple[str, str, Binary | FileError]]:
     """(name, platform, what was read of it) for the model's binary of every known platform."""
-    from giveway.fmu_binaries import PLATFORMS, read_binary
+    from giveway.fmu_binaries import PLATFORMS
 
     description = file.described()
     known = PLATFORMS[description.version]
@@ -55,13 +56,24 @@ def _each_binary(file: TestedFile) -> Iterator[tuple[str, str, Binary | FileErro
     for platform, names in _binary_names(file).items():
         for name in names:
             if platform in known and PurePosixPath(name).stem in identifiers and name.endswith(known[platform][2]):
-                path = file.folder / f"{platform}{known[platform][2]}"  # not the name, which may lead anywhere
-                path.write_bytes(file.read(name))
-                try:
-                    found: Binary | FileError = read_binary(path)
-                except FileError as error:
-                    found = error
-                yield name, platform, found
+                if name not in file.binaries:
+                    file.binaries[name] = binary_of(file.archive, name)
+                yield name, platform, file.binaries[name]
+
+
+def binary_of(archive: Archive, name: str) -> Binary | FileError:
+    """What is in one shared library of the FMU, or why it cannot be told."""
+    from giveway.fmu_binaries import read_binary
+
+    with TemporaryDirectory(prefix="giveway-check-") as folder:
+        path = Path(folder) / "library"  # not the name, which may lead anywhere
+        try:
+            with path.open("wb") as stream:
+                for piece in archive.chunks(archive.files[name]):
+                    stream.write(piece)
+            return read_binary(path)
+        except FileError as error:
+            return error
 
 
 def machines(file: TestedFile) -> Found:
@@ -80,7 +92,7 @@ def exports(file: TestedFile) -> Found:
     from giveway.fmu_binaries import fmi_functions
 
     description = file.described()
-    needed = _needed_functions(description)
+    needed = needed_functions(description.version, description.interfaces)
     every = fmi_functions(2) | fmi_functions(3)
     for name, _, binary in _each_binary(file):
         if isinstance(binary, FileError):
@@ -89,7 +101,7 @@ def exports(file: TestedFile) -> Found:
             yield FAULT, f"{name} does not export {function}"
         strangers = sorted(s for s in binary.exported - every if not s.startswith(("_init", "_fini")))
         if strangers:
-            some = ", ".join(strangers[:3])
+            some = shown(", ".join(strangers[:3]))
             yield (
                 NOTE,
                 f"{name} exports {len(strangers)} symbols that are not FMI's ({some}); another FMU's may clash",
@@ -126,31 +138,35 @@ _ONLY_STEPPING = (
 )
 
 
-def _needed_functions(description: Description) -> frozenset[str]:
+def needed_functions(version: int, interfaces: Collection[str]) -> frozenset[str]:
     """What an importer may look up: FMI 2 has all functions of an interface; FMI 3 all functions whatsoever."""
     from giveway.fmu_binaries import fmi_functions
 
-    every = fmi_functions(description.version)
-    if description.version == 3:
+    every = fmi_functions(version)
+    if version == 3:
         return every
     needed = set(every)
-    if "ModelExchange" not in description.interfaces:
+    if "ModelExchange" not in interfaces:
         needed -= {f"fmi2{name}" for name in (*_ONLY_EXCHANGE, "EnterEventMode")}
-    if "CoSimulation" not in description.interfaces:
+    if "CoSimulation" not in interfaces:
         needed -= {f"fmi2{name}" for name in _ONLY_STEPPING}
     return frozenset(needed)
 
 
 def imports(file: TestedFile) -> Found:
-    from giveway.fmu_binaries import is_of_the_system
+    from giveway.fmu_binaries import is_common, is_of_the_system
 
     for name, platform, binary in _each_binary(file):
         if isinstance(binary, FileError):
             continue
         beside = {PurePosixPath(n).name for n in _binary_names(file)[platform]}
         for library in binary.needed:
-            if not is_of_the_system(binary.system, library) and PurePosixPath(library).name not in beside:
-                yield FAULT, f"{name} needs {library}, which not every machine has and the FMU does not bring"
+            if is_of_the_system(binary.system, library) or PurePosixPath(library).name in beside:
+                continue
+            if is_common(binary.system, library):
+                yield NOTE, f"{name} needs {library}: nearly every machine has it, but which version?"
+            else:
+                yield FAULT, f"{name} needs {shown(library)}, which not every machine has and the FMU does not bring"
 
 
 def unloading(file: TestedFile) -> Found:

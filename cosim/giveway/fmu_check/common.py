@@ -2,64 +2,83 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
-from giveway.fmu_description import Description, VariableEntry
+from giveway.fmu_archive import Archive, ArchiveError
+from giveway.fmu_check.severity import Severity
+from giveway.fmu_description import REALS, Description, VariableEntry, effective
+
+if TYPE_CHECKING:
+    from giveway.errors import FileError
+    from giveway.fmu_binaries import Binary
 
 __all__ = [
     "DESCRIPTION",
     "FAULT",
     "NOTE",
     "REALS",
-    "UNREADABLE",
+    "WARNING",
     "Found",
     "TestedFile",
     "effective",
     "number",
-    "state_of",
 ]
 
 DESCRIPTION = "modelDescription.xml"
-REALS = ("Real", "Float32", "Float64")
-FAULT, NOTE = True, False
-UNREADABLE = (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError)
-"""What zipfile raises for a file that cannot be unpacked."""
-Found = Iterator[tuple[bool, str]]
-"""(fault or note, text)."""
+FAULT, WARNING, NOTE = Severity.FAULT, Severity.WARNING, Severity.NOTE
+Found = Iterator[tuple[Severity, str]]
+"""(how bad, text)."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class TestedFile:
     """The FMU under test.
 
     Attributes:
-        names: of its files; folders left out.
-        documents: its XML files, by name.
         description: None if there is none that can be read.
-        folder: for what has to be unpacked.
+        sound: FMI's own XML files that were read as a stream without complaint.
     """
 
-    archive: zipfile.ZipFile
-    names: tuple[str, ...]
-    documents: Mapping[str, Any]
-    description: Description | None
-    folder: Path
+    archive: Archive
+    description: Description | None = None
+    sound: frozenset[str] = frozenset()
+    binaries: dict[str, Binary | FileError] = field(default_factory=dict)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Of its files; folders left out."""
+        return tuple(self.archive.files)
 
     def read(self, name: str) -> bytes:
         """The content of a file; nothing if it cannot be unpacked, which the check of the zip file says."""
         try:
             return self.archive.read(name)
-        except UNREADABLE:
+        except ArchiveError:
             return b""
+
+    def tree(self, name: str) -> Any:
+        """The root of an XML file that is sound; it is small, or whoever asks takes care."""
+        from lxml import etree
+
+        return etree.fromstring(self.read(name), etree.XMLParser(resolve_entities=False, no_network=True))
 
     def described(self) -> Description:
         assert self.description is not None
         return self.description
+
+    @cached_property
+    def by_key(self) -> dict[int, VariableEntry]:
+        """Variable by what ModelStructure calls it."""
+        description = self.described()
+        return {description.key(v): v for v in description.variables}
+
+    def state_of(self, variable: VariableEntry) -> VariableEntry | None:
+        """The state that ``variable`` is the derivative of."""
+        key = variable.get("derivative")
+        return self.by_key.get(int(key)) if key.isascii() and key.isdigit() and len(key) < 20 else None
 
 
 def number(text: str) -> float | None:
@@ -67,14 +86,3 @@ def number(text: str) -> float | None:
         return float(text)
     except ValueError:
         return None
-
-
-def effective(description: Description, variable: VariableEntry, name: str) -> str:
-    """An attribute of the variable, else of its declared type."""
-    return variable.get(name) or description.types.get(variable.get("declaredType"), {}).get(name, "")
-
-
-def state_of(description: Description, variable: VariableEntry) -> VariableEntry | None:
-    """The state that ``variable`` is the derivative of."""
-    key = variable.get("derivative")
-    return next((v for v in description.variables if str(description.key(v)) == key), None) if key else None

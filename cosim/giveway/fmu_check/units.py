@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from giveway.fmu_check.common import FAULT, NOTE, Found, TestedFile, effective, state_of
-from giveway.fmu_description import Description, Unit
+from giveway.fmu_archive import shown
+from giveway.fmu_check.common import FAULT, NOTE, Found, TestedFile, effective
+from giveway.fmu_description import Unit
 
 __all__ = ["units"]
 
@@ -16,31 +17,33 @@ def units(file: TestedFile) -> Found:
     units: dict[str, Unit] = {}
     for unit in description.units:
         if unit.name in units:
-            yield FAULT, f"unit {unit.name} is defined twice"
-        if unit.factor == 0.0 or not math.isfinite(unit.factor):
-            yield FAULT, f"unit {unit.name} has the factor {unit.factor:g}"
+            yield FAULT, f"unit {shown(unit.name)} is defined twice"
+        if unit.factor == 0.0 or math.isinf(unit.factor):
+            yield FAULT, f"unit {shown(unit.name)} has the factor {unit.factor:g}"
         units[unit.name] = unit
     used: set[str] = set()
     for variable in description.variables:
+        name = shown(variable.name)
         kind = variable.get("declaredType")
         if kind and kind not in description.types:
-            yield FAULT, f"{variable.name} is of the type {kind}, which is not defined"
-        name, shown = (effective(description, variable, n) for n in ("unit", "displayUnit"))
-        if name:
-            used.add(name)
-            if name not in units:
-                yield FAULT, f"{variable.name} is in {name}, which is not defined"
-            elif shown and shown not in units[name].display_units:
-                yield FAULT, f"{variable.name} is shown in {shown}, which is no display unit of {name}"
-    for name in sorted(set(units) - used):
-        yield NOTE, f"unit {name} is defined, but no variable has it"
-    yield from _derivative_units(description, units)
+            yield FAULT, f"{name} is of the type {shown(kind)}, which is not defined"
+        unit_name, display = (effective(description, variable, n) for n in ("unit", "displayUnit"))
+        if unit_name:
+            used.add(unit_name)
+            if unit_name not in units:
+                yield FAULT, f"{name} is in {shown(unit_name)}, which is not defined"
+            elif display and display not in units[unit_name].display_units:
+                yield FAULT, f"{name} is shown in {shown(display)}, which is no display unit of {shown(unit_name)}"
+    for unit_name in sorted(set(units) - used):
+        yield NOTE, f"unit {shown(unit_name)} is defined, but no variable has it"
+    yield from _derivative_units(file, units)
 
 
-def _derivative_units(description: Description, units: Mapping[str, Unit]) -> Found:
+def _derivative_units(file: TestedFile, units: Mapping[str, Unit]) -> Found:
+    description = file.described()
     per_second = (0, 0, -1, 0, 0, 0, 0, 0)
     for variable in description.variables:
-        state = state_of(description, variable)
+        state = file.state_of(variable)
         if state is None:
             continue
         unit, of = (units.get(effective(description, v, "unit")) for v in (variable, state))
@@ -48,4 +51,5 @@ def _derivative_units(description: Description, units: Mapping[str, Unit]) -> Fo
             continue
         expected = tuple(a + b for a, b in zip(of.base, per_second, strict=True))
         if unit.base != expected or not math.isclose(unit.factor, of.factor, rel_tol=1e-12):
-            yield FAULT, f"{variable.name} is in {unit.name}, but its state {state.name} in {of.name}"
+            of_name, state_name = shown(of.name), shown(state.name)
+            yield FAULT, f"{shown(variable.name)} is in {shown(unit.name)}, but its state {state_name} in {of_name}"
