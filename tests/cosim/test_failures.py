@@ -42,7 +42,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     giveway.run(short(duration_s=0.01))
     small_study().objective("peak force of the run").run(folder / "study")
     (folder / "study.toml").write_text(
-        'schema_version = 1\n[scenario]\nduration = 0.1\n[[collision]]\nname = "a"\nspeed = 0.5\nmass = 5\nedge = 0\n'
+        "schema_version = 1\n[scenario]\nduration = 0.1\n[[collision]]\nspeed = 0.5\nmass = 5\nedge = 0\ntime = 0.05\n"
     )
     log = arc_log((1.0, 0.0, 0.0), sine(2.5, 0.1), 20.0)
     (folder / "arc.csv").write_text("\n".join(csv_lines(log)) + "\n")
