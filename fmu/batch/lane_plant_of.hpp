@@ -61,7 +61,7 @@ public:
         there_ = {.gear_direction = {},
                   .contact = there(p_.slider_present != 0),
                   .rope_taut = there(rope),
-                  .end_stop = there(plate && !p_.has_ideal_latch()),
+                  .end_stop = there(plate && !plant::bumper_holds(p_)),
                   .bottom_stop = there(plate),
                   .latched = L(0.0),
                   .landed = there(rope),
@@ -189,12 +189,12 @@ private:
         follow(plant::event_bottom_stop, m_.bottom_stop);
         follow(plant::event_landing, m_.landed);
         follow(plant::event_wall, m_.walled);
-        if (!p_.has_ideal_latch()) {
+        if (!plant::bumper_holds(p_)) {
             follow(plant::event_end_stop, one - m_.end_stop);
         }
         // What decides.
         constexpr int deciding[] = {plant::event_gear, plant::event_gear + 1, plant::event_gear + 2, plant::event_end_stop};
-        const int deciding_count = p_.has_ideal_latch() ? 4 : 3;
+        const int deciding_count = plant::bumper_holds(p_) ? 4 : 3;
         L lowest = zero;
         for (int k = 0; k < deciding_count; ++k) {
             lowest = math::min(lowest, g[deciding[k]]);

@@ -42,13 +42,10 @@ void slider(Stiffest& s, const plant::Parameters<double>& p, double v) {
     s.decay(p.slider_friction / p.slider_friction_speed + p.slider_damping, carriage);
     if (plate) {
         const double guided = together(p.bumper_plate_mass, p.plate_on_robot() ? p.base_mass : carriage);
-        s.vibration(p.bumper_spring_rate, guided);
+        s.vibration(plant::with_bumper_law(p, [&](auto law) { return law.greatest_stiffness(p); }), guided);
         s.vibration(p.bumper_stop_stiffness, guided);
         s.decay(p.bumper_damping + p.bumper_guide_friction / p.bumper_guide_friction_speed, guided);
         s.decay(p.bumper_stop_stiffness * p.bumper_stop_damping * v * std::sqrt(guided / p.bumper_stop_stiffness), guided);
-        if (p.has_continuous_latch()) {
-            s.vibration(2.0 * p.bumper_latch_force / p.bumper_latch_gap, guided);
-        }
     }
     if (p.rope_attached != 0) {
         const double pulled = together(carriage, p.rope_hanging_mass);

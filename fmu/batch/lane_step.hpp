@@ -1,7 +1,7 @@
 // How long the fixed steps of a design may be: from its stiffest elements, and from nothing else.
 #pragma once
 
-#include "parameters.hpp"
+#include "bumper_laws.hpp"
 
 namespace giveway::batch {
 

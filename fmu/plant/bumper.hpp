@@ -1,7 +1,7 @@
-// Spring bumper with preload, guide friction, stops and the magnetic latch.
+// The bumper: its law, and what all kinds have: damper, guide friction, stops.
 #pragma once
 
-#include "state.hpp"
+#include "bumper_laws.hpp"
 
 namespace giveway::plant {
 
@@ -23,18 +23,25 @@ template <class T> StopForce<T> stop_force(T engaged, T stiffness, T damping, T 
 }
 
 template <class T> BumperForce<T> bumper_force(const Parameters<T>& p, const Modes<T>& m, T c, T rate) {
-    const T elastic = p.bumper_preload + p.bumper_spring_rate * c;
-    const T loss = p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
-    const auto end = stop_force(m.end_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, T(-1.0) * c, T(-1.0) * rate);
-    const auto bottom = stop_force(m.bottom_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, c - p.bumper_travel, rate);
-    T force = elastic + loss - end.force + bottom.force;
-    T stored = p.bumper_preload * c + T(0.5) * p.bumper_spring_rate * c * c + end.stored + bottom.stored;
-    if (p.has_continuous_latch()) {
-        const T gap = math::max(c, T(0.0));
-        force = force + p.bumper_latch_force / math::square(T(1.0) + gap / p.bumper_latch_gap);
-        stored = stored + p.bumper_latch_force * math::select(math::less(T(0.0), c), p.bumper_latch_gap * gap / (p.bumper_latch_gap + gap), c);
-    }
-    return {force, loss * rate + end.dissipation + bottom.dissipation, stored};
+    return with_bumper_law(p, [&](auto law) {
+        const LawForce<T> spring = law.spring(p, c, rate);
+        const T loss = p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
+        const auto end = stop_force(m.end_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, T(-1.0) * c, T(-1.0) * rate);
+        const auto bottom = stop_force(m.bottom_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, c - p.bumper_travel, rate);
+        T force = spring.force + loss - end.force + bottom.force;
+        T stored = spring.stored + end.stored + bottom.stored;
+        if constexpr (decltype(law)::has_latch) {
+            const LawForce<T> latch = law.latch(p, c);
+            force = force + latch.force;
+            stored = stored + latch.stored;
+        }
+        return BumperForce<T>{force, loss * rate + end.dissipation + bottom.dissipation, stored};
+    });
+}
+
+// Where the plate of a bumper that nothing holds rests against its end stop.
+template <class T> T resting_compression(const Parameters<T>& p) {
+    return with_bumper_law(p, [&](auto law) -> T { return T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness); });
 }
 
 } // namespace giveway::plant

@@ -24,11 +24,11 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
     x[base_omega] = start.omega;
     x[slider_speed] = p.slider_present != 0 ? start.slider_speed : T(0.0);
     x[weight_speed] = p.rope_attached != 0 ? x[slider_speed] : T(0.0);
-    if (p.slider_present != 0 && p.has_plate() && !p.has_ideal_latch()) {
-        const T outward = p.bumper_preload + (p.has_continuous_latch() ? p.bumper_latch_force : T(0.0));
-        x[compression] = T(-1.0) * outward / (p.bumper_spring_rate + p.bumper_stop_stiffness);
+    const bool held = bumper_holds(p);
+    if (p.slider_present != 0 && p.has_plate() && !held) {
+        x[compression] = resting_compression(p);
     }
-    m.latched = p.has_ideal_latch() ? T(1.0) : T(0.0);
+    m.latched = held ? T(1.0) : T(0.0);
 
     const auto heading = math::sincos(start.theta);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{start.vx, start.vy});
@@ -57,7 +57,7 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
     m.bottom_stop = positive(g[event_bottom_stop]);
     m.landed = positive(g[event_landing]);
     m.walled = positive(g[event_wall]);
-    m.end_stop = p.has_ideal_latch() ? T(0.0) : T(1.0) - positive(g[event_end_stop]);
+    m.end_stop = held ? T(0.0) : T(1.0) - positive(g[event_end_stop]);
 }
 
 template <class T>

@@ -8,7 +8,6 @@
 #include "../math/dual.hpp"
 #include "../math/lanes_elementary.hpp"
 
-#include "choices.hpp"
 #include "plant_parameters.hpp"
 
 namespace giveway::plant {
@@ -33,12 +32,6 @@ template <class T> struct Parameters : TableParameters<T> {
     // The plate moves on its own only if there is one.
     [[nodiscard]] bool has_plate() const { return this->bumper_kind != BumperKind::none; }
     [[nodiscard]] bool plate_on_robot() const { return has_plate() && this->bumper_mount == BumperMount::robot; }
-    [[nodiscard]] bool has_ideal_latch() const {
-        return this->bumper_kind == BumperKind::magnetic && this->bumper_latch_model == LatchModel::ideal;
-    }
-    [[nodiscard]] bool has_continuous_latch() const {
-        return this->bumper_kind == BumperKind::magnetic && this->bumper_latch_model == LatchModel::continuous;
-    }
 };
 
 } // namespace giveway::plant

@@ -37,7 +37,7 @@ template <class T> T locked(const Parameters<T>& p, const Modes<T>& m) {
     if (!p.has_plate() || p.slider_present == 0) {
         return T(1.0);
     }
-    return p.has_ideal_latch() ? m.latched : T(0.0);
+    return bumper_holds(p) ? m.latched : T(0.0);
 }
 
 namespace detail {
@@ -207,7 +207,7 @@ StateVector<T> rhs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& 
     return evaluate(x, u, m, p, d).rate;
 }
 
-// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for an idealised latch only.
+// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for a bumper that holds only.
 template <class T, std::size_t N, std::size_t E, class InternalForce>
 void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d, T depth,
                        InternalForce internal_force) {
@@ -215,8 +215,8 @@ void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Mod
     g[event_contact] = depth;
     g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
     g[event_end_stop] = T(1.0);
-    if (slider && p.has_ideal_latch()) {
-        const T holding = p.bumper_latch_force + p.bumper_preload - internal_force();
+    if (slider && bumper_holds(p)) {
+        const T holding = bumper_release_force(p) - internal_force();
         g[event_end_stop] = math::select(math::less(T(0.5), m.latched), holding, x[compression]);
     } else if (slider && p.has_plate()) {
         g[event_end_stop] = x[compression];
@@ -277,7 +277,7 @@ void planar_transition(const Evaluation<T, N>& e, std::array<T, N>& x, Modes<T>&
     m.bottom_stop = follow(event_bottom_stop, m.bottom_stop);
     m.landed = follow(event_landing, m.landed);
     m.walled = follow(event_wall, m.walled);
-    if (!p.has_ideal_latch()) {
+    if (!bumper_holds(p)) {
         m.end_stop = T(1.0) - follow(event_end_stop, T(1.0) - m.end_stop);
         return;
     }

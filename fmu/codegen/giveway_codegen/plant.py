@@ -16,9 +16,15 @@ def _member(group: Group) -> str:
     return f"    {kind} {group.identifier}; // {group.description}{unit}"
 
 
+def _enumeration(group: Group) -> str:
+    names = ", ".join(f"{name} = {number}" for number, name in enumerate(group.choices))
+    return f"enum class {group.plant} : std::uint8_t {{ {names} }};"
+
+
 def parameters_header(table: Table) -> str:
     """The struct of all plant parameters of the testbed's table, and a walk over them."""
     groups = table.plant_parameters
+    enumerations = "\n".join(_enumeration(group) for group in groups if group.choices)
     members = "\n".join(_member(group) for group in groups)
     visits = "\n".join(f'    visit("{group.identifier}", structs.{group.identifier}...);' for group in groups)
     return f"""// Generated from the variable table of {table.name}; do not edit.
@@ -27,10 +33,11 @@ def parameters_header(table: Table) -> str:
 #include <array>
 #include <cstdint>
 
-#include "choices.hpp"
 #include "scalar.hpp"
 
 namespace giveway::plant {{
+
+{enumerations}
 
 // SI units.
 template <class T> struct TableParameters {{

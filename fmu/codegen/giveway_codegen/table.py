@@ -33,6 +33,7 @@ DERIVATIVE_OFFSET = 1000
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
     "allow_nonfinite", "dependencies", "description", "display_unit", "plant",
+    "choices",
 }  # fmt: skip
 # Types of plant parameters by the types of their variables; an integer may also be an enumeration.
 _PLANT_TYPES = {"real": ("number", "divisor"), "integer": ("whole",), "boolean": ("whole",)}
@@ -72,6 +73,7 @@ class Group:
     display_unit: str | None = None  # what an importer may show instead of the unit
     # Type of the plant's parameter of this name, if it is one; nothing that an importer sees, so not in the token.
     plant: str | None = field(default=None, repr=False)
+    choices: tuple[str, ...] = field(default=(), repr=False)  # names of the values 0, 1, ... of an enumeration
 
     @property
     def quantity(self) -> Quantity | None:
@@ -250,14 +252,7 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
         raise entry.fail("dependencies", "only an output has them")
     dependencies = _dependencies(entry) if "dependencies" in raw else None
 
-    plant = raw.get("plant")
-    if plant is not None:
-        known = _PLANT_TYPES[kind]
-        enumeration = kind == "integer" and isinstance(plant, str) and _ENUMERATION.fullmatch(plant)
-        if causality != "parameter" or not (plant in known or enumeration):
-            other = " or an enumeration" if kind == "integer" else ""
-            raise entry.fail("plant", f"{plant!r}, but must be {' or '.join(known)}{other}, and of a parameter")
-
+    plant, choices = _plant(entry, kind, causality, maximum)
     starts = _starts(entry, kind, unit, causality, count, robot, robot_file)
     for start, _ in starts:
         if start is None or kind == "boolean":
@@ -271,8 +266,29 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     return Group(
         name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
         dependencies, " ".join(description.split()), variables, display_unit=_display_unit(entry, unit),
-        plant=plant,
+        plant=plant, choices=choices,
     )  # fmt: skip
+
+
+def _plant(entry: _Entry, kind: str, causality: str, maximum: Value | None) -> tuple[str | None, tuple[str, ...]]:
+    """Type of the plant's parameter, and the names of its choices if that is an enumeration."""
+    plant, choices = entry.raw.get("plant"), entry.raw.get("choices")
+    if plant is None and choices is None:
+        return None, ()
+    known = _PLANT_TYPES[kind]
+    enumeration = kind == "integer" and isinstance(plant, str) and _ENUMERATION.fullmatch(plant) is not None
+    if causality != "parameter" or not (plant in known or enumeration):
+        other = " or the name of an enumeration" if kind == "integer" else ""
+        raise entry.fail("plant", f"{plant!r}, but must be {' or '.join(known)}{other}, and of a parameter")
+    if not enumeration:
+        if choices is not None:
+            raise entry.fail("choices", "only an enumeration of the plant has them")
+        return plant, ()
+    names = choices if isinstance(choices, list) else []
+    words = all(isinstance(name, str) and _NAME.fullmatch(name) for name in names)
+    if not words or len(names) - 1 != maximum:
+        raise entry.fail("choices", f"{choices!r}, but must be a word for each value from 0 to the maximum {maximum}")
+    return plant, tuple(names)
 
 
 def _display_unit(entry: _Entry, unit: str | None) -> str | None:

@@ -50,7 +50,7 @@ public:
     [[nodiscard]] bool end_stop() const { return modes_.end_stop > 0.5; }
     [[nodiscard]] bool bottom_stop() const { return modes_.bottom_stop > 0.5; }
     [[nodiscard]] bool latched(double time_s) const {
-        return parameters_.has_ideal_latch() ? end_stop() : parameters_.has_continuous_latch() && compression(time_s) < parameters_.bumper_latch_gap;
+        return plant::is_latched(parameters_, compression(time_s), end_stop());
     }
 
     // The ideal latch is the continuous one with no reach: all of its force while the plate is at its end stop, none beyond. It lets go where
@@ -58,9 +58,10 @@ public:
     [[nodiscard]] plant::BumperForce<double> force(double time_s) const {
         const double c = compression(time_s);
         auto bumper = plant::bumper_force(parameters_, modes_, c, compression_rate());
-        if (parameters_.has_ideal_latch()) {
-            bumper.force += modes_.end_stop * parameters_.bumper_latch_force;
-            bumper.stored += modes_.end_stop * parameters_.bumper_latch_force * c;
+        if (plant::bumper_holds(parameters_)) {
+            const double holding = plant::bumper_holding_force(parameters_);
+            bumper.force += modes_.end_stop * holding;
+            bumper.stored += modes_.end_stop * holding * c;
         }
         return bumper;
     }

@@ -104,7 +104,7 @@ public:
         case plant::event_rope:
             return above(modes_.rope_taut);
         case plant::event_end_stop:
-            return parameters_.has_ideal_latch() ? 1 : -above(modes_.end_stop);
+            return plant::bumper_holds(parameters_) ? 1 : -above(modes_.end_stop);
         case plant::event_bottom_stop:
             return above(modes_.bottom_stop);
         case plant::event_landing:

@@ -51,7 +51,7 @@ inline void write_truth(Variables& v, const double* x, const plant::Outputs<doub
     v.truth_nose_y = truth.nose_y;
     v.truth_bumper_compression = x[plant::compression];
     v.truth_bumper_force = truth.bumper_force;
-    v.truth_latched = p.has_ideal_latch() ? modes.latched > 0.5 : p.has_continuous_latch() && x[plant::compression] < p.bumper_latch_gap;
+    v.truth_latched = p.has_plate() && plant::is_latched(p, x[plant::compression], modes.latched > 0.5);
     v.truth_rope_tension = truth.rope_tension;
     v.truth_rope_taut = modes.rope_taut > 0.5;
     v.truth_wall_force = truth.wall_force;

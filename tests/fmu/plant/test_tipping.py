@@ -226,12 +226,12 @@ def test_the_margin_is_that_of_an_inverted_pendulum(
 ) -> None:
     """Over the line between two wheels, R/2 away, the base falls as exp(w t), w^2 = M g h/I with I about that line
     (parallel axes); what counts is the place of the centre of mass plus its speed over w. In closed form."""
-    p = replace(ROBOT, slider_present=0, com_height=com_height, tilt_inertia=1.7)
+    p = replace(ROBOT, slider_present=0, base_com_height=com_height, base_tilt_inertia=1.7)
     plant = TippingPlant(library, p)
     x, modes = plant.start()
     x[tilt], x[tilt_rate] = angle, rate
-    inertia = p.tilt_inertia + p.mass * (com_height**2 + (0.5 * p.wheel_distance) ** 2)
-    growth = math.sqrt(p.mass * GRAVITY * com_height / inertia)
+    inertia = p.base_tilt_inertia + p.base_mass * (com_height**2 + (0.5 * p.wheel_distance) ** 2)
+    growth = math.sqrt(p.base_mass * GRAVITY * com_height / inertia)
     reach = com_height * (math.sin(angle) + rate * math.cos(angle) / growth)
     # To x by the pitch, to -y by the roll; wheels stand at 0, 120 and 240 deg, the lines opposite to them.
     towards = 0.0 if tilt == PITCH else -0.5 * math.pi

@@ -189,12 +189,14 @@ def test_a_plant_parameter_has_its_variables_name_and_the_type_that_the_table_st
     text = table(variable(plant='"divisor"', description='"Speed"')) + "[[variable]]\n"
     text += variable(name='"group.sides"', reference="20", count="3", plant='"number"') + "\n[[variable]]\n"
     choice = {"type": '"integer"', "unit": None, "start": "1", "minimum": "0", "maximum": "2"}
+    choice["choices"] = '["none", "spring", "foam"]'
     text += variable(name='"group.kind"', reference="30", plant='"BumperKind"', **choice)
     assert generate(tmp_path, text).returncode == 0
     header = plant_header(tmp_path)
     assert "math::Divisor<T> group_second; // Speed [m/s]" in header
     assert "std::array<T, 3> group_sides;" in header
     assert "BumperKind group_kind;" in header
+    assert "enum class BumperKind : std::uint8_t { none = 0, spring = 1, foam = 2 };" in header
     assert header.count("    visit(") == 3
     reader = (tmp_path / "out" / "lag_plant_parameters.hpp").read_text()
     assert "p.group_second = v.group_second;" in reader
@@ -207,6 +209,16 @@ def test_a_plant_parameters_type_has_to_fit_the_variables(tmp_path: Path, plant:
     result = generate(tmp_path, table(variable(plant=plant)))
     assert "variable group.second: plant: " in result.stderr
     assert "must be number or divisor, and of a parameter" in result.stderr
+
+
+def test_choices_are_a_word_for_each_value(tmp_path: Path) -> None:
+    entry = {"type": '"integer"', "unit": None, "start": "1", "minimum": "0", "maximum": "2", "plant": '"BumperKind"'}
+    for choices in (None, '["none", "spring"]', '["none", "spring", 3]', '"none"'):
+        result = generate(tmp_path, table(variable(choices=choices, **entry)))
+        assert "variable group.second: choices: " in result.stderr
+        assert "must be a word for each value from 0 to the maximum 2" in result.stderr
+    result = generate(tmp_path, table(variable(choices='["one"]', plant='"number"')))
+    assert "variable group.second: choices: only an enumeration of the plant has them" in result.stderr
 
 
 def test_wrong_files_and_models_are_named(tmp_path: Path) -> None:
