@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway import native
-from giveway.body_regions import body_region
 from giveway.checks import finite, whole
 from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
 from giveway.master import Progress, Record, plan_table, push_table
@@ -229,8 +228,7 @@ class _Batch:
         self._specs["step_count"] = [scenario.steps for scenario in scenarios]
         self._set_parameters()
         for index, scenario in enumerate(scenarios):
-            if scenario.body_region is not None:
-                region = body_region(scenario.body_region)
+            if (region := scenario.judged) is not None:
                 self._specs["transient_limit_n"][index] = region.peak_limit_n
                 self._specs["lasting_limit_n"][index] = region.lasting_limit_n
         self._plans = _Tables(self._specs, "plan")

@@ -1,7 +1,8 @@
 """What a contact does to a person, judged against the force limits of a body region (ISO/TS 15066:2016, Annex A).
 
 Two limits: the *peak* within the first 0.5 s of a contact (transient), and the *lasting* force after them, which is
-what clamping does (quasi-static). `contact_peak` and `speed_limit` are the standard's two-mass estimate of the first.
+what clamping does (quasi-static); where the area of the contact is known, its mean pressure likewise. `contact_peak`
+and `speed_limit` are the standard's two-mass estimate of the first.
 The numbers are in `body_regions.toml`. They judge a design; they do not replace the standard: `NOTICE` says so in every
 output.
 """
@@ -15,7 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from giveway.checks import finite
 from giveway.errors import FileError, GivewayError, UnknownNameError
@@ -25,13 +26,16 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["NOTICE", "TRANSIENT_S", "BodyRegion", "Judgement", "body_region", "body_regions", "contact_peak"]
-__all__ += ["judge", "source", "speed_limit"]
+__all__ += ["check_contact_area", "judge", "source", "speed_limit"]
 
 TRANSIENT_S = 0.5
 """How long a contact counts as transient; a force that lasts longer is quasi-static."""
 
+CM2_PER_M2 = 1e4
+CONTACT_AREA_M2 = (1e-6, 1.0)  # of the contact
 SCHEMA_VERSION = 1
 _FILE = Path(__file__).with_suffix(".toml")
+_Stiffness = TypeVar("_Stiffness", float, "NDArray[np.float64]")
 _Largest = tuple[float, float | None]  # a force in N and its time in s
 _NOTHING: _Largest = (0.0, None)
 
@@ -45,6 +49,7 @@ class BodyRegion:
         covers: what belongs to it.
         lasting_limit_n: highest quasi-static force, N.
         peak_limit_n: highest force within the first 0.5 s of a contact, N; 0 where no transient contact is allowed.
+        lasting_pressure_limit, peak_pressure_limit: the same of the pressure, N/cm2, of the region's tenderest spot.
         stiffness_npm: effective stiffness, N/m.
         mass_kg: effective mass, kg.
         source: the tables of the standard.
@@ -54,9 +59,23 @@ class BodyRegion:
     covers: str
     lasting_limit_n: float
     peak_limit_n: float
+    lasting_pressure_limit: float
+    peak_pressure_limit: float
     stiffness_npm: float
     mass_kg: float
     source: str
+
+    def stiffness_with(self, padding_npm: _Stiffness) -> _Stiffness:
+        """Stiffness of the body in series with a cover of ``padding_npm``, N/m; infinite: none."""
+        return 1.0 / (1.0 / self.stiffness_npm + 1.0 / padding_npm)
+
+    def force_limits(self, contact_area_m2: float | None) -> tuple[float, float]:
+        """Transient and lasting limit of the force, N; on ``contact_area_m2`` (m2) also those of the mean pressure."""
+        peak, lasting = self.peak_limit_n, self.lasting_limit_n
+        if contact_area_m2 is None:
+            return peak, lasting
+        area_cm2 = CM2_PER_M2 * contact_area_m2
+        return min(peak, self.peak_pressure_limit * area_cm2), min(lasting, self.lasting_pressure_limit * area_cm2)
 
 
 @dataclass(frozen=True)
@@ -70,6 +89,7 @@ class Judgement:
         lasting_n: largest force later than that in any contact, N; 0 if none lasted so long.
         lasting_time_s: when; None if none lasted so long.
         longest_contact_s: length of the longest contact, s.
+        contact_area_m2: area of the contact, m2; None if it is not known, and the pressure neither.
     """
 
     region: BodyRegion
@@ -78,16 +98,27 @@ class Judgement:
     lasting_n: float
     lasting_time_s: float | None
     longest_contact_s: float
+    contact_area_m2: float | None = None
 
     @property
     def peak_ok(self) -> bool:
-        """The peak is within the transient limit; where no transient contact is allowed, there was none at all."""
-        return self.peak_n <= self.region.peak_limit_n
+        """The peak is within the transient limits; where no transient contact is allowed, there was none at all."""
+        return self.peak_n <= self.region.force_limits(self.contact_area_m2)[0]
 
     @property
     def lasting_ok(self) -> bool:
-        """The lasting force is within the quasi-static limit."""
-        return self.lasting_n <= self.region.lasting_limit_n
+        """The lasting force is within the quasi-static limits."""
+        return self.lasting_n <= self.region.force_limits(self.contact_area_m2)[1]
+
+    @property
+    def peak_pressure(self) -> float | None:
+        """Mean pressure at the peak of the force, N/cm2; None where the area is not known."""
+        return None if self.contact_area_m2 is None else self.peak_n / (CM2_PER_M2 * self.contact_area_m2)
+
+    @property
+    def lasting_pressure(self) -> float | None:
+        """Mean pressure of the lasting force, N/cm2; None where the area is not known."""
+        return None if self.contact_area_m2 is None else self.lasting_n / (CM2_PER_M2 * self.contact_area_m2)
 
     @property
     def ok(self) -> bool:
@@ -95,13 +126,23 @@ class Judgement:
         return self.peak_ok and self.lasting_ok
 
     def __str__(self) -> str:
-        """One line with the verdict, both forces, their limits, and who decides in the end."""
+        """One line with the verdict, both forces and mean pressures, their limits, and who decides in the end."""
         region = self.region
         allowed = f"{region.peak_limit_n:g} N" if region.peak_limit_n else "no transient contact"
         verdict = "within" if self.ok else "above"
         return (
             f"{region.name}: {verdict} the limits: peak {self.peak_n:.0f} N (allowed: {allowed}), "
-            f"lasting {self.lasting_n:.0f} N (allowed: {region.lasting_limit_n:g} N). {NOTICE}"
+            f"lasting {self.lasting_n:.0f} N (allowed: {region.lasting_limit_n:g} N){self._pressures()}. {NOTICE}"
+        )
+
+    def _pressures(self) -> str:
+        region, area = self.region, self.contact_area_m2
+        if area is None:
+            return ""
+        peak = f" (allowed: {region.peak_pressure_limit:g} N/cm2)" if region.peak_pressure_limit else ""
+        return (
+            f"; mean pressure on {CM2_PER_M2 * area:g} cm2: peak {self.peak_pressure:.1f} N/cm2{peak}, "
+            f"lasting {self.lasting_pressure:.1f} N/cm2 (allowed: {region.lasting_pressure_limit:g} N/cm2)"
         )
 
 
@@ -118,12 +159,24 @@ def body_region(name: str) -> BodyRegion:
     return regions[name]
 
 
+def check_contact_area(area_m2: object) -> float:
+    """``area_m2`` as a float, m2; GivewayError if it is no number from 1e-6 to 1."""
+    return finite("contact_area_m2", area_m2, *CONTACT_AREA_M2, "m2")
+
+
 def source() -> str:
     """Where the limits come from."""
     return str(_read()[1]["source"])
 
 
-def judge(time_s: ArrayLike, force_n: ArrayLike, region: BodyRegion | str, *, touch_n: float = 0.0) -> Judgement:
+def judge(
+    time_s: ArrayLike,
+    force_n: ArrayLike,
+    region: BodyRegion | str,
+    *,
+    touch_n: float = 0.0,
+    contact_area_m2: float | None = None,
+) -> Judgement:
     """Judge the magnitude of a contact force over time against the limits of ``region``.
 
     A contact begins when the force rises above ``touch_n`` and ends when it stays at or below it for 0.5 s: what comes
@@ -135,11 +188,15 @@ def judge(time_s: ArrayLike, force_n: ArrayLike, region: BodyRegion | str, *, to
         force_n: shape (n,), N, at least 0.
         region: a body region or its name.
         touch_n: force that counts as no contact, N, at least 0: above the noise of a measured trace.
+        contact_area_m2: area over which the force spreads, m2, 1e-6 to 1; None: unknown, no pressure is judged. The
+            pressure is the mean one: edges and hard spots press harder.
     """
     import numpy as np
 
     chosen = body_region(region) if isinstance(region, str) else region
     finite("touch_n", touch_n, 0.0, math.inf, "N")
+    if contact_area_m2 is not None:
+        check_contact_area(contact_area_m2)
     time, force = _trace(time_s, force_n)
     peak = lasting = _NOTHING
     longest = 0.0
@@ -150,7 +207,7 @@ def judge(time_s: ArrayLike, force_n: ArrayLike, region: BodyRegion | str, *, to
         longest = max(longest, float(since[-1]))
         peak = max(peak, _largest(time, force, rows[since <= TRANSIENT_S]), key=_force)
         lasting = max(lasting, _largest(time, force, rows[since > TRANSIENT_S]), key=_force)
-    return Judgement(chosen, *peak, *lasting, longest_contact_s=longest)
+    return Judgement(chosen, *peak, *lasting, longest_contact_s=longest, contact_area_m2=contact_area_m2)
 
 
 def contact_peak(region: BodyRegion | str, speed_mps: float, robot_kg: float, padding_npm: float = math.inf) -> float:
@@ -179,8 +236,7 @@ def _impedance(region: BodyRegion | str, robot_kg: float, padding_npm: float) ->
     if padding_npm != math.inf:
         finite("padding_npm", padding_npm, 1e-3, 1e12, "N/m")
     mass = 1.0 / (1.0 / chosen.mass_kg + 1.0 / robot_kg)
-    stiffness = 1.0 / (1.0 / chosen.stiffness_npm + 1.0 / padding_npm)
-    return math.sqrt(mass * stiffness)
+    return math.sqrt(mass * chosen.stiffness_with(padding_npm))
 
 
 def _trace(time_s: ArrayLike, force_n: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -218,6 +274,8 @@ def _read() -> tuple[Mapping[str, BodyRegion], dict[str, Any]]:
             covers=entry["covers"],
             lasting_limit_n=entry["force_limit_n"],
             peak_limit_n=entry["force_limit_n"] * entry["transient_factor"],
+            lasting_pressure_limit=entry["pressure_limit_n_per_cm2"],
+            peak_pressure_limit=entry["pressure_limit_n_per_cm2"] * entry["transient_factor"],
             stiffness_npm=entry["stiffness_npm"],
             mass_kg=entry["mass_kg"],
             source=entry["source"],

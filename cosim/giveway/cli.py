@@ -121,11 +121,11 @@ def run(
         result.write_into(folder)
         write_report(folder / "report.html", scenario.name, summary, [result])
     print_results(scenario.name, {scenario.bumper: result})
-    if scenario.body_region is not None:
+    if scenario.judged is not None:
         from giveway.body_regions import judge
 
-        force = result.traces["testbed.truth.contact_force"]
-        typer.echo(str(judge(result.traces["time"].values, force.values, scenario.body_region)))
+        time_s, force = (result.traces[name].values for name in ("time", "testbed.truth.contact_force"))
+        typer.echo(str(judge(time_s, force, scenario.judged, contact_area_m2=scenario.contact_area_m2)))
     typer.echo(f"Written: {out / 'report.html'}")
     if result.interrupted:
         typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)

@@ -86,7 +86,7 @@ class Stated:
             _known(None if contact is None else contact.time_s),
             _known(None if contact is None else plan_speed(scenario)),
             np.array([contact is not None]),
-            np.array([scenario.body_region is not None]),
+            np.array([scenario.judged is not None]),
         )
 
 

@@ -81,6 +81,8 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "plan": _describe(scenario.plan),
             "push": None if scenario.push is None else _describe(scenario.push),
             "body_region": scenario.body_region,
+            "judge_as": scenario.judge_as,
+            "contact_area_m2": scenario.contact_area_m2,
             "contact": None if scenario.contact is None else dataclasses.asdict(scenario.contact),
         },
         "robot": {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()},

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from giveway.body_regions import body_region
+from giveway.body_regions import BodyRegion, body_region, body_regions, check_contact_area
 from giveway.checks import finite, whole
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.plan import Plan, Push, Rest
@@ -43,7 +43,12 @@ class Scenario:
         seed: seed of the testbed's sensor noise, or None for the table's start value.
         fmi_version: 3 or 2.
         robot: a robot file that replaces the one the FMUs were built with, or None.
-        body_region: what the contact force is judged as, a name of `giveway.body_regions`, or None.
+        body_region: what is hit, a name of `giveway.body_regions`, or None. The slider gets its effective mass, and
+            ``contact.stiffness`` is that of the robot's cover (its robot file's ``contact.stiffness``) and the body in
+            series; the contact force is judged by its limits.
+        judge_as: the region by whose limits the force is judged while mass and stiffness are what ``testbed`` and
+            robot file state; None: that of ``body_region``, if any.
+        contact_area_m2: area of the contact, m2, 1e-6 to 1, for the mean pressure; None: unknown.
         contact: the contact that the parameters are meant to make, or None; another one becomes a warning.
     """
 
@@ -59,6 +64,8 @@ class Scenario:
     fmi_version: int = 3
     robot: Path | None = None
     body_region: str | None = None
+    judge_as: str | None = None
+    contact_area_m2: float | None = None
     contact: StatedContact | None = None
 
     def __post_init__(self) -> None:
@@ -73,8 +80,7 @@ class Scenario:
             raise GivewayError("fmi_version", self.fmi_version, "3 or 2")
         if self.seed is not None:
             whole("seed", self.seed, 0, 2**31 - 1)
-        if self.body_region is not None:
-            body_region(self.body_region)  # refuses an unknown one
+        self._check_region()
         if "slider.present" not in self.testbed:
             for name, value in self.testbed.items():
                 if name.startswith(("slider.", "rope.")):
@@ -83,6 +89,39 @@ class Scenario:
         # Copies, so that a frozen scenario cannot change behind the caller's back.
         object.__setattr__(self, "testbed", MappingProxyType(dict(self.testbed)))
         object.__setattr__(self, "controller", MappingProxyType(dict(self.controller)))
+
+    def _check_region(self) -> None:
+        """Refuse an unknown region, and what contradicts it."""
+        if self.judge_as is not None:
+            if self.body_region is not None:
+                allowed = "nothing beside body_region, which is judged by its own limits"
+                raise GivewayError("judge_as", self.judge_as, allowed)
+            if self.judge_as not in body_regions():
+                raise UnknownNameError("judge_as", self.judge_as, body_regions())
+        if self.contact_area_m2 is not None:
+            check_contact_area(self.contact_area_m2)
+            if self.judged is None:
+                raise GivewayError("contact_area_m2", self.contact_area_m2, "only beside body_region or judge_as")
+        if self.body_region is None:
+            return
+        region = body_region(self.body_region)
+        instead = f'write judge_as = "{region.name}" instead of body_region to judge what is stated by its limits'
+        mass = self.testbed.get("slider.mass", region.mass_kg)
+        if mass != region.mass_kg:
+            allowed = f"{region.mass_kg:g} kg, what a {region.name} weighs: leave it out, or {instead}"
+            raise GivewayError("testbed.slider.mass", mass, allowed)
+        if "contact.stiffness" in self.testbed:
+            allowed = (
+                f"nothing: the robot file's cover and a {region.name} of {region.stiffness_npm:g} N/m in series decide "
+                f"it; leave it out, or {instead}"
+            )
+            raise GivewayError("testbed.contact.stiffness", self.testbed["contact.stiffness"], allowed)
+
+    @property
+    def judged(self) -> BodyRegion | None:
+        """The body region by whose limits the contact force is judged."""
+        name = self.body_region or self.judge_as
+        return None if name is None else body_region(name)
 
     @property
     def steps(self) -> int:
@@ -113,4 +152,9 @@ class Scenario:
                 raise GivewayError("testbed.bumper.kind", overrides["bumper.kind"], allowed)
             if self.seed is not None:
                 values["electronics.seed"] = self.seed
+            if self.body_region is not None:
+                region = body_region(self.body_region)
+                cover = values.get("contact.stiffness", variables["contact.stiffness"].start)
+                values["slider.mass"] = region.mass_kg
+                values["contact.stiffness"] = region.stiffness_with(float(cover or 0.0))
         return variables.check_all(values | dict(overrides))

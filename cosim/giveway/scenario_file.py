@@ -17,6 +17,7 @@ from giveway.plan_limits import check_plan_of
 from giveway.scenario import BUMPERS, Scenario
 from giveway.stated_contact import StatedContact
 from giveway.toml_sections import Section, lines_named, read_toml, renamed
+from giveway.units import factor
 from giveway.variables import Value, table
 
 __all__ = ["PLAN_KEYS", "SET_BY", "read_scenario", "scalars", "scenario_of"]
@@ -28,7 +29,8 @@ MEETING_S = 0.5
 PLANS = ("rest", "straight", "circle")
 
 _TOP = (
-    "schema_version", "name", "duration", "bumper", "robot", "seed", "body_region",
+    "schema_version", "name", "duration", "bumper", "robot", "seed", "body_region", "judge_as",
+    "contact_area",
     "plan", "collision", "push", "testbed", "controller",
 )  # fmt: skip
 _POSE = ("x", "y", "heading")
@@ -91,11 +93,12 @@ def scenario_of(
     collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
     if collision is None and top.values.get("bumper", "none") != "none":
         raise GivewayError("bumper", top.values["bumper"], "none without [collision]: the bumper is on what collides")
-    if collision is None and "body_region" in top.values:
-        raise GivewayError("body_region", top.values["body_region"], "nothing without [collision]: it judges a contact")
+    for key in ("body_region", "judge_as"):
+        if collision is None and key in top.values:
+            raise GivewayError(key, top.values[key], "nothing without [collision]: it is about a contact")
     plan = _plan(top)
     overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
-    with renamed("", duration_s="duration"):
+    with renamed("", duration_s="duration", contact_area_m2="contact_area"):
         bare = Scenario(
             name=top.text("name", path.stem),
             duration_s=top.number("duration"),
@@ -107,6 +110,8 @@ def scenario_of(
             seed=seed,
             robot=robot,
             body_region=top.text("body_region") if "body_region" in top.values else None,
+            judge_as=top.text("judge_as") if "judge_as" in top.values else None,
+            contact_area_m2=_area_m2(top),
         )
     if not 1 <= len(bare.name) <= NAME_MAX:
         raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")
@@ -206,9 +211,10 @@ def _collision(section: Section, bare: Scenario) -> tuple[dict[str, Value], Stat
     from giveway.approach import Approach, edge_middle, meet_as_stated, outline_of
 
     set_already = bare.parameters("testbed")
-    mass = section.number("mass", float(table("testbed")["slider.mass"].start or 0.0))
+    mass = section.number("mass", float(set_already.get("slider.mass", table("testbed")["slider.mass"].start or 0.0)))
     with renamed("collision", **{"testbed.slider.mass": "mass"}):
         set_already["slider.mass"] = table("testbed").check("slider.mass", mass)
+        dataclasses.replace(bare, testbed={**bare.testbed, "slider.mass": mass})  # refuses what is no body's mass
     everything = {v.name: set_already.get(v.name, v.start) for v in table("testbed").select("parameter")}
     testbed = {name: value for name, value in everything.items() if value is not None}
     if "edge" in section.values and "point" in section.values:
@@ -227,6 +233,15 @@ def _collision(section: Section, bare: Scenario) -> tuple[dict[str, Value], Stat
         approach = Approach(point, section.number("speed"), direction, time_s, rope)
         slider, contact, meeting_s = meet_as_stated(approach, testbed, bare.plan, _tare_s(bare))
     return {"slider.mass": mass} | slider | _height(section), contact, meeting_s
+
+
+def _area_m2(top: Section) -> float | None:
+    """The area of the contact, stated with its unit."""
+    section = top.table("contact_area", ("value", "unit"))
+    if section is None:
+        return None
+    section.required("unit", '"cm2", or another unit of an area')
+    return section.number("value") * factor(section.full("unit"), section.text("unit"), "m2")
 
 
 def _height(section: Section) -> dict[str, Value]:

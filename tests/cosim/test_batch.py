@@ -114,8 +114,8 @@ def test_the_manifest_names_the_library(tmp_path: Path) -> None:
 JUDGED: dict[str, giveway.Scenario] = {
     **CASES,
     "long": short(duration_s=2.0),
-    "a person": short(duration_s=1.0, body_region="lower leg"),
-    "no transient contact allowed": short(body_region="skull"),
+    "a person": short(duration_s=1.0, judge_as="lower leg"),
+    "no transient contact allowed": short(judge_as="skull"),
     "pressed into its stop": short("spring", testbed={"bumper.travel": 0.01}),
     "thrown back": short(
         "spring", duration_s=1.0, testbed={"rope.attached": False, "slider.speed": 0.5, "slider.run_up": 0.05}
@@ -144,7 +144,7 @@ def test_native_metrics_are_those_of_the_traces(case: str) -> None:
     scenario = JUDGED[case]
     table = batch.run_many([scenario])
     result = batch.run(scenario)
-    region = None if scenario.body_region is None else body_region(scenario.body_region)
+    region = scenario.judged
     for metric in (*result.metrics, *metrics.design(result.traces, result.manifest["parameters"], region)):
         value = float(table[metric.name][0])
         assert table[metric.name].attrs["units"] == metric.unit

@@ -189,6 +189,15 @@ WRONG: dict[str, tuple[str, str, int, tuple[str, ...]]] = {
     "no robot": ('name = "a case"', 'robot = "nowhere.toml"', 2, ("robot: nowhere.toml", "robot file")),
     "seed": ('name = "a case"', "seed = -1", 2, ("seed: -1",)),
     "unknown body region": ('name = "a case"', 'body_region = "lower lag"', 2, ("body_region: lower lag", "lower leg")),
+    "another mass than the region's": ('name = "a case"', 'body_region = "hand"', 7,
+        ("collision.mass: 12.0", "0.6 kg", "leave it out", 'judge_as = "hand"')),
+    "area without unit": ('name = "a case"', 'judge_as = "hand"\ncontact_area = { value = 3 }', 3,
+        ("contact_area.unit: nothing", "cm2")),
+    "area in metres": ('name = "a case"', 'judge_as = "hand"\ncontact_area = { value = 3, unit = "cm" }', 3,
+        ("contact_area.unit: cm", "m2")),
+    "area of nothing": ('name = "a case"', 'judge_as = "hand"\ncontact_area = { value = 0, unit = "cm2" }', 3,
+        ("contact_area: 0.0", "1e-06 to 1 m2")),
+    "judged as nothing known": ('name = "a case"', 'judge_as = "hnad"', 2, ("judge_as: hnad", "hand")),
     "body region of nothing": (GOOD[GOOD.index('bumper'):], 'body_region = "hand"', 4, ("body_region: hand",)),
     "no name": ('name = "a case"', 'name = ""', 2, ("name", "1 to 80")),
     "bumper without a collision": (GOOD[GOOD.index("[coll"):], "", 4, ("bumper: spring", "without [collision]")),
@@ -236,14 +245,14 @@ def test_the_command_line_refuses_with_one_line_and_writes_nothing(cli: Cli, tmp
 
 
 def test_the_contact_is_judged_as_a_body_region(cli: Cli, tmp_path: Path) -> None:
-    written(tmp_path, 'body_region = "hand"\n' + GOOD)
+    written(tmp_path, 'judge_as = "hand"\n' + GOOD)
     done = cli("run", "case.toml", "--out", "out")
     assert done.returncode == 0, done.stderr
     (line,) = (one for one in done.stdout.splitlines() if one.startswith("hand: "))
     result = giveway.load(tmp_path / "out")
     peak = float(result.traces["testbed.truth.contact_force"].max())
     assert f"peak {peak:.0f} N (allowed: 280 N)" in line  # twice the quasi-static 140 N
-    assert result.manifest["scenario"]["body_region"] == "hand"
+    assert result.manifest["scenario"]["judge_as"] == "hand"
 
 
 def test_the_command_line_runs_a_file(cli: Cli, tmp_path: Path) -> None:

@@ -93,6 +93,21 @@ def test_a_warm_magnet_is_exported_as_weak_as_it_is(tmp_path: Path) -> None:
     assert scenario.testbed["bumper.latch_force"] == pytest.approx(45.8 * (1.0 - 0.0024 * 50.0), rel=1e-12)
 
 
+def test_a_design_with_a_body_region_is_exported_with_its_mass_and_stiffness(tmp_path: Path) -> None:
+    study = small_study(vary=[{"quantity": "robot.contact.stiffness", "values": [5000.0, 20000.0]}])
+    del study.document["collision"][0]["mass"]
+    study.document["scenario"]["body_region"] = "hand"
+    answers = study.run(tmp_path / "study", threads=2)
+    export_design(answers, 1, tmp_path / "design.toml")
+    scenario = giveway.read_scenario(tmp_path / "design.toml")
+    assert scenario.judge_as == "hand"
+    assert scenario.testbed["slider.mass"] == 0.6
+    assert scenario.testbed["contact.stiffness"] == 1.0 / (1.0 / 75000.0 + 1.0 / 20000.0)
+    peak = stored_runs(answers.folder)["peak force of the run"][1]
+    # Degrees and back: the slider's start differs in its last digits.
+    assert batch.run(scenario).metric("peak force of the run").value == pytest.approx(peak, rel=1e-9)
+
+
 def test_a_folder_says_all_by_itself(tmp_path: Path) -> None:
     """Robot file and designs may be gone: the study keeps copies."""
     (tmp_path / "from").mkdir()

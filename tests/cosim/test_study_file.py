@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from giveway.errors import GivewayError
 from giveway.study import study_file
@@ -157,7 +158,35 @@ def test_a_file_that_is_no_csv_is_refused(tmp_path: Path) -> None:
 
 def test_a_limit_of_a_body_region_is_its_number() -> None:
     study = small_study().constraint("peak force of the run", maximum="transient limit")
-    study.document["scenario"]["body_region"] = "lower leg"
+    study.document["scenario"]["judge_as"] = "lower leg"
     from giveway.body_regions import body_region
 
     assert study.setup().constraints[0].maximum == body_region("lower leg").peak_limit_n
+    # 420 N/cm2 on half a square centimetre
+    study.document["scenario"]["contact_area"] = {"value": 50, "unit": "mm2"}
+    assert study.setup().constraints[0].maximum == pytest.approx(210.0)
+
+
+def test_a_study_of_a_body_region_is_hit_by_that_body() -> None:
+    """Designs with other covers: each in series with the leg; what the region decides cannot be varied."""
+    from giveway.study.chosen import scenario_of_run, settings_of_run
+    from giveway.study.runs import RunTable
+
+    study = small_study(vary=[{"quantity": "robot.contact.stiffness", "values": [5.0, 20.0], "unit": "kN/m"}])
+    del study.document["collision"][0]["mass"]
+    study.document["scenario"]["body_region"] = "lower leg"
+    setup = study.setup()
+    runs = RunTable(setup, np.array([[5e3], [2e4]]), np.zeros((1, 0)))
+    for design, cover in enumerate((5e3, 2e4)):
+        found = settings_of_run(runs, design, 0, 0)["testbed"]
+        assert found["contact.stiffness"] == 1.0 / (1.0 / 6e4 + 1.0 / cover)
+        assert found["slider.mass"] == 75.0
+        again = scenario_of_run(setup, runs, design)
+        assert again.parameters("testbed")["contact.stiffness"] == found["contact.stiffness"]
+        assert again.judged is setup.cases[0].scenario.judged
+    for quantity in ("collision.mass", "testbed.contact.stiffness", "robot.slider.mass"):
+        refused = small_study(vary=[{"quantity": quantity, "values": [500.0, 600.0]}])
+        refused.document["scenario"]["body_region"] = "lower leg"
+        del refused.document["collision"][0]["mass"]
+        with pytest.raises(GivewayError, match=r'vary\[0\]\.quantity: .* body_region = "lower leg".*judge_as'):
+            refused.setup()

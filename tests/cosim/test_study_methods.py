@@ -33,7 +33,7 @@ def test_limits_of_the_body_region_reach_the_library(tmp_path: Path) -> None:
     from giveway.body_regions import body_region
 
     study = small_study()
-    study.document["scenario"]["body_region"] = "lower leg"
+    study.document["scenario"]["judge_as"] = "lower leg"
     sweep(study.setup(), tmp_path / "study", threads=2)
     runs = stored_runs(tmp_path / "study")
     share = runs["peak force of the run"] / body_region("lower leg").peak_limit_n

@@ -53,7 +53,7 @@ def scenario(
         reflex: False: the detector is off and the robot pushes on.
     """
     testbed, controller = table("testbed"), table("controller")
-    stiffness = body_region(region).stiffness_npm
+    body = body_region(region)
     direction, target_x, target_y = (
         float(testbed[f"slider.{name}"].start or 0.0) for name in ("direction", "target_x", "target_y")
     )
@@ -71,10 +71,10 @@ def scenario(
             "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),
             "slider.target_y": target_y + way_m * math.sin(plan.direction_rad),
             "rope.attached": False,
-            "contact.stiffness": 1.0 / (1.0 / stiffness + 1.0 / float(testbed["contact.stiffness"].start or 0.0)),
+            "contact.stiffness": body.stiffness_with(float(testbed["contact.stiffness"].start or 0.0)),
             "wall.present": True,
             "wall.distance": gap_m,
-            "wall.stiffness": stiffness,
+            "wall.stiffness": body.stiffness_npm,
         },
         controller={"supervisor.after_settled": 0} | (NO_REFLEX if not reflex else {}),
         plan=plan,

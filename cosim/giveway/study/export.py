@@ -14,6 +14,7 @@ import numpy as np
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.files import check_file, replace_file, write_text
 from giveway.study.chosen import hit_of, settings_of_run
+from giveway.study.runs import COVER
 from giveway.variables import table as variable_table
 
 if TYPE_CHECKING:
@@ -130,13 +131,16 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
     quantities = [one.quantity for one in answers.setup.varied]
     if study.hit is not None:
         document["collision"] = _collision(study.document["collision"], hit, settings, {one.name for one in quantities})
+    changed = {name for one in quantities for name in (table.columns.names[column] for column in one.columns)}
+    if "body_region" in document and COVER in changed:  # the design states the stiffness of cover and body together
+        document["judge_as"] = document.pop("body_region")
+        document["collision"]["mass"] = settings["testbed"]["slider.mass"]
     if any(one.name == "bumper" for one in quantities):
         from giveway.scenario import BUMPERS
 
         document["bumper"] = list(BUMPERS)[int(settings["testbed"]["bumper.kind"])]
     if "robot" in document:
         document["robot"] = str((answers.folder / "robot.toml").resolve())
-    changed = {name for one in quantities for name in (table.columns.names[column] for column in one.columns)}
     if "temperature" in [one.name for one in quantities]:
         changed.add("testbed.bumper.latch_force")
     text = tomlkit.document()

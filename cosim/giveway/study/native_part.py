@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway import batch
-from giveway.body_regions import body_region
 from giveway.errors import SimulationError
 from giveway.study.runs import RunTable
 
@@ -41,8 +40,7 @@ class NativePart:
             mine = case == index
             self._specs["step_s"][mine] = one.case.scenario.step_s
             self._specs["step_count"][mine] = one.case.scenario.steps
-            if one.case.scenario.body_region is not None:
-                region = body_region(one.case.scenario.body_region)
+            if (region := one.case.scenario.judged) is not None:
                 self._specs["transient_limit_n"][mine] = region.peak_limit_n
                 self._specs["lasting_limit_n"][mine] = region.lasting_limit_n
             for field, values_ in (("plan", one.plan), ("push", one.push)):

@@ -6,6 +6,7 @@ is all that decides a run besides its collision's plan, pushes and duration: its
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
 import math
@@ -31,6 +32,7 @@ __all__ = ["KEY_SIZE", "MAGNET_PER_KELVIN", "Rows", "RunTable"]
 
 KEY_SIZE = 16
 MAGNET_PER_KELVIN = -0.0024  # change of a magnet's force (physics.md, section 7)
+COVER = "testbed.contact.stiffness"
 SLIDER = ("slider.direction", "slider.target_x", "slider.target_y", "slider.run_up", "slider.speed")
 
 
@@ -64,6 +66,12 @@ class _CaseTable:
             for name, value in scenario.parameters(model).items():
                 where = columns_.index[f"{model}.{name}"]
                 self.base[where], self.set[where] = float(value), True
+        self.body = None if scenario.body_region is None else scenario.judged
+        """What is hit: its stiffness lies in series with the cover's, which is what the rows hold until the end."""
+        if self.body is not None:
+            cover = dataclasses.replace(scenario, body_region=None).parameters("testbed")
+            where = columns_.index[COVER]
+            self.base[where] = float(cover.get("contact.stiffness", columns_.start[where]))
         self.plan = plan_table(scenario)
         self.push = push_table(scenario)
         self.outline = outline_of({name: float(v[0]) for name, v in columns_.testbed(self.base[None, :]).items()})
@@ -71,7 +79,8 @@ class _CaseTable:
     def context(self, shared: dict[str, Any]) -> bytes:
         """Hash of all that decides a run besides its row."""
         scenario = self.case.scenario
-        own = {"step_s": scenario.step_s, "steps": scenario.steps, "body_region": scenario.body_region}
+        judged = scenario.body_region or scenario.judge_as
+        own = {"step_s": scenario.step_s, "steps": scenario.steps, "body_region": judged}
         text = json.dumps({**shared, **own}, sort_keys=True)
         found = hashlib.blake2b(text.encode(), digest_size=32)
         found.update(np.ascontiguousarray(self.plan).tobytes())
@@ -128,6 +137,8 @@ class RunTable:
         warmer = free.pop("temperature") - REFERENCE_TEMPERATURE
         if warmer.any():
             values[:, latch] *= 1.0 + MAGNET_PER_KELVIN * warmer
+        if table.body is not None:
+            values[:, self.columns.index[COVER]] = table.body.stiffness_with(values[:, self.columns.index[COVER]])
         refused = self._beyond_limits(table, values)
         speed_mps = np.full(len(design), math.nan)
         if table.case.hit is not None:
@@ -210,7 +221,7 @@ def _stated(case: Case, hit: dict[str, NDArray[np.float64]], speed_mps: NDArray[
         hit["time"] if case.hit is not None and case.hit.time_s is not None else unknown,
         unknown if planned is None else np.full(count, planned),
         contact=np.full(count, case.hit is not None),
-        region=np.full(count, case.scenario.body_region is not None),
+        region=np.full(count, case.scenario.judged is not None),
     )
 
 

@@ -16,16 +16,17 @@ from typing import Any
 import numpy as np
 
 from giveway.batch import METHODS, PLANT_STEP_RANGE_S
-from giveway.body_regions import body_region
 from giveway.checks import finite, whole
 from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
 from giveway.plan_limits import LIMIT_NAMES, check_plan_of
+from giveway.scenario import Scenario
 from giveway.scenario_file import PLAN_KEYS, scenario_of
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
 from giveway.study.metrics import find_metric
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
+from giveway.study.runs import COVER
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
 from giveway.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.units import factor
@@ -37,7 +38,10 @@ _TOP = (
     "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
     "tolerances", "tolerance", "objective", "constraint", "report",
 )  # fmt: skip
-_SCENARIO = ("duration", "bumper", "robot", "seed", "body_region", "plan", "push", "testbed", "controller")
+_SCENARIO = (
+    "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "plan", "push", "testbed",
+    "controller",
+)  # fmt: skip
 _COLLISION = ("name", "mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _SPREAD = ("low", "high", "mode", "mean", "sigma")
 _VARY = ("quantity", "also", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
@@ -46,7 +50,7 @@ _GOAL = ("metric", "collisions", "tolerances")
 OVER_COLLISIONS, OVER_TOLERANCES = ("worst", "mean"), ("worst", "mean", "nominal")
 TOLERANCE_KINDS = ("sobol", "latin-hypercube", "corners")
 LEVELS_MAX, SAMPLES_MAX, PART_MAX, CHOSEN_MAX, CORNERS_MAX = 100_000, 1_000_000, 65_536, 20, 12
-LIMITS = {"transient limit": "peak_limit_n", "lasting limit": "lasting_limit_n"}
+LIMITS = ("transient limit", "lasting limit")
 
 
 def read(path: Path | str) -> Setup:
@@ -93,7 +97,7 @@ def check(
         raise GivewayError("tolerances.kind", kind, f"at most {CORNERS_MAX} tolerances with corners, or sobol")
     count = whole("tolerances.samples", drawn.values.get("samples", 16), 1, SAMPLES_MAX) if tolerances or noise else 0
     report = top.table("report", ("chosen", "metrics")) or Section("report", {}, None)
-    region = cases[0].scenario.body_region
+    judged = cases[0].scenario
     title = top.text("name", name)
     if not 1 <= len(title) <= 80:
         raise GivewayError("name", title, "1 to 80 characters")
@@ -113,7 +117,7 @@ def check(
         noise_seeds=noise,
         objectives=tuple(_objective(f"objective[{i}]", one) for i, one in enumerate(_list(top, "objective"))),
         constraints=tuple(
-            _constraint(f"constraint[{i}]", one, region) for i, one in enumerate(_list(top, "constraint"))
+            _constraint(f"constraint[{i}]", one, judged) for i, one in enumerate(_list(top, "constraint"))
         ),
         shown=_shown(report),
         chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
@@ -398,7 +402,11 @@ def _fits_cases(field: str, quantity: Quantity, cases: Sequence[Case], varied: S
     """Refuse what the collisions have no use for."""
     name = quantity.name
     for case in cases:
-        hit = case.hit
+        hit, body = case.hit, case.scenario.body_region
+        weighed = columns().index["testbed.slider.mass"] in quantity.columns
+        if body is not None and field.startswith("vary") and (name == COVER or weighed):
+            allowed = f'what body_region = "{body}" does not decide, such as robot.contact.stiffness; or write judge_as'
+            raise GivewayError(field, name, allowed)
         if name.startswith("collision.") and hit is None:
             raise GivewayError(field, name, "nothing of a collision without [[collision]]")
         if hit is None:
@@ -463,7 +471,7 @@ def _goal(section: Section, sense: int, weight: float = 1.0) -> Goal:
     )
 
 
-def _constraint(field: str, entry: Any, region: str | None) -> Constraint:
+def _constraint(field: str, entry: Any, judged: Scenario) -> Constraint:
     section = Section(field, entry, (*_GOAL, "minimum", "maximum", "unit"))
     if ("minimum" in section.values) == ("maximum" in section.values):
         raise GivewayError(section.full("maximum"), "nothing or both", "one of minimum and maximum")
@@ -473,9 +481,9 @@ def _constraint(field: str, entry: Any, region: str | None) -> Constraint:
     if isinstance(value, str):
         if value not in LIMITS:
             raise UnknownNameError(section.full(key), value, LIMITS)
-        if region is None:
+        if judged.judged is None:
             raise GivewayError(section.full(key), value, "a number, or a body_region in [scenario]")
-        number = float(getattr(body_region(region), LIMITS[value]))
+        number = judged.judged.force_limits(judged.contact_area_m2)[LIMITS.index(value)]
     else:
         number = section.number(key) * _scale(section, goal.metric.unit)
     low, high = (-math.inf, number) if key == "maximum" else (number, math.inf)
