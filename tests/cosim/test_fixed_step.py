@@ -160,6 +160,18 @@ def test_traces_are_those_of_the_event_exact_method() -> None:
         assert table["testbed.events"].values[0, -1] == pytest.approx(exact["testbed.events"].values[0, -1], abs=3)
 
 
+def test_the_noise_of_each_sensor_is_that_of_the_event_exact_method() -> None:
+    names = [f"testbed.sensor.torque[{wheel}]" for wheel in range(3)]
+    # Nothing moves: what is sensed is noise and offset, rounded to the sensor's steps.
+    at_rest = {"slider.present": False, "electronics.torque_noise": 0.1}
+    scenarios = [short("none", duration_s=0.05, seed=seed, testbed=at_rest) for seed in range(9)]
+    exact, table = batch.run_many(scenarios, traces=names), fixed(scenarios, traces=names)
+    assert set(table["method"].values) == {"fixed-step"}
+    for name in names:
+        assert len(np.unique(exact[name].values)) > 30
+        assert table[name].values.tobytes() == exact[name].values.tobytes(), name
+
+
 def test_the_benchmark_counts_what_differs() -> None:
     rows, lines = bench_batch.accuracy(12, seed=8)
     found = dict(rows)

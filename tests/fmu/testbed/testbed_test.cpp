@@ -1,14 +1,17 @@
 // The testbed as a model: step sizes, energy, refusals. The plant's equations have their own reference in ../plant.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "model.hpp"
+#include "noise.hpp"
 #include "testbed_variables.hpp"
 
 namespace {
@@ -155,6 +158,76 @@ TEST(Testbed, UnpoweredDrivesGiveNoTorque) {
         EXPECT_EQ(torque, 0.0);
     }
     EXPECT_EQ(run.v().energy_work_in, 0.0);
+}
+
+TEST(Testbed, ACommandActsAfterItsDelay) {
+    for (const int delay : {0, 1, 3}) {
+        Bench run;
+        run.v().slider_present = false;
+        run.v().command_enable = true;
+        run.v().electronics_command_delay = delay;
+        run.initialise();
+        run.v().command_wheel_angle[1] = 0.01;
+        for (int cycle = 0; cycle < 6; ++cycle) {
+            ASSERT_EQ(run.model->step(1e-3 * cycle, 1e-3, run.message), Status::ok) << run.message.text;
+            EXPECT_EQ(run.v().truth_motor_torque[1] != 0.0, cycle >= delay) << "delay " << delay << ", cycle " << cycle;
+            EXPECT_EQ(run.v().truth_motor_torque[0], 0.0);
+        }
+    }
+}
+
+TEST(Testbed, ASampleComesAfterItsDelay) {
+    for (const int delay : {0, 1, 3}) {
+        Bench run;
+        run.v().slider_present = false;
+        run.v().electronics_sensor_delay = delay;
+        run.v().electronics_torque_noise = 0.0;
+        run.v().electronics_torque_resolution = 0.0;
+        run.initialise();
+        run.v().push_force_x = 30.0;
+        std::vector<std::array<double, 3>> truth{{0.0, 0.0, 0.0}};
+        for (int cycle = 0; cycle < 20; ++cycle) {
+            ASSERT_EQ(run.model->step(1e-3 * cycle, 1e-3, run.message), Status::ok) << run.message.text;
+            truth.push_back(std::to_array(run.v().truth_wheel_torque));
+            const auto& then = truth[static_cast<std::size_t>(std::max(0, cycle + 1 - delay))];
+            for (std::size_t wheel = 0; wheel < 3; ++wheel) {
+                EXPECT_NEAR(run.v().sensor_torque[wheel], then[wheel], 1e-14) << "delay " << delay << ", cycle " << cycle; // of 1 N m
+            }
+        }
+        EXPECT_GT(std::fabs(truth[20][1]), 0.5);
+        EXPECT_NE(truth[20][1], truth[19][1]);
+    }
+}
+
+TEST(Testbed, TheElectronicsAreThoseOfTheVariables) {
+    Bench run;
+    Variables& v = run.v();
+    v.slider_present = false;
+    v.electronics_sensor_delay = 0;
+    v.electronics_seed = 77;
+    v.electronics_torque_noise = 0.2;
+    v.electronics_torque_resolution = 0.0;
+    v.electronics_torque_offset[0] = 0.5;
+    v.electronics_torque_offset[1] = -1.5;
+    v.electronics_torque_offset[2] = 2.5;
+    run.initialise();
+    // At rest: the offset of each wheel and its noise of the first cycle.
+    for (std::uint32_t wheel = 0; wheel < 3U; ++wheel) {
+        const double expected = v.electronics_torque_offset[wheel] + 0.2 * giveway::math::normal(77U, wheel, 0U);
+        EXPECT_NEAR(v.sensor_torque[wheel], expected, 1e-15);
+    }
+    run.model->reset();
+    v.slider_present = false;
+    v.electronics_torque_noise = 0.0;
+    v.electronics_torque_resolution = 0.4;
+    v.electronics_torque_range = 2.1;
+    v.electronics_torque_offset[0] = 0.5;
+    v.electronics_torque_offset[1] = -1.5;
+    v.electronics_torque_offset[2] = 2.5;
+    run.initialise();
+    EXPECT_NEAR(v.sensor_torque[0], 0.4, 1e-15);
+    EXPECT_NEAR(v.sensor_torque[1], -1.6, 1e-15);
+    EXPECT_NEAR(v.sensor_torque[2], 2.1, 1e-15); // rounded, then cut off
 }
 
 TEST(Testbed, LoadedRollersAreHeldByTheDrivetrains) {
