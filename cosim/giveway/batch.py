@@ -24,6 +24,7 @@ from giveway.errors import FileError, GivewayError, SimulationError, UnknownName
 from giveway.master import Progress, Record, plan_table, push_table
 from giveway.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
 from giveway.plan_limits import check_plan, limits_of
+from giveway.run_warnings import METRICS, Stated, codes_of
 from giveway.variables import Value, Variable, table
 
 if TYPE_CHECKING:
@@ -223,6 +224,9 @@ class _Batch:
         self.library = _library()
         self.parameters = [_parameters(index, scenario) for index, scenario in enumerate(scenarios)]
         self.results = np.zeros(len(scenarios), dtype=self.library.result)
+        self.stated = Stated.nothing(len(scenarios))
+        for index, scenario in enumerate(scenarios):
+            self.stated.put(np.array([index]), Stated.of(scenario))
         self._specs = np.zeros(len(scenarios), dtype=_SPEC)
         self._specs["step_s"] = [scenario.step_s for scenario in scenarios]
         self._specs["step_count"] = [scenario.steps for scenario in scenarios]
@@ -392,7 +396,8 @@ def run_many(
 
     Over the dimension ``run``, in the order of ``scenarios``: every metric under its name with its unit, the truth it
     is compared with as ``NAME (true)``, NaN for what did not happen; ``status`` ("ok", "cancelled", "refused",
-    "failed", ...), ``message`` (empty if ok) and ``simulated`` (s, how far the run came). A run that fails does not
+    "failed", ...), ``message`` (empty if ok), ``simulated`` (s, how far the run came) and ``warnings`` (codes of what
+    happened otherwise than asked, see `giveway.run_warnings`; empty if nothing did). A run that fails does not
     stop the others. Over ``run`` and ``time``: the variables named in ``traces`` ("testbed.truth.contact_force"), zero
     from where a run ended early; for these all scenarios need the same duration and step.
 
@@ -497,6 +502,9 @@ def _dataset(batch: _Batch, traces: Sequence[_Trace], step_s: float) -> xarray.D
         columns[metric.name] = ("run", results["metric"][:, index].copy(), attributes)
         if metric.has_truth:
             columns[f"{metric.name} (true)"] = ("run", results["truth"][:, index].copy(), attributes)
+    codes = codes_of(batch.stated, {name: columns[name][1] for name in METRICS})
+    warnings = [found if status == OK else "" for found, status in zip(codes, results["status"], strict=True)]
+    columns["warnings"] = ("run", np.array(warnings, dtype=np.str_))
     coordinates: dict[str, Any] = {"run": np.arange(len(results))}
     for trace in traces:
         attributes = {"units": trace.variable.unit or "1", "long_name": trace.variable.description}

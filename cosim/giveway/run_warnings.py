@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,19 @@ if TYPE_CHECKING:
     Numbers = NDArray[np.float64]
     Masks = NDArray[np.bool_]
 
-__all__ = ["BOUNDS", "CODES", "METRICS", "RunWarning", "Stated", "masks", "plan_speed", "warnings_of"]
+__all__ = [
+    "BOUNDS",
+    "CODES",
+    "MEANINGS",
+    "METRICS",
+    "SEPARATOR",
+    "RunWarning",
+    "Stated",
+    "codes_of",
+    "masks",
+    "plan_speed",
+    "warnings_of",
+]
 
 BOUNDS: Mapping[str, float] = MappingProxyType(
     {
@@ -38,6 +50,9 @@ BOUNDS: Mapping[str, float] = MappingProxyType(
         "saturated": 1.0 - 1e-6,  # share of a limit that single precision carries
     }
 )
+
+
+SEPARATOR = "; "  # of codes in a table
 
 
 @dataclass(frozen=True)
@@ -75,6 +90,16 @@ class Stated:
     region: Masks
 
     @classmethod
+    def nothing(cls, count: int) -> Stated:
+        """What ``count`` runs state that state nothing; to be filled by `put`."""
+        return cls(*(np.full(count, math.nan) for _ in range(5)), *(np.zeros(count, dtype=np.bool_) for _ in range(2)))
+
+    def put(self, where: NDArray[np.int64], other: Stated) -> None:
+        """The runs ``where`` state what ``other`` does."""
+        for one in fields(self):
+            getattr(self, one.name)[where] = getattr(other, one.name)
+
+    @classmethod
     def of(cls, scenario: Scenario) -> Stated:
         """What one scenario states."""
         contact = scenario.contact
@@ -105,9 +130,10 @@ _Metrics = Mapping[str, "Numbers"]
 
 @dataclass(frozen=True)
 class _Check:
-    """One kind of warning: whether each run has it, and its sentence for one run (index 0)."""
+    """One kind of warning: what it means, whether each run has it, and its sentence for one run (index 0)."""
 
     code: str
+    meaning: str
     metrics: tuple[str, ...]
     found: Callable[[Stated, _Metrics], Masks]
     text: Callable[[Stated, _Metrics], str]
@@ -130,12 +156,14 @@ def _away_mm(stated: Stated, found: _Metrics) -> Numbers:
 _CHECKS: Sequence[_Check] = (
     _Check(
         "no contact",
+        "slider and robot did not touch",
         ("contact time",),
         lambda stated, found: stated.contact & np.isnan(found["contact time"]),
         lambda _stated, _found: "slider and robot did not touch",
     ),
     _Check(
         "contact speed",
+        f"the contact was at another speed than asked for, by more than {100.0 * BOUNDS['speed']:g} %",
         ("contact speed",),
         lambda stated, found: _off(found["contact speed"], stated.contact_speed_mps, BOUNDS["speed"]),
         lambda stated, found: (
@@ -145,6 +173,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "contact place",
+        f"the contact was elsewhere on the robot than asked for, by more than {BOUNDS['place_mm']:g} mm",
         ("first contact x", "first contact y"),
         lambda stated, found: _away_mm(stated, found) > BOUNDS["place_mm"],
         lambda stated, found: (
@@ -155,6 +184,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "contact time",
+        f"the contact was at another time than asked for, by more than {1e3 * BOUNDS['time_s']:g} ms",
         ("contact time",),
         lambda stated, found: np.abs(found["contact time"] - stated.time_s) > BOUNDS["time_s"],
         lambda stated, found: (
@@ -163,6 +193,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "robot speed",
+        "at the contact the robot was not as fast as its plan asks for",
         ("robot speed at contact",),
         lambda stated, found: _off(found["robot speed at contact"], stated.plan_speed_mps, BOUNDS["speed"]),
         lambda stated, found: (
@@ -172,6 +203,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "plan not followed",
+        "the plan goes beyond the limits of controller.reference",
         ("distance from the plan", "angle from the plan"),
         lambda _stated, found: (
             (found["distance from the plan"] > BOUNDS["plan_mm"]) | (found["angle from the plan"] > BOUNDS["plan_deg"])
@@ -183,12 +215,14 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "torque sensor saturated",
+        "a torque sensor was at its end",
         ("sensed torque share",),
         lambda _stated, found: found["sensed torque share"] >= BOUNDS["saturated"],
         lambda _stated, _found: "a torque sensor was saturated: the robot felt less than there was",
     ),
     _Check(
         "motor saturated",
+        "a motor gave its largest torque",
         ("motor torque share",),
         lambda _stated, found: found["motor torque share"] >= BOUNDS["saturated"],
         lambda _stated, _found: (
@@ -197,6 +231,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "sensor fault",
+        "the controller took its sensors for faulty and stood still",
         ("time in sensor fault",),
         lambda _stated, found: found["time in sensor fault"] > 0.0,
         lambda _stated, found: (
@@ -205,6 +240,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "bumper bottomed",
+        "the bumper was pressed into its stop",
         ("bottoming margin",),
         lambda _stated, found: found["bottoming margin"] <= 0.0,
         lambda _stated, found: (
@@ -213,6 +249,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "lasting force unknown",
+        "the run was over before the lasting force was known",
         ("contact time", "lasting force"),
         lambda stated, found: stated.region & ~np.isnan(found["contact time"]) & np.isnan(found["lasting force"]),
         lambda _stated, _found: (
@@ -221,6 +258,7 @@ _CHECKS: Sequence[_Check] = (
     ),
     _Check(
         "second hit harder",
+        "a later contact was harder than the first",
         (FIRST_PEAK, "peak force of the run"),
         lambda _stated, found: found["peak force of the run"] > found[FIRST_PEAK],
         lambda _stated, found: (
@@ -233,6 +271,9 @@ _CHECKS: Sequence[_Check] = (
 CODES = tuple(check.code for check in _CHECKS)
 """Every code there is, in the order of lines and tables."""
 
+MEANINGS = MappingProxyType({check.code: check.meaning for check in _CHECKS})
+"""What each code says, without the numbers of a run."""
+
 METRICS = tuple(dict.fromkeys(name for check in _CHECKS for name in check.metrics))
 """The metrics that warnings follow from."""
 
@@ -241,6 +282,16 @@ def masks(stated: Stated, metrics: _Metrics) -> dict[str, Masks]:
     """Which runs have which warning, by code, each of shape (n,); ``metrics`` holds `METRICS`, NaN for what was not."""
     with np.errstate(invalid="ignore"):
         return {check.code: check.found(stated, metrics) for check in _CHECKS}
+
+
+def codes_of(stated: Stated, metrics: _Metrics) -> list[str]:
+    """The codes of each run's warnings, as text: "bumper bottomed; second hit harder"; empty: none."""
+    which = masks(stated, metrics)
+    found = [""] * len(stated.time_s)
+    for code, mask in which.items():
+        for run in np.flatnonzero(mask).tolist():
+            found[run] += f"{SEPARATOR}{code}" if found[run] else code
+    return found
 
 
 def warnings_of(scenario: Scenario, metrics: Sequence[Metric]) -> tuple[RunWarning, ...]:

@@ -197,6 +197,19 @@ def test_a_push_after_the_end_is_refused() -> None:
     assert "before the end of the run at 2 s" in caught.value.allowed
 
 
+def test_a_batch_has_the_codes() -> None:
+    cases = [scenario for scenario, _, _ in RUNS.values()] + [trolley(**{"slider.speed": 0.38})]
+    expected = ["; ".join(codes) for _, codes, _ in RUNS.values()] + ["contact speed; contact time"]
+    assert batch.run_many(cases)["warnings"].values.tolist() == expected
+
+
+def test_a_run_that_fails_has_no_codes_in_a_batch() -> None:
+    refused = dataclasses.replace(trolley(), testbed={**trolley().testbed, "drivetrain.gear_stiction": 0.0})
+    table = batch.run_many([refused])
+    assert table["status"].item() == "refused"
+    assert table["warnings"].item() == ""
+
+
 def test_warnings_are_kept_and_shown(tmp_path: Path) -> None:
     result = batch.run(RUNS["hit twice"][0])
     text = result.warnings[0].text

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import GivewayError
+from giveway.run_warnings import SEPARATOR
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Varied
 from giveway.study.engine import load_runs
@@ -58,6 +59,7 @@ class Answers:
             limit that allows nothing.
         stored, failed: runs per design that are stored, and that failed.
         reason: of the first run of a design that failed, by design.
+        warnings: what happened otherwise than asked: by design, in how many of its runs which code (`run_warnings`).
         feasible: all runs are there and none failed, and all constraints are met.
         pareto: feasible, and no other design is better in all objectives.
         order: designs, the best first; only feasible ones.
@@ -72,6 +74,7 @@ class Answers:
     stored: NDArray[np.int64]
     failed: NDArray[np.int64]
     reason: dict[int, str]
+    warnings: dict[int, dict[str, int]]
     feasible: NDArray[np.bool_]
     pareto: NDArray[np.bool_]
     order: NDArray[np.int64]
@@ -102,6 +105,13 @@ class Answers:
         names = [self.goal_name(index) for index in range(len(self.goals))]
         return [index for index, name in enumerate(names) if name not in names[:index]]
 
+    def warning_text(self, design: int) -> str:
+        """What happened otherwise than asked in the runs of ``design``: "bumper bottomed (3 runs)"; empty: nothing."""
+        many = self.manifest["runs"] > len(self.designs)
+        found = self.warnings.get(design, {})
+        counted = ((code, f" ({runs} run{'s' if runs != 1 else ''})" if many else "") for code, runs in found.items())
+        return SEPARATOR.join(f"{code}{runs}" for code, runs in counted)
+
     def check_design(self, design: int) -> int:
         """``design``, if there is one of that number."""
         if not 0 <= design < len(self.designs):
@@ -109,7 +119,7 @@ class Answers:
         return design
 
     def table(self) -> xarray.Dataset:
-        """Quantities, goals, ``feasible`` and ``pareto`` over the dimension ``design``, with units."""
+        """Quantities, goals, ``feasible``, ``pareto`` and ``warnings`` over the dimension ``design``, with units."""
         import xarray
 
         columns: dict[str, Any] = {}
@@ -121,6 +131,8 @@ class Answers:
         for j in self.columns:
             columns[self.goal_name(j)] = ("design", self.values[:, j], {"units": self.goals[j].metric.unit})
         columns["feasible"], columns["pareto"] = ("design", self.feasible), ("design", self.pareto)
+        warned = [self.warning_text(design) for design in range(len(self.designs))]
+        columns["warnings"] = ("design", np.array(warned, dtype=np.str_))
         return xarray.Dataset(columns, coords={"design": np.arange(len(self.designs))})
 
     def sensitivities(self) -> list[Sensitivity]:
@@ -144,11 +156,13 @@ def load(folder: Path | str) -> Answers:
     values = np.full((count, len(goals)), np.nan)
     stored, failed = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
     reason: dict[int, str] = {}
+    warnings: dict[int, dict[str, int]] = {}
     parts_folder = Path(folder) / PARTS / manifest["fingerprint"][:16]
     for block in _designs_of(parts_folder, table, goals):
         part = slice(block.first, block.first + len(block.stored))
         values[part], stored[part], failed[part] = block.values, block.stored, block.failed
         reason |= block.reason
+        warnings |= block.warnings
     feasible = (stored == table.per_design) & (failed == 0)
     offset = len(setup.objectives)
     for index, constraint in enumerate(setup.constraints):
@@ -162,7 +176,7 @@ def load(folder: Path | str) -> Answers:
     candidates = np.flatnonzero(feasible)
     order = candidates[np.lexsort((score[candidates], ~on_front[candidates]))]
     return Answers(
-        Path(folder), setup, table, manifest, goals, values, stored, failed, reason, feasible, on_front, order
+        Path(folder), setup, table, manifest, goals, values, stored, failed, reason, warnings, feasible, on_front, order
     )
 
 
@@ -175,6 +189,7 @@ class _Block:
     stored: NDArray[np.int64]
     failed: NDArray[np.int64]
     reason: dict[int, str]
+    warnings: dict[int, dict[str, int]]
 
 
 def _designs_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...]) -> Iterator[_Block]:
@@ -182,10 +197,11 @@ def _designs_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...]) ->
     names = sorted({name for goal in goals for name in goal.metric.columns})
     pending: dict[str, Any] = {}
     for _, _, path in list_parts(parts_folder):
-        part = read_part(path, ["run", "status", "message", *names])
+        part = read_part(path, ["run", "status", "message", "warnings", *names])
         found: dict[str, Any] = {name: part[name].to_numpy() for name in ("run", *names)}
         found["ok"] = np.array(part["status"].to_pylist()) == "ok"
         found["message"] = np.array(part["message"].to_pylist(), dtype=object)
+        found["warnings"] = np.array(part["warnings"].to_pylist(), dtype=object)
         pending = {name: np.concatenate([pending[name], found[name]]) for name in found} if pending else found
         whole = int(pending["run"][-1] + 1) // table.per_design * table.per_design
         done = int(np.searchsorted(pending["run"], whole))
@@ -206,13 +222,18 @@ def _blocks(runs: dict[str, Any], table: RunTable, goals: tuple[Goal, ...]) -> I
     reason: dict[int, str] = {}
     for index in np.flatnonzero(~runs["ok"]):
         reason.setdefault(first + int(where[index]) // size, str(runs["message"][index]))
+    warnings: dict[int, dict[str, int]] = {}
+    for index in np.flatnonzero(runs["warnings"] != ""):
+        mine = warnings.setdefault(first + int(where[index]) // size, {})
+        for code in runs["warnings"][index].split(SEPARATOR):
+            mine[code] = mine.get(code, 0) + 1
     shape = (count, table.samples, len(table.cases))
     values = np.full((count, len(goals)), np.nan)
     for j, goal in enumerate(goals):
         flat = np.full(count * size, np.nan)
         flat[where] = goal.metric.of(runs)
         values[:, j] = over_runs(goal, flat.reshape(shape))
-    yield _Block(first, values, stored, failed, reason)
+    yield _Block(first, values, stored, failed, reason, warnings)
 
 
 def over_runs(goal: Goal, runs: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import FileError, GivewayError, InputFileError
+from giveway.run_warnings import Stated
 from giveway.study import designs as design_module
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
 from giveway.study.runs import RunTable
@@ -74,6 +75,7 @@ class _Prepared:
     values: NDArray[np.float64]
     case: NDArray[np.int64]
     keys: list[bytes]
+    stated: Stated
     refused: dict[int, str]
 
 
@@ -210,13 +212,14 @@ class _Runner:
         table = self._table
         design, sample, case = table.split(np.arange(first, first + size))
         values = np.empty((size, len(table.columns.names)))
-        keys, refused = [b""] * size, {}
+        keys, refused, stated = [b""] * size, {}, Stated.nothing(size)
         for number in range(len(table.cases)):
             mine = np.flatnonzero(case == number)
             if not mine.size:
                 continue
             rows = table.rows(design[mine], sample[mine], number)
             values[mine] = rows.values
+            stated.put(mine, rows.stated)
             for index, key in zip(mine.tolist(), table.keys(self._contexts, rows, number), strict=True):
                 keys[index] = key
             for row, message in rows.refused.items():
@@ -224,7 +227,7 @@ class _Runner:
                 refused[index] = message
                 # What cannot be may look like what can: the slider was never placed.
                 keys[index] = hashlib.blake2b(keys[index] + message.encode(), digest_size=len(keys[index])).digest()
-        return _Prepared(first, values, case, keys, refused)
+        return _Prepared(first, values, case, keys, stated, refused)
 
     def _run_part(self, part: _Prepared, following: tuple[int, int] | None) -> _Prepared | None:
         """Run and store a part; meanwhile prepare the ``following`` one (first run, number of runs)."""
@@ -246,7 +249,7 @@ class _Runner:
         where = np.array(fresh, dtype=np.int64)
         prepared = self._run_fresh(part, where, outcomes, following)
         outcomes.copy(np.array(twins, dtype=np.int64), np.array(twins_of, dtype=np.int64))
-        path = self._store.write_part(part.first, part_table(self._table, part.first, part.keys, outcomes))
+        path = self._store.write_part(part.first, part_table(self._table, part.first, part.keys, outcomes, part.stated))
         keys = [b"" if s in NOT_CACHED else key for key, s in zip(part.keys, outcomes.status, strict=True)]
         self._index.add(path, keys)
         self._stored += len(part.keys)

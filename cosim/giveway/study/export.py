@@ -86,6 +86,7 @@ def export_table(answers: Answers, path: Path) -> None:
     for j in answers.columns:
         columns[_named(answers.goal_name(j), answers.goals[j].metric.unit)] = answers.values[:, j]
     columns |= {"feasible": answers.feasible, "pareto": answers.pareto, "failed runs": answers.failed}
+    columns["warnings"] = [answers.warning_text(design) for design in range(len(answers.designs))]
     reasons = np.full(len(answers.designs), "", dtype=object)
     for design, reason in answers.reason.items():
         reasons[design] = reason

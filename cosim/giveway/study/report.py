@@ -56,6 +56,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         collisions=[(case.name, _hit(case.document.get("collision", {}))) for case in setup.cases],
         constraints=[_constraint(one) for one in setup.constraints],
         reasons=_reasons(answers.reason),
+        warnings=_warnings(answers.warnings),
         style=style,
     )
     write_text(path, text)
@@ -67,6 +68,17 @@ def _reasons(reason: Mapping[int, str]) -> list[tuple[str, list[int]]]:
     for design, text in reason.items():
         found.setdefault(_NUMBER.sub("#", text), (text, []))[1].append(design)
     return sorted(found.values(), key=lambda item: -len(item[1]))[:REASONS_MAX]
+
+
+def _warnings(warnings: Mapping[int, Mapping[str, int]]) -> list[tuple[str, str, list[int]]]:
+    """Each code with what it means and the designs that have it, the most frequent first."""
+    from giveway.run_warnings import MEANINGS
+
+    found: dict[str, list[int]] = {}
+    for design in sorted(warnings):
+        for code in warnings[design]:
+            found.setdefault(code, []).append(design)
+    return sorted(((code, MEANINGS[code], designs) for code, designs in found.items()), key=lambda one: -len(one[2]))
 
 
 def _breakable(name: str) -> Markup:

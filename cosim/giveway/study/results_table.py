@@ -10,10 +10,12 @@ import numpy as np
 from giveway import batch
 from giveway.errors import FileError
 from giveway.metric_names import former_name
+from giveway.run_warnings import codes_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from giveway.run_warnings import Stated
     from giveway.study.runs import RunTable
 
 __all__ = ["Outcomes", "part_table", "read_part", "read_runs", "result_columns"]
@@ -41,6 +43,12 @@ class Outcomes:
         self.status = ["cancelled"] * count
         self.message = [""] * count
         self.numbers = np.full((count, len(result_columns())), np.nan)
+
+    def warnings(self, stated: Stated) -> list[str]:
+        """What happened otherwise than ``stated``, the codes of each run as text; empty if a run failed."""
+        columns = {name: self.numbers[:, j] for j, (name, _) in enumerate(result_columns())}
+        found = codes_of(stated, columns)
+        return [codes if status == "ok" else "" for codes, status in zip(found, self.status, strict=True)]
 
     def refuse(self, index: int, message: str) -> None:
         """Run ``index`` cannot be."""
@@ -74,8 +82,8 @@ class Outcomes:
             self.status[index], self.message[index] = self.status[other], self.message[other]
 
 
-def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcomes) -> Any:
-    """The pyarrow table of the runs from ``first`` on."""
+def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcomes, stated: Stated) -> Any:
+    """The pyarrow table of the runs from ``first`` on, which were asked to do what is ``stated``."""
     import pyarrow
 
     run = np.arange(first, first + len(keys))
@@ -89,6 +97,7 @@ def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcome
         "key": (pyarrow.array(keys, type=pyarrow.binary(len(keys[0]))), ""),
         "status": (pyarrow.array(outcomes.status).dictionary_encode(), ""),
         "message": (pyarrow.array(outcomes.message), ""),
+        "warnings": (pyarrow.array(outcomes.warnings(stated)).dictionary_encode(), ""),
     }
     for j, one in enumerate(table.varied):
         values = table.designs[design, j]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from giveway.batch import METHODS, PLANT_STEP_RANGE_S
 from giveway.checks import finite, whole
 from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
 from giveway.plan_limits import LIMIT_NAMES, check_plan_of
+from giveway.run_warnings import plan_speed
 from giveway.scenario import Scenario
 from giveway.scenario_file import PLAN_KEYS, scenario_of
 from giveway.study import designs as design_module
@@ -119,7 +120,7 @@ def check(
         constraints=tuple(
             _constraint(f"constraint[{i}]", one, judged) for i, one in enumerate(_list(top, "constraint"))
         ),
-        shown=_shown(report),
+        shown=(*_speeds(cases), *_shown(report)),
         chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
         part_runs=whole("part_runs", top.values.get("part_runs", 0), 0, PART_MAX),
         text=text,
@@ -488,6 +489,14 @@ def _constraint(field: str, entry: Any, judged: Scenario) -> Constraint:
         number = section.number(key) * _scale(section, goal.metric.unit)
     low, high = (-math.inf, number) if key == "maximum" else (number, math.inf)
     return Constraint(goal, low, high)
+
+
+def _speeds(cases: Sequence[Case]) -> Iterator[Goal]:
+    """How fast slider and robot were when they met: shown always, so that nobody judges another hit than was asked."""
+    if cases[0].hit is not None:
+        yield Goal(find_metric("report.metrics", "contact speed"), 1)
+        if any(plan_speed(case.scenario) is not None for case in cases):
+            yield Goal(find_metric("report.metrics", "robot speed at contact"), 1)
 
 
 def _shown(report: Section) -> tuple[Goal, ...]:

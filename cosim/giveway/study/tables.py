@@ -22,7 +22,7 @@ def goal_header(answers: Answers) -> tuple[str, ...]:
     """The first line of `design_rows`."""
     quantities = [f"{one.quantity.name}{_unit(one.quantity.unit)}" for one in answers.setup.varied]
     goals = [f"{answers.goal_name(j)}{_unit(answers.goals[j].metric.unit)}" for j in answers.columns]
-    return ("design", *quantities, *goals, "front")
+    return ("design", *quantities, *goals, "front", *(["warnings"] if answers.warnings else []))
 
 
 def _unit(unit: str) -> str:
@@ -36,7 +36,8 @@ def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
         pairs = zip(answers.setup.varied, answers.designs[design], strict=True)
         values = [one.quantity.text(v) if one.quantity.kind != "real" else number(v) for one, v in pairs]
         goals = [number(value) for value in answers.values[design, answers.columns]]
-        rows.append((str(design), *values, *goals, "yes" if answers.pareto[design] else ""))
+        warned = [answers.warning_text(int(design))] if answers.warnings else []
+        rows.append((str(design), *values, *goals, "yes" if answers.pareto[design] else "", *warned))
     return rows
 
 
@@ -73,4 +74,6 @@ def counts(answers: Answers) -> str:
     failed = int((answers.failed > 0).sum())
     if failed:
         words += f", {failed:,} with failed runs"
+    if answers.warnings:
+        words += f", {len(answers.warnings):,} with warnings"
     return words
