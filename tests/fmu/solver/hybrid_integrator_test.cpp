@@ -88,9 +88,10 @@ TEST(HybridIntegrator, StartsFreshWhenTheInputChanges) {
         speed = -(position - oscillator.input) * std::sin(step) + speed * std::cos(step);
         position = next;
     }
-    // Local errors of 1e-6 relative at most, in practice far below: a 1 ms step of a 1 rad/s oscillator is easy.
-    EXPECT_NEAR(integrator.state()[0], position, 1e-10);
-    EXPECT_NEAR(integrator.state()[1], speed, 1e-10);
+    // Fifth order: 1 ms of a 1 rad/s oscillator is (1e-3)^6/720 off, far below rounding; 5000 roundings of 1e-16 remain, whose
+    // signs differ (1e-14 is seen).
+    EXPECT_NEAR(integrator.state()[0], position, 1e-13);
+    EXPECT_NEAR(integrator.state()[1], speed, 1e-13);
     EXPECT_LT(integrator.statistics().steps, 5100); // one step per input: a restart does not fall back to tiny steps
 }
 
@@ -103,7 +104,7 @@ TEST(HybridIntegrator, ConvergesWithItsTolerance) {
         ASSERT_TRUE(integrator.create(oscillator, 0.0, start, {.relative_tolerance = tolerance, .absolute_tolerance_scale = tolerance}));
         ASSERT_TRUE(integrator.advance(10.0));
         const double error = std::fabs(integrator.state()[0] - std::cos(10.0));
-        EXPECT_LT(error, 100.0 * tolerance);
+        EXPECT_LT(error, tolerance); // local errors of that size, damped by a controller that stays below it: 0.2 to 0.5 is seen
         EXPECT_LT(error, previous);
         previous = error;
     }

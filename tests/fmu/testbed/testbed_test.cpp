@@ -50,8 +50,8 @@ TEST(Testbed, CollisionClosesItsEnergyAccount) {
             run.step_to(0.5, 1e-3);
             EXPECT_GT(run.v().truth_first_contact_time, 0.14);
             EXPECT_GT(run.v().energy_dissipated, 0.5);
-            // Of some 4 J turned over, 1e-6 each way at the default tolerance.
-            EXPECT_LT(std::fabs(run.v().energy_residual), 1e-5) << "kind " << kind << ", mount " << mount;
+            // At the default relative tolerance of 1e-6, of some J turned over; the errors' signs differ: 5e-8 J is seen.
+            EXPECT_LT(std::fabs(run.v().energy_residual), 2e-7) << "kind " << kind << ", mount " << mount;
         }
     }
 }
@@ -73,8 +73,8 @@ TEST(Testbed, TippingClosesItsEnergyAccount) {
         }
         EXPECT_LT(least_load_n, 60.0); // of 113 N: it did lean
         EXPECT_LT(run.v().truth_tip_margin, 1.0);
-        // Of some 4 J turned over; floor and grip are stiff, and add to the 1e-6 each way of the planar robot.
-        EXPECT_LT(std::fabs(run.v().energy_residual), 4e-5) << "kind " << kind;
+        // As above: floor and grip are stiff, so the steps are short, and add next to nothing (4e-8 J is seen).
+        EXPECT_LT(std::fabs(run.v().energy_residual), 2e-7) << "kind " << kind;
     }
 }
 
@@ -130,9 +130,10 @@ TEST(Testbed, StepsAcrossTicksAgreeToTheTolerance) {
     // Into the first contact: each bounce of the plate after it would multiply the deviation.
     one.step_to(0.168, 1e-3);
     odd.step_to(0.168, 7e-4);
-    // The integrator stops at other instants: a few times its relative tolerance of 1e-6.
-    EXPECT_NEAR(odd.v().truth_slider_position, one.v().truth_slider_position, 1e-6 * 0.06);
-    EXPECT_NEAR(odd.v().truth_contact_force, one.v().truth_contact_force, 1e-4 * one.v().truth_contact_force);
+    // The integrator stops at other instants, 1e-6 of a rate off at most, and far less where it stops 1400 times: 1e-9 m is
+    // seen. The contact is 0.2 mm deep, so that much is 4e-6 of its force.
+    EXPECT_NEAR(odd.v().truth_slider_position, one.v().truth_slider_position, 4e-9);
+    EXPECT_NEAR(odd.v().truth_contact_force, one.v().truth_contact_force, 1.5e-5 * one.v().truth_contact_force);
     EXPECT_GT(one.v().truth_contact_force, 1.0);
 }
 
@@ -289,15 +290,20 @@ TEST(Testbed, MethodsAgreeWithTheServosAtWork) {
         erk = method == 0 ? v : erk;
         EXPECT_EQ(v.solver_jacobian_calls > 0, method == 2);
         EXPECT_GT(v.solver_steps, 0);
-        // 4 J are turned over with a local error of 1e-8 of it: a tenth of that a step is left, as signs differ.
-        EXPECT_LT(std::fabs(v.energy_residual), 0.1 * 4e-8 * v.solver_steps) << "method " << method;
+        // 4 J are turned over with a local error of 1e-8 of it a step. ERK's step is a servo tick, far shorter than its tolerance
+        // asks for (1e-9 J is seen); Adams and BDF go to the bound, in 9,000 and 16,000 steps, and their errors add up to some
+        // hundredths of it, as signs differ (2e-6 and 1e-5 J).
+        constexpr double residual_j[] = {5e-9, 8e-6, 5e-5};
+        EXPECT_LT(std::fabs(v.energy_residual), residual_j[method]) << "method " << method;
+        // Others than ERK are late by what BDF's errors of position, 0.15 um, are at 0.5 m/s.
         EXPECT_NEAR(v.truth_first_contact_time, erk.truth_first_contact_time, 1e-6);
         EXPECT_EQ(v.truth_latched, erk.truth_latched);
-        // A count of the encoder is 6 urad, 0.6 um at the wheel's rim.
-        EXPECT_NEAR(v.truth_x, erk.truth_x, 1e-6);
-        EXPECT_NEAR(v.truth_slider_position, erk.truth_slider_position, 1e-6);
-        EXPECT_NEAR(v.truth_contact_impulse_x, erk.truth_contact_impulse_x, 1e-3);
-        EXPECT_NEAR(v.energy_dissipated, erk.energy_dissipated, 1e-4);
+        // A count of the encoder is 6 urad, 0.6 um at the wheel's rim, which the servo follows softly. Four
+        // times what is seen with BDF each.
+        EXPECT_NEAR(v.truth_x, erk.truth_x, 4e-8);
+        EXPECT_NEAR(v.truth_slider_position, erk.truth_slider_position, 7e-7);
+        EXPECT_NEAR(v.truth_contact_impulse_x, erk.truth_contact_impulse_x, 4e-6);
+        EXPECT_NEAR(v.energy_dissipated, erk.energy_dissipated, 1.2e-5);
     }
 }
 
