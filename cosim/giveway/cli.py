@@ -383,8 +383,6 @@ app.command("sweep")(sweep_designs)
 
 def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenario, str]:
     """The scenario of an experiment or of a file, and a sentence about it."""
-    import dataclasses
-
     from giveway import experiments
 
     if what.endswith(".toml") or "/" in what:
@@ -398,8 +396,7 @@ def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenar
         bumper = DEFAULT_BUMPER if DEFAULT_BUMPER in chosen.bumpers or not chosen.bumpers else chosen.bumpers[0]
     elif chosen.bumpers and bumper not in chosen.bumpers:
         raise UnknownNameError("--bumper", bumper, chosen.bumpers)
-    scenario = chosen.scenario(bumper)
-    return (scenario if robot is None else dataclasses.replace(scenario, robot=robot)), chosen.summary
+    return chosen.scenario(bumper, robot=robot), chosen.summary
 
 
 def _changed(

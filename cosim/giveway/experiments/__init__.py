@@ -10,7 +10,8 @@ import importlib
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 from giveway.errors import GivewayError, UnknownNameError
 
@@ -21,7 +22,11 @@ if TYPE_CHECKING:
 __all__ = ["Experiment", "all_experiments", "get"]
 
 
-def _no_single_run(bumper: str) -> Scenario:
+class _MakesScenario(Protocol):
+    def __call__(self, bumper: str, *, robot: Path | None = None) -> Scenario: ...
+
+
+def _no_single_run(bumper: str, *, robot: Path | None = None) -> Scenario:
     raise GivewayError("bumper", bumper, "nothing: this experiment is more than one run; see `giveway reproduce`")
 
 
@@ -34,7 +39,8 @@ class Experiment:
         summary: one sentence.
         section: where the paper has it ("5.2"), or "" for what the paper has not; orders the report.
         bumpers: the bumpers its scenario is run with.
-        scenario: makes the scenario for a bumper; refuses an unknown one. Left out by what is more than one run.
+        scenario: makes the scenario for a bumper and, if given, the robot file ``robot``; refuses an unknown bumper, or
+            a robot with which the experiment is not possible. Left out by what is more than one run.
         reproduce: computes its part of the reproduction, or None if it has none.
     """
 
@@ -42,7 +48,7 @@ class Experiment:
     summary: str
     section: str = ""
     bumpers: tuple[str, ...] = ()
-    scenario: Callable[[str], Scenario] = _no_single_run
+    scenario: _MakesScenario = _no_single_run
     reproduce: Callable[[Effort], Findings] | None = None
 
 

@@ -16,17 +16,20 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from giveway.errors import UnknownNameError
 from giveway.experiments import Experiment
+from giveway.experiments.placement import for_this_robot, outline_of_robot
 from giveway.plan import Circle, Pushes, TimedPush, start_values
 from giveway.reproduction import Effort, Findings, Picture, Row, Target
 from giveway.scenario import Scenario
 from giveway.variables import Value, table
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray
     from numpy.typing import NDArray
 
@@ -78,16 +81,24 @@ FALSE_ALARMS_PER_HOUR = 3.0
 FORGIVEN_N = 9.0  # what 20 % of three rollers' 2 x 21 N asks for, and a little
 
 
-def scenario(bumper: str = "none", *, estimator: str = FULL, pushes: int = len(BY_HAND)) -> Scenario:
-    """One round with pushes by hand, one every 18 s; ``estimator`` is one of `ESTIMATORS`."""
+def scenario(
+    bumper: str = "none", *, estimator: str = FULL, pushes: int = len(BY_HAND), robot: Path | None = None
+) -> Scenario:
+    """One round with pushes by hand, one every 18 s; ``estimator`` is one of `ESTIMATORS`.
+
+    Another ``robot`` is pushed at its own sides 0 to 2, as far from their middles.
+    """
     if bumper not in BUMPERS:
         raise UnknownNameError("bumper", bumper, BUMPERS)
     plan = Circle(DIAMETER_M, SPEED_MPS, acceleration_mps2=START_MPS2)
-    schedule = tuple(
-        _push(plan, FIRST_PUSH_S + BETWEEN_PUSHES_S * index, *by_hand) for index, by_hand in enumerate(BY_HAND[:pushes])
-    )
+    with for_this_robot("circle", robot):
+        outline = outline_of_robot(robot)
+        schedule = tuple(
+            _push(outline, plan, FIRST_PUSH_S + BETWEEN_PUSHES_S * index, *by_hand)
+            for index, by_hand in enumerate(BY_HAND[:pushes])
+        )
     duration_s = FIRST_PUSH_S + BETWEEN_PUSHES_S * (pushes - 1) + LAST_LOOK_S
-    return _around(plan, duration_s, estimator, Pushes(schedule))
+    return dataclasses.replace(_around(plan, duration_s, estimator, Pushes(schedule)), robot=robot)
 
 
 def _around(plan: Circle, duration_s: float, estimator: str, push: Pushes | None) -> Scenario:
@@ -100,12 +111,18 @@ def _around(plan: Circle, duration_s: float, estimator: str, push: Pushes | None
 
 
 def _push(
-    plan: Circle, start_s: float, side: int, offset_m: float, turn_deg: float, force_n: float, duration_s: float
+    outline: NDArray[np.float64],
+    plan: Circle,
+    start_s: float,
+    side: int,
+    offset_m: float,
+    turn_deg: float,
+    force_n: float,
+    duration_s: float,
 ) -> TimedPush:
     """A push on a side of the robot, which keeps the heading of its plan."""
-    from giveway.approach import edge_middle, outline_of, outward_normal
+    from giveway.approach import edge_middle, outward_normal
 
-    outline = outline_of({v.name: v.start for v in table("testbed").select("parameter") if v.start is not None})
     point = edge_middle(outline, side, offset_m)
     normal = outward_normal(outline, point)
     direction = math.atan2(-normal[1], -normal[0]) + plan.theta_rad + math.radians(turn_deg)
@@ -117,12 +134,14 @@ def _random_pushes(count: int, oblique: bool, estimator: str) -> list[tuple[Scen
     """One push each, anywhere on the circle and on the robot's sides; the same for every estimator."""
     import numpy as np
 
+    outline = outline_of_robot(None)
     random = np.random.default_rng(20160325)  # any number will do; fixed, so that the rows are the same every time
     runs = []
     for seed in range(count):
         plan = Circle(DIAMETER_M, SPEED_MPS, start_rad=random.uniform(-3.0, 3.0), acceleration_mps2=START_MPS2)
         turn = random.uniform(-OBLIQUE_DEG, OBLIQUE_DEG)
         push = _push(
+            outline,
             plan,
             random.uniform(5.0, 8.0),
             int(random.integers(3)),

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
 from giveway.experiments import Experiment
-from giveway.plan import Straight
+from giveway.experiments.placement import before_resting, tare_s, testbed_of
 from giveway.reproduction import Effort, Findings, Picture, Row, Target
 from giveway.scenario import BUMPERS, Scenario
 from giveway.variables import table
@@ -41,7 +42,13 @@ NO_REFLEX_COLOUR, INK, LIMIT_COLOUR = "#8a8f98", "#2b2f36", "#b3261e"
 
 
 def scenario(
-    bumper: str, speed_mps: float = SPEED_MPS, gap_m: float = 0.001, region: str = REGION, *, reflex: bool = True
+    bumper: str,
+    speed_mps: float = SPEED_MPS,
+    gap_m: float = 0.001,
+    region: str = REGION,
+    *,
+    reflex: bool = True,
+    robot: Path | None = None,
 ) -> Scenario:
     """The robot drives into a clamped body region with ``bumper`` on it.
 
@@ -51,33 +58,27 @@ def scenario(
         gap_m: between the slider and the wall, m, above 0.
         region: the body region.
         reflex: False: the detector is off and the robot pushes on.
+        robot: another robot's file; it drives with its own side between corners 0 and 1 ahead.
     """
-    testbed, controller = table("testbed"), table("controller")
     body = body_region(region)
-    direction, target_x, target_y = (
-        float(testbed[f"slider.{name}"].start or 0.0) for name in ("direction", "target_x", "target_y")
-    )
-    plan = Straight(speed_mps, direction + math.pi)
-    way_m = plan.ramp_m + speed_mps * STEADY_S
-    tare_s = float(controller["estimator.tare_ticks"].start or 0) * float(controller["controller.period"].start or 0.0)
+    plan, slider = before_resting("clamping", robot, speed_mps, STEADY_S)
     return Scenario(
         "clamping",
-        math.ceil(1e3 * (tare_s + plan.ramp_s + STEADY_S + AFTER_S)) / 1e3,
+        math.ceil(1e3 * (tare_s() + plan.ramp_s + STEADY_S + AFTER_S)) / 1e3,
         bumper=bumper,
         testbed={
             "slider.present": True,
             "slider.mass": SLIDER_KG,
-            "slider.run_up": 0.0,
-            "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),
-            "slider.target_y": target_y + way_m * math.sin(plan.direction_rad),
+            **slider,
             "rope.attached": False,
-            "contact.stiffness": body.stiffness_with(float(testbed["contact.stiffness"].start or 0.0)),
+            "contact.stiffness": body.stiffness_with(float(testbed_of(robot)["contact.stiffness"])),
             "wall.present": True,
             "wall.distance": gap_m,
             "wall.stiffness": body.stiffness_npm,
         },
         controller={"supervisor.after_settled": 0} | (NO_REFLEX if not reflex else {}),
         plan=plan,
+        robot=robot,
     )
 
 

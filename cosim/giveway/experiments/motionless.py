@@ -8,9 +8,11 @@ M_des/B_des = 1.25 s, so 8 s let it settle to within 1 mm. Afterwards it holds w
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment
+from giveway.experiments.placement import pulled_by_weight
 from giveway.reproduction import Effort, Findings, Picture, Row, Target
 from giveway.scenario import BUMPERS, Scenario
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from giveway.result import Result
 
 DURATION_S = 8.0
+SPEED_MPS = 0.5  # of the slider at the contact
 IMPACT_S = 0.6  # the part up to detection and peak torque: contact at 0.16 s, and 0.35 s in which the peak counts
 HOLD = 0  # after the escape; 1 would go back to the path
 SEEDS, FEW_SEEDS = 20, 3
@@ -31,11 +34,18 @@ CAPTION = (
 )
 
 
-def scenario(bumper: str, duration_s: float = DURATION_S) -> Scenario:
-    """The experiment with ``bumper`` ("none", "spring" or "magnetic") on the slider."""
-    testbed = {"slider.present": True}
+def scenario(bumper: str, duration_s: float = DURATION_S, *, robot: Path | None = None) -> Scenario:
+    """The experiment with ``bumper`` ("none", "spring" or "magnetic") on the slider.
+
+    Another ``robot`` is hit as fast, in the middle of its own side between corners 0 and 1.
+    """
     return Scenario(
-        "motionless", duration_s, bumper=bumper, testbed=testbed, controller={"supervisor.after_settled": HOLD}
+        "motionless",
+        duration_s,
+        bumper=bumper,
+        testbed={"slider.present": True, **pulled_by_weight("motionless", robot, SPEED_MPS)},
+        controller={"supervisor.after_settled": HOLD},
+        robot=robot,
     )
 
 

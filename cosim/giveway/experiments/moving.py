@@ -11,13 +11,13 @@ lag, rollers and drivetrains are those of steady motion.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment, motionless
-from giveway.plan import Straight
+from giveway.experiments.placement import before_resting, tare_s
 from giveway.reproduction import Effort, Findings, Picture, Row, Target
 from giveway.scenario import BUMPERS, Scenario
-from giveway.variables import table
 
 if TYPE_CHECKING:
     from giveway.result import Result
@@ -31,34 +31,20 @@ PAPER_BUMPER = "magnetic"
 REVERSAL_S = 1.2  # after the contact: the reversal, and the time in which it might be taken for another hit
 
 
-def scenario(bumper: str, after_contact_s: float = ESCAPE_S) -> Scenario:
+def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | None = None) -> Scenario:
     """The experiment with ``bumper`` on the slider, up to ``after_contact_s`` after the planned contact.
 
-    The paper has the magnetic one only.
+    The paper has the magnetic one only. Another ``robot`` drives with its own side between corners 0 and 1 ahead.
     """
-    variables = table("testbed")
-    slider_direction, target_x, target_y = (
-        float(variables[f"slider.{name}"].start or 0.0) for name in ("direction", "target_x", "target_y")
-    )
-    plan = Straight(SPEED_MPS, slider_direction + math.pi)
-    way_m = plan.ramp_m + SPEED_MPS * STEADY_S
-    controller = table("controller")
-    tare_s = float(controller["estimator.tare_ticks"].start or 0) * float(controller["controller.period"].start or 0.0)
-    testbed = {
-        "slider.present": True,
-        "slider.mass": SLIDER_KG,
-        "slider.run_up": 0.0,
-        "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),
-        "slider.target_y": target_y + way_m * math.sin(plan.direction_rad),
-        "rope.attached": False,
-    }
+    plan, slider = before_resting("moving", robot, SPEED_MPS, STEADY_S)
     return Scenario(
         "moving",
-        math.ceil(1e3 * (tare_s + plan.ramp_s + STEADY_S + after_contact_s)) / 1e3,
+        math.ceil(1e3 * (tare_s() + plan.ramp_s + STEADY_S + after_contact_s)) / 1e3,
         bumper=bumper,
-        testbed=testbed,
+        testbed={"slider.present": True, "slider.mass": SLIDER_KG, **slider, "rope.attached": False},
         controller={"supervisor.after_settled": HOLD},
         plan=plan,
+        robot=robot,
     )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,17 +38,17 @@ PLATEAU_SHARE = 0.5
 FLAT: dict[str, Value] = {"base.com_height": 0.01, "contact.height": 0.01, "wheel.grip_friction": 10.0}
 
 
-def scenario(bumper: str) -> Scenario:
-    """5.2 with ``bumper``, hit at `CONTACT_HEIGHT_M` by a base that can tip."""
-    return _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M})
+def scenario(bumper: str, *, robot: Path | None = None) -> Scenario:
+    """5.2 with ``bumper``, hit at `CONTACT_HEIGHT_M` by a base that can tip; ``robot``: another robot's file."""
+    return _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M}, robot)
 
 
-def _planar(bumper: str) -> Scenario:
-    return dataclasses.replace(motionless.scenario(bumper), duration_s=DURATION_S)
+def _planar(bumper: str, robot: Path | None = None) -> Scenario:
+    return dataclasses.replace(motionless.scenario(bumper, robot=robot), duration_s=DURATION_S)
 
 
-def _tipping(bumper: str, testbed: dict[str, Value]) -> Scenario:
-    planar = _planar(bumper)
+def _tipping(bumper: str, testbed: dict[str, Value], robot: Path | None = None) -> Scenario:
+    planar = _planar(bumper, robot)
     return dataclasses.replace(planar, name="tipping", testbed={**planar.testbed, "base.tipping": True, **testbed})
 
 
