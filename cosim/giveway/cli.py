@@ -9,8 +9,7 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TextIO
@@ -23,7 +22,7 @@ from giveway.failures import DEBUG_VARIABLE, unforeseen
 from giveway.fmu_commands import fmu_app
 from giveway.scenario import BUMPERS
 from giveway.study_commands import study_app, sweep_designs
-from giveway.terminal import INTERRUPTED, print_columns, print_results, progress_bar, progress_bars
+from giveway.terminal import INTERRUPTED, print_columns, print_results, progress_bars, working
 
 if TYPE_CHECKING:
     from giveway.master import Progress
@@ -35,7 +34,6 @@ __all__ = ["app", "main"]
 
 FAILED, WRONG_INPUT = 1, 2  # exit codes
 DEFAULT_BUMPER = "magnetic"
-LONG_RUN_S = 20.0  # simulated; shorter runs end before a bar could be read
 
 app = typer.Typer(
     name="giveway",
@@ -113,13 +111,15 @@ def run(
     scenario, summary = _scenario(what, bumper, robot)
     scenario = _changed(scenario, assignments, fmi, duration, seed)
     check_output(out)
-    with _progress(scenario.duration_s) as progress:
-        result = giveway.run(scenario, progress)
-    from giveway.report import write_report
+    with progress_bars(("simulation", "report")) as progress:
+        result = giveway.run(scenario, _share_of(progress, "simulation"))
+        progress("report", 0.0)
+        from giveway.report import write_report
 
-    with replace_folder(out) as folder:
-        result.write_into(folder)
-        write_report(folder / "report.html", scenario.name, summary, [result])
+        with replace_folder(out) as folder:
+            result.write_into(folder)
+            write_report(folder / "report.html", scenario.name, summary, [result])
+        progress("report", 1.0)
     print_results(scenario.name, {scenario.bumper: result})
     if scenario.judged is not None:
         from giveway.body_regions import judge
@@ -150,21 +150,24 @@ def demo(
     name = "motionless"
     results: dict[str, Result] = {}
     experiment = experiments.get(name)
-    for bumper in experiment.bumpers:
-        scenario = _changed(experiment.scenario(bumper), None, fmi, None, seed)
-        with _progress(scenario.duration_s) as progress:
-            results[bumper] = giveway.run(scenario, progress)
-        if results[bumper].interrupted:
-            raise KeyboardInterrupt
-    from giveway.report import write_picture, write_report
+    titles = {bumper: f"bumper {bumper}" for bumper in experiment.bumpers}
+    with progress_bars((*titles.values(), "report")) as progress:
+        for bumper, title in titles.items():
+            scenario = _changed(experiment.scenario(bumper), None, fmi, None, seed)
+            results[bumper] = giveway.run(scenario, _share_of(progress, title))
+            if results[bumper].interrupted:
+                raise KeyboardInterrupt
+        progress("report", 0.0)
+        from giveway.report import write_picture, write_report
 
-    with replace_folder(out) as folder:
-        for bumper, result in results.items():
-            (folder / bumper).mkdir()
-            result.write_into(folder / bumper)
-        write_report(folder / "report.html", name, experiment.summary, list(results.values()))
-        write_picture(folder / "overview.png", list(results.values()))
-        write_summary(folder / "summary.json", results)
+        with replace_folder(out) as folder:
+            for bumper, result in results.items():
+                (folder / bumper).mkdir()
+                result.write_into(folder / bumper)
+            write_report(folder / "report.html", name, experiment.summary, list(results.values()))
+            write_picture(folder / "overview.png", list(results.values()))
+            write_summary(folder / "summary.json", results)
+        progress("report", 1.0)
     print_results(name, results)
     typer.echo(f"Written: {out / 'report.html'}, {out / 'overview.png'} and {out / 'summary.json'}")
 
@@ -252,19 +255,29 @@ def drivetrain(
         from giveway.report.drivetrain import check_results, write_results
 
         check_results(out)
-    analysis = analyse(*found)
+    if sweep:
+        from giveway.sweep import check_load
+
+        check_load(found[0])
+    with working("linear model"):
+        analysis = analyse(*found)
     sweeps: list[Sweep] = []
     if sweep:
-        from giveway.sweep import deviations, measure_all
+        from giveway.sweep import deviations, measurable, measure_all
 
-        sweeps = measure_all(analysis, model.gear_friction(robot))
+        friction = model.gear_friction(robot)
+        with progress_bars([f"{case}, {source}" for case, source in measurable(analysis, friction)]) as progress:
+            sweeps = measure_all(
+                analysis, friction, progress=lambda case, source, share: progress(f"{case}, {source}", share)
+            )
     title = model.describe(robot, load, *found)
     print_columns(title, ("", *analysis.cases), table_rows(analysis))
     if sweep:
         header = ("", "points", "largest in gain", "in phase")
         print_columns("Deviation of the FMU from the linear model", header, deviations(analysis, sweeps))
     if out is not None:
-        written = write_results(out, title, analysis, sweeps)
+        with working("picture"):
+            written = write_results(out, title, analysis, sweeps)
         typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
@@ -421,14 +434,9 @@ def _changed(
     return scenario
 
 
-@contextmanager
-def _progress(duration_s: float) -> Iterator[Progress | None]:
-    """A progress bar on stderr for long runs at a terminal, else nothing."""
-    if duration_s < LONG_RUN_S or not sys.stderr.isatty():
-        yield None
-        return
-    with progress_bar("simulating") as progress:
-        yield progress
+def _share_of(progress: Callable[[str, float], None], name: str) -> Progress:
+    """What a simulation reports (simulated time and duration, s) as the share of the bar ``name``."""
+    return lambda now_s, duration_s: progress(name, now_s / duration_s)
 
 
 def main() -> None:

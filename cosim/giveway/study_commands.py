@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from giveway.terminal import INTERRUPTED, print_columns, print_results
+from giveway.terminal import INTERRUPTED, print_columns, print_results, progress_bars, working
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
 
 __all__ = ["study_app", "sweep_designs"]
+
+QUICK_S = 1.0  # nobody needs to be told of what takes less
 
 study_app = typer.Typer(name="study", help="Look at a study, and take its designs away.", no_args_is_help=True)
 
@@ -32,7 +35,7 @@ def sweep_designs(
     ] = False,
 ) -> None:
     """Run a study of many designs, or go on with it; then tables, Pareto front, traces and a report in DIR."""
-    from giveway.study import answers, command, study_file
+    from giveway.study import command, study_file
     from giveway.study.engine import plan_runs
     from giveway.study.engine import sweep as run_study
 
@@ -49,8 +52,9 @@ def sweep_designs(
         typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
         raise typer.Exit(INTERRUPTED)
     try:
-        found = answers.load(folder)
-        written = command.write_all(found)
+        found = _load(folder)
+        with progress_bars((command.CHOSEN, command.REPORT)) as report_progress:
+            written = command.write_all(found, progress=report_progress)
     except KeyboardInterrupt:
         typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
         raise typer.Exit(INTERRUPTED) from None
@@ -63,11 +67,12 @@ def study_show(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
 ) -> None:
     """Show the first answers of a study, also while it runs or after it was interrupted; writes its report."""
-    from giveway.study import answers, command
+    from giveway.study import command
 
-    found = answers.load(folder)
+    found = _load(folder)
     _print_answers(found)
-    written = command.write_all(found, simulate_chosen=False)
+    with working(command.REPORT) as progress:
+        written = command.write_all(found, simulate_chosen=False, progress=lambda _name, share: progress(share))
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
@@ -77,12 +82,12 @@ def study_run(
     design: Annotated[int, typer.Option("--design", metavar="N", help="Number of the design.")],
 ) -> None:
     """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
-    from giveway.study import answers
     from giveway.study.chosen import CHOSEN, simulate
 
-    found = answers.load(folder)
+    found = _load(folder)
     found.check_design(design)
-    results = simulate(found.setup, found.runs, folder, design)
+    with working(f"design {design}"):
+        results = simulate(found.setup, found.runs, folder, design)
     for name, result in results.items():
         print_results(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
     typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")
@@ -101,10 +106,11 @@ def study_export(
     model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
 ) -> None:
     """Take a design away: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
-    from giveway.study import answers
+    from giveway.files import check_file
     from giveway.study.export import export_design, export_table
 
-    found = answers.load(folder)
+    check_file(out)
+    found = _load(folder)
     if design is None:
         export_table(found, out)
     else:
@@ -128,6 +134,21 @@ def study_gallery(
 
     for path, sentence in draw_all(examples, studies, out, command.showing):
         typer.echo(f"{path}: {sentence}")
+
+
+def _load(folder: Path) -> Answers:
+    """The answers of the study in ``folder``; a large one takes a while to read, which is said."""
+    from giveway.study import answers
+
+    name = "reading the runs"
+    began = time.monotonic()
+    with progress_bars((name,)) as progress:
+
+        def say(share: float) -> None:
+            if time.monotonic() - began > QUICK_S:
+                progress(name, share)
+
+        return answers.load(folder, say)
 
 
 def _print_answers(found: Answers) -> None:

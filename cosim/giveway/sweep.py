@@ -12,8 +12,9 @@ noise; the encoder has its finest resolution of a million counts, since a stairc
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from giveway.fmu import Instance
     from giveway.variables import Value
 
-__all__ = ["Sweep", "deviations", "measure", "measure_all"]
+__all__ = ["Sweep", "check_load", "deviations", "measurable", "measure", "measure_all"]
 
 PERIODS, SHORTEST_S = 4, 0.02  # of the sine that is fitted
 SAMPLES_PER_PERIOD = 64  # of the master, at the least
@@ -63,6 +64,12 @@ class Sweep:
     response: NDArray[np.complex128]
 
 
+def check_load(drivetrain: Drivetrain) -> None:
+    """Refuse, before any work is done, a load that cannot be measured with sines."""
+    if drivetrain.locked:
+        raise GivewayError("load", "locked", "a load that moves, if ever so little: 100 kg m2 is the heaviest")
+
+
 def measure(
     drivetrain: Drivetrain,
     servo: Servo,
@@ -74,6 +81,7 @@ def measure(
     bias_speed: float = 5.0,
     amplitude: float = 10.0,
     fmi_version: int = 3,
+    progress: Callable[[float], None] | None = None,
 ) -> Sweep:
     """Measure ``case`` at each frequency (Hz).
 
@@ -81,13 +89,13 @@ def measure(
         gear_friction: Coulomb friction and stiction of the gear, N m.
         bias_speed: rad/s, for a gear that slides; 0: without Coulomb friction.
         amplitude: of the sine, N m; smaller where the gear would change its mode.
+        progress: called with the share that is done, 0 to 1.
     """
     if case not in (STUCK, UNPOWERED, SERVO):
         raise UnknownNameError("case", case, (STUCK, UNPOWERED, SERVO))
     if source not in SOURCES:
         raise UnknownNameError("source", source, SOURCES)
-    if drivetrain.locked:
-        raise GivewayError("load", "locked", "a load that moves, if ever so little: 100 kg m2 is the heaviest")
+    check_load(drivetrain)
     least = LEAST_STICTION_NM if case == STUCK else 0.0
     finite("gear_friction", gear_friction, least, TORQUE_LIMIT_NM / 2.0, "N m")
     finite("bias_speed", bias_speed, 0.0, 100.0, "rad/s")
@@ -104,18 +112,48 @@ def measure(
     setup = _Setup(
         drivetrain, servo, case, source, 0.0 if case == STUCK else bias_speed, gear_friction, amplitude, settling_s
     )
-    points = [_measure_one(setup, float(frequency), fmi_version) for frequency in frequency_hz]
+    points = []
+    for index, frequency in enumerate(frequency_hz):
+        if progress is not None:
+            progress(index / len(frequency_hz))
+        points.append(_measure_one(setup, float(frequency), fmi_version))
+    if progress is not None:
+        progress(1.0)
     return Sweep(case, source, np.array([f for f, _ in points]), np.array([gain for _, gain in points]))
 
 
-def measure_all(analysis: Analysis, gear_friction: float, points: int = 16) -> list[Sweep]:
-    """Every stable case with every source, at frequencies from 0.5 to 500 Hz; stuck only what friction can hold."""
-    frequency_hz = np.geomspace(0.5, 500.0, points)
+def measurable(analysis: Analysis, gear_friction: float) -> list[tuple[str, str]]:
+    """Every stable case with every source; stuck only what ``gear_friction`` (N m) can hold."""
     return [
-        measure(analysis.drivetrain, analysis.servo, name, source, frequency_hz, gear_friction=gear_friction)
+        (name, source)
         for name, case in analysis.cases.items()
         for source in case.channels
         if case.stable and (name != STUCK or gear_friction >= LEAST_STICTION_NM)
+    ]
+
+
+def measure_all(
+    analysis: Analysis,
+    gear_friction: float,
+    points: int = 16,
+    progress: Callable[[str, str, float], None] | None = None,
+) -> list[Sweep]:
+    """Everything `measurable`, at frequencies from 0.5 to 500 Hz.
+
+    ``progress``, if given, is called with case, source and the share of it that is done.
+    """
+    frequency_hz = np.geomspace(0.5, 500.0, points)
+    return [
+        measure(
+            analysis.drivetrain,
+            analysis.servo,
+            case,
+            source,
+            frequency_hz,
+            gear_friction=gear_friction,
+            progress=None if progress is None else functools.partial(progress, case, source),
+        )
+        for case, source in measurable(analysis, gear_friction)
     ]
 
 

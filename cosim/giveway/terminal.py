@@ -13,7 +13,15 @@ if TYPE_CHECKING:
     from giveway.master import Progress
     from giveway.result import Result
 
-__all__ = ["INTERRUPTED", "print_columns", "print_results", "print_warnings", "progress_bar", "progress_bars"]
+__all__ = [
+    "INTERRUPTED",
+    "print_columns",
+    "print_results",
+    "print_warnings",
+    "progress_bar",
+    "progress_bars",
+    "working",
+]
 
 INTERRUPTED = 130  # exit code of a command that Ctrl-C ended
 
@@ -72,8 +80,20 @@ def progress_bar(title: str) -> Iterator[Progress | None]:
 
 
 @contextmanager
+def working(name: str) -> Iterator[Callable[[float], None]]:
+    """One bar of `progress_bars` for a single piece of work; what is yielded is called with the share that is done."""
+    with progress_bars((name,)) as progress:
+        progress(name, 0.0)
+        yield lambda share: progress(name, share)
+        progress(name, 1.0)
+
+
+@contextmanager
 def progress_bars(names: Sequence[str]) -> Iterator[Callable[[str, float], None]]:
-    """One progress bar per experiment on stderr at a terminal, else a line when one begins."""
+    """One progress bar per part of the work on stderr at a terminal, else a line when a part begins.
+
+    What is yielded is called with the part's name and the share of it that is done, 0 to 1.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -83,7 +103,8 @@ def progress_bars(names: Sequence[str]) -> Iterator[Callable[[str, float], None]
         def say(name: str, _share: float) -> None:
             if name not in begun:
                 begun.add(name)
-                typer.echo(f"[{len(begun)} of {len(names)}] {name}", err=True)
+                number = f"[{len(begun)} of {len(names)}] " if len(names) > 1 else ""
+                typer.echo(f"{number}{name}", err=True)
 
         yield say
         return

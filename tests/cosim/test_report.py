@@ -77,7 +77,8 @@ def test_an_interrupted_run_says_so_in_its_report(short_run: Result) -> None:
 def test_demo_writes_what_it_prints(cli: Cli, tmp_path: Path) -> None:
     done = cli("demo")
     assert done.returncode == 0, done.stderr
-    assert not done.stderr
+    lines = ["[1 of 4] bumper none", "[2 of 4] bumper spring", "[3 of 4] bumper magnetic", "[4 of 4] report"]
+    assert done.stderr.splitlines() == lines
     out = tmp_path / "out" / "demo"
     assert {"report.html", "overview.png", "summary.json", "none", "spring", "magnetic"} <= set(folder_content(out))
     document = json.loads((out / "summary.json").read_text())

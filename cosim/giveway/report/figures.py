@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,12 +17,16 @@ from giveway.report.style import STYLE, TRUTH_COLOUR
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
     from giveway.result import Result
 
 __all__ = ["NamedFigure", "figures"]
 
 WIDTH_IN = 9.6
+LEFT_IN, RIGHT_IN, TOP_IN, BOTTOM_IN = 0.72, 0.12, 0.3, 0.48  # around the panels: axis labels and titles fit in
+LEGEND_IN = 0.28  # below them
+BETWEEN_IN = (0.2, 0.5)  # columns, whose numbers are those of the first one; rows
 
 
 @dataclass(frozen=True)
@@ -45,8 +49,8 @@ def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
 
 
 def _contact_force(runs: list[Run]) -> Figure:
-    figure = Figure(figsize=(WIDTH_IN, 3.3), layout="constrained")
-    axes = figure.subplots()
+    figure, panels = _panels(1, 1, 3.3)
+    axes = panels[0, 0]
     window = force_window_ms(runs)
     for run in runs:
         run.draw_force(axes, window, run.label)
@@ -59,22 +63,20 @@ def _contact_force(runs: list[Run]) -> Figure:
 
 
 def _wheel_torques(runs: list[Run]) -> Figure:
-    figure = Figure(figsize=(WIDTH_IN, 3.2), layout="constrained")
-    panels = figure.subplots(1, WHEELS, sharey=True)
-    for wheel, axes in enumerate(panels):
+    figure, panels = _panels(1, WHEELS, 3.2, legend=True)
+    for wheel, axes in enumerate(panels[0]):
         for run in runs:
             torque = run.hit[f"testbed.truth.wheel_torque[{wheel}]"]
             axes.plot(run.time_ms[run.impact], torque[run.impact], color=run.colour, label=run.label)
             run.mark_detection(axes)
         axes.set(title=f"wheel {wheel}", xlabel="time since contact (ms)", xlim=IMPACT_MS)
-    panels[0].set_ylabel("wheel torque (N m)")
-    _legend_below(figure, panels[0])
+    panels[0, 0].set_ylabel("wheel torque (N m)")
+    _legend_below(figure, panels[0, 0])
     return figure
 
 
 def _positions(runs: list[Run]) -> Figure:
-    figure = Figure(figsize=(WIDTH_IN, 5.4), layout="constrained")
-    panels = figure.subplots(2, len(runs), sharey="row", squeeze=False)
+    figure, panels = _panels(2, len(runs), 5.4)
     for column, run in enumerate(runs):
         base, reference = run.position("testbed.truth"), run.position("controller.reference")
         nose = run.travel(run.nose)
@@ -98,8 +100,7 @@ def _positions(runs: list[Run]) -> Figure:
 
 
 def _estimates(runs: list[Run]) -> Figure:
-    figure = Figure(figsize=(WIDTH_IN, 5.0), layout="constrained")
-    panels = figure.subplots(2, len(runs), sharex=True, sharey="row", squeeze=False)
+    figure, panels = _panels(2, len(runs), 5.0)
     for column, run in enumerate(runs):
         hit, rows, time = run.hit, run.impact, run.time_ms
         step_s = float(run.time_s[1] - run.time_s[0])
@@ -115,7 +116,7 @@ def _estimates(runs: list[Run]) -> Figure:
             axes.plot(time[rows], estimate[rows], color=run.colour, label="estimated")
             run.mark_detection(axes)
         panels[0, column].set(title=run.label, xlim=IMPACT_MS)
-        panels[1, column].set(xlabel="time since contact (ms)")
+        panels[1, column].set(xlabel="time since contact (ms)", xlim=IMPACT_MS)
     panels[0, 0].legend(loc="upper right")
     panels[0, 0].set_ylabel("force (N)")
     panels[1, 0].set_ylabel("impulse (N s)")
@@ -149,6 +150,25 @@ _FIGURES: tuple[tuple[str, str, Callable[[list[Run]], Figure]], ...] = (
 )
 
 
+def _panels(rows: int, columns: int, height_in: float, legend: bool = False) -> tuple[Figure, NDArray[Any]]:
+    """A figure with fixed margins: to fit them to its words (a layout engine) takes as long as to draw it."""
+    figure = Figure(figsize=(WIDTH_IN, height_in))
+    bottom_in = BOTTOM_IN + (LEGEND_IN if legend else 0.0)
+    panel_in = (
+        (WIDTH_IN - LEFT_IN - RIGHT_IN - (columns - 1) * BETWEEN_IN[0]) / columns,
+        (height_in - TOP_IN - bottom_in - (rows - 1) * BETWEEN_IN[1]) / rows,
+    )
+    figure.subplots_adjust(
+        left=LEFT_IN / WIDTH_IN,
+        right=1.0 - RIGHT_IN / WIDTH_IN,
+        top=1.0 - TOP_IN / height_in,
+        bottom=bottom_in / height_in,
+        wspace=BETWEEN_IN[0] / panel_in[0],
+        hspace=BETWEEN_IN[1] / panel_in[1],
+    )
+    return figure, figure.subplots(rows, columns, sharey="row", squeeze=False)
+
+
 def _legend_below(figure: Figure, axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    figure.legend(handles, labels, loc="lower center", ncols=len(labels))

@@ -16,6 +16,7 @@ The keywords are the keys of a study file (`cosim/README.md`).
 from __future__ import annotations
 
 import copy
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,17 +86,27 @@ class Study:
 
         return check(copy.deepcopy(self.document), Path(folder), self.document["name"])
 
-    def run(self, folder: Path | str, *, threads: int | None = None, progress: Report | None = None) -> Answers:
+    def run(self, folder: Path | str, *, threads: int | None = None, progress: Report | bool = True) -> Answers:
         """Run what is missing in ``folder`` and return the answers; Ctrl-C ends it early, the same call goes on.
+
+        Args:
+            folder: where results are stored; made if it is not there.
+            threads: native ones, 1 to 1024; None: all processors.
+            progress: True: a bar on stderr at a terminal, else a line every few seconds; False: nothing; or what is
+                called now and then with a `giveway.study.engine.Progress`.
 
         Raises:
             GivewayError: the study is wrong; nothing was run.
             FileError: the folder holds something else, is in use, or cannot be written.
+            WriteError: the disk refused on the way; the parts before it are kept.
         """
         from giveway.study.answers import load
+        from giveway.study.command import showing
         from giveway.study.engine import sweep
 
-        sweep(self.setup(), folder, threads=threads, progress=progress)
+        setup = self.setup()
+        with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
+            sweep(setup, folder, threads=threads, progress=report)
         return load(folder)
 
     def _add(self, table: str, entry: dict[str, Any]) -> Study:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -137,15 +138,21 @@ class Answers:
 
     def sensitivities(self) -> list[Sensitivity]:
         """Of the objectives, where the designs allow it: Morris and Sobol indices need a value of every design."""
+        return list(self._sensitivities)
+
+    @functools.cached_property
+    def _sensitivities(self) -> tuple[Sensitivity, ...]:
         found: list[Sensitivity] = []
         for index in range(len(self.setup.objectives)):
             values, name = self.values[:, index], self.goal_name(index)
             found += sensitivities_of(self.setup.plan, self.setup.varied, self.setup.seed, self.designs, values, name)
-        return found
+        return tuple(found)
 
 
-def load(folder: Path | str) -> Answers:
+def load(folder: Path | str, progress: Callable[[float], None] | None = None) -> Answers:
     """The answers of the study in ``folder``, as far as it has been run.
+
+    ``progress``, if given, is called with the share of the runs that is read, 0 to 1.
 
     Raises:
         FileError: there is no study, or it was written by another version.
@@ -158,7 +165,11 @@ def load(folder: Path | str) -> Answers:
     reason: dict[int, str] = {}
     warnings: dict[int, dict[str, int]] = {}
     parts_folder = Path(folder) / PARTS / manifest["fingerprint"][:16]
+    if progress is not None:
+        progress(0.0)
     for block in _designs_of(parts_folder, table, goals):
+        if progress is not None:
+            progress(block.first / max(1, count))
         part = slice(block.first, block.first + len(block.stored))
         values[part], stored[part], failed[part] = block.values, block.stored, block.failed
         reason |= block.reason
@@ -281,10 +292,10 @@ def sensitivities_of(
         found = sobol.analyze(described, values, calc_second_order=False, seed=seed)
         main, interval, total = found["S1"], found["S1_conf"], list(found["ST"])
     elif plan.kind in ("latin-hypercube", "sobol") and len(values) >= GIVEN_DATA_MIN:
-        from SALib.analyze import rbd_fast
+        from giveway.study.first_order import first_order
 
-        found = rbd_fast.analyze(described, designs, values, seed=seed)
-        main, interval, total = found["S1"], found["S1_conf"], [None] * len(names)
+        main, interval = first_order(designs, values, seed)
+        total = [None] * len(names)
     else:
         return []
     return [

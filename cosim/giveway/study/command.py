@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from giveway.study.runs import RunTable
     from giveway.study.setup import Setup
 
-__all__ = ["duration", "overview", "showing", "sizes", "write_all"]
+__all__ = ["CHOSEN", "REPORT", "duration", "overview", "showing", "sizes", "write_all"]
 
 SAY_EVERY_S = 5.0  # without a terminal
+CHOSEN, REPORT = "chosen designs", "report"  # what `write_all` does
 
 
 @contextmanager
@@ -83,17 +84,27 @@ def sizes(setup: Setup, table: RunTable) -> str:
     )
 
 
-def write_all(answers: Answers, simulate_chosen: bool = True) -> list[Path]:
-    """Simulate the best designs event-exact with traces; write report.html, designs table and figures."""
+def write_all(
+    answers: Answers, simulate_chosen: bool = True, progress: Callable[[str, float], None] = lambda name, share: None
+) -> list[Path]:
+    """Simulate the best designs event-exact with traces; write report.html, designs table and figures.
+
+    ``progress`` is called with `CHOSEN` or `REPORT` and the share of it that is done.
+    """
     from giveway.study.chosen import simulate
     from giveway.study.export import export_table
     from giveway.study.report import write_report
 
     results = {}
     if simulate_chosen and answers.setup.chosen:
-        for design in answers.order[: answers.setup.chosen].tolist():
+        best = answers.order[: answers.setup.chosen].tolist()
+        for index, design in enumerate(best):
+            progress(CHOSEN, index / len(best))
             results[design] = simulate(answers.setup, answers.runs, answers.folder, design)
+        progress(CHOSEN, 1.0)
+    progress(REPORT, 0.0)
     table_file, report = answers.folder / "table.csv", answers.folder / "report.html"
     export_table(answers, table_file)
     write_report(report, answers, results)
+    progress(REPORT, 1.0)
     return [report, table_file]

@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from giveway.result import Result
     from giveway.study.answers import Answers
 
-__all__ = ["axis_label", "effects", "sensitivities", "traces", "trade_off"]
+__all__ = ["axis_label", "drawn", "effect_panels", "effects", "sensitivities", "traces", "trade_off"]
 
 FRONT_COLOUR, DESIGN_COLOUR, INFEASIBLE_COLOUR = "#0a8a63", "#0b64a8", "#d5d9de"
 CHOSEN_COLOURS = ("#c8500a", "#0b64a8", "#0a8a63", "#7a2ea0", "#8a6d00")
-POINTS_MAX = 3000  # drawn; all of the front, and a sample of the rest
+POINTS_MAX = 3000  # drawn in a panel; of more designs a sample
+POINTS_OF_FIGURE_MAX = 9000  # and in all panels of a figure
 QUANTITIES_MAX = 5
 BEFORE_MS, AFTER_MS = 20.0, 250.0
 
@@ -31,19 +32,25 @@ def axis_label(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit not in ("", "1") else name
 
 
-def _drawn(answers: Answers) -> NDArray[np.int64]:
-    """Which designs are drawn: all, or a sample that is the same every time."""
+def drawn(answers: Answers, panels: int = 1) -> NDArray[np.int64]:
+    """Which designs are drawn in each of so many panels: all, or a sample that is the same every time."""
     known = np.flatnonzero(np.isfinite(answers.values[:, : len(answers.setup.objectives)]).all(axis=1))
-    if len(known) > POINTS_MAX:
-        known = np.random.default_rng(1).choice(known, POINTS_MAX, replace=False)
+    count = min(POINTS_MAX, POINTS_OF_FIGURE_MAX // panels)
+    if len(known) > count:
+        known = np.random.default_rng(1).choice(known, count, replace=False)
     return known
+
+
+def effect_panels(answers: Answers) -> tuple[int, int]:
+    """Rows and columns of `effects`: objectives and quantities."""
+    return len(answers.setup.objectives), len(answers.setup.varied[:QUANTITIES_MAX])
 
 
 def trade_off(answers: Answers) -> Figure:
     """The first two objectives against each other."""
     figure = Figure(figsize=(9.6, 4.2), layout="constrained")
     axes = figure.subplots()
-    shown = _drawn(answers)
+    shown = drawn(answers)
     x, y = answers.values[:, 0], answers.values[:, 1]
     for mask, colour, label in (
         (~answers.feasible, INFEASIBLE_COLOUR, "constraints not met"),
@@ -54,6 +61,7 @@ def trade_off(answers: Answers) -> Figure:
             axes.scatter(x[which], y[which], s=11, color=colour, alpha=0.7, linewidths=0, label=label)
     on_front = np.flatnonzero(answers.pareto)
     on_front = on_front[np.argsort(x[on_front], kind="stable")]
+    on_front = on_front[:: 1 + len(on_front) // POINTS_MAX]
     line = "-" if len(answers.setup.objectives) == 2 else ""
     axes.plot(x[on_front], y[on_front], f"o{line}", color=FRONT_COLOUR, ms=4, lw=1.2, label="Pareto front")
     for rank, design in enumerate(answers.order[: answers.setup.chosen].tolist()):
@@ -70,10 +78,10 @@ def trade_off(answers: Answers) -> Figure:
 def effects(answers: Answers) -> Figure:
     """Every objective over every quantity: one point per design."""
     quantities = [one.quantity for one in answers.setup.varied][:QUANTITIES_MAX]
-    rows, columns = len(answers.setup.objectives), len(quantities)
+    rows, columns = effect_panels(answers)
     figure = Figure(figsize=(9.6, 0.5 + 2.3 * rows), layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False, sharey="row", sharex="col")
-    shown = _drawn(answers)
+    shown = drawn(answers, rows * columns)
     good, bad = shown[answers.feasible[shown]], shown[~answers.feasible[shown]]
     for i in range(rows):
         for j, quantity in enumerate(quantities):

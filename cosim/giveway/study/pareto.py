@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 __all__ = ["front", "scores"]
 
+BLOCK = 64  # rows that are compared with all later ones at once
+
 
 def front(costs: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which rows of ``costs`` (n, objectives; less is better) no other row beats: shape (n,).
@@ -19,15 +21,46 @@ def front(costs: NDArray[np.float64]) -> NDArray[np.bool_]:
     Equal rows are all kept.
     """
     found = np.zeros(len(costs), dtype=bool)
-    left = np.flatnonzero(~np.isnan(costs).any(axis=1))
-    left = left[np.lexsort(costs[left].T[::-1])]  # nothing is beaten by what comes later
+    known = np.flatnonzero(~np.isnan(costs).any(axis=1))
+    if not known.size or not costs.shape[1]:
+        found[known] = True
+        return found
+    known = known[np.lexsort(costs[known].T[::-1])]  # nothing is beaten by what comes later
+    ordered = costs[known]
+    different = np.append(True, (ordered[1:] != ordered[:-1]).any(axis=1))
+    on_front = _front_of_different(ordered[different])
+    found[known] = on_front[np.cumsum(different) - 1]
+    return found
+
+
+def _front_of_different(rows: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """The same of rows that are all different and in lexicographic order.
+
+    Then a row is beaten by an earlier one that is not larger anywhere but, at most, in the first column.
+    """
+    found = np.ones(len(rows), dtype=bool)
+    columns = np.ascontiguousarray(rows.T[1:])
+    if len(columns) == 0:
+        found[1:] = False
+        return found
+    if len(columns) == 1:
+        found[1:] = columns[0, 1:] < np.minimum.accumulate(columns[0])[:-1]
+        return found
+    left = np.arange(len(rows))
     while left.size:
-        first, rest = left[0], left[1:]
-        found[first] = True
-        better = (costs[rest] < costs[first]).any(axis=1)
-        same = (costs[rest] == costs[first]).all(axis=1)
-        found[rest[same]] = True
-        left = rest[better]
+        block, left = left[:BLOCK], left[BLOCK:]
+        beaten = np.tril(_not_larger(columns[:, block], columns[:, block]).T, -1).any(axis=1)
+        beaten_later = _not_larger(columns[:, block[~beaten]], columns[:, left]).any(axis=0)
+        found[block[beaten]] = found[left[beaten_later]] = False
+        left = left[~beaten_later]
+    return found
+
+
+def _not_larger(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which columns of ``one`` (k, m) are nowhere larger than which of ``other`` (k, n): shape (m, n)."""
+    found: NDArray[np.bool_] = one[0][:, None] <= other[0]
+    for a, b in zip(one[1:], other[1:], strict=True):
+        found &= a[:, None] <= b
     return found
 
 

@@ -104,12 +104,12 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
     known = bool((answers.stored > 0).any())
     with context(STYLE):
         if known and len(answers.setup.objectives) >= 2:
-            caption = "One point per design. Those on the front are beaten by no other one; numbers: the best ranked."
+            caption = f"{_points(answers, 1)} Those on the front are beaten by no other one; numbers: the best ranked."
             add("Trade-off", caption, figures.trade_off(answers))
         if known and answers.setup.objectives and answers.setup.varied:
             add(
                 "What each quantity does",
-                "One point per design; grey: a constraint is not met.",
+                f"{_points(answers, math.prod(figures.effect_panels(answers)))} Grey: a constraint is not met.",
                 figures.effects(answers),
             )
         if known:
@@ -118,6 +118,14 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
             caption = "The best ranked designs, event-exact at their nominal values. Dashed: the moment of detection."
             add("Chosen designs", caption, figures.traces(results))
     return found
+
+
+def _points(answers: Answers, panels: int) -> str:
+    from giveway.study.figures import drawn
+
+    count = len(drawn(answers, panels))
+    known = len(answers.designs)
+    return "One point per design." if count == known else f"One point per design, {count:,} of {known:,}."
 
 
 def _sensitivity_caption(answers: Answers) -> str:

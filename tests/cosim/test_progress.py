@@ -1,0 +1,93 @@
+"""Nobody waits in silence: bars at a terminal, lines elsewhere, for whatever takes more than a second."""
+
+from __future__ import annotations
+
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from giveway import sweep
+from giveway.cli import _main
+from giveway.drivetrain import read
+from giveway.drivetrain_analysis import analyse
+from giveway.study import answers
+from giveway.terminal import progress_bars, working
+from study_helpers import small_study
+
+
+def at_a_terminal(arguments: list[str], folder: Path) -> tuple[int, str]:
+    """Exit code and what the command line shows on a terminal of its own."""
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "giveway", *arguments]
+    with subprocess.Popen(command, cwd=folder, stdin=theirs, stdout=subprocess.DEVNULL, stderr=theirs) as process:
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                part = os.read(ours, 4096)
+            except OSError:  # Linux says so when the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+    os.close(ours)
+    return process.returncode, shown.decode()
+
+
+def test_a_run_shows_bars_at_a_terminal(tmp_path: Path) -> None:
+    code, shown = at_a_terminal(["run", "motionless", "--duration", "0.1", "--out", "out"], tmp_path)
+    assert code == 0
+    for word in ("simulation", "report", "100 %"):
+        assert word in shown
+
+
+def test_elsewhere_every_part_of_the_work_is_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_bars(("first", "second")) as progress:
+        for share in (0.0, 0.5, 1.0):
+            progress("first", share)
+        progress("second", 0.0)
+    with working("alone"):
+        pass
+    assert capsys.readouterr().err == "[1 of 2] first\n[2 of 2] second\nalone\n"
+
+
+def test_a_sweep_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    analysis = analyse(*read(None, "base", 0))
+    said: list[tuple[str, str, float]] = []
+    monkeypatch.setattr(sweep, "_measure_one", lambda setup, frequency_hz, version: (frequency_hz, 1.0 + 0.0j))
+    found = sweep.measure_all(analysis, 2.75, points=4, progress=lambda *words: said.append(words))
+    cases = [(one.case, one.source) for one in found]
+    assert cases == sweep.measurable(analysis, 2.75)
+    assert said == [(*case, share) for case in cases for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+
+
+def test_the_command_s_sweep_says_so_too(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sweep, "_measure_one", lambda setup, frequency_hz, version: (frequency_hz, 1.0 + 0.0j))
+    assert _main(["drivetrain", "--sweep"]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "linear model"
+    assert lines[1] == "[1 of 5] gear stuck, environment"
+    assert len(lines) == 6
+
+
+def test_a_study_in_python_shows_its_progress(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    small_study().run(tmp_path / "a")
+    assert "small: 4 of 4 runs" in capsys.readouterr().err
+    small_study(seed=2).run(tmp_path / "b", progress=False)
+    assert capsys.readouterr().err == ""
+    done = []
+    small_study(seed=3).run(tmp_path / "c", progress=lambda progress: done.append(progress.done))
+    assert done[-1] == 4
+    assert capsys.readouterr().err == ""
+
+
+def test_reading_a_study_says_how_far_it_is(tmp_path: Path) -> None:
+    small_study(part_runs=1).run(tmp_path / "study", progress=False)
+    shares: list[float] = []
+    found = answers.load(tmp_path / "study", shares.append)
+    assert shares == [0.0, *np.arange(4) / 4]
+    assert found.complete
