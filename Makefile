@@ -35,8 +35,9 @@ verify: build build/verify/tools-installed build/verify/modelica-installed ## ev
 fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness and real type; `make verify` does it for a minute
 	$(BIN)/python -m verify.fuzzing
 
-mutate: build ## every mutant of c_core; `make verify` tries 500
+mutate: build build/verify/tools-installed ## every mutant of c_core (`make verify` tries 500), and 310 of the rooms outside it
 	$(BIN)/python -m verify.mutation
+	$(BIN)/python -m verify.mutation.rooms
 
 importers: build build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
 	$(BIN)/python -m importers

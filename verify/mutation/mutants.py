@@ -12,7 +12,9 @@ from pathlib import Path
 from verify.mutation.tokens import Token, is_type, matching, operand_start, tokenise
 from verify.sources import core_files
 
-__all__ = ["Key", "Mutant", "every", "mutants_of", "shuffled"]
+__all__ = ["SEED", "Key", "Mutant", "every", "mutants_of", "shuffled"]
+
+SEED = 1
 
 RELATIONS = {
     "<": ("<=", ">="),

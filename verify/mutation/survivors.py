@@ -17,25 +17,25 @@ LIST = "verify/mutation/survivors.toml"
 FIELDS = {"file": str, "function": str, "line": str, "change": str, "nth": int}
 
 
-def read(root: Path) -> dict[Key, str]:
-    """The reason of every listed mutant; `RungFailed` if an entry is not one."""
-    document = tomllib.loads((root / LIST).read_text(encoding="utf-8"))
+def read(root: Path, listed: str = LIST) -> dict[Key, str]:
+    """The reason of every mutant in the list, a file below ``root``; `RungFailed` if an entry is not one."""
+    document = tomllib.loads((root / listed).read_text(encoding="utf-8"))
     reasons: dict[Key, str] = {}
     for group in document.get("reason", []):
         why = group.get("why", "")
         if not (isinstance(why, str) and why.strip()):
-            raise RungFailed(f"{LIST}: a group without a reason: {group}")
+            raise RungFailed(f"{listed}: a group without a reason: {group}")
         for entry in group.get("mutants", []):
-            key = _key(entry)
+            key = _key(entry, listed)
             if key in reasons:
-                raise RungFailed(f"{LIST}: listed twice: {_entry(key)}")
+                raise RungFailed(f"{listed}: listed twice: {_entry(key)}")
             reasons[key] = why
     return reasons
 
 
-def _key(entry: Mapping[str, Any]) -> Key:
+def _key(entry: Mapping[str, Any], listed: str) -> Key:
     if {name: type(value) for name, value in entry.items()} != FIELDS:
-        raise RungFailed(f"{LIST}: an entry has exactly {', '.join(FIELDS)}: {entry}")
+        raise RungFailed(f"{listed}: an entry has exactly {', '.join(FIELDS)}: {entry}")
     return Key(**entry)
 
 

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from verify.failure import RungFailed
 from verify.mutation import survivors
 from verify.mutation.killers import Fate, Killers
-from verify.mutation.mutants import Mutant, every, shuffled
+from verify.mutation.mutants import SEED, Mutant, every, shuffled
 
-__all__ = ["LEAST_SCORE", "SEED", "Trial", "judge", "of_all", "of_some"]
+__all__ = ["Trial", "judge", "of_all", "of_some", "require", "too_few"]
 
-SEED = 1
 LEAST_SCORE = 0.9
 
 
@@ -68,9 +67,17 @@ def judge(killers: Killers, trial: Trial) -> None:
     others = [mutant for mutant, fate in trial.fates.items() if fate is not Fate.SURVIVED]
     root = killers.context.root
     evidence = survivors.wrong(survivors.read(root), every(root), others, survived)
-    if trial.score < LEAST_SCORE:
-        evidence.append(
-            f"{trial.killed} of {trial.counted} killed: {trial.score:.1%}, at least {LEAST_SCORE:.0%} is asked"
-        )
+    require([*evidence, *too_few(trial.killed, trial.counted)])
+
+
+def too_few(killed: int, counted: int) -> list[str]:
+    """What is wrong with the score."""
+    if killed >= LEAST_SCORE * counted:
+        return []
+    return [f"{killed} of {counted} killed: {killed / counted:.1%}, at least {LEAST_SCORE:.0%} is asked"]
+
+
+def require(evidence: Sequence[str]) -> None:
+    """`RungFailed` if there is anything wrong."""
     if evidence:
         raise RungFailed("\n".join(evidence))

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from verify.context import Context
 from verify.mutation.killers import UNIT, Killers
-from verify.mutation.mutants import every, shuffled
-from verify.mutation.trial import SEED, judge, of_all, of_some
+from verify.mutation.mutants import SEED, every, shuffled
+from verify.mutation.trial import judge, of_all, of_some
 from verify.rung import Figure, Rung, planted
 from verify.targets import GCC
 

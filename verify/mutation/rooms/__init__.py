@@ -1,0 +1,1 @@
+"""Mutation testing of the rooms outside c_core, in C++ and Python: all mutants in one build. See verify/README.md."""

@@ -1,0 +1,51 @@
+"""The rooms outside c_core, and what has to see faults in each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["CPP", "LEFT_OUT", "PROGRAMS", "PYTHON", "PYTHON_PATH", "ROOMS", "SLOW_TESTS", "TARGETS", "TESTS", "Room"]
+
+
+@dataclass(frozen=True)
+class Room:
+    """``sample``: how many of its mutants `make mutate` tries; `make verify` tries the first ``few`` of them."""
+
+    folder: str
+    sample: int
+    few: int = 5
+
+
+CPP = (
+    Room("fmu/math", 25),
+    Room("fmu/plant", 40),
+    Room("fmu/models", 35),
+    Room("fmu/solver", 25),
+    Room("fmu/batch", 35),
+    Room("fmu/shell", 35),
+)
+PYTHON = (Room("fmu/codegen/giveway_codegen", 25), Room("cosim/giveway", 90))
+ROOMS = (*CPP, *PYTHON)
+PYTHON_PATH = ("cosim", "fmu/codegen")
+# Pictures: how they look is for people to judge.
+LEFT_OUT = ("cosim/giveway/report", "cosim/giveway/study/figures.py", "cosim/giveway/study/gallery.py")
+
+# Programs of GoogleTest, and what else the tests in Python use.
+PROGRAMS = (
+    *("tests/fmu/math/math_test", "tests/fmu/scalar/strict_scalar_test", "tests/fmu/scalar/jacobian_test"),
+    *("tests/fmu/scalar/lanes_test", "tests/fmu/solver/solver_test", "tests/fmu/testbed/testbed_test"),
+    *("tests/fmu/controller/test_controller_fmu", "tests/fmu/instances/instances_controller_test"),
+    *("tests/fmu/instances/instances_testbed_test", "tests/fmu/instances/instances_drivetrain_test"),
+    "tests/fmu/instances/instances_bumper_test",
+)
+LIBRARIES = ("c_master", "fmus", "giveway_batch", "giveway_plant_probe", "fmu_lag")
+TARGETS = (*(program.rsplit("/", 1)[1] for program in PROGRAMS), *LIBRARIES)
+TESTS = ("tests/fmu", "tests/cosim")
+# Whole experiments, compilers, other processes: they are asked only about mutants that the others do not see.
+SLOW_TESTS = (
+    *("test_bench_solvers.py", "test_c_master.py", "test_experiment_circle.py", "test_experiment_clamping.py"),
+    *("test_experiment_impulse_share.py", "test_experiment_roller_calibration.py", "test_experiment_scenes.py"),
+    *("test_experiment_static_pushes.py", "test_fit.py", "test_interrupt.py", "test_readme.py", "test_report.py"),
+    *("test_reproduce.py", "test_source_fmu.py", "test_study_command.py", "test_study_gallery.py"),
+    *("test_study_runs.py", "test_sweep.py", "test_wrong_input.py"),
+)

@@ -1,0 +1,64 @@
+"""A trial of the mutants drawn from the rooms outside c_core: the score of each room, and whether the list is true."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from verify.context import Context
+from verify.mutation import survivors
+from verify.mutation.mutants import Mutant
+from verify.mutation.rooms.planted import Planted
+from verify.mutation.rooms.room import ROOMS, Room
+from verify.mutation.rooms.tests import Fate, RoomTests
+from verify.mutation.trial import require, too_few
+
+__all__ = ["LIST", "RoomsTrial", "judge", "try_all"]
+
+LIST = "verify/mutation/rooms/survivors.toml"
+
+
+@dataclass(frozen=True)
+class RoomsTrial:
+    planted: Planted
+    fates: dict[Mutant, Fate]
+
+    def of(self, *fates: Fate) -> list[Mutant]:
+        return [mutant for mutant, fate in self.fates.items() if fate in fates]
+
+    @property
+    def killed(self) -> int:
+        return len(self.of(Fate.KILLED))
+
+    @property
+    def text(self) -> str:
+        return (
+            f"{self.killed} of {len(self.fates)} mutants killed ({self.killed / len(self.fates):.1%}); "
+            f"{len(self.of(Fate.SURVIVED, Fate.UNREACHED))} survivors, each with a reason, "
+            f"{len(self.of(Fate.UNREACHED))} of them where no test comes by; "
+            f"not counted: {self.planted.not_compiled} that do not compile"
+        )
+
+
+def try_all(tests: RoomTests, rooms: Iterable[Room] = ROOMS, say: Callable[[str], None] = print) -> RoomsTrial:
+    """One after another; says the score of each room, and each survivor as it is found."""
+    listed = survivors.read(tests.context.root, LIST)
+    fates: dict[Mutant, Fate] = {}
+    for room in rooms:
+        of_room = {}
+        for mutant in tests.planted.of(room):
+            of_room[mutant] = tests.fate(mutant, is_listed=mutant.key in listed)
+            if of_room[mutant] is not Fate.KILLED:
+                say(f"  {of_room[mutant].value}: {mutant}")
+        killed = sum(fate is Fate.KILLED for fate in of_room.values())
+        say(f"{room.folder}: {killed} of {len(of_room)} killed")
+        fates |= of_room
+    return RoomsTrial(tests.planted, fates)
+
+
+def judge(context: Context, trial: RoomsTrial) -> None:
+    """`RungFailed` unless enough were killed and every survivor is listed; entries in the form of the list."""
+    reasons = survivors.read(context.root, LIST)
+    survived = trial.of(Fate.SURVIVED, Fate.UNREACHED)
+    evidence = survivors.wrong(reasons, trial.planted.everything, trial.of(Fate.KILLED), survived)
+    require([*evidence, *too_few(trial.killed, len(trial.fates))])
