@@ -150,12 +150,12 @@ def _chapter(experiment: Experiment, full: bool, threads: int, progress: Progres
 
 @contextmanager
 def _interruption() -> Iterator[threading.Event]:
-    """An event that is set by Ctrl-C, which goes on to interrupt what runs."""
+    """An event that is set by Ctrl-C, which goes on to interrupt what runs; where Ctrl-C is ignored, it stays so."""
     event = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or before is signal.SIG_IGN:
         yield event
         return
-    before = signal.getsignal(signal.SIGINT)
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         event.set()

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import giveway
@@ -14,6 +16,15 @@ from giveway.result import Result
 sys.path.insert(0, str(Path(__file__).parent))  # for the helpers beside the tests
 
 from cosim_helpers import Cli, short
+
+
+@pytest.fixture(autouse=True)
+def ctrl_c() -> Iterator[None]:
+    """Ctrl-C is heard, as at a terminal, by the tests and what they start: also where pytest was started with it
+    ignored (nohup, in the background of a script)."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture

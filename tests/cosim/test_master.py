@@ -119,6 +119,14 @@ def test_ctrl_c_may_come_at_any_time() -> None:
     assert 0.0 < result.traces["time"].values[-1] == result.manifest["simulated_s"] < 60.0
 
 
+def test_ctrl_c_that_is_ignored_from_the_start_stays_ignored() -> None:
+    """As the shell has it for what runs in the background of a script, and nohup wants it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # until the end of the test
+    result = giveway.run(short(), lambda _now_s, _duration_s: signal.raise_signal(signal.SIGINT))
+    assert not result.interrupted
+    assert result.manifest["simulated_s"] == 0.5
+
+
 def test_progress_reports_up_to_the_end() -> None:
     seen: list[tuple[float, float]] = []
     giveway.run(short(), lambda now_s, duration_s: seen.append((now_s, duration_s)))

@@ -144,6 +144,15 @@ def test_ctrl_c_keeps_what_was_found(registry: Registry) -> None:
     assert "Not run: cut, extra" in render(found)
 
 
+def test_ctrl_c_that_is_ignored_stays_ignored(registry: Registry) -> None:
+    registry(CUT, FIRST)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    found = reproduce()
+    assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    assert found.interrupted == []
+    assert len(found.chapters) == 2
+
+
 def test_the_report_stands_alone_and_shows_the_paper_beside_the_figure(registry: Registry) -> None:
     registry(FIRST, EARLIER)
     page = render(reproduce())
