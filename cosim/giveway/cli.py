@@ -121,11 +121,8 @@ def run(
             write_report(folder / "report.html", scenario.name, summary, [result])
         progress("report", 1.0)
     print_results(scenario.name, {scenario.bumper: result})
-    if scenario.judged is not None:
-        from giveway.body_regions import judge
-
-        time_s, force = (result.traces[name].values for name in ("time", "testbed.truth.contact_force"))
-        typer.echo(str(judge(time_s, force, scenario.judged, contact_area_m2=scenario.contact_area_m2)))
+    if result.judgement is not None:
+        typer.echo(str(result.judgement))
     typer.echo(f"Written: {out / 'report.html'}")
     if result.interrupted:
         typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from giveway.body_regions import Judgement, judge
 from giveway.errors import FileError
 from giveway.files import read_json, replace_folder, write_text
 from giveway.metric_names import RENAMED, current_name
@@ -56,6 +57,16 @@ class Result:
         from giveway.errors import UnknownNameError
 
         raise UnknownNameError("metric", name, [metric.name for metric in self.metrics])
+
+    @property
+    def judgement(self) -> Judgement | None:
+        """The contact against the limits of the scenario's body region; None if it names none."""
+        scenario = self.manifest["scenario"]
+        region = scenario.get("body_region") or scenario.get("judge_as")
+        if region is None:
+            return None
+        time_s, force_n = (self.traces[name].values for name in ("time", "testbed.truth.contact_force"))
+        return judge(time_s, force_n, region, contact_area_m2=scenario.get("contact_area_m2"))
 
     def save(self, folder: Path | str) -> Path:
         """Write traces (Parquet), metrics and manifest (JSON) to ``folder``, all of them or nothing."""

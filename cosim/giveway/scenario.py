@@ -91,7 +91,7 @@ class Scenario:
         object.__setattr__(self, "controller", MappingProxyType(dict(self.controller)))
 
     def _check_region(self) -> None:
-        """Refuse an unknown region, and what contradicts it."""
+        """Refuse an unknown region, one of nothing, and what contradicts it."""
         if self.judge_as is not None:
             if self.body_region is not None:
                 allowed = "nothing beside body_region, which is judged by its own limits"
@@ -102,6 +102,9 @@ class Scenario:
             check_contact_area(self.contact_area_m2)
             if self.judged is None:
                 raise GivewayError("contact_area_m2", self.contact_area_m2, "only beside body_region or judge_as")
+        if self.judged is not None and not self.testbed.get("slider.present", False):
+            field = "judge_as" if self.body_region is None else "body_region"
+            raise GivewayError(field, self.judged.name, "only of what collides: slider.present = True in testbed")
         if self.body_region is None:
             return
         region = body_region(self.body_region)

@@ -208,6 +208,7 @@ def test_the_robot_files_cover_is_in_front_of_the_body(tmp_path: Path) -> None:
     ({"testbed": {"slider.mass": 13.62}}, "testbed.slider.mass", ("75 kg", "leave it out", 'judge_as = "lower leg"')),
     ({"testbed": {"contact.stiffness": 2e4}}, "testbed.contact.stiffness", ("60000 N/m", "leave it out", "judge_as")),
     ({"judge_as": "hand"}, "judge_as", ("body_region",)),
+    ({"testbed": {"slider.present": False}}, "body_region", ("lower leg", "slider.present")),
     ({"body_region": None, "judge_as": "hnad"}, "judge_as", ("hand",)),
     ({"body_region": None, "contact_area_m2": 1e-3}, "contact_area_m2", ("body_region or judge_as",)),
     ({"contact_area_m2": 0.0}, "contact_area_m2", ("1e-06 to 1",)),

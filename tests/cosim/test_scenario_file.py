@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 from pathlib import Path
 
@@ -245,14 +246,17 @@ def test_the_command_line_refuses_with_one_line_and_writes_nothing(cli: Cli, tmp
 
 
 def test_the_contact_is_judged_as_a_body_region(cli: Cli, tmp_path: Path) -> None:
-    written(tmp_path, 'judge_as = "hand"\n' + GOOD)
+    written(tmp_path, 'judge_as = "hand"\ncontact_area = { value = 4.0, unit = "cm2" }\n' + GOOD)
     done = cli("run", "case.toml", "--out", "out")
     assert done.returncode == 0, done.stderr
     (line,) = (one for one in done.stdout.splitlines() if one.startswith("hand: "))
     result = giveway.load(tmp_path / "out")
     peak = float(result.traces["testbed.truth.contact_force"].max())
     assert f"peak {peak:.0f} N (allowed: 280 N)" in line  # twice the quasi-static 140 N
+    assert f"mean pressure on 4 cm2: peak {peak / 4.0:.1f} N/cm2 (allowed: 380 N/cm2)" in line
     assert result.manifest["scenario"]["judge_as"] == "hand"
+    assert str(result.judgement) == line
+    assert line in html.unescape((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
 
 
 def test_the_command_line_runs_a_file(cli: Cli, tmp_path: Path) -> None:

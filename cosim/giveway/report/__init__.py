@@ -49,6 +49,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
         summary=summary,
         header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
         rows=table_rows(by_bumper),
+        judgements=[str(result.judgement) for result in results if result.judgement is not None],
         warnings=warning_lines(by_bumper),
         figures=figures({BUMPER_LABELS[bumper]: result for bumper, result in by_bumper.items()}),
         # "</" would end the script element early.
