@@ -125,7 +125,7 @@ class Pair:
             "beside",
             stop_s,
             bumper=self.bumper,
-            testbed={**TESTBED, **self.testbed},
+            testbed={"slider.present": True, **TESTBED, **self.testbed},
             controller={**CONTROLLER, **self.controller},
             plan=self.plan,
             push=self.push,

@@ -39,7 +39,12 @@ AS_ASKED = {
 }
 STATED = StatedContact(0.4, (0.088, 0.152), 0.5)
 SCENARIO = giveway.Scenario(
-    "stated", 2.0, plan=Straight(0.2, acceleration_mps2=None), body_region="lower leg", contact=STATED
+    "stated",
+    2.0,
+    testbed={"slider.present": True},
+    plan=Straight(0.2, acceleration_mps2=None),
+    judge_as="lower leg",
+    contact=STATED,
 )
 # What is otherwise; just inside its bound and just beyond.
 OTHERWISE: dict[str, tuple[str, float, float]] = {
@@ -83,7 +88,7 @@ def test_a_heading_that_falls_behind_is_one_too() -> None:
 
 
 def test_what_was_not_stated_is_not_compared() -> None:
-    nothing = dataclasses.replace(SCENARIO, contact=None, body_region=None)
+    nothing = dataclasses.replace(SCENARIO, contact=None, judge_as=None)
     far = {"contact time": 1.9, "contact speed": 3.0, "first contact x": 900.0, "robot speed at contact": 3.0}
     assert found(nothing, **far, **{"lasting force": math.nan}) == []
     assert found(nothing, **{"contact time": math.nan}) == []
@@ -114,7 +119,7 @@ RUNS: dict[str, tuple[giveway.Scenario, list[str], str]] = {
     ),
     "motor at its end": (short(testbed={"drivetrain.torque_limit": 5.0}), ["motor saturated"], "largest torque"),
     "pressed into its stop": (short("spring", testbed={"bumper.travel": 0.01}), ["bumper bottomed"], "mm beyond"),
-    "too short to judge": (short(body_region="lower leg"), ["lasting force unknown"], "0.5 s after the contact"),
+    "too short to judge": (short(judge_as="lower leg"), ["lasting force unknown"], "0.5 s after the contact"),
 }
 
 
