@@ -39,7 +39,6 @@ public:
         int code = CVodeInit(cvode_, Problem::checked_rhs, time_s, problem.state());
         code = code != 0 ? code : CVodeSetUserData(cvode_, problem_);
         code = code != 0 ? code : CVodeSVtolerances(cvode_, options.relative_tolerance, problem.tolerance());
-        code = code != 0 ? code : CVodeSetMaxNumSteps(cvode_, max_steps_between_stops);
         if (options.maximum_step_s > 0.0) {
             code = code != 0 ? code : CVodeSetMaxStep(cvode_, options.maximum_step_s);
         }

@@ -50,6 +50,17 @@ struct Oscillator final : HybridSystem {
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
 };
 
+// An event each microsecond of its clock.
+struct Ticking final : HybridSystem {
+    double next_s = 1e-6;
+    [[nodiscard]] int state_count() const override { return 1; }
+    [[nodiscard]] int event_count() const override { return 1; }
+    void rhs(double, const double*, double* rate) override { rate[0] = 1.0; }
+    void indicators(double, const double* x, double* value) override { value[0] = x[0] - next_s; }
+    void transition(double, double*, const int*) override { next_s += 1e-6; }
+    [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
+};
+
 } // namespace
 
 TEST(HybridIntegrator, LocatesImpactsOfABouncingBall) {
@@ -108,4 +119,30 @@ TEST(HybridIntegrator, ConvergesWithItsTolerance) {
         EXPECT_LT(error, previous);
         previous = error;
     }
+}
+
+TEST(HybridIntegrator, StopsWhereEventsFollowEachOtherWithoutEnd) {
+    Ticking ticking;
+    const double start[1] = {0.0};
+    HybridIntegrator integrator;
+    ASSERT_TRUE(integrator.create(ticking, 0.0, start, IntegratorOptions{}));
+    EXPECT_FALSE(integrator.advance(1.0));
+    // 2001 events are let pass. No code of SUNDIALS behind the time: it has not failed.
+    EXPECT_EQ(integrator.statistics().events, 2001);
+    EXPECT_STREQ(integrator.error(), "ERK stops: events follow each other without end at t = 0.002001 s");
+}
+
+TEST(HybridIntegrator, CountsFromZeroWhenItIsMadeAnew) {
+    Oscillator oscillator;
+    const double start[2] = {1.0, 0.0};
+    HybridIntegrator integrator;
+    ASSERT_TRUE(integrator.resume(oscillator, {0.0, 1e-3, -1.0, {5, 6, 7, 8}}, start, IntegratorOptions{}));
+    EXPECT_EQ(integrator.statistics().steps, 5);
+    EXPECT_EQ(integrator.statistics().events, 8);
+    ASSERT_TRUE(integrator.create(oscillator, 0.0, start, IntegratorOptions{}));
+    const giveway::solver::IntegratorStatistics counted = integrator.statistics();
+    EXPECT_EQ(counted.steps, 0);
+    EXPECT_EQ(counted.rhs_calls, 0);
+    EXPECT_EQ(counted.jacobian_calls, 0);
+    EXPECT_EQ(counted.events, 0);
 }
