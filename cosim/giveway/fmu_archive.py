@@ -40,6 +40,8 @@ class OverLimitError(ArchiveError):
 
 def shown(text: str, longest: int = 120) -> str:
     """A name from the file for a terminal: control characters escaped, and not endless."""
+    if len(text) <= longest and text.isprintable():
+        return text
     plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text[: longest + 1])
     return plain if len(text) <= longest else f"{plain[:longest]}..."
 
@@ -78,7 +80,7 @@ class Archive:
         except FileError:
             self._file.close()
             raise
-        self.files = {info.filename: info for info in self.infos if not info.is_dir()}
+        self.files = {info.filename: info for info in self.infos if not info.filename.endswith("/")}
 
     def __enter__(self) -> Archive:
         return self
@@ -135,7 +137,7 @@ class Archive:
                 raise ArchiveError(self.path, f"{shown(info.orig_filename)} is not unpacked: it leads elsewhere")
             target = folder / info.filename
             try:
-                if info.is_dir():
+                if info.filename.endswith("/"):
                     target.mkdir(parents=True, exist_ok=True)
                     continue
                 target.parent.mkdir(parents=True, exist_ok=True)
@@ -202,6 +204,8 @@ class Archive:
 
 def unsafe_place(name: str) -> str:
     """Why no file can be unpacked under that name safely, in words; empty if it can."""
+    if not name:
+        return "has no name"
     if leads_outside(name):
         return "leads outside the folder that it is unpacked to"
     if "\0" in name:

@@ -28,7 +28,7 @@ class Limits:
     unpacked_mb: float = 1000.0
     entries: int = 10_000
     xml_mb: float = 64.0
-    xml_elements: int = 300_000
+    xml_elements: int = 200_000
 
     def __post_init__(self) -> None:
         finite("--max-unpacked", self.unpacked_mb, 0.001, 1e6, "MB")

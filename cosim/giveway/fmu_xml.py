@@ -57,22 +57,27 @@ def read_xml(chunks: Iterable[bytes], budget: Budget, start: Start, end: Callabl
     """Hand out every element as it begins and ends; XmlError with the line where it cannot go on."""
     parser = expat.ParserCreate(namespace_separator=" ")
     level = fed = 0
+    handing_out = False
 
     def line() -> str:
         return f"line {parser.CurrentLineNumber}"
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
-        nonlocal level
+        nonlocal level, handing_out
+        handing_out = True
         level += 1
         budget.add_element()
         if level > MOST_LEVELS:
             raise XmlError(f"{line()}: elements are more than {MOST_LEVELS} levels deep")
         start(tag, attributes, parser.CurrentLineNumber)
+        handing_out = False
 
     def finish(_tag: str) -> None:
-        nonlocal level
+        nonlocal level, handing_out
+        handing_out = True
         level -= 1
         end()
+        handing_out = False
 
     def refuse(*_: object) -> None:
         raise XmlError(f"{line()}: has a document type (DOCTYPE): its entities could read other files, or never end")
@@ -92,4 +97,6 @@ def read_xml(chunks: Iterable[bytes], budget: Budget, start: Start, end: Callabl
     except expat.ExpatError as error:
         raise XmlError(f"line {error.lineno}: {expat.ErrorString(error.code)}") from None
     except (LookupError, UnicodeError, ValueError) as error:  # an encoding that does not exist, or is not one
+        if handing_out:
+            raise
         raise XmlError(f"{line()}: {error}") from None

@@ -81,8 +81,11 @@ def deep(path: Path) -> None:
 
 
 def bomb(path: Path) -> None:
-    content = bytes(1_050_000_000)
-    pack(path, files(), [entry("resources/zeros", content)])
+    """A GB of zeros in one MB."""
+    pack(path, files())
+    with zipfile.ZipFile(path, "a") as archive, archive.open(entry("resources/zeros")[0], "w") as stream:
+        for _ in range(1050):
+            stream.write(bytes(1_000_000))
 
 
 # (check, how it is made, words of the finding)
@@ -141,15 +144,20 @@ def test_it_is_a_fault_and_refused_in_one_line(name: str, tmp_path: Path, capsys
     assert not out.exists()
 
 
+@pytest.fixture(scope="module", params=[many_variables, huge_tag, bomb])
+def large(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small file with much in it."""
+    path: Path = tmp_path_factory.mktemp("large") / "large.fmu"
+    request.param(path)
+    return path
+
+
 @pytest.mark.parametrize("kind", ["check", "info", "run"])
-@pytest.mark.parametrize("make", [many_variables, huge_tag, bomb])
-def test_what_is_large_is_refused_in_little_memory(make: Callable[[Path], None], kind: str, tmp_path: Path) -> None:
+def test_what_is_large_is_refused_in_little_memory(large: Path, kind: str, tmp_path: Path) -> None:
     """900,000 variables took 4.1 GB, and 1 GB of zeros was unpacked: now 10 s and 500 MB, what is promised of any."""
-    path = tmp_path / "large.fmu"
-    make(path)
+    path = large
     assert path.stat().st_size < 10e6
     folder, environment = own_temporary_folder(tmp_path)
-    start = time.monotonic()
     process = subprocess.Popen(
         [command(), "fmu", kind, str(path)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
     )
@@ -161,7 +169,7 @@ def test_what_is_large_is_refused_in_little_memory(make: Callable[[Path], None],
     assert "--max-" in said or "4 MB" in said
     assert "Traceback" not in said
     assert usage.ru_maxrss < 500_000  # kB
-    assert time.monotonic() - start < 10.0
+    assert usage.ru_utime + usage.ru_stime < 10.0  # of the processor: the machine may do other things
     assert list(folder.iterdir()) == []
 
 

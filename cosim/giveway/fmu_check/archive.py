@@ -56,7 +56,7 @@ def zip_names(file: TestedFile) -> Found:
         if "\\" in name:
             yield FAULT, f"{shown(name)} has a backslash; the zip format has forward slashes"
         elif unsafe:
-            yield FAULT, f"{shown(name)} {unsafe}"
+            yield FAULT, f"{shown(name) or 'an entry'} {unsafe}"
         elif name in folders:
             yield FAULT, f"{shown(name)} is a file and a folder"
         elif not name.isprintable():
