@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["Collision", "Metric", "collision", "design"]
+__all__ = ["Collision", "Metric", "collision", "design", "without_collision"]
 
 PEAK_WINDOW_S = 0.35
 LOADED_SHARE = 0.5
@@ -463,6 +463,12 @@ def collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]
         hit.escape(),
         hit.energy_residual(),
     )
+
+
+def without_collision(traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]) -> tuple[Metric, ...]:
+    """The metrics of a run in which nothing can be hit, in the order of the table."""
+    hit = Collision(traces, parameters)
+    return hit.false_detections(), *hit.plan_deviation(), hit.energy_residual()
 
 
 def _peaks(hit: Collision) -> tuple[Metric, Metric, Metric]:

@@ -36,12 +36,14 @@ class Result:
         metrics: what the run is judged by, in the order of the printed table.
         manifest: versions, hashes, seeds, parameters, solver options, scenario.
         warnings: what happened otherwise than asked.
+        pushes: how each push of the scenario's schedule was felt, see `giveway.push_response.push_metrics`.
     """
 
     traces: xarray.Dataset
     metrics: tuple[Metric, ...]
     manifest: dict[str, Any]
     warnings: tuple[RunWarning, ...] = ()
+    pushes: tuple[tuple[Metric, ...], ...] = ()
 
     @property
     def interrupted(self) -> bool:
@@ -93,6 +95,7 @@ class Result:
             "schema_version": SCHEMA_VERSION,
             "metrics": [asdict(metric) for metric in self.metrics],
             "warnings": [asdict(warning) for warning in self.warnings],
+            "pushes": [[asdict(metric) for metric in push] for push in self.pushes],
         }
         write_text(folder / METRICS_FILE, json.dumps(metrics, indent=2, allow_nan=False) + "\n")
         write_text(folder / MANIFEST_FILE, json.dumps(self.manifest, indent=2, allow_nan=False) + "\n")
@@ -111,6 +114,7 @@ def load(folder: Path | str) -> Result:
         Metric(**{**entry, "name": RENAMED.get(entry["name"], entry["name"])}) for entry in judged["metrics"]
     )
     warnings = tuple(RunWarning(**entry) for entry in judged.get("warnings", ()))  # older files have none
+    pushes = tuple(tuple(Metric(**entry) for entry in push) for push in judged.get("pushes", ()))
     path = folder / TRACES_FILE
     try:
         with path.open("rb") as file:
@@ -122,7 +126,7 @@ def load(folder: Path | str) -> Result:
         attributes = {name: (field.metadata or {}).get(name.encode(), b"").decode() for name in ("units", "long_name")}
         variables[field.name] = ("time", column.to_numpy(), attributes)
     time = variables.pop("time")
-    return Result(xarray.Dataset(variables, coords={"time": time}), metrics, manifest, warnings)
+    return Result(xarray.Dataset(variables, coords={"time": time}), metrics, manifest, warnings, pushes)
 
 
 def _text_attributes(attributes: dict[Any, Any]) -> dict[str, str]:

@@ -15,7 +15,9 @@ import xarray
 import giveway
 from giveway import metrics, native
 from giveway.master import Progress, Record, simulate
+from giveway.plan import Pushes, TimedPush
 from giveway.plan_limits import check_plan_of
+from giveway.push_response import push_metrics, responses_of
 from giveway.result import SCHEMA_VERSION, Result
 from giveway.run_warnings import RunWarning, warnings_of
 from giveway.variables import Value, table
@@ -45,7 +47,17 @@ def judge(scenario: Scenario, record: Record) -> Result:
     if not record.interrupted:  # else nobody knows what would have come
         warnings = warnings_of(scenario, (*found, *metrics.design(traces, parameters)))
     manifest["warnings"] = [warning.text for warning in warnings]
-    return Result(traces, found, manifest, warnings)
+    felt = responses_of(traces, manifest).pushes
+    pushes = tuple(push_metrics(one, traces, parameters) for one in felt)
+    if not parameters["testbed"]["slider.present"]:
+        found = metrics.without_collision(traces, parameters)
+    return Result(traces, found, manifest, warnings, pushes)
+
+
+def _begun(scenario: Scenario, record: Record) -> tuple[TimedPush, ...]:
+    """The scheduled pushes that began before the run ended."""
+    schedule = scenario.push.pushes if isinstance(scenario.push, Pushes) else ()
+    return tuple(push for push in schedule if push.start_s < record.time_s[-1])
 
 
 def _label(record: Record) -> xarray.Dataset:
@@ -80,6 +92,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "fmi_version": record.fmi_version,
             "plan": _describe(scenario.plan),
             "push": None if scenario.push is None else _describe(scenario.push),
+            "pushes": [dataclasses.asdict(push) for push in _begun(scenario, record)],
             "body_region": scenario.body_region,
             "judge_as": scenario.judge_as,
             "contact_area_m2": scenario.contact_area_m2,

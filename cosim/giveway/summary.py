@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from giveway.files import write_text
-from giveway.metrics import Metric
+from giveway.metrics import CAUSE_WINDOW_S, Metric
 from giveway.result import Result
 
-__all__ = ["cell", "summary", "table_rows", "warning_lines", "write_summary"]
+__all__ = ["cell", "false_detection_line", "push_rows", "summary", "table_rows", "warning_lines", "write_summary"]
 
 SCHEMA_VERSION = 1
+NOT_IN_ROWS = ("contact point x", "contact point y")  # of a push: the location error tells enough, and rows are long
 
 
 def table_rows(results: Mapping[str, Result]) -> list[tuple[str, ...]]:
@@ -24,6 +25,33 @@ def table_rows(results: Mapping[str, Result]) -> list[tuple[str, ...]]:
         unit = "" if metric.unit == "1" else f", {metric.unit}"
         rows.append((f"{metric.name}{unit}", *(cell(result.metrics[index]) for result in results.values())))
     return rows
+
+
+def push_rows(result: Result) -> list[tuple[str, ...]]:
+    """The header and one row per push: what it was, then how it was felt, ``value (truth)``; empty without pushes."""
+    if not result.pushes:
+        return []
+    shown = [[one for one in push if one.name not in NOT_IN_ROWS] for push in result.pushes]
+    header = tuple(f"{one.name}{'' if one.unit == '1' else f', {one.unit}'}" for one in shown[0])
+    rows = [("push", *header)]
+    for number, (push, found) in enumerate(zip(result.manifest["scenario"]["pushes"], shown, strict=True), 1):
+        words = f"{number}: {push['force_n']:g} N at {push['start_s']:g} s"
+        cells = ["not felt" if one.name == "felt after" and one.value is None else cell(one) for one in found]
+        rows.append((words, *cells))
+    return rows
+
+
+def false_detection_line(result: Result) -> str:
+    """When the robot felt what was not there, as a sentence; empty if it did not."""
+    from giveway.push_response import responses_of
+
+    if not result.pushes:
+        return ""
+    false_s = responses_of(result.traces, result.manifest).false_s
+    if not false_s:
+        return ""
+    times = ", ".join(f"{time_s:.3f}" for time_s in false_s)
+    return f"False detections, with no push in the {CAUSE_WINDOW_S:g} s before: at {times} s"
 
 
 def warning_lines(results: Mapping[str, Result]) -> list[str]:

@@ -46,9 +46,16 @@ def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str,
 
 
 def print_results(name: str, results: Mapping[str, Result]) -> None:
-    """The metrics of ``results``, a column for each bumper, and below them the warnings."""
-    from giveway.summary import table_rows, warning_lines
+    """The metrics of ``results``, a column for each bumper, with pushes above and warnings below."""
+    from giveway.summary import false_detection_line, push_rows, table_rows, warning_lines
 
+    for result in results.values():
+        pushes = push_rows(result)
+        if pushes:
+            print_columns(f"{name}: how each push was felt (true)", pushes[0], pushes[1:])
+            line = false_detection_line(result)
+            if line:
+                typer.echo(f"{line}\n")
     header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
     print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
     print_warnings(warning_lines(results))

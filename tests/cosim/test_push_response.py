@@ -68,6 +68,19 @@ def test_a_second_detection_of_one_push_is_invented_and_ends_the_escape() -> Non
     assert found.pushes[0].escape_m == pytest.approx(0.25, abs=0.01)  # half a second of it, to one sample of 5 mm
 
 
+def test_what_is_felt_again_is_not_false() -> None:
+    found = judged({1.1: 10.0, 1.6: -170.0, 3.0: 0.0})
+    assert found.pushes[0].again_s == pytest.approx((1.6,))
+    assert found.false_s == pytest.approx((3.0,))
+    assert found.invented_s == pytest.approx((1.6, 3.0))
+
+
+def test_a_detection_belongs_to_the_push_that_began_last() -> None:
+    other = TimedPush(40.0, math.radians(30.0), 0.1, 0.0, 1.6, 0.3)  # 0.1 s after the end of the first
+    found = judged({1.7: 10.0}, (PUSH, other))
+    assert [one.detected_s for one in found.pushes] == [None, pytest.approx(1.7)]
+
+
 def test_a_robot_that_does_not_come_back() -> None:
     assert judged({1.1: 10.0}, back=False).returned == 0
 

@@ -62,7 +62,9 @@ def test_the_animation_data_is_json_with_the_detection(page: str, full_runs: dic
     scenes = json.loads(text.group(1))
     for scene, run in zip(scenes, full_runs.values(), strict=True):
         assert len(scene["outline"]) == 3
-        assert 1e3 * scene["detection"]["time"] == pytest.approx(run.metric("detection time").value, abs=0.1)
+        assert 1e3 * scene["touches"][0]["detection"]["time"] == pytest.approx(
+            run.metric("detection time").value, abs=0.1
+        )
         assert len(scene["time"]) == len(scene["base"][0]) == len(scene["force"][1])
 
 

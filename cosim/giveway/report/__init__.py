@@ -34,11 +34,18 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     """The report as HTML text; it refers to nothing outside itself. ``summary`` is a sentence below the title."""
     import jinja2
 
+    from giveway.report import pushes
     from giveway.report.animation import scene
     from giveway.report.figures import figures
-    from giveway.summary import table_rows, warning_lines
+    from giveway.summary import false_detection_line, push_rows, table_rows, warning_lines
 
     by_bumper = {result.manifest["scenario"]["bumper"]: result for result in results}
+    hit = {
+        BUMPER_LABELS[bumper]: result
+        for bumper, result in by_bumper.items()
+        if result.manifest["parameters"]["testbed"]["slider.present"]
+    }
+    drawn = [figure for result in results for figure in pushes.figures(result)] + (figures(hit) if hit else [])
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
@@ -51,7 +58,8 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
         rows=table_rows(by_bumper),
         judgements=[str(result.judgement) for result in results if result.judgement is not None],
         warnings=warning_lines(by_bumper),
-        figures=figures({BUMPER_LABELS[bumper]: result for bumper, result in by_bumper.items()}),
+        pushes=[(push_rows(result), false_detection_line(result)) for result in results if result.pushes],
+        figures=drawn,
         # "</" would end the script element early.
         scenes=json.dumps(scenes, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
         manifest=results[0].manifest,

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from giveway.approach import outline_of
 from giveway.metrics import Collision
+from giveway.push_response import responses_of
 from giveway.report.obstacle import obstacle, plate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from giveway.push_response import PushResponse
     from giveway.result import Result
 
 __all__ = ["scene"]
@@ -23,11 +26,13 @@ DECIMALS = 4
 
 
 def scene(label: str, result: Result) -> dict[str, Any]:
-    """Geometry and sampled motion of one run; lengths in m, forces in N, times in s since contact."""
+    """Geometry and sampled motion of one run; lengths in m, forces in N, times in s since contact or the first push."""
     hit = Collision(result.traces, result.manifest["parameters"])
     parameters = result.manifest["parameters"]["testbed"]
-    contact_s = hit.contact_s or 0.0
-    rows = _samples(hit.time_s - contact_s)
+    pushes = responses_of(result.traces, result.manifest).pushes
+    contact_s = pushes[0].push.start_s if hit.contact_s is None and pushes else hit.contact_s or 0.0
+    touches = _touches(hit, pushes, contact_s)
+    rows = _samples(hit.time_s - contact_s, [touch["time"] for touch in touches])
     theta = hit["testbed.truth.theta"]
     x, y = hit["testbed.truth.x"], hit["testbed.truth.y"]
 
@@ -56,16 +61,28 @@ def scene(label: str, result: Result) -> dict[str, Any]:
         "force": [_rounded(values[rows]) for values in force],
         "estimated_point": [_rounded(values[rows]) for values in estimated_point],
         "estimated_force": [_rounded(values[rows], 2) for values in estimated_force],
-        "detection": _detection(hit, contact_s),
+        "touches": touches,
     }
 
 
-def _samples(time_s: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Rows to show: every 2 ms around the impact, every 25 ms in the long escape."""
+def _touches(hit: Collision, pushes: Sequence[PushResponse], contact_s: float) -> list[dict[str, Any]]:
+    """When the robot was hit or pushed, and what it felt, in the order of time."""
+    found = []
+    if hit.contact_s is not None:
+        found.append({"what": "contact", "time": 0.0, "detection": _detection(hit, hit.detected, contact_s)})
+    for one in pushes:
+        row = None if one.detected_s is None else int(np.searchsorted(hit.time_s, one.detected_s))
+        start_s = round(one.push.start_s - contact_s, DECIMALS)
+        found.append({"what": "push", "time": start_s, "detection": _detection(hit, row, contact_s)})
+    return sorted(found, key=lambda touch: float(touch["time"]))
+
+
+def _samples(time_s: NDArray[np.float64], touches_s: Sequence[float]) -> NDArray[np.intp]:
+    """Rows to show: every 2 ms around each hit or push, every 25 ms in the long escape."""
     step_s = float(time_s[1] - time_s[0])
     fine, coarse = (max(1, round(wanted / step_s)) for wanted in (IMPACT_STEP_S, ESCAPE_STEP_S))
     index = np.arange(len(time_s))
-    near = (time_s >= -LEAD_S) & (time_s < IMPACT_S)
+    near = np.any([(time_s >= at - LEAD_S) & (time_s < at + IMPACT_S) for at in (0.0, *touches_s)], axis=0)
     chosen = (near & (index % fine == 0)) | ((time_s >= IMPACT_S) & (index % coarse == 0))
     rows = np.flatnonzero(chosen)
     return rows if rows.size else index[::fine]
@@ -78,9 +95,8 @@ def _to_world(
     return x + np.cos(theta) * bx - np.sin(theta) * by, y + np.sin(theta) * bx + np.cos(theta) * by
 
 
-def _detection(hit: Collision, contact_s: float) -> dict[str, Any] | None:
-    """When and what was detected; point and force in the base frame, where they stay put on the robot."""
-    row = hit.detected
+def _detection(hit: Collision, row: int | None, contact_s: float) -> dict[str, Any] | None:
+    """When and what was detected in ``row``; point and force in the base frame, where they stay put on the robot."""
     if row is None:
         return None
     return {

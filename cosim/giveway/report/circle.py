@@ -31,13 +31,15 @@ LESS, MORE = "#0b64a8", "#c8500a"
 BIN = 100  # samples, of which the highest is drawn
 
 
-def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]]) -> Figure:
-    """The path of each run by name, its pushes and escapes."""
+def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]], outline: NDArray[np.float64] | None = None) -> Figure:
+    """The path of each run by name, its pushes and escapes; ``outline`` of the robot, None: the default one's."""
+    if outline is None:
+        outline = outline_of({v.name: v.start for v in table("testbed").select("parameter") if v.start is not None})
     with context(STYLE):
         figure = Figure(figsize=(9.6, 5.6), layout="constrained")
         panels = figure.subplots(1, len(runs), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (name, (traces, found)) in zip(panels, runs.items(), strict=True):
-            _draw_path(axes, traces, found)
+            _draw_path(axes, traces, found, outline)
             axes.set(
                 title=f"{name}:\n{found.detected} of {len(found.pushes)} noticed, {len(found.invented_s)} invented"
             )
@@ -48,7 +50,7 @@ def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]]) -> Figure:
     return figure
 
 
-def _draw_path(axes: Axes, traces: xarray.Dataset, found: Responses) -> None:
+def _draw_path(axes: Axes, traces: xarray.Dataset, found: Responses, outline: NDArray[np.float64]) -> None:
     x, y = (traces[f"testbed.truth.{axis}"].values for axis in "xy")
     mode = traces["controller.mode"].values
     planned = [traces[f"controller.plan.{axis}"].values for axis in "xy"]
@@ -59,15 +61,21 @@ def _draw_path(axes: Axes, traces: xarray.Dataset, found: Responses) -> None:
     for number, one in enumerate(found.pushes, start=1):
         row = int(np.searchsorted(traces["time"].values, one.detected_s or one.push.start_s))
         heading = float(traces["testbed.truth.theta"][row])
-        _draw_push(axes, one, number, np.array([x[row], y[row]]), heading)
+        _draw_push(axes, one, number, np.array([x[row], y[row]]), heading, outline)
     rows = np.searchsorted(traces["time"].values, found.invented_s)
     axes.plot(x[rows], y[rows], "x", color="#b00020", markersize=6, label="invented")
 
 
-def _draw_push(axes: Axes, one: PushResponse, number: int, base: NDArray[np.float64], heading: float) -> None:
+def _draw_push(
+    axes: Axes,
+    one: PushResponse,
+    number: int,
+    base: NDArray[np.float64],
+    heading: float,
+    outline: NDArray[np.float64],
+) -> None:
     turn = np.array([[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]])
-    starts = {v.name: v.start for v in table("testbed").select("parameter") if v.start is not None}
-    corners = base + outline_of(starts) @ turn.T
+    corners = base + outline @ turn.T
     axes.fill(*corners.T, facecolor="none", edgecolor=TRUTH_COLOUR, linewidth=0.8)
     point = base + turn @ (one.push.point_x_m, one.push.point_y_m)
     along = np.array([math.cos(one.push.direction_rad), math.sin(one.push.direction_rad)])

@@ -1,5 +1,5 @@
 "use strict";
-// Top view of one collision per bumper, side by side, all at the same time since contact.
+// Top view of one run per bumper, side by side, all at the same time since contact, or since the first push.
 (() => {
   const scenes = JSON.parse(document.getElementById("scenes").textContent);
   const canvas = document.getElementById("stage"), pen = canvas.getContext("2d");
@@ -133,7 +133,8 @@
     const cell = width / scenes.length, top = 52;
     const scale = Math.min((cell - 16) / (box[2] - box[0]), (height - top - 10) / (box[3] - box[1]));
     scenes.forEach((s, index) => {
-      const { mix, pair } = sample(s, now), pose = s.base.map(mix), hit = s.detection;
+      const { mix, pair } = sample(s, now), pose = s.base.map(mix), touch = s.touches.filter(t => now >= t.time).pop();
+      const hit = touch && touch.detection, felt = hit && now >= hit.time;
       pen.save(); pen.beginPath(); pen.rect(index * cell, 0, cell, height); pen.clip();
       pen.save();
       pen.translate((index + .5) * cell, top + (height - top - 10) / 2); pen.scale(scale, -scale);
@@ -142,19 +143,21 @@
       robot(s, pose, mix(s.compression), scale);
       const force = pair(s.force), touching = Math.hypot(...force) >= smallestForce;
       if (touching) { arrow(pair(s.point), force, colours.truth, 5, scale); dot(pair(s.point), colours.truth, 5, scale); }
-      if (hit && now >= hit.time) {
+      if (felt) {
         const [c, d] = [Math.cos(pose[2]), Math.sin(pose[2])], turn = v => [c * v[0] - d * v[1], d * v[0] + c * v[1]];
         const p = turn(hit.point), at = [p[0] + pose[0], p[1] + pose[1]];
         arrow(at, turn(hit.force), colours.detected, 2.5, scale); ring(at, colours.detected, 6, scale);
-      } else if (now >= 0 && Math.hypot(...pair(s.estimated_force)) >= smallestForce) {
+      } else if (touch && Math.hypot(...pair(s.estimated_force)) >= smallestForce) {
         arrow(pair(s.estimated_point), pair(s.estimated_force), colours.estimate, 2.5, scale);
         ring(pair(s.estimated_point), colours.estimate, 6, scale);
       }
       pen.restore();
       pen.fillStyle = colours.ink; pen.font = "600 14px system-ui, sans-serif"; pen.fillText(s.label, index * cell + 14, 24);
-      pen.font = "13px system-ui, sans-serif"; pen.fillStyle = hit && now >= hit.time ? colours.detected : "#5a616c";
-      pen.fillText(now < 0 ? "before contact" : !hit ? "not detected" :
-        now < hit.time ? `contact: ${Math.hypot(...force).toFixed(0)} N` : `detected after ${(hit.time * 1000).toFixed(0)} ms`,
+      pen.font = "13px system-ui, sans-serif"; pen.fillStyle = felt ? colours.detected : "#5a616c";
+      const newtons = `${touch ? touch.what : ""}: ${Math.hypot(...force).toFixed(0)} N`;
+      pen.fillText(!touch ? (s.touches.length ? `before the ${s.touches[0].what}` : "nothing touches the robot") :
+        felt ? `${touch.what} detected after ${((hit.time - touch.time) * 1000).toFixed(0)} ms` :
+        hit || touching ? newtons : `${touch.what} not detected`,
         index * cell + 14, 42);
       if (index) { pen.strokeStyle = "#e1e4e8"; pen.lineWidth = 1; pen.beginPath(); pen.moveTo(index * cell, 0); pen.lineTo(index * cell, height); pen.stroke(); }
       pen.restore();
@@ -180,7 +183,7 @@
   play.addEventListener("click", () => setPlaying(!playing));
   seek.addEventListener("input", () => { setPlaying(false); now = toTime(Number(seek.value)); draw(); });
   window.addEventListener("resize", draw);
-  const shown = scenes.map(s => s.detection).filter(Boolean).map(d => d.time);
+  const shown = scenes.map(s => s.touches.map(t => t.detection).find(Boolean)).filter(Boolean).map(d => d.time);
   now = shown.length ? Math.max(...shown) + 0.01 : first;  // open on something worth seeing
   draw();
 })();
