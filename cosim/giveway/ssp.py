@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Any
 
 from giveway import native
 from giveway.errors import GivewayError, UnknownNameError
+from giveway.experiments.motionless import SPEED_MPS
+from giveway.experiments.placement import pulled_by_weight
 from giveway.files import check_file, replace_file
 from giveway.fmu_description import Description, VariableEntry, read_description
 from giveway.master import COMMANDS, KINDS, SENSORS
@@ -70,7 +72,10 @@ def write_ssp(out: Path, robot: Robot | None = None, *, sequential: bool = False
 
 
 def parameter_set(bumper: str, robot: Robot | None = None, *, sequential: bool = False) -> dict[str, Value]:
-    """What makes the testbed one with ``bumper``, by "model.name"; with ``robot`` also all that robot's values."""
+    """What makes the testbed one with ``bumper``, by "model.name"; with ``robot`` also all that robot's values.
+
+    The slider hits that robot as the experiment "motionless" does.
+    """
     testbed = table("testbed")
     if bumper not in BUMPERS:
         raise UnknownNameError("bumper", bumper, BUMPERS)
@@ -78,6 +83,8 @@ def parameter_set(bumper: str, robot: Robot | None = None, *, sequential: bool =
     if robot is not None:
         for model in native.MODELS:
             values |= {f"{model}.{name}": value for name, value in table(model).robot_values(robot).items()}
+        placed = pulled_by_weight("motionless", robot.path, SPEED_MPS)
+        values |= {f"testbed.{name}": value for name, value in placed.items()}
     for variable in testbed.select("parameter"):
         if variable.name.startswith("bumper.") and variable.start is not None:
             values.setdefault(f"testbed.{variable.name}", variable.start)

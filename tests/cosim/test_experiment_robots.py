@@ -12,6 +12,8 @@ from giveway import batch, native
 from giveway.experiments import get
 from giveway.experiments.placement import outline_of_robot
 from giveway.plan import Pushes
+from giveway.robot import read_robot
+from giveway.ssp import parameter_set
 
 TRIKEY = native.robot().read_text(encoding="utf-8")
 X, Y = "value = [0.352184, -0.176092, -0.176092]", "value = [0.0, 0.305, -0.305]"
@@ -114,3 +116,22 @@ def test_a_scenario_without_a_mass_has_the_robot_files_slider(tmp_path: Path) ->
         'schema_version = 1\nduration = 1\nrobot = "mine.toml"\n[collision]\nspeed = 0.3\nedge = 0\n'
     )
     assert giveway.read_scenario(tmp_path / "case.toml").parameters("testbed")["slider.mass"] == 14.0
+
+
+def test_the_package_of_another_robot_hits_it_as_fast(tmp_path: Path) -> None:
+    box = robot_file(tmp_path, BOX)
+    values = parameter_set("none", read_robot(box))
+    placed = get("motionless").scenario("none", robot=box).testbed
+    assert {name: values[f"testbed.{name}"] for name in placed if name != "slider.present"} == {
+        name: value for name, value in placed.items() if name != "slider.present"
+    }
+    assert "testbed.slider.target_x" not in parameter_set("none", read_robot(native.robot()))
+
+
+def test_the_fit_is_for_the_papers_outline(cli: Cli, tmp_path: Path) -> None:
+    robot_file(tmp_path, BOX)
+    done = cli("fit", "--robot", "mine.toml", "--out", "new.toml")
+    assert done.returncode == 2
+    assert "robot: mine.toml" in done.stderr
+    assert "outline of the paper's" in done.stderr
+    assert folder_content(tmp_path) == ["mine.toml"]

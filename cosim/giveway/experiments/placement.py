@@ -23,7 +23,15 @@ if TYPE_CHECKING:
     from giveway.approach import Approach
     from giveway.plan import Plan
 
-__all__ = ["before_resting", "for_this_robot", "outline_of_robot", "pulled_by_weight", "tare_s", "testbed_of"]
+__all__ = [
+    "before_resting",
+    "for_this_robot",
+    "has_default_outline",
+    "outline_of_robot",
+    "pulled_by_weight",
+    "tare_s",
+    "testbed_of",
+]
 
 SIDE = 0  # of the outline, between corners 0 and 1: the one that the paper's slider hits
 RUN_UP_SHARE = 0.04  # by which a run-up may differ: the speed at its end then differs by 2 %
@@ -72,7 +80,7 @@ def pulled_by_weight(experiment: str, robot: Path | None, speed_mps: float) -> d
     run_up = float(found["slider.run_up"])
     if abs(float(testbed["slider.run_up"]) / run_up - 1.0) <= RUN_UP_SHARE:
         del found["slider.run_up"]
-    if _has_default_outline(robot):
+    if has_default_outline(robot):
         found = {name: value for name, value in found.items() if name == "slider.run_up"}
     return found
 
@@ -88,7 +96,7 @@ def before_resting(
 
     with for_this_robot(experiment, robot):
         testbed = testbed_of(robot)
-        if _has_default_outline(robot):
+        if has_default_outline(robot):
             direction, target_x, target_y = (
                 float(testbed[f"slider.{name}"]) for name in ("direction", "target_x", "target_y")
             )
@@ -120,6 +128,7 @@ def _meet(approach: Approach, testbed: Mapping[str, Value], plan: Plan) -> dict[
     return {name: value for name, value in found.items() if name not in ("slider.present", "rope.attached")}
 
 
-def _has_default_outline(robot: Path | None) -> bool:
+def has_default_outline(robot: Path | None) -> bool:
+    """Whether the robot file ``robot`` has the outline of the robot the FMUs were built with, to the last bit."""
     mine, default = outline_of_robot(robot), outline_of_robot(None)
     return mine.shape == default.shape and bool((mine == default).all())

@@ -19,6 +19,7 @@ from giveway import native
 from giveway.batch import run_many
 from giveway.errors import GivewayError
 from giveway.experiments import motionless, moving
+from giveway.experiments.placement import has_default_outline
 from giveway.robot import read_robot
 from giveway.scenario import BUMPERS, Scenario
 from giveway.variables import Value, table
@@ -117,7 +118,12 @@ class Bench:
     """Runs what the quantities need for many sets of values at once, on top of a robot file."""
 
     def __init__(self, robot: Path | None = None, threads: int | None = None) -> None:
-        """``robot``: the file of the values that are not varied, None for the one the FMUs were built with."""
+        """``robot``: the file of the values that are not varied, None for the one the FMUs were built with.
+
+        Its outline must be that of the paper's robot: slider and obstacle stand where the paper had them.
+        """
+        if not has_default_outline(robot):
+            raise GivewayError("robot", robot, "a robot with the outline of the paper's: its results are fitted")
         read = read_robot(native.robot() if robot is None else robot)
         self._base = {model: table(model).robot_values(read) for model in native.MODELS}
         self._threads = threads
