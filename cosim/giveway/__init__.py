@@ -11,21 +11,36 @@ Importing this package is light: numerical libraries are loaded when a run start
 
 from __future__ import annotations
 
+import importlib
 import importlib.metadata
 import logging
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from giveway.errors import GivewayError
 from giveway.scenario import Scenario
 
 if TYPE_CHECKING:
+    from giveway import batch
     from giveway.experiments import Experiment
     from giveway.master import Progress
     from giveway.result import Result
     from giveway.study import Study
+    from giveway.study.answers import Answers
 
-__all__ = ["GivewayError", "Scenario", "Study", "__version__", "experiment", "load", "read_scenario", "run"]
+__all__ = [
+    "Answers",
+    "GivewayError",
+    "Result",
+    "Scenario",
+    "Study",
+    "__version__",
+    "batch",
+    "experiment",
+    "load",
+    "read_scenario",
+    "run",
+]
 
 try:
     __version__ = importlib.metadata.version("giveway")
@@ -40,7 +55,17 @@ def run(scenario: Scenario, progress: Progress | None = None) -> Result:
 
     ``progress``, if given, is called now and then with the simulated time and the duration (both in s).
     Ctrl-C ends the run cleanly; the result then holds what was computed and says so in its manifest.
+
+    Raises:
+        GivewayError: ``scenario`` is no scenario, or something in it is not allowed.
+        SimulationError: an FMU failed.
     """
+    if not isinstance(scenario, Scenario):
+        allowed = (
+            'a giveway.Scenario, such as giveway.experiment("motionless").scenario("magnetic") or '
+            'giveway.read_scenario("examples/trolley.toml")'
+        )
+        raise GivewayError("scenario", repr(scenario), allowed)
     from giveway import runner
 
     return runner.run(scenario, progress)
@@ -67,13 +92,20 @@ def read_scenario(path: Path | str) -> Scenario:
     return scenario_file.read_scenario(path)
 
 
-def __getattr__(name: str) -> Any:
-    if name == "Result":
-        from giveway.result import Result
+_LATER = {
+    "Answers": "giveway.study.answers",
+    "Result": "giveway.result",
+    "Study": "giveway.study",
+    "batch": "giveway.batch",
+}
 
-        return Result
-    if name == "Study":
-        from giveway.study import Study
 
-        return Study
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+def __getattr__(name: str) -> object:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = importlib.import_module(_LATER[name])
+    return module if _LATER[name] == f"{__name__}.{name}" else getattr(module, name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

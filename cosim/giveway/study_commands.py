@@ -158,3 +158,5 @@ def _print_answers(found: Answers) -> None:
     rows = tables.sensitivity_rows(found)
     if rows:
         print_columns("What decides", tables.sensitivity_header(found), rows)
+    if reason := found.sensitivities().reason:
+        typer.echo(f"What decides is not known: {reason}.")

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from giveway.errors import GivewayError
 
-__all__ = ["factor"]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["WrittenUnit", "factor"]
+
+DIGITS = 15  # of a value that is shown: one less than a conversion there and back may change
 
 # Per unit: size in SI, and exponents of m, kg, s, rad, degC.
 _Dimension = tuple[int, int, int, int, int]
@@ -45,6 +53,29 @@ _ATOMS: Mapping[str, tuple[float, _Dimension]] = {
     "degC": (1.0, (0, 0, 0, 0, 1)),
 }
 _FACTOR = re.compile(r"(1|%|[A-Za-z]+)(\d?)")
+
+
+@dataclass(frozen=True)
+class WrittenUnit:
+    """A unit as the user wrote it: ``name``, and ``scale``, by which a value in it is multiplied to be in our own."""
+
+    name: str
+    scale: float = 1.0
+
+    def of(self, value: float) -> float:
+        """``value``, which is in our own unit, in this one."""
+        return value if self.scale == 1.0 else float(f"{value / self.scale:.{DIGITS}g}")
+
+    def all_of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The same of an array."""
+        import numpy as np
+
+        return values if self.scale == 1.0 else np.array([self.of(value) for value in values.tolist()])
+
+    @property
+    def shown(self) -> str:
+        """The name, or "" where there is no unit."""
+        return "" if self.name == "1" else self.name
 
 
 def factor(field: str, unit: str, wanted: str) -> float:

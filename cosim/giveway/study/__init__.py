@@ -16,9 +16,10 @@ The keywords are the keys of a study file (`cosim/README.md`).
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
@@ -27,53 +28,256 @@ if TYPE_CHECKING:
 
 __all__ = ["Study"]
 
+Keys = Mapping[str, Any]
+Distribution = Literal["uniform", "loguniform", "triangular", "normal"]
+OverCollisions = Literal["worst", "mean"]
+OverTolerances = Literal["worst", "mean", "nominal"]
+Limit = Literal["transient limit", "lasting limit"]
+
 
 class Study:
-    """A study that is being put together; nothing is checked until `setup` or `run`."""
+    """A study that is being put together; nothing is checked until `setup` or `run`.
 
-    def __init__(self, name: str, *, seed: int = 1, method: str = "event-exact", **scenario: Any) -> None:
-        """``scenario``: the keys of ``[scenario]``: duration (s, needed), bumper, robot, body_region, plan, ..."""
-        self.document: dict[str, Any] = {
-            "schema_version": 1,
-            "name": name,
-            "seed": seed,
-            "method": method,
-            "scenario": {key: str(value) if isinstance(value, Path) else value for key, value in scenario.items()},
+    Every method returns the study itself, so that calls can be chained. What is left out, or None, is as if its key
+    were not in a study file.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        duration: float,
+        bumper: Literal["none", "spring", "magnetic"] | None = None,
+        robot: Path | str | None = None,
+        plan: Keys | None = None,
+        push: Sequence[Keys] | None = None,
+        body_region: str | None = None,
+        judge_as: str | None = None,
+        contact_area: Keys | None = None,
+        testbed: Keys | None = None,
+        controller: Keys | None = None,
+        noise_seed: int | None = None,
+        seed: int = 1,
+        method: Literal["event-exact", "fixed-step"] = "event-exact",
+        plant_step: float | None = None,
+        part_runs: int | None = None,
+    ) -> None:
+        """Begin with what all designs have in common.
+
+        Args:
+            name: 1 to 80 characters.
+            duration: simulated time of a run, s.
+            bumper: on what collides; "none" if left out.
+            robot: file (TOML); left out: the robot that the FMUs were built with.
+            plan: where the robot goes: ``{"kind": "straight", "speed": 0.3, ...}``; at rest if left out.
+            push: external pushes, each with force (N), direction (deg), point (m), start (s), duration (s), ramp (s).
+            body_region: what is hit, and its limits after ISO/TS 15066, e.g. "lower leg".
+            judge_as: only its limits.
+            contact_area: ``{"value": 50, "unit": "mm2"}``, for the mean pressure.
+            testbed, controller: parameters by name, ``{"slider.friction": 2.0}`` or as nested tables.
+            noise_seed: of the sensors.
+            seed: of the samplers.
+            method: "event-exact", or "fixed-step" (7.6 times as fast).
+            plant_step: of the plant with fixed steps, s; left out: as each run needs.
+            part_runs: runs per stored part; left out: 5 s of work.
+        """
+        scenario = {
+            "duration": duration,
+            "bumper": bumper,
+            "robot": None if robot is None else str(robot),
+            "plan": _table(plan),
+            "push": None if push is None else [_table(one) for one in push],
+            "body_region": body_region,
+            "judge_as": judge_as,
+            "contact_area": _table(contact_area),
+            "testbed": _table(testbed),
+            "controller": _table(controller),
+            "seed": noise_seed,
         }
+        document = {"schema_version": 1, "name": name, "seed": seed, "method": method}
+        self.document: dict[str, Any] = document | _given(
+            {"plant_step": plant_step, "part_runs": part_runs, "scenario": _given(scenario)}
+        )
 
-    def collision(self, name: str, **keys: Any) -> Study:
-        """One more collision that every design goes through: speed (m/s), mass (kg), edge or point, ..."""
-        return self._add("collision", {"name": name, **keys})
+    def collision(
+        self,
+        name: str,
+        *,
+        speed: float,
+        mass: float | None = None,
+        edge: int | None = None,
+        offset: float | None = None,
+        point: Sequence[float] | None = None,
+        direction: float | None = None,
+        time: float | None = None,
+        rope: bool | None = None,
+        height: float | None = None,
+    ) -> Study:
+        """One more collision that every design goes through.
 
-    def vary(self, quantity: str, **keys: Any) -> Study:
-        """A quantity that differs between designs: values, or low and high, with unit, levels, distribution, ..."""
-        return self._add("vary", {"quantity": quantity, **keys})
+        Args:
+            name: for tables; one of its own.
+            speed: of the slider along its rail at the contact, m/s; 0: it stands, and the robot runs into it.
+            mass: whole sliding mass, kg; not needed with a body region.
+            edge, offset: side of the outline, and m from its middle towards the next corner; or
+            point: (x, y) on the outline, base frame, m.
+            direction: of travel, deg, world frame; left out: straight into the side.
+            time: of the contact, s; 0.5 if left out.
+            rope: a hanging weight pulls the slider from rest, as long as it takes.
+            height: of the contact above the floor, m; with it the base can tip.
+        """
+        place = {"edge": edge, "offset": offset, "point": _list(point), "direction": direction, "height": height}
+        keys = {"speed": speed, "mass": mass, **place, "time": time, "rope": rope}
+        return self._add("collision", {"name": name, **_given(keys)})
 
-    def tolerance(self, quantity: str, **keys: Any) -> Study:
-        """A quantity that deviates from its design, by ``relative`` (0.3: 30 %) or ``absolute``."""
-        return self._add("tolerance", {"quantity": quantity, **keys})
+    def vary(
+        self,
+        quantity: str,
+        *,
+        values: Sequence[float | str | bool] | None = None,
+        low: float | None = None,
+        high: float | None = None,
+        unit: str | None = None,
+        levels: int | None = None,
+        scale: Literal["linear", "log"] | None = None,
+        distribution: Distribution | None = None,
+        mode: float | None = None,
+        mean: float | None = None,
+        sigma: float | None = None,
+        nominal: float | str | bool | None = None,
+        also: Sequence[str] | None = None,
+    ) -> Study:
+        """A quantity that differs between designs.
 
-    def designs(self, kind: str, **keys: Any) -> Study:
-        """How designs are made: "factorial", "latin-hypercube" (count), "sobol" (count), "one-at-a-time", ..."""
-        self.document["designs"] = {"kind": kind, **keys}
+        Args:
+            quantity: a parameter (``testbed.bumper.spring_rate``), ``robot.`` and a number of the robot file, "bumper",
+                "temperature", or of the hit (``collision.speed``).
+            values: the values themselves; or
+            low, high: its range, which ``levels`` divides, or a sampler fills.
+            unit: of all numbers here, such as "N/mm"; left out: the quantity's own.
+            levels: how many of them.
+            scale: "log": evenly in its logarithm.
+            distribution: of samples: "uniform", "loguniform", "triangular" or "normal".
+            mode: of a triangular one; mean, sigma: of a normal one, which low and high cut.
+            nominal: its value while another quantity varies, for "one-at-a-time".
+            also: other quantities that get the same value.
+        """
+        numbers = {"low": low, "high": high, "mode": mode, "mean": mean, "sigma": sigma, "nominal": nominal}
+        keys = {"values": _list(values), **numbers, "unit": unit, "levels": levels, "scale": scale}
+        return self._add(
+            "vary", {"quantity": quantity, **_given({**keys, "distribution": distribution, "also": _list(also)})}
+        )
+
+    def tolerance(
+        self,
+        quantity: str,
+        *,
+        relative: float | None = None,
+        absolute: float | None = None,
+        unit: str | None = None,
+        distribution: Literal["uniform", "triangular", "normal"] | None = None,
+        also: Sequence[str] | None = None,
+    ) -> Study:
+        """A quantity that deviates from its design.
+
+        Args:
+            quantity: as in `vary`.
+            relative: by this share (0.3: 30 % more or less); or
+            absolute: by so much, in ``unit``.
+            unit: of it; left out: the quantity's own.
+            distribution: "uniform" (if left out), "triangular" or "normal" (the ends are 3 sigma).
+            also: other quantities that deviate alike.
+        """
+        keys = {"relative": relative, "absolute": absolute, "unit": unit, "distribution": distribution}
+        return self._add("tolerance", {"quantity": quantity, **_given({**keys, "also": _list(also)})})
+
+    def designs(
+        self,
+        kind: Literal["factorial", "latin-hypercube", "sobol", "one-at-a-time", "morris", "sobol-indices", "csv"],
+        *,
+        count: int | None = None,
+        trajectories: int | None = None,
+        grid: int | None = None,
+        file: Path | str | None = None,
+    ) -> Study:
+        """How designs are made; without it: "factorial".
+
+        Args:
+            kind: every combination of levels, a sample of ``count``, one quantity at a time, or from a file.
+            count: of "latin-hypercube" and "sobol"; of "sobol-indices": times quantities + 2.
+            trajectories, grid: of "morris": how many, and on how many levels (even).
+            file: of "csv": a line of quantities, ``name [unit]``, then one design per line.
+        """
+        keys = {"count": count, "trajectories": trajectories, "grid": grid, "file": None if file is None else str(file)}
+        self.document["designs"] = {"kind": kind, **_given(keys)}
         return self
 
-    def tolerances(self, **keys: Any) -> Study:
-        """How tolerances are sampled: samples, kind, noise_seeds."""
-        self.document["tolerances"] = keys
+    def tolerances(
+        self,
+        *,
+        samples: int | None = None,
+        kind: Literal["sobol", "latin-hypercube", "corners"] | None = None,
+        noise_seeds: bool | None = None,
+    ) -> Study:
+        """How tolerances are sampled.
+
+        Args:
+            samples: how many for each design; 16 if left out.
+            kind: "corners": every combination of both ends.
+            noise_seeds: sensor noise of its own for every sample.
+        """
+        self.document["tolerances"] = _given({"samples": samples, "kind": kind, "noise_seeds": noise_seeds})
         return self
 
-    def objective(self, metric: str, **keys: Any) -> Study:
-        """A metric that should be small, or large with ``goal="maximise"``."""
-        return self._add("objective", {"metric": metric, **keys})
+    def objective(
+        self,
+        metric: str,
+        *,
+        goal: Literal["minimise", "maximise"] | None = None,
+        weight: float | None = None,
+        collisions: OverCollisions | None = None,
+        tolerances: OverTolerances | None = None,
+    ) -> Study:
+        """A metric that should be small, or large with ``goal="maximise"``.
 
-    def constraint(self, metric: str, **keys: Any) -> Study:
-        """A metric with a ``minimum`` or a ``maximum``, in ``unit``."""
-        return self._add("constraint", {"metric": metric, **keys})
+        Args:
+            metric: what the batch library measures, e.g. "detection time"; also ``NAME (error)``.
+            goal: "minimise" if left out.
+            weight: in the ranking, 0 to 1e6; 1 if left out.
+            collisions, tolerances: what counts of them; "worst" if left out.
+        """
+        keys = {"goal": goal, "weight": weight, "collisions": collisions, "tolerances": tolerances}
+        return self._add("objective", {"metric": metric, **_given(keys)})
 
-    def report(self, **keys: Any) -> Study:
-        """What the answers show besides: metrics (a list of names), chosen (how many designs get traces)."""
-        self.document["report"] = keys
+    def constraint(
+        self,
+        metric: str,
+        *,
+        minimum: float | Limit | None = None,
+        maximum: float | Limit | None = None,
+        unit: str | None = None,
+        collisions: OverCollisions | None = None,
+        tolerances: OverTolerances | None = None,
+    ) -> Study:
+        """A metric with an end.
+
+        Args:
+            metric: as in `objective`.
+            minimum, maximum: one of them, in ``unit``; or "transient limit", "lasting limit" of the body region.
+            unit: left out: the metric's own.
+            collisions, tolerances: what counts of them; "worst" if left out.
+        """
+        keys = {"minimum": minimum, "maximum": maximum, "unit": unit, "collisions": collisions}
+        return self._add("constraint", {"metric": metric, **_given({**keys, "tolerances": tolerances})})
+
+    def report(self, *, metrics: Sequence[str] | None = None, chosen: int | None = None) -> Study:
+        """What the answers show besides.
+
+        Args:
+            metrics: more columns of the table.
+            chosen: how many of the best designs get traces, 0 to 20; 3 if left out.
+        """
+        self.document["report"] = _given({"metrics": _list(metrics), "chosen": chosen})
         return self
 
     def setup(self, folder: Path | str = ".") -> Setup:
@@ -112,3 +316,19 @@ class Study:
     def _add(self, table: str, entry: dict[str, Any]) -> Study:
         self.document.setdefault(table, []).append(entry)
         return self
+
+
+def _given(keys: Mapping[str, Any]) -> dict[str, Any]:
+    """What was not left out."""
+    return {key: value for key, value in keys.items() if value is not None}
+
+
+def _list(values: Sequence[Any] | None) -> list[Any] | Sequence[Any] | None:
+    """As a study file has it; a lone string stays what it is, and is refused as such."""
+    if values is None or isinstance(values, str):
+        return values
+    return [value.item() if hasattr(value, "item") else value for value in values]  # of an array, too
+
+
+def _table(keys: Keys | None) -> dict[str, Any] | None:
+    return None if keys is None else {key: _list(v) if isinstance(v, tuple) else v for key, v in keys.items()}

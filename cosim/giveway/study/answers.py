@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,13 +21,23 @@ from giveway.study.results_table import read_part
 from giveway.study.runs import RunTable
 from giveway.study.setup import Goal, Setup
 from giveway.study.store import PARTS, list_parts
+from giveway.units import WrittenUnit
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["Answers", "Sensitivity", "load", "over_runs", "sensitivities_of"]
+__all__ = [
+    "Answers",
+    "Sensitivities",
+    "Sensitivity",
+    "load",
+    "over_runs",
+    "sensitivities_of",
+    "why_no_sensitivities",
+]
 
+SAMPLES, MADE_FOR_IT = ("latin-hypercube", "sobol"), ("morris", "sobol-indices")  # kinds of designs that tell
 GIVEN_DATA_MIN = 64  # designs, for indices from a sample that was not made for them
 
 
@@ -47,6 +57,17 @@ class Sensitivity:
     main: float
     total: float | None
     interval: float
+
+
+class Sensitivities(list[Sensitivity]):
+    """Sensitivities, and ``reason``: why there are none, or none of some objective; "" if nothing is missing."""
+
+    def __init__(self, found: Iterable[Sensitivity], reason: str) -> None:
+        super().__init__(found)
+        self.reason = reason
+
+    def __repr__(self) -> str:
+        return super().__repr__() + (f" ({self.reason})" if self.reason else "")
 
 
 @dataclass(frozen=True)
@@ -82,7 +103,7 @@ class Answers:
 
     @property
     def designs(self) -> NDArray[np.float64]:
-        """Values of the varied quantities, shape (designs, quantities)."""
+        """Values of the varied quantities in our own units, shape (designs, quantities)."""
         return self.runs.designs
 
     @property
@@ -99,6 +120,20 @@ class Answers:
         if self.manifest["tolerance_samples"] > 1:
             over.append("nominal" if goal.tolerances == "nominal" else f"{goal.tolerances} of tolerances")
         return goal.metric.name + (f", {', '.join(over)}" if over else "")
+
+    def goal_unit(self, index: int) -> WrittenUnit:
+        """The unit in which the goal is shown: of a constraint on its metric, if the user wrote one."""
+        metric = self.goals[index].metric
+        written = (one.written for one in self.setup.constraints if one.goal.metric.name == metric.name)
+        return next((unit for unit in written if unit is not None), WrittenUnit(metric.unit))
+
+    def shown_values(self, index: int) -> NDArray[np.float64]:
+        """Values of a goal, one per design, in `goal_unit`."""
+        return self.goal_unit(index).all_of(self.values[:, index])
+
+    def shown_designs(self, index: int) -> NDArray[np.float64]:
+        """Values of a varied quantity, one per design, in the unit in which the user wrote it."""
+        return self.setup.varied[index].unit.all_of(self.designs[:, index])
 
     @property
     def columns(self) -> list[int]:
@@ -120,33 +155,36 @@ class Answers:
         return design
 
     def table(self) -> xarray.Dataset:
-        """Quantities, goals, ``feasible``, ``pareto`` and ``warnings`` over the dimension ``design``, with units."""
+        """Quantities, goals, ``feasible``, ``pareto`` and ``warnings`` over ``design``, in the user's units."""
         import xarray
 
         columns: dict[str, Any] = {}
         for j, one in enumerate(self.setup.varied):
-            values: Any = self.designs[:, j]
+            values: Any = self.shown_designs(j)
             if one.quantity.kind == "choice":
                 values = np.array([one.quantity.text(value) for value in values])
-            columns[one.quantity.name] = ("design", values, {"units": one.quantity.unit or "1"})
+            columns[one.quantity.name] = ("design", values, {"units": one.unit.name or "1"})
         for j in self.columns:
-            columns[self.goal_name(j)] = ("design", self.values[:, j], {"units": self.goals[j].metric.unit})
+            columns[self.goal_name(j)] = ("design", self.shown_values(j), {"units": self.goal_unit(j).name})
         columns["feasible"], columns["pareto"] = ("design", self.feasible), ("design", self.pareto)
         warned = [self.warning_text(design) for design in range(len(self.designs))]
         columns["warnings"] = ("design", np.array(warned, dtype=np.str_))
         return xarray.Dataset(columns, coords={"design": np.arange(len(self.designs))})
 
-    def sensitivities(self) -> list[Sensitivity]:
+    def sensitivities(self) -> Sensitivities:
         """Of the objectives, where the designs allow it: Morris and Sobol indices need a value of every design."""
-        return list(self._sensitivities)
+        return self._sensitivities
 
     @functools.cached_property
-    def _sensitivities(self) -> tuple[Sensitivity, ...]:
-        found: list[Sensitivity] = []
-        for index in range(len(self.setup.objectives)):
+    def _sensitivities(self) -> Sensitivities:
+        setup, found, reasons = self.setup, [], []
+        for index in range(len(setup.objectives)):
             values, name = self.values[:, index], self.goal_name(index)
-            found += sensitivities_of(self.setup.plan, self.setup.varied, self.setup.seed, self.designs, values, name)
-        return tuple(found)
+            found += sensitivities_of(setup.plan, setup.varied, setup.seed, self.designs, values, name)
+            reasons.append(why_no_sensitivities(setup.plan, setup.varied, values, name))
+        if not setup.objectives:
+            reasons = ["the study has no objective"]
+        return Sensitivities(found, "; ".join(dict.fromkeys(reason for reason in reasons if reason)))
 
 
 def load(folder: Path | str, progress: Callable[[float], None] | None = None) -> Answers:
@@ -267,16 +305,13 @@ def sensitivities_of(
     values: NDArray[np.float64],
     goal: str,
 ) -> list[Sensitivity]:
-    """How much each quantity decides about ``values``, one per design; nothing where the designs do not tell."""
+    """How much each quantity decides about ``values``, one per design; nothing if `why_no_sensitivities` says why."""
     from giveway.study.designs import problem, shares
 
+    if why_no_sensitivities(plan, varied, values, goal):
+        return []
     known = np.isfinite(values)
-    if plan.kind in ("latin-hypercube", "sobol"):  # any of these designs will do
-        designs, values = designs[known], values[known]
-    elif not known.all():
-        return []
-    if len(values) < 2 or len(varied) < 2 or np.ptp(values) == 0.0:
-        return []
+    designs, values = designs[known], values[known]
     names = [one.quantity.name for one in varied]
     described = problem(varied)
     total: list[float | None]
@@ -291,17 +326,33 @@ def sensitivities_of(
 
         found = sobol.analyze(described, values, calc_second_order=False, seed=seed)
         main, interval, total = found["S1"], found["S1_conf"], list(found["ST"])
-    elif plan.kind in ("latin-hypercube", "sobol") and len(values) >= GIVEN_DATA_MIN:
+    else:
         from giveway.study.first_order import first_order
 
         main, interval = first_order(designs, values, seed)
         total = [None] * len(names)
-    else:
-        return []
     return [
         Sensitivity(goal, name, float(main[j]), None if one is None else float(one), _finite(float(interval[j])))
         for j, (name, one) in enumerate(zip(names, total, strict=True))
     ]
+
+
+def why_no_sensitivities(plan: DesignPlan, varied: Sequence[Varied], values: NDArray[np.float64], goal: str) -> str:
+    """Why these designs do not tell what decides about ``values``, one per design; "" if they do."""
+    known = np.isfinite(values)
+    count, missing = int(known.sum()), int((~known).sum())
+    if plan.kind not in (*SAMPLES, *MADE_FOR_IT):
+        kinds = f"{' or '.join(SAMPLES)} with {GIVEN_DATA_MIN} designs or more, {' or '.join(MADE_FOR_IT)}"
+        return f"designs of the kind {plan.kind} do not tell; {kinds} do"
+    if len(varied) < 2:
+        return "only one quantity varies"
+    if plan.kind in MADE_FOR_IT and missing:
+        return f"{missing} of {len(values)} designs have no {goal}, and {plan.kind} needs it of all"
+    if plan.kind in SAMPLES and count < GIVEN_DATA_MIN:
+        return f"{count} designs have a {goal}, and it takes {GIVEN_DATA_MIN}"
+    if np.ptp(values[known]) == 0.0:
+        return f"{goal} is the same in all designs"
+    return ""
 
 
 def _finite(value: float) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from giveway.checks import finite
 from giveway.errors import GivewayError, UnknownNameError
 from giveway.study.quantities import Quantity
+from giveway.units import WrittenUnit
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,13 +62,24 @@ class Spread:
 class Varied:
     """A quantity that differs from design to design: either between ``levels``, or over ``spread``.
 
-    ``nominal`` is what it has while another one varies; None: what the scenario has.
+    ``nominal`` is what it has while another one varies; None: what the scenario has. All values are in the quantity's
+    unit; ``written`` is the user's.
     """
 
     quantity: Quantity
     nominal: float | None = None
     levels: tuple[float, ...] = ()
     spread: Spread | None = None
+    written: WrittenUnit | None = None
+
+    @property
+    def unit(self) -> WrittenUnit:
+        """The unit in which its values are shown."""
+        return self.written or WrittenUnit(self.quantity.unit)
+
+    def text(self, value: float) -> str:
+        """``value`` as the user would write it, in `unit`."""
+        return self.quantity.text(self.unit.of(value) if self.quantity.kind == "real" else value)
 
     def at(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
         """The values of the shares (0 to 1)."""
@@ -87,6 +99,12 @@ class Tolerance:
     quantity: Quantity
     relative: bool
     spread: Spread
+    written: WrittenUnit | None = None
+
+    @property
+    def unit(self) -> WrittenUnit:
+        """The unit in which an absolute deviation is shown."""
+        return self.written or WrittenUnit(self.quantity.unit)
 
 
 def check_spread(field: str, quantity: Quantity, kind: str, values: Mapping[str, float]) -> Spread:

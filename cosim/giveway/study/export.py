@@ -78,13 +78,13 @@ def export_table(answers: Answers, path: Path) -> None:
 
     columns: dict[str, Any] = {"design": np.arange(len(answers.designs))}
     for j, one in enumerate(answers.setup.varied):
-        quantity, values = one.quantity, answers.designs[:, j]
+        quantity, values = one.quantity, answers.shown_designs(j)
         if quantity.kind == "choice":
             columns[quantity.name] = np.array(quantity.choices)[values.astype(np.intp)]
         else:
-            columns[_named(quantity.name, quantity.unit)] = _typed(quantity.kind, values)
+            columns[_named(quantity.name, one.unit.shown)] = _typed(quantity.kind, values)
     for j in answers.columns:
-        columns[_named(answers.goal_name(j), answers.goals[j].metric.unit)] = answers.values[:, j]
+        columns[_named(answers.goal_name(j), answers.goal_unit(j).shown)] = answers.shown_values(j)
     columns |= {"feasible": answers.feasible, "pareto": answers.pareto, "failed runs": answers.failed}
     columns["warnings"] = [answers.warning_text(design) for design in range(len(answers.designs))]
     reasons = np.full(len(answers.designs), "", dtype=object)
@@ -118,7 +118,7 @@ def _csv(answers: Answers, design: int, _case: int, _model: str) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["quantity", "value", "unit"])
     for one, value in zip(answers.setup.varied, answers.designs[design], strict=True):
-        writer.writerow([one.quantity.name, one.quantity.text(value), one.quantity.unit])
+        writer.writerow([one.quantity.name, one.text(value), one.unit.name])
     return text.getvalue()
 
 

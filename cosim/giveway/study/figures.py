@@ -51,7 +51,7 @@ def trade_off(answers: Answers) -> Figure:
     figure = Figure(figsize=(9.6, 4.2), layout="constrained")
     axes = figure.subplots()
     shown = drawn(answers)
-    x, y = answers.values[:, 0], answers.values[:, 1]
+    x, y = answers.shown_values(0), answers.shown_values(1)
     for mask, colour, label in (
         (~answers.feasible, INFEASIBLE_COLOUR, "constraints not met"),
         (answers.feasible & ~answers.pareto, DESIGN_COLOUR, "designs"),
@@ -69,37 +69,38 @@ def trade_off(answers: Answers) -> Figure:
             f"{design}", (x[design], y[design]), xytext=(6, 6 + 12 * rank), textcoords="offset points", fontsize=9
         )
     for set_label, index in ((axes.set_xlabel, 0), (axes.set_ylabel, 1)):
-        goal = answers.goals[index]
-        set_label(axis_label(answers.goal_name(index), goal.metric.unit))
+        set_label(axis_label(answers.goal_name(index), answers.goal_unit(index).shown))
     axes.legend()
     return figure
 
 
 def effects(answers: Answers) -> Figure:
     """Every objective over every quantity: one point per design."""
-    quantities = [one.quantity for one in answers.setup.varied][:QUANTITIES_MAX]
+    varied = answers.setup.varied[:QUANTITIES_MAX]
     rows, columns = effect_panels(answers)
     figure = Figure(figsize=(9.6, 0.5 + 2.3 * rows), layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False, sharey="row", sharex="col")
     shown = drawn(answers, rows * columns)
     good, bad = shown[answers.feasible[shown]], shown[~answers.feasible[shown]]
+    x = [answers.shown_designs(j) for j in range(columns)]
+    y = [answers.shown_values(i) for i in range(rows)]
     for i in range(rows):
-        for j, quantity in enumerate(quantities):
+        for j, one in enumerate(varied):
             axes: Axes = grid[i, j]
             for which, colour in ((bad, INFEASIBLE_COLOUR), (good, DESIGN_COLOUR)):
-                axes.scatter(answers.designs[which, j], answers.values[which, i], s=8, color=colour, alpha=0.6, lw=0)
-            spread = answers.setup.varied[j].spread
+                axes.scatter(x[j][which], y[i][which], s=8, color=colour, alpha=0.6, lw=0)
+            quantity, spread = one.quantity, one.spread
             if spread is not None and spread.kind == "loguniform":
                 axes.set_xscale("log")
                 axes.minorticks_off()
-                ticks = np.geomspace(spread.low, spread.high, 3)
+                ticks = np.geomspace(one.unit.of(spread.low), one.unit.of(spread.high), 3)
                 axes.set_xticks(ticks, [f"{tick:.4g}" for tick in ticks])
             if quantity.kind == "choice":
                 axes.set_xticks(range(len(quantity.choices)), quantity.choices)
             if i == rows - 1:
-                axes.set_xlabel(axis_label(quantity.name.removeprefix("testbed."), quantity.unit))
+                axes.set_xlabel(axis_label(quantity.name.removeprefix("testbed."), one.unit.shown))
             if j == 0:
-                axes.set_ylabel(axis_label(answers.goals[i].metric.name, answers.goals[i].metric.unit))
+                axes.set_ylabel(axis_label(answers.goals[i].metric.name, answers.goal_unit(i).shown))
     return figure
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from giveway.files import write_text
 from giveway.report.figures import NamedFigure
+from giveway.study.asked import asked, in_words
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -51,9 +52,11 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         figures=_figures(answers, results),
         sensitivity_header=sensitivity_header(answers),
         sensitivities=sensitivity_rows(answers),
+        unknown=answers.sensitivities().reason,
+        asked=asked(setup),
         varied=[(one.quantity.name, _range(one)) for one in setup.varied],
         tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
-        collisions=[(case.name, _hit(case.document.get("collision", {}))) for case in setup.cases],
+        collisions=[(case.name, in_words(case.document.get("collision", {}))) for case in setup.cases],
         constraints=[_constraint(one) for one in setup.constraints],
         reasons=_reasons(answers.reason),
         warnings=_warnings(answers.warnings),
@@ -135,31 +138,24 @@ def _sensitivity_caption(answers: Answers) -> str:
 
 
 def _range(one: Varied) -> str:
-    quantity = one.quantity
-    unit = f" {quantity.unit}" if quantity.unit not in ("", "1") else ""
+    unit = f" {one.unit.shown}" if one.unit.shown else ""
     if one.levels and one.spread is None:
         return (
-            ", ".join(quantity.text(value) for value in one.levels[:12])
-            + unit
-            + (", ..." if len(one.levels) > 12 else "")
+            ", ".join(one.text(value) for value in one.levels[:12]) + unit + (", ..." if len(one.levels) > 12 else "")
         )
     if one.spread is None:
         return "from the file"
     levels = f", {len(one.levels)} levels" if one.levels else ""
-    return f"{one.spread.low:g} to {one.spread.high:g}{unit}, {one.spread.kind}{levels}"
+    return f"{one.unit.of(one.spread.low):g} to {one.unit.of(one.spread.high):g}{unit}, {one.spread.kind}{levels}"
 
 
 def _tolerance(one: Tolerance) -> str:
     if one.relative:
         return f"+-{100.0 * one.spread.high:g} %, {one.spread.kind}"
-    return f"+-{one.spread.high:g} {one.quantity.unit}, {one.spread.kind}"
-
-
-def _hit(values: Mapping[str, object]) -> str:
-    return ", ".join(f"{key} = {value}" for key, value in values.items())
+    return f"+-{one.unit.of(one.spread.high):g} {one.unit.name}, {one.spread.kind}"
 
 
 def _constraint(one: Constraint) -> str:
-    low, high = one.minimum, one.maximum
-    unit = f" {one.goal.metric.unit}" if one.goal.metric.unit not in ("", "1") else ""
+    low, high = one.unit.of(one.minimum), one.unit.of(one.maximum)
+    unit = f" {one.unit.shown}" if one.unit.shown else ""
     return f"{one.goal.metric.name}: " + (f"at most {high:g}{unit}" if math.isinf(low) else f"at least {low:g}{unit}")

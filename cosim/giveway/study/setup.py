@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.metrics import Metric
+from giveway.units import WrittenUnit
 
 if TYPE_CHECKING:
     from giveway.scenario import Scenario
@@ -74,11 +75,17 @@ class Goal:
 
 @dataclass(frozen=True)
 class Constraint:
-    """A goal with an end: ``minimum`` and ``maximum`` in the metric's unit."""
+    """A goal with an end: ``minimum`` and ``maximum`` in the metric's unit; ``written`` is the user's."""
 
     goal: Goal
     minimum: float
     maximum: float
+    written: WrittenUnit | None = None
+
+    @property
+    def unit(self) -> WrittenUnit:
+        """The unit in which its metric is shown."""
+        return self.written or WrittenUnit(self.goal.metric.unit)
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, f
 from giveway.study.runs import COVER
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
 from giveway.toml_sections import Section, lines_named, read_toml, renamed
-from giveway.units import factor
+from giveway.units import WrittenUnit, factor
 
 __all__ = ["check", "read"]
 
@@ -228,15 +228,20 @@ def _quantity(section: Section) -> Quantity:
     return quantity
 
 
-def _scale(section: Section, unit: str) -> float:
-    return factor(section.full("unit"), section.text("unit"), unit) if "unit" in section.values else 1.0
+def _written(section: Section, unit: str) -> WrittenUnit | None:
+    """The unit that the table states; None: ours."""
+    if "unit" not in section.values:
+        return None
+    name = section.text("unit")
+    return WrittenUnit(name, factor(section.full("unit"), name, unit))
 
 
 def _varied(section: Section) -> Varied:
     quantity = _quantity(section)
     if "unit" in section.values and quantity.unit == "":
         raise GivewayError(section.full("unit"), section.values["unit"], f"none: {quantity.name} has no unit")
-    scale = _scale(section, quantity.unit)
+    written = _written(section, quantity.unit)
+    scale = 1.0 if written is None else written.scale
     nominal = None
     if "nominal" in section.values:
         nominal = _value(section.full("nominal"), section.values["nominal"], quantity, scale)
@@ -248,7 +253,7 @@ def _varied(section: Section) -> Varied:
         if not isinstance(values, list) or not values:
             raise GivewayError(section.full("values"), values, "a list with at least one value")
         levels = tuple(_value(section.full("values"), value, quantity, scale) for value in values)
-        return Varied(quantity, nominal, levels)
+        return Varied(quantity, nominal, levels, written=written)
     kind = section.text("distribution", "loguniform" if _logarithmic(section) else "uniform")
     given = {key: section.number(key) * scale for key in _SPREAD if key in section.values}
     spread = check_spread(section.name, quantity, kind, given)
@@ -262,7 +267,7 @@ def _varied(section: Section) -> Varied:
         found = space(spread.low, spread.high, count)
         found = np.rint(found) if quantity.kind == "integer" else found
         levels = tuple(float(value) for value in dict.fromkeys(found.tolist()))
-    return Varied(quantity, nominal, levels, spread)
+    return Varied(quantity, nominal, levels, spread, written)
 
 
 def _logarithmic(section: Section) -> bool:
@@ -297,17 +302,18 @@ def _tolerance(section: Section) -> Tolerance:
         found = "both" if keys else "nothing"
         raise GivewayError(section.full("relative"), found, "one of relative and absolute")
     relative = keys[0] == "relative"
-    scale = 1.0
+    scale, written = 1.0, None
     if "unit" in section.values:
         unit = section.text("unit")
         scale = factor(section.full("unit"), "degC" if unit == "K" else unit, "1" if relative else quantity.unit)
+        written = WrittenUnit(unit, scale)
     half = finite(section.full(keys[0]), section.values[keys[0]] * scale if _is_number(section, keys[0]) else None)
     if half <= 0.0 or (relative and half >= 1.0):
         allowed = "above 0 and below 1 (0.3: by 30 %)" if relative else f"above 0 {quantity.unit}"
         raise GivewayError(section.full(keys[0]), section.values[keys[0]], allowed)
     kind = section.choice("distribution", ("uniform", "normal", "triangular"), "uniform")
     # Of a normal distribution, the stated ends are three standard deviations away.
-    return Tolerance(quantity, relative, Spread(kind, -half, half, 0.0, 0.0, half / 3.0))
+    return Tolerance(quantity, relative, Spread(kind, -half, half, 0.0, 0.0, half / 3.0), written)
 
 
 def _is_number(section: Section, key: str) -> bool:
@@ -369,8 +375,9 @@ def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
         for cell in head:
             name, _, unit = cell.strip().partition("[")
             quantity = find(f"column {len(found) + 1}", name.strip())
-            found.append(Varied(quantity))
-            scales.append(factor(name.strip(), unit.strip(" ]"), quantity.unit) if unit else 1.0)
+            label = unit.strip(" ]")
+            scales.append(factor(name.strip(), label, quantity.unit) if unit else 1.0)
+            found.append(Varied(quantity, written=WrittenUnit(label, scales[-1]) if unit else None))
         _refuse_twice("column", [one.quantity.name for one in found])
     except GivewayError as error:
         raise InputFileError(path, head_line, error) from None
@@ -479,6 +486,7 @@ def _constraint(field: str, entry: Any, judged: Scenario) -> Constraint:
     goal = _goal(section, 1 if "maximum" in section.values else -1)
     key = "maximum" if "maximum" in section.values else "minimum"
     value = section.values[key]
+    written = _written(section, goal.metric.unit)
     if isinstance(value, str):
         if value not in LIMITS:
             raise UnknownNameError(section.full(key), value, LIMITS)
@@ -486,9 +494,9 @@ def _constraint(field: str, entry: Any, judged: Scenario) -> Constraint:
             raise GivewayError(section.full(key), value, "a number, or a body_region in [scenario]")
         number = judged.judged.force_limits(judged.contact_area_m2)[LIMITS.index(value)]
     else:
-        number = section.number(key) * _scale(section, goal.metric.unit)
+        number = section.number(key) * (1.0 if written is None else written.scale)
     low, high = (-math.inf, number) if key == "maximum" else (number, math.inf)
-    return Constraint(goal, low, high)
+    return Constraint(goal, low, high, written)
 
 
 def _speeds(cases: Sequence[Case]) -> Iterator[Goal]:

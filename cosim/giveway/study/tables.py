@@ -20,13 +20,13 @@ def number(value: float) -> str:
 
 def goal_header(answers: Answers) -> tuple[str, ...]:
     """The first line of `design_rows`."""
-    quantities = [f"{one.quantity.name}{_unit(one.quantity.unit)}" for one in answers.setup.varied]
-    goals = [f"{answers.goal_name(j)}{_unit(answers.goals[j].metric.unit)}" for j in answers.columns]
+    quantities = [f"{one.quantity.name}{_unit(one.unit.shown)}" for one in answers.setup.varied]
+    goals = [f"{answers.goal_name(j)}{_unit(answers.goal_unit(j).shown)}" for j in answers.columns]
     return ("design", *quantities, *goals, "front", *(["warnings"] if answers.warnings else []))
 
 
 def _unit(unit: str) -> str:
-    return f", {unit}" if unit not in ("", "1") else ""
+    return f", {unit}" if unit else ""
 
 
 def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
@@ -34,8 +34,8 @@ def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
     rows = []
     for design in answers.order[:count]:
         pairs = zip(answers.setup.varied, answers.designs[design], strict=True)
-        values = [one.quantity.text(v) if one.quantity.kind != "real" else number(v) for one, v in pairs]
-        goals = [number(value) for value in answers.values[design, answers.columns]]
+        values = [number(one.unit.of(v)) if one.quantity.kind == "real" else one.text(v) for one, v in pairs]
+        goals = [number(answers.goal_unit(j).of(answers.values[design, j])) for j in answers.columns]
         warned = [answers.warning_text(int(design))] if answers.warnings else []
         rows.append((str(design), *values, *goals, "yes" if answers.pareto[design] else "", *warned))
     return rows

@@ -1,0 +1,67 @@
+"""What a study asked of all its designs, in words: robot, plan, bumper, body region, contact, duration, objectives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from giveway import native
+from giveway.study.quantities import columns
+from giveway.variables import table
+
+if TYPE_CHECKING:
+    from giveway.study.setup import Setup
+
+__all__ = ["asked", "in_words"]
+
+CONTACT = ("stiffness", "damping", "friction", "nose_radius")
+NOSES = ("round nose", "long edge")  # contact.nose_shape
+MOUNTS = ("on the slider", "on the robot")  # bumper.mount
+VARIES = "varies"
+
+
+def asked(setup: Setup) -> list[tuple[str, str]]:
+    """Name and words of each; what differs between the designs says so."""
+    scenario, document = setup.cases[0].scenario, setup.cases[0].document
+    varied = {columns().names[column] for one in setup.varied for column in one.quantity.columns}
+    variables = table("testbed")
+    testbed = {variable.name: variable.start for variable in variables.select("parameter")}
+    testbed |= scenario.parameters("testbed")
+
+    def of(name: str) -> str:
+        if f"testbed.{name}" in varied:
+            return VARIES
+        value, unit = testbed[name], variables[name].unit
+        return f"{value:g}" + (f" {unit}" if unit not in ("", "1") else "")
+
+    def choice(name: str, words: tuple[str, ...]) -> str:
+        return VARIES if f"testbed.{name}" in varied else words[int(testbed[name] or 0)]
+
+    robot = document.get("robot")
+    kind = VARIES if "testbed.bumper.kind" in varied else scenario.bumper
+    bumper = kind if kind == "none" else f"{kind}, {choice('bumper.mount', MOUNTS)}"
+    contact = [choice("contact.nose_shape", NOSES)]
+    contact += [f"{name.replace('_', ' ')} {of(f'contact.{name}')}" for name in CONTACT]
+    rows = [
+        ("robot", str(robot) if robot else f"{native.robot().name}, which the FMUs were built with"),
+        ("plan", in_words(document["plan"]) if "plan" in document else "rest: the robot stands"),
+        ("pushes", "; ".join(in_words(push) for push in document.get("push", []))),
+        ("bumper", bumper),
+        ("body region", _region(scenario.body_region, scenario.judge_as)),
+        ("contact", ", ".join(contact) if setup.cases[0].hit is not None else "none"),
+        ("duration", f"{scenario.duration_s:g} s"),
+        ("designs", in_words(setup.document.get("designs", {"kind": setup.plan.kind}))),
+        ("objectives", "; ".join(in_words(one) for one in setup.document.get("objective", [])) or "none"),
+    ]
+    return [(name, words) for name, words in rows if words]
+
+
+def _region(given: str | None, judged: str | None) -> str:
+    if given is not None:
+        return f"{given}: what is hit, and its limits"
+    return "none" if judged is None else f"{judged}: its limits only"
+
+
+def in_words(values: Mapping[str, Any]) -> str:
+    """A table of the study file on one line."""
+    return ", ".join(f"{key} = {value}" for key, value in values.items())

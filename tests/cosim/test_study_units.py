@@ -1,0 +1,107 @@
+"""What a user wrote comes back as it was written, and what cannot be told says why."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from giveway.study.answers import Answers
+from giveway.study.asked import asked
+from giveway.study.export import export_design, export_table
+from giveway.study.report import write_report
+from giveway.study.tables import design_rows, goal_header
+from giveway.units import WrittenUnit
+from giveway.variables import table
+from study_helpers import LATCH, SPRING, small_study
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+    """Of a study in units of its own: N/mm, km/h, cm, and an absolute tolerance in kN."""
+    study = small_study(vary=[])
+    study.vary(SPRING, values=[0.6, 2.4], unit="N/mm").vary("collision.speed", low=1.2, high=2.1, levels=2, unit="km/h")
+    study.tolerance(LATCH, absolute=0.002, unit="kN").tolerances(samples=1)
+    study.objective("bumper compression").constraint("bumper compression", maximum=3.0, unit="cm")
+    return study.run(tmp_path_factory.mktemp("units"), progress=False)
+
+
+def test_units_come_back_in_the_table(answers: Answers) -> None:
+    header = goal_header(answers)
+    assert header[1:3] == ("testbed.bumper.spring_rate, N/mm", "collision.speed, km/h")
+    assert any(name.startswith("bumper compression") and name.endswith(", cm") for name in header)
+    rows = {int(row[0]): row for row in design_rows(answers)}
+    assert {row[1:3] for row in rows.values()} <= {(k, v) for k in ("0.6", "2.4") for v in ("1.2", "2.1")}
+    design = min(rows)
+    shown = float(rows[design][3])
+    assert shown == pytest.approx(0.1 * answers.values[design, 0], rel=1e-3)  # mm in cm, four digits
+    shown_table = answers.table()
+    assert shown_table["testbed.bumper.spring_rate"].attrs["units"] == "N/mm"
+    assert sorted(set(shown_table["testbed.bumper.spring_rate"].values)) == [0.6, 2.4]
+    assert sorted(set(answers.designs[:, 0])) == [600.0, 2400.0]  # what is computed with stays in our units
+
+
+def test_units_come_back_in_exports(answers: Answers, tmp_path: Path) -> None:
+    export_table(answers, tmp_path / "all.csv")
+    rows = list(csv.DictReader((tmp_path / "all.csv").open()))
+    assert {row["testbed.bumper.spring_rate [N/mm]"] for row in rows} == {"0.6", "2.4"}
+    assert {row["collision.speed [km/h]"] for row in rows} == {"1.2", "2.1"}
+    name = next(name for name in rows[0] if name.startswith("bumper compression"))
+    assert name.endswith("[cm]")
+    export_design(answers, 3, tmp_path / "one.csv")
+    assert (tmp_path / "one.csv").read_text().splitlines() == [
+        "quantity,value,unit",
+        "testbed.bumper.spring_rate,2.4,N/mm",
+        "collision.speed,2.1,km/h",
+    ]
+
+
+def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
+    write_report(tmp_path / "report.html", answers, {})
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for words in ("0.6, 2.4 N/mm", "1.2 to 2.1 km/h", "+-0.002 kN", "bumper compression: at most 3 cm"):
+        assert words in page
+    for name, text in asked(answers.setup):
+        assert f"<th>{name}</th><td>{text}</td>" in page
+    said = dict(asked(answers.setup))
+    assert said["robot"] == "trikey.toml, which the FMUs were built with"
+    assert said["plan"] == "rest: the robot stands"
+    assert said["bumper"] == "magnetic, on the slider"
+    assert said["body region"] == "none"
+    assert f"stiffness {table('testbed')['contact.stiffness'].start:g} N/m" in said["contact"]
+    assert said["objectives"] == "metric = bumper compression"
+
+
+def test_what_varies_is_said_to_vary() -> None:
+    study = small_study(vary=[{"quantity": "bumper", "values": ["spring", "magnetic"]}])
+    study.vary("testbed.contact.stiffness", values=[5.0, 9.0], unit="kN/m")
+    study.document["scenario"] |= {"judge_as": "lower leg", "plan": {"kind": "rest", "x": 0.1}}
+    said = dict(asked(study.setup()))
+    assert said["bumper"] == "varies, on the slider"
+    assert "stiffness varies" in said["contact"]
+    assert said["body region"] == "lower leg: its limits only"
+    assert said["plan"] == "kind = rest, x = 0.1"
+
+
+def test_a_unit_there_and_back_is_what_was_written() -> None:
+    unit = WrittenUnit("km/h", 1.0 / 3.6)
+    for value in (1.2, 2.1, 0.1, 7.3):
+        assert unit.of(value * unit.scale) == value
+
+
+@pytest.mark.parametrize(
+    ("tables", "reason"),
+    [
+        ({}, "designs of the kind factorial do not tell; latin-hypercube or sobol with 64 designs or more"),
+        ({"designs": {"kind": "sobol", "count": 4}}, "4 designs have a peak force of the run, and it takes 64"),
+        ({"objective": []}, "the study has no objective"),
+    ],
+)
+def test_sensitivities_that_are_not_there_say_why(tables: dict[str, object], reason: str, tmp_path: Path) -> None:
+    study = small_study(vary=[]).objective("peak force of the run")
+    study.vary(LATCH, low=0, high=60, levels=2).vary(SPRING, low=0.6, high=2.4, levels=2, unit="N/mm")
+    study.document.update(tables)
+    found = study.run(tmp_path / "study", progress=False).sensitivities()
+    assert len(found) == 0
+    assert found.reason.startswith(reason)
+    assert repr(found) == f"[] ({found.reason})"
