@@ -7,7 +7,7 @@ computed by that function, never typed in; what the paper printed is typed in, o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
@@ -16,7 +16,9 @@ from giveway.errors import GivewayError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["PROVENANCES", "Effort", "Findings", "Picture", "Row", "Target"]
+    from giveway.result import Result
+
+__all__ = ["PROVENANCES", "Effort", "Findings", "Picture", "Row", "Target", "warning_notes"]
 
 _T = TypeVar("_T")
 
@@ -149,3 +151,8 @@ class Findings:
     rows: Sequence[Row]
     pictures: Sequence[Picture] = field(default_factory=tuple)
     notes: Sequence[str] = field(default_factory=tuple)
+
+
+def warning_notes(results: Mapping[str, Result]) -> list[str]:
+    """What happened in runs otherwise than asked, as notes; ``results`` by what each is called."""
+    return [f"{name}: {one.text}." for name, result in results.items() for one in result.warnings]

@@ -15,6 +15,7 @@ from giveway import batch
 from giveway.errors import GivewayError
 from giveway.plan import Straight
 from giveway.report import render
+from giveway.reproduction import warning_notes
 from giveway.run_warnings import BOUNDS, CODES, METRICS, Stated, masks, warnings_of
 from giveway.scenario_file import scenario_of
 from giveway.stated_contact import StatedContact
@@ -106,9 +107,15 @@ def too_fast(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
 # A run, the codes that it has, and words of the first line.
 RUNS: dict[str, tuple[giveway.Scenario, list[str], str]] = {
     "motionless": (short(), [], ""),
+    "motionless, pulled a longer way": (
+        short("none", testbed={"slider.present": True, "slider.run_up": 0.06}),
+        ["contact speed"],
+        "asked for 0.5 m/s",
+    ),
+    "nothing to hit": (short(testbed={"slider.present": False}), ["no contact"], "did not touch"),
     "hit twice": (short("none", duration_s=0.8), ["second hit harder"], "203 N after 187 N"),
     "a plan beyond the limits": (
-        short(plan=too_fast, testbed={"slider.present": False}),
+        short(plan=too_fast, testbed={"slider.present": False}, contact=None),
         ["plan not followed"],
         "limits of controller.reference",
     ),
@@ -128,6 +135,29 @@ def test_runs_have_the_warnings_that_are_theirs(scenario: giveway.Scenario, code
     result = batch.run(scenario)
     assert [warning.code for warning in result.warnings] == codes
     assert words in (result.warnings[0].text if result.warnings else "")
+
+
+# The others collide with what these state.
+@pytest.mark.parametrize("name", ["motionless", "moving", "clamping"])
+def test_every_experiment_does_what_it_asks_for(name: str) -> None:
+    scenario = giveway.experiment(name).scenario("magnetic")
+    assert scenario.contact is not None
+    assert batch.run(dataclasses.replace(scenario, duration_s=min(scenario.duration_s, 3.0))).warnings == ()
+
+
+@pytest.mark.parametrize("name", ["bicycle", "hand", "person"])
+def test_every_scene_is_met_as_it_says(name: str) -> None:
+    from giveway.experiments.scenes import scenario
+
+    scene = scenario(name)
+    assert scene.contact is not None
+    assert batch.run(dataclasses.replace(scene, duration_s=3.0)).warnings == ()
+
+
+def test_a_reproduction_notes_them() -> None:
+    assert warning_notes({"no bumper": batch.run(RUNS["hit twice"][0])}) == [
+        "no bumper: a later contact was harder than the first: 203 N after 187 N."
+    ]
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

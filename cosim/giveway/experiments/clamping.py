@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from giveway.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
 from giveway.experiments import Experiment
-from giveway.experiments.placement import before_resting, tare_s, testbed_of
+from giveway.experiments.placement import before_resting, stated_contact, tare_s, testbed_of
 from giveway.reproduction import Effort, Findings, Picture, Row, Target
 from giveway.scenario import BUMPERS, Scenario
 from giveway.variables import table
@@ -79,6 +79,7 @@ def scenario(
         controller={"supervisor.after_settled": 0} | (NO_REFLEX if not reflex else {}),
         plan=plan,
         robot=robot,
+        contact=stated_contact(robot, speed_mps, tare_s() + plan.ramp_s + STEADY_S),
     )
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment
-from giveway.experiments.placement import pulled_by_weight
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.experiments.placement import pulled_by_weight, stated_contact
+from giveway.reproduction import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ def scenario(bumper: str, duration_s: float = DURATION_S, *, robot: Path | None 
         testbed={"slider.present": True, **pulled_by_weight("motionless", robot, SPEED_MPS)},
         controller={"supervisor.after_settled": HOLD},
         robot=robot,
+        contact=stated_contact(robot, SPEED_MPS),
     )
 
 
@@ -72,7 +73,11 @@ def reproduce(effort: Effort) -> Findings:
     ]
     figure = draw({BUMPER_LABELS[bumper]: result for bumper, result in results.items()})
     picture = Picture("fig10", "Hit while motionless, with three bumpers (Fig. 10)", CAPTION, figure, paper)
-    return Findings([*_compared(results), *_each(results)], [picture], [*notes, *_remarks(results)])
+    return Findings(
+        [*_compared(results), *_each(results)],
+        [picture],
+        [*notes, *_remarks(results), *warning_notes({LABELS[b]: r for b, r in results.items()})],
+    )
 
 
 def value(result: Result, metric: str) -> float:

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment, motionless
-from giveway.experiments.placement import before_resting, tare_s
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.experiments.placement import before_resting, stated_contact, tare_s
+from giveway.reproduction import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | No
         controller={"supervisor.after_settled": HOLD},
         plan=plan,
         robot=robot,
+        contact=stated_contact(robot, SPEED_MPS, tare_s() + plan.ramp_s + STEADY_S),
     )
 
 
@@ -76,7 +77,7 @@ def reproduce(effort: Effort) -> Findings:
         ],
     )
     peaks = [motionless.value(still, "peak wheel torque") for still in while_still]
-    return Findings(_rows(result, sum(peaks) / len(peaks)), [picture], [note])
+    return Findings(_rows(result, sum(peaks) / len(peaks)), [picture], [note, *warning_notes({PAPER_BUMPER: result})])
 
 
 def _rows(result: Result, still_nm: float) -> list[Row]:

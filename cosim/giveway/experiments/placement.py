@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from giveway.errors import FileError, GivewayError, InputFileError
 from giveway.plan import Rest, Straight
 from giveway.robot import read_robot
+from giveway.stated_contact import StatedContact
 from giveway.variables import Value, table
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ __all__ = [
     "has_default_outline",
     "outline_of_robot",
     "pulled_by_weight",
+    "stated_contact",
     "tare_s",
     "testbed_of",
 ]
@@ -113,6 +115,13 @@ def before_resting(
         plan = Straight(speed_mps, math.atan2(normal[1], normal[0]))
         approach = Approach(point, 0.0, time_s=tare_s() + plan.ramp_s + steady_s)
         return plan, _meet(approach, testbed, plan)
+
+
+def stated_contact(robot: Path | None, speed_mps: float, time_s: float | None = None) -> StatedContact:
+    """The contact that an experiment asks for: in the middle of `SIDE`, this fast, and when, if that is stated."""
+    from giveway.approach import edge_middle
+
+    return StatedContact(speed_mps, edge_middle(outline_of_robot(robot), SIDE), time_s)
 
 
 def tare_s() -> float:

@@ -19,8 +19,9 @@ from giveway.errors import UnknownNameError
 from giveway.experiments import Experiment
 from giveway.footprint import controller_outline, hull, wheel_corners
 from giveway.plan import Straight
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.reproduction import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.scenario import Scenario
+from giveway.stated_contact import StatedContact
 from giveway.variables import Value, table
 
 if TYPE_CHECKING:
@@ -152,6 +153,7 @@ def scenario(name: str) -> Scenario:
         },
         controller={**controller_outline(whole), "supervisor.after_settled": 0},
         plan=plan,
+        contact=StatedContact(scene.speed_mps, time_s=tare_s + plan.ramp_s + STEADY_S),
     )
 
 
@@ -228,7 +230,7 @@ def reproduce(effort: Effort) -> Findings:
         "Forces are horizontal: a rim that climbs onto a hand, and the smaller lever of a force close to the floor on "
         "a wheel that rolls, are not in the model. Hand and person are held by an estimated friction on the floor.",
     ]
-    return Findings(rows, [picture], notes)
+    return Findings(rows, [picture], [*notes, *warning_notes(found)])
 
 
 def _creeping_roller(name: str, result: Result) -> list[str]:
