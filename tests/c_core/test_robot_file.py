@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
+from giveway.robot import read_robot
 
 ROOT = Path(__file__).parents[2]
 HEADER = ROOT / "c_core" / "include" / "giveway" / "gw_trikey.h"
@@ -15,18 +15,13 @@ DEFINE = re.compile(r"^#define GW_TRIKEY_(\w+) (?:\(\(gw_real_t\)(\S+?)\)|(\d+)U
 
 def robot_values() -> dict[str, float]:
     """Name in capitals, such as BASE_MASS, to value; lists by element."""
-    with (ROOT / "robots" / "trikey.toml").open("rb") as file:
-        robot = tomllib.load(file)
     values: dict[str, float] = {}
-    for section, entries in robot.items():
-        if not isinstance(entries, dict) or section == "robot":
-            continue
-        for name, entry in entries.items():
-            key = f"{section}_{name}".upper()
-            if isinstance(entry["value"], list):
-                values |= {f"{key}{index}": value for index, value in enumerate(entry["value"])}
-            else:
-                values[key] = entry["value"]
+    for name, entry in read_robot(ROOT / "robots" / "trikey.toml").entries():
+        key = name.replace(".", "_").upper()
+        if entry.is_list:
+            values |= {f"{key}{index}": value for index, value in enumerate(entry.values)}
+        else:
+            values[key] = entry.values[0]
     return values
 
 
