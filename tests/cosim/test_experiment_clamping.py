@@ -7,9 +7,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray
 from giveway import batch, experiments
 from giveway.body_regions import NOTICE, body_region
-from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, _safe_speed, scenario
+from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, Clamped, _safe_speed, scenario
 from giveway.reproduction import Effort, Findings
 from giveway.result import Result
 from giveway.scenario import BUMPERS
@@ -81,6 +82,25 @@ def test_rows(findings: Findings) -> None:
     assert all((row.reason != "") == (row.met is False) for row in findings.rows)
     assert NOTICE in findings.notes
     assert NOTICE in findings.pictures[0].caption
+
+
+@pytest.mark.parametrize("harder", ["contact", "wall"])
+def test_the_leg_feels_the_larger_force_of_robot_and_wall(harder: str) -> None:
+    """0.1 s after the contact a blow of either side, of either sign; 0.8 s after it, a lasting force."""
+    time = np.arange(2001) * 1e-3
+    forces = {side: np.where((time >= 0.3) & (time < 1.5), 20.0, 0.0) for side in ("contact", "wall")}
+    forces[harder][400], forces[harder][1100] = -200.0, 90.0
+    columns = {f"testbed.truth.{side}_force": force for side, force in forces.items()}
+    columns["testbed.truth.first_contact_time"] = np.full(time.size, 0.3)
+    columns["controller.detection.count"] = (time >= 0.35).astype(np.int32)
+    table = xarray.Dataset(
+        {name: (("run", "time"), values[None, :]) for name, values in columns.items()}, {"time": ("time", time)}
+    )
+    found = Clamped(table, 0)
+    assert (found.judgement.peak_n, found.judgement.lasting_n) == (200.0, 90.0)
+    assert found.judgement.peak_time_s == pytest.approx(0.4)
+    assert found.detection_ms == pytest.approx(50.0)
+    assert found.force_n[350] == 20.0
 
 
 def test_safe_speed_is_the_last_one_before_the_first_that_fails() -> None:

@@ -1,0 +1,225 @@
+"""What a figure's labels say is what it draws: every curve is one of the run's quantities, in the unit of its label.
+
+Curves are found again among the traces and what follows from them, worked out here in SI: a label of another unit, a
+factor that is missing, or a quantity of another kind on an axis finds none.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from giveway.errors import GivewayError
+from giveway.report import figures, impact_response, overview, reversal
+from giveway.report.runs import Run
+from giveway.report.style import COLOURS
+from giveway.result import Result
+from giveway.scenario import BUMPERS
+from giveway.study import figures as study_figures
+from giveway.units import factor
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+CURVE = 20  # points at least; shorter lines are marks
+LABELS = dict(zip(BUMPERS, COLOURS, strict=True))
+
+
+@dataclass(frozen=True)
+class Known:
+    """A run's times since the contact, s, when it was detected, s, and what could be drawn: unit and values, in SI."""
+
+    time_s: NDArray[np.float64]
+    detected_s: float
+    quantities: list[tuple[str, NDArray[np.float64]]]
+
+
+def known(result: Result) -> Known:
+    traces, testbed = result.traces, result.manifest["parameters"]["testbed"]
+    value = {str(name): trace.values.astype(float) for name, trace in traces.data_vars.items()}
+    found = [(str(trace.attrs.get("units", "1")), value[str(name)]) for name, trace in traces.data_vars.items()]
+    time = traces["time"].values
+    contact_s = value["testbed.truth.first_contact_time"][-1]
+    row = int(np.searchsorted(time, contact_s))
+    along = math.cos(testbed["slider.direction"]), math.sin(testbed["slider.direction"])
+    for x, y in (
+        ("testbed.truth.x", "testbed.truth.y"),
+        ("controller.reference.x", "controller.reference.y"),
+        ("testbed.truth.nose_x", "testbed.truth.nose_y"),
+    ):
+        found.append(("m", along[0] * (value[x] - value[x][row]) + along[1] * (value[y] - value[y][row])))
+    for source in ("testbed.truth", "controller.reference"):
+        found.append(("m/s", along[0] * value[f"{source}.vx"] + along[1] * value[f"{source}.vy"]))
+    slider, wheel = value["testbed.truth.slider_position"], value["testbed.truth.wheel_angle[0]"]
+    found.append(("m", slider - slider[row]))
+    found.append(("m", float(testbed["wheel.radius"]) * (wheel - wheel[row])))
+    found.append(("N.s", np.hypot(*(value[f"testbed.truth.contact_impulse_{axis}"] for axis in "xy"))))
+    force = [value[f"controller.estimate.force_{axis}"] * (time >= contact_s) for axis in "xy"]
+    found.append(("N.s", np.hypot(*(np.cumsum(one) * (time[1] - time[0]) for one in force))))
+    counts = np.diff(value["controller.detection.count"], prepend=0.0)
+    detected = np.flatnonzero((counts > 0.0) & (time >= contact_s))
+    return Known(time - contact_s, time[detected[0]] - contact_s, found)
+
+
+def unit_in(text: str) -> tuple[float, str] | None:
+    """Size and unit of "force (10 N), rising"; None without one."""
+    for words in re.findall(r"\(([^()]+)\)", text):
+        size, unit = re.fullmatch(r"(\d+ )?(.*)", words).groups()  # type: ignore[union-attr]
+        unit = unit.replace(" ", ".")
+        try:
+            factor("unit", unit, unit)
+        except GivewayError:
+            continue
+        return float(size or 1.0), unit
+    return None
+
+
+def title(axes: Axes) -> str:
+    return axes.get_title("left") or axes.get_title()
+
+
+def unit_of_axis(figure: Figure, axes: Axes, which: str) -> tuple[float, str]:
+    """From the axis' own label, its title, or the label of the panels that it shares its axis with."""
+    if found := unit_in(axes.get_xlabel() if which == "x" else axes.get_ylabel()):
+        return found
+    if which == "y" and (found := unit_in(title(axes))):
+        return found
+    mine = axes.get_subplotspec()
+    assert mine is not None
+    for other in figure.axes:
+        theirs = other.get_subplotspec()
+        if theirs is None:
+            continue
+        if which == "y" and theirs.rowspan == mine.rowspan and (found := unit_in(other.get_ylabel())):
+            return found
+        if which == "x" and theirs.colspan == mine.colspan and (found := unit_in(other.get_xlabel())):
+            return found
+    raise AssertionError(f"no unit: {title(axes)}, {axes.get_xlabel()}, {axes.get_ylabel()}")
+
+
+def in_si(values: object, unit: tuple[float, str], wanted: str) -> NDArray[np.float64]:
+    return np.asarray(values, dtype=float) * unit[0] * factor("label", unit[1], wanted)
+
+
+def is_found(line: Line2D, x_unit: tuple[float, str], y_unit: tuple[float, str], run: Known) -> bool:
+    """The curve is a quantity of ``run``, over times of it, but for the sign."""
+    at_s = in_si(line.get_xdata(), x_unit, "s")
+    rows = np.clip(np.searchsorted(run.time_s, at_s - 1e-6), 0, len(run.time_s) - 1)
+    if np.abs(run.time_s[rows] - at_s).max() > 1e-9:
+        return False
+    for unit, values in run.quantities:
+        try:
+            drawn = in_si(line.get_ydata(), y_unit, unit)
+        except GivewayError:
+            continue
+        same = min(np.abs(drawn - values[rows]).max(), np.abs(drawn + values[rows]).max())
+        if same <= 1e-9 * max(np.abs(drawn).max(), 1e-12):
+            return True
+    return False
+
+
+def check(figure: Figure, runs: list[Known], panels: range | None = None) -> tuple[int, int]:
+    """How many curves and marks of the detection were found again; the assertion names one that was not."""
+    curves = marks = 0
+    for number, axes in enumerate(figure.axes):
+        if panels is not None and number not in panels:
+            continue
+        x_unit = unit_of_axis(figure, axes, "x")
+        for line in axes.lines:
+            x = np.asarray(line.get_xdata(), dtype=float)
+            if len(x) >= CURVE:
+                y_unit = unit_in(str(line.get_label())) or unit_of_axis(figure, axes, "y")
+                words = f"{title(axes)}: {line.get_label()}: no quantity in {y_unit[1]} over {x_unit[1]}"
+                assert any(is_found(line, x_unit, y_unit, run) for run in runs), words
+                curves += 1
+            elif len(x) == 2 and x[0] == x[1] and line.get_linestyle() == "--":
+                at_s = in_si(x[0], x_unit, "s")
+                assert any(abs(at_s - run.detected_s) < 1e-9 for run in runs), title(axes)
+                marks += 1
+    return curves, marks
+
+
+def by_label(full_runs: Mapping[str, Result]) -> dict[str, Result]:
+    return {LABELS[bumper]: result for bumper, result in full_runs.items()}
+
+
+def of_report(number: int) -> Callable[[dict[str, Result]], Figure]:
+    def draw(results: dict[str, Result]) -> Figure:
+        return figures._FIGURES[number][2]([Run(label, result) for label, result in results.items()])
+
+    return draw
+
+
+def of_overview(results: dict[str, Result]) -> Figure:
+    runs = [Run(label, result) for label, result in results.items()]
+    figure = Figure()
+    forces, escapes = figure.subplots(2, 1)
+    overview._forces(forces, runs)
+    overview._escapes(escapes, runs)
+    return figure
+
+
+def of_reversal(results: dict[str, Result]) -> Figure:
+    label = LABELS["magnetic"]
+    return reversal.draw(label, results[label])
+
+
+def of_study(results: dict[str, Result]) -> Figure:
+    return study_figures.traces({i: {"front": result} for i, result in enumerate(results.values())})
+
+
+DRAWN: dict[str, tuple[Callable[[dict[str, Result]], Figure], int, int]] = {  # and how many curves, how many marks
+    "contact force": (of_report(0), 3, 3),
+    "wheel torques": (of_report(1), 9, 9),
+    "positions": (of_report(2), 18, 6),
+    "estimates": (of_report(3), 12, 6),
+    "impact response": (impact_response.draw, 12, 0),
+    "overview": (of_overview, 6, 3),
+    "reversal": (of_reversal, 11, 3),
+    "chosen designs of a study": (of_study, 3, 3),
+}
+
+
+def test_every_figure_of_the_report_is_there() -> None:
+    assert len(figures._FIGURES) == 4
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_curves_are_quantities_in_the_units_of_their_labels(name: str, full_runs: dict[str, Result]) -> None:
+    draw, curves, marks = DRAWN[name]
+    results = by_label(full_runs)
+    figure = draw(results)
+    runs = [known(result) for result in results.values()]
+    found = check(figure, runs)
+    assert found[0] == curves
+    assert found[1] >= marks
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_a_label_of_another_unit_would_be_noticed(name: str, full_runs: dict[str, Result]) -> None:
+    """The planted faults: each label in turn with another size of its unit."""
+    results = by_label(full_runs)
+    runs = [known(result) for result in results.values()]
+    other = {"mm": "m", "m": "mm", "N": "kN", "N m": "N", "N s": "N", "ms": "s", "s": "ms", "m/s": "mm/s"}
+    figure = DRAWN[name][0](results)
+    planted = 0
+    for axes in figure.axes:
+        labels = {
+            axes.set_xlabel: axes.get_xlabel(),
+            axes.set_ylabel: axes.get_ylabel(),
+            # Of no meaning beside a label with a unit.
+            lambda text, axes=axes: axes.set_title(text, loc="left"): "" if axes.get_ylabel() else title(axes),
+        }
+        for put, right in labels.items():
+            if unit_in(right) is not None:
+                put(re.sub(r"\(([^()]+)\)", lambda found: f"({other[found[1]]})", right, count=1))
+                with pytest.raises(AssertionError):
+                    check(figure, runs)
+                put(right)
+                planted += 1
+    assert planted >= 1
