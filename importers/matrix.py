@@ -107,7 +107,7 @@ def _job(importer: Importer, version: int, interface: str, fmus: Path, work: Pat
         "parameters": parameters,
         "controller": str(fmus / f"giveway_controller_fmi{version}.fmu"),
         "testbed": str(fmus / f"giveway_testbed_fmi{version}.fmu"),
-        "ssp": str(work / "giveway.ssp"),
+        "ssp": str(fmus / "giveway.ssp"),
         "trace": str(work / f"{Path(importer.probe).stem}_{version}{interface}.csv"),
     }
 

@@ -1,4 +1,4 @@
-"""`make platforms`: the FMUs of `make fmus ALL=1` on their platforms, against those of this machine's compiler.
+"""`make platforms`: the FMUs of `make fmus ALL=1` on their platforms, against those that `make test` runs.
 
 Every library is read: exports, needs, oldest system. Those for Linux and Windows are run, under qemu and wine where
 they are not at home: a coupled collision, and each component by itself. Each is run twice in one process, the libraries
@@ -8,27 +8,29 @@ shows each check failing on a planted fault, and ends with 1 if anything was wro
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib.util import find_spec
 from pathlib import Path
 
+import fmpy
 import numpy as np
+import ziglang
 
+from .binaries import inspected
 from .plan import Plan, read_outputs
 from .reproduce import build_again, differing
 from .runs import CONTROLLER, all_runs, replay
 
 ROOT = Path(__file__).parents[2]
 FMUS = ROOT / "out" / "fmus"
-NATIVE = ROOT / "build" / "fmus"
+TESTED = ROOT / "build" / "fmus"
+HOST = "x86_64-linux"
 WORK = ROOT / "build" / "platforms" / "check"
-TOOLS = ROOT / "build" / "platforms" / "tools" / "bin" / "python"
+HEADERS = Path(fmpy.__file__).parent / "c-code"
 ZIG_CACHE = ROOT / "build" / "platforms" / "zig-cache"
 MODELS = ("controller", "testbed", "drivetrain", "bumper")
 # Platform -> what a program for it is started with; without an entry it cannot be run here.
@@ -61,25 +63,11 @@ class Findings:
         self.faults += [f"{subject}: {fault}" for fault in faults]
 
 
-def _headers() -> Path:
-    spec = find_spec("fmpy")
-    assert spec is not None
-    assert spec.origin is not None
-    return Path(spec.origin).parent / "c-code"
-
-
 def zig(*arguments: object) -> None:
     """Run zig's compiler."""
-    (binary,) = TOOLS.parents[1].glob("lib/python3*/site-packages/ziglang/zig")
+    binary = Path(ziglang.__file__).with_name("zig")
     cache = {"ZIG_GLOBAL_CACHE_DIR": str(ZIG_CACHE), "ZIG_LOCAL_CACHE_DIR": str(ZIG_CACHE)}
     subprocess.run([binary, *map(str, arguments)], check=True, env={**os.environ, **cache})
-
-
-def inspected(fmus: Sequence[Path]) -> list[dict[str, object]]:
-    """What `binaries` says of the libraries of these FMUs."""
-    command = [str(TOOLS), "-m", "fmu.platforms.binaries", str(_headers()), *map(str, fmus)]
-    answer = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
-    return [json.loads(line) for line in answer.stdout.splitlines()]
 
 
 def _runner(platform: str) -> Path:
@@ -88,7 +76,7 @@ def _runner(platform: str) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     source = Path(__file__).with_name("run_fmus.c")
     options = [] if "windows" in platform else ["-ldl"]
-    zig("cc", f"--target={TARGETS[platform]}", "-O1", "-s", f"-I{_headers()}", source, "-o", path, *options)
+    zig("cc", f"--target={TARGETS[platform]}", "-O1", "-s", f"-I{HEADERS}", source, "-o", path, *options)
     return path
 
 
@@ -155,14 +143,13 @@ def results(outputs: Outputs) -> Outputs:
 
 
 def check_runs(findings: Findings) -> None:
-    """Every run on every platform that runs here, against this machine's own FMUs."""
-    host = "x86_64-linux"
-    runner = _runner(host)
-    expected = {name: run(plan, f"native_{name}", host, [], runner) for name, plan in all_runs(NATIVE).items()}
+    """Every run on every platform that runs here, against the FMUs that are tested."""
+    runner = _runner(HOST)
+    expected = {name: run(plan, f"tested_{name}", HOST, [], runner) for name, plan in all_runs(TESTED).items()}
     if expected["collision"][CONTROLLER, "detection.count"][-1] < 1:
         findings.say("collision", "", ["nothing was detected: it was no collision"])
-    alone = replay(NATIVE, all_runs(NATIVE)["collision"], expected["collision"])
-    controller = run(alone, "native_controller", host, [], runner)
+    alone = replay(TESTED, all_runs(TESTED)["collision"], expected["collision"])
+    controller = run(alone, "tested_controller", HOST, [], runner)
     for platform, launcher in LAUNCHERS.items():
         runner = _runner(platform)
         plan = replay(FMUS, all_runs(FMUS)["collision"], expected["collision"])
@@ -197,24 +184,29 @@ def plant_late_code(findings: Findings) -> None:
 
 def plant_faults(findings: Findings, expected: Mapping[str, Outputs], controller: Outputs) -> None:
     """The comparisons must see a stiffness that is 1e-6 off and a torque that is 0.1 N m off once."""
-    host, launcher = "x86_64-linux", LAUNCHERS["x86_64-linux"]
-    runner = _runner(host)
+    launcher, runner = LAUNCHERS[HOST], _runner(HOST)
     for name, plan in all_runs(FMUS, 1.0 + 1e-6).items():
-        error, _ = deviation(results(run(plan, "planted", host, launcher, runner)), results(expected[name]), range(2))
+        error, _ = deviation(results(run(plan, "planted", HOST, launcher, runner)), results(expected[name]), range(2))
         missed = [] if error > PLANT_TOLERANCE else [f"a stiffness 1e-6 off was not seen ({error:.1e})"]
         findings.say(f"planted fault: {name}", f"seen: off by {error:.1e}", missed)
     plan = replay(FMUS, all_runs(FMUS)["collision"], expected["collision"], nudge=0.1)
-    odd = different_bits(run(plan, "planted", host, launcher, runner), controller)
+    odd = different_bits(run(plan, "planted", HOST, launcher, runner), controller)
     findings.say(
         "planted fault: controller", f"seen in {len(odd)} outputs", [] if odd else ["a torque off was not seen"]
     )
+
+
+def _library(fmu: Path) -> bytes:
+    """Of this machine's platform."""
+    with zipfile.ZipFile(fmu) as archive:
+        return archive.read(f"binaries/{HOST}/{fmu.stem.removesuffix('_fmi3')}.so")
 
 
 def check_libraries(findings: Findings) -> None:
     """Every library of every FMU; both FMI versions hold the same."""
     fmus = [FMUS / f"giveway_{model}_fmi{version}.fmu" for model in MODELS for version in (2, 3)]
     seen: dict[tuple[str, str], object] = {}
-    for entry in inspected(fmus):
+    for entry in inspected(fmus, HEADERS):
         needed, faults = entry["needed"], entry["faults"]
         assert isinstance(needed, list)
         assert isinstance(faults, list)
@@ -225,6 +217,10 @@ def check_libraries(findings: Findings) -> None:
         if seen.setdefault((model, platform), entry["sha256"]) != entry["sha256"]:
             faults.append("is not the library of the other FMI version")
         findings.say(f"{subject} {entry['folder']}", text, faults)
+    for model in MODELS:
+        shipped, tested = (_library(folder / f"giveway_{model}_fmi3.fmu") for folder in (FMUS, TESTED))
+        faults = [] if shipped == tested else ["is not the library that is tested"]
+        findings.say(f"{model} {HOST}", "is the library that `make test` runs", faults)
     wanted = {(model, platform) for model in MODELS for platform in TARGETS}
     if set(seen) != wanted:
         findings.say("platforms", "", [f"missing: {sorted(wanted - set(seen))}"])
@@ -303,7 +299,7 @@ def plant_library_faults(findings: Findings) -> None:
             zig(*common, folder / "other.c", "-o", other, *implib)
             zig(*common, folder / "planted.c", against, *options, "-o", library)
             archive.write(library, f"binaries/{platform}/planted.{suffix}")
-    for entry in inspected([fmu]):
+    for entry in inspected([fmu], HEADERS):
         said = "; ".join(map(str, entry["faults"])) if isinstance(entry["faults"], list) else ""
         missed = [f"not seen: {word}" for word in _PLANTED[str(entry["platform"])][2] if word not in said]
         findings.say(f"planted fault: {entry['platform']}", f"seen: {said}", missed)
@@ -313,7 +309,7 @@ def check_reproduction(findings: Findings) -> None:
     """A build from nothing in another folder gives the same files."""
     elsewhere = ROOT / "build" / "platforms" / "again" / "elsewhere"
     wall_s = build_again(ROOT, elsewhere)
-    odd = differing(FMUS, elsewhere / "out" / "fmus")
+    odd = differing(FMUS, elsewhere / "build" / "fmus_all")
     faults = [f"other bytes: {', '.join(odd)}"] if odd else []
     findings.say("another folder, from nothing", f"the same bytes, after {wall_s:.0f} s", faults)
     # The planted fault: a file name in a library, without the option that takes its folder away.

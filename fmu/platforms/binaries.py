@@ -1,24 +1,18 @@
-"""What an FMU's shared libraries export, need and run on, read from the files. Runs in the environment that has LIEF.
-
-    python -m fmu.platforms.binaries FMI_HEADERS FMU...
-
-prints one JSON object per library: FMU, folder, figures and faults.
-"""
+"""What an FMU's shared libraries export, import, need and run on, read from the files."""
 
 from __future__ import annotations
 
 import hashlib
-import json
 import re
 import struct
-import sys
 import zipfile
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import lief
 
-__all__ = ["inspect"]
+__all__ = ["inspected"]
 
 GLIBC = (2, 17)
 MACOS = [11, 0, 0]
@@ -160,17 +154,13 @@ def _libraries(fmu: Path) -> dict[str, bytes]:
         return {name.split("/")[1]: archive.read(name) for name in names}
 
 
-def main(arguments: list[str]) -> int:
-    wanted = fmi_functions(Path(arguments[0]))
-    for path in map(Path, arguments[1:]):
+def inspected(fmus: Sequence[Path], headers: Path) -> Iterator[dict[str, Any]]:
+    """Of every library: FMU, folder, platform, figures and faults. ``headers``: folder of FMI's."""
+    wanted = fmi_functions(headers)
+    for path in fmus:
         for folder, data in _libraries(path).items():
             platforms = FMI2_FOLDERS.get(folder, [folder])
             images = _slices(data)
             for platform, image in zip(platforms, images, strict=True):
                 found = inspect(image, platform, wanted)
-                print(json.dumps({"fmu": path.name, "folder": folder, "platform": platform, **found}))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+                yield {"fmu": path.name, "folder": folder, "platform": platform, **found}

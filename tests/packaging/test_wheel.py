@@ -73,6 +73,18 @@ def test_the_wheel_holds_the_native_parts_and_is_for_linux_and_any_python(wheel:
     assert not [name for name in names if "__pycache__" in name or name.startswith(("tests/", "cosim/", "build/"))]
 
 
+def test_its_fmus_hold_the_libraries_that_are_tested_and_shipped_for_all_platforms(wheel: Path) -> None:
+    """One build tree makes the library of a platform; `make platforms` holds those of `make fmus ALL=1` against it."""
+    for model in ("controller", "testbed", "drivetrain", "bumper"):
+        library = f"giveway_{model}.so"
+        built = (ROOT / "build" / "platforms" / "x86_64-linux" / "binaries" / library).read_bytes()
+        for version, folder in ((2, "linux64"), (3, "x86_64-linux")):
+            with zipfile.ZipFile(wheel) as archive:
+                fmu = archive.open(f"giveway/native/giveway_{model}_fmi{version}.fmu")
+                with zipfile.ZipFile(fmu) as packed:
+                    assert packed.read(f"binaries/{folder}/{library}") == built
+
+
 def test_it_runs_an_experiment_away_from_the_repository(environment: Path, tmp_path: Path) -> None:
     origin = run(environment / "bin" / "python", "-c", "import giveway; print(giveway.__file__)", cwd=tmp_path)
     assert Path(origin.strip()).is_relative_to(environment)

@@ -115,6 +115,7 @@ def _configure(context: Context, tree: Path) -> None:
         f"-DCMAKE_MAKE_PROGRAM={tools / 'ninja'}",
         f"-DGIVEWAY_SUNDIALS_VENDOR={context.root / 'build/sundials-source'}",
         "-DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST",  # ctest does not run them
+        "-DGIVEWAY_NATIVE_FMUS=ON",  # with the flags of this tree
         f"-DCMAKE_CXX_FLAGS=-w -include {HERE / 'mutant.hpp'}",
     )
     targets = context.run(tools / "ninja", "-C", tree / "build", "-t", "targets", "all").stdout

@@ -1,0 +1,60 @@
+# The shared libraries of the FMUs. Each platform has a build tree of its own in platforms/PLATFORM, compiled by zig, and what an
+# FMU holds for a platform comes from there, whether it is packed for this machine alone (`make fmus`, the tests, the wheel) or for
+# all platforms (`make fmus ALL=1`): what is tested is what users get.
+include(ExternalProject)
+
+option(GIVEWAY_NATIVE_FMUS "Compile the FMUs with this tree's own compiler instead of zig: for debuggers and sanitisers" OFF)
+if(GIVEWAY_PLATFORM OR NOT GIVEWAY_SYSTEM IN_LIST GIVEWAY_PLATFORMS)
+  set(GIVEWAY_NATIVE_FMUS ON)
+endif()
+
+if(NOT GIVEWAY_NATIVE_FMUS)
+  execute_process(
+    COMMAND "${Python3_EXECUTABLE}" -c
+            "import importlib.util, pathlib; print(pathlib.Path(importlib.util.find_spec('ziglang').origin).parent / 'zig')"
+    OUTPUT_VARIABLE GIVEWAY_ZIG OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT EXISTS "${GIVEWAY_ZIG}")
+    message(FATAL_ERROR "zig was not found: ${Python3_EXECUTABLE} has no package ziglang (requirements.lock names the version). "
+                        "-DGIVEWAY_NATIVE_FMUS=ON does without it.")
+  endif()
+endif()
+
+# VARIABLE: the shared library of the FMU `MODULE` for a platform.
+function(giveway_platform_library MODULE PLATFORM VARIABLE)
+  giveway_fmu_suffix(${PLATFORM} _suffix)
+  set(${VARIABLE} "${CMAKE_BINARY_DIR}/platforms/${PLATFORM}/binaries/${MODULE}${_suffix}" PARENT_SCOPE)
+endfunction()
+
+# The build trees, as targets platform_PLATFORM; one is built when a file from it is wanted. MODULE...: all FMUs.
+function(giveway_add_platforms)
+  set(_quiet "")
+  if(CMAKE_GENERATOR STREQUAL "Ninja")
+    set(_quiet -- --quiet)
+  endif()
+  set(_folder "${CMAKE_BINARY_DIR}/platforms")
+  foreach(_platform IN LISTS GIVEWAY_PLATFORMS)
+    set(_libraries "")
+    foreach(_module IN LISTS ARGN)
+      giveway_platform_library(${_module} ${_platform} _library)
+      list(APPEND _libraries "${_library}")
+    endforeach()
+    ExternalProject_Add(
+      platform_${_platform}
+      EXCLUDE_FROM_ALL ON
+      PREFIX "${_folder}/steps"
+      SOURCE_DIR "${PROJECT_SOURCE_DIR}"
+      BINARY_DIR "${_folder}/${_platform}"
+      CMAKE_ARGS --fresh # a tree keeps its first compiler, which may be gone
+                 "-DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/cmake/Platform.cmake" "-DGIVEWAY_PLATFORM=${_platform}"
+                 "-DGIVEWAY_ZIG=${GIVEWAY_ZIG}" "-DGIVEWAY_SUNDIALS_VENDOR=${GIVEWAY_SUNDIALS_VENDOR}"
+                 "-DPython3_EXECUTABLE=${Python3_EXECUTABLE}" "-DCMAKE_MAKE_PROGRAM=${CMAKE_MAKE_PROGRAM}"
+      BUILD_COMMAND "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_folder}/zig-cache" "ZIG_LOCAL_CACHE_DIR=${_folder}/zig-cache"
+                    "${CMAKE_COMMAND}" --build <BINARY_DIR> --target fmu_binaries ${_quiet}
+      BUILD_ALWAYS ON # that tree knows what has changed
+      USES_TERMINAL_BUILD ON # one after the other: each takes all processors
+      BUILD_BYPRODUCTS ${_libraries}
+      INSTALL_COMMAND ""
+      LOG_CONFIGURE ON
+      LOG_OUTPUT_ON_FAILURE ON)
+  endforeach()
+endfunction()
