@@ -23,7 +23,7 @@ from giveway.errors import GivewayError, UnknownNameError
 from giveway.experiments.motionless import SPEED_MPS
 from giveway.experiments.placement import pulled_by_weight
 from giveway.files import check_file, replace_file
-from giveway.fmu_description import Description, VariableEntry, read_description
+from giveway.fmu_description import Description, VariableEntry, effective, read_description
 from giveway.master import COMMANDS, KINDS, SENSORS
 from giveway.scenario import BUMPERS
 from giveway.variables import Value, table
@@ -152,9 +152,9 @@ def _parameter_values(
         model, _, variable = name.partition(".")
         entry = descriptions[model].by_name[variable]
         attributes = {"value": str(value).lower() if isinstance(value, bool) else repr(value)}
-        if entry.get("unit"):
-            attributes["unit"] = entry.get("unit")
-            used.append(entry.get("unit"))
+        if unit := effective(descriptions[model], entry, "unit"):
+            attributes["unit"] = unit
+            used.append(unit)
         _add(_add(parameters, _SSV, "Parameter", name=variable if local else name), _SSV, entry.type, **attributes)
     _units(root, _SSV, used, descriptions)
     return root
@@ -197,14 +197,14 @@ def _component(
         connected = entry.causality == "output" or (entry.causality == "input" and entry.name in received)
         bound = entry.causality == "parameter" and f"{model}.{entry.name}" in values
         if connected or bound:
-            _connector(connectors, entry, entry.causality)
-            used.add(entry.get("unit"))
+            unit = effective(description, entry, "unit")
+            _connector(connectors, entry, entry.causality, unit)
+            used.add(unit)
     if model in _bound(values):
         _bind(component, f"{bumper}.{model}.ssv")
     return used - {""}
 
 
-def _connector(connectors: Any, entry: VariableEntry, kind: str) -> None:
+def _connector(connectors: Any, entry: VariableEntry, kind: str, unit: str) -> None:
     connector = _add(connectors, _SSD, "Connector", name=entry.name, kind=kind)
-    unit = {"unit": entry.get("unit")} if entry.get("unit") else {}
-    _add(connector, _SSC, entry.type, **unit)
+    _add(connector, _SSC, entry.type, **({"unit": unit} if unit else {}))

@@ -94,7 +94,7 @@ def names_and_references(file: TestedFile) -> Found:
             names = shown(", ".join(v.name for v in variables[:10]), 200)
             shared = FAULT if description.version == 3 else NOTE
             yield shared, f"value reference {reference} is shared by {names}"
-            units = {v.get("unit") for v in variables}
+            units = {effective(description, v, "unit") for v in variables}
             if len(units) > 1:
                 yield FAULT, f"value reference {reference} has different units: {names}"
 

@@ -120,16 +120,16 @@ def _variability(group: Group) -> str:
 def _value_attributes(group: Group, variable: Variable) -> dict[str, str | None]:
     """Type, unit, range, nominal and start: the same words in both versions.
 
-    What the type says already is said again: many importers do not look there.
+    Unit, display unit and nominal value of the type stand there alone: an importer's parser stops at a repetition.
     """
     optional = {"min": group.minimum, "max": group.maximum, "nominal": group.size, "start": variable.start}
-    pairs: dict[str, str | None] = {
-        "declaredType": None if group.quantity is None else group.quantity.name,
-        "unit": group.unit,
-        "displayUnit": group.display_unit,
-    }
+    pairs: dict[str, str | None] = {"unit": group.unit, "displayUnit": group.display_unit}
     pairs.update({name: None if value is None else _text(value) for name, value in optional.items()})
-    return pairs
+    if group.quantity is None:
+        return pairs
+    said = _type_attributes(group.quantity)
+    own = {n: None if n in ("unit", "displayUnit", "nominal") and v == said[n] else v for n, v in pairs.items()}
+    return {"declaredType": group.quantity.name, **own}
 
 
 def _references(variables: list[Variable]) -> str:

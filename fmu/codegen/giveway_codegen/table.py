@@ -78,7 +78,8 @@ class Group:
     @property
     def quantity(self) -> Quantity | None:
         """The type definition that it belongs to; event indicators have none."""
-        return None if self.role == "indicator" else quantity_of(self.type, self.unit, self.minimum)
+        found = None if self.role == "indicator" else quantity_of(self.type, self.unit, self.minimum)
+        return None if found is None else found.shown_in(self.display_unit)
 
     @property
     def size(self) -> float | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .units import default_display_unit
 
@@ -11,7 +11,10 @@ __all__ = ["Quantity", "quantity_of"]
 
 @dataclass(frozen=True)
 class Quantity:
-    """A type definition; ``kind`` is the variables' type, ``quantity`` the physical quantity's name."""
+    """A type definition; ``kind`` is the variables' type, ``quantity`` the physical quantity's name.
+
+    Variables that are shown in another unit than most of their quantity are of a type of their own, "Position.mm".
+    """
 
     name: str
     kind: str
@@ -20,10 +23,18 @@ class Quantity:
     minimum: float | None
     nominal: float | None
     description: str
+    own_display_unit: str | None = None
 
     @property
     def display_unit(self) -> str | None:
-        return default_display_unit(self.unit)
+        return self.own_display_unit or default_display_unit(self.unit)
+
+    def shown_in(self, display_unit: str | None) -> Quantity:
+        """The type with this display unit."""
+        if display_unit in (None, self.display_unit):
+            return self
+        description = f"{self.description}, shown in {display_unit}"
+        return replace(self, name=f"{self.name}.{display_unit}", description=description, own_display_unit=display_unit)
 
 
 # unit -> quantity, name and description of what has a sign, of what has none, typical size of a robot's. A variable

@@ -222,6 +222,11 @@ class Fmu:
     def kind(self, name: str) -> str:
         return _TYPE_NAMES[self.variables[name].type]
 
+    def nominal(self, name: str) -> float:
+        """The variable's own, else that of its type."""
+        variable = self.variables[name]
+        return float(variable.nominal or variable.declaredType.nominal)
+
     def reference(self, name: str) -> int:
         return self.variables[name].valueReference
 
