@@ -47,7 +47,7 @@ template <class Variables>
     if (count > 0) {
         events.count += count;
         events.last_s = now_s;
-        update.states_changed = true;
+        update.discontinuity = true;
     }
     return true;
 }

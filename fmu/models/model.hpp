@@ -30,7 +30,7 @@ struct ModelInfo {
     const char *token;             // instantiation token: hash of the variable table
     const VariableInfo *variables; // sorted by reference
     std::size_t variable_count;
-    // For models with equations to integrate; 0 and null otherwise.
+    // For models with equations to integrate; 0 and null otherwise. The last state is the shell's own, which counts discontinuities.
     const double *state_nominals;
     std::size_t state_count;
     std::size_t indicator_count;
@@ -50,7 +50,8 @@ struct Message {
 // What an event update leaves to be known.
 struct EventUpdate {
     bool again;          // another update is needed, after outputs have been passed on
-    bool states_changed; // the states jumped
+    bool discontinuity;  // the equations changed: a mode, or a torque that is held from tick to tick
+    bool states_changed; // filled by the shell
     bool has_next_time;  // the next event that is known in advance
     double next_time_s;
 };
@@ -64,7 +65,7 @@ public:
 
     // The first call after initialise() says that the importer integrates and inputs act at once.
     virtual void set_time(double time_s) = 0;
-    // state_count numbers, the importer's to write in continuous time.
+    // state_count - 1 numbers, the importer's to write in continuous time.
     virtual double *states() = 0;
     // At the time, states and inputs of now.
     virtual void derivatives(double *values) = 0;

@@ -15,8 +15,8 @@ Handles::Slot *Handles::slot(std::size_t index) {
     return chunk == nullptr ? nullptr : &chunk[index & (chunk_size - 1)];
 }
 
-// A handle is (generation << index_bits) | index, with a generation of at least 1, so no handle is null; every handle that is
-// given out has the next generation.
+// A handle is generation, index and a bit that is set, from high to low. The generation is at least 1, and that of every handle
+// that is given out is the next one.
 void *Handles::object_of(std::uintptr_t handle) {
     const Slot *found = slot(index_of(handle));
     if (found == nullptr || found->handle.load(std::memory_order_acquire) != handle) {
@@ -53,12 +53,11 @@ void *Handles::add(void *object) {
         unlock();
         return nullptr;
     }
-    constexpr std::uintptr_t one_generation = std::uintptr_t{1} << index_bits;
     last_ += one_generation;
     if (last_ == 0) {
-        last_ = one_generation; // the generations of a 32-bit machine come round after 4096
+        last_ = one_generation; // the generations of a 32-bit machine come round after 2047
     }
-    const std::uintptr_t handle = last_ | index;
+    const std::uintptr_t handle = last_ | (index << 1) | 1;
     Slot &free = *slot(index);
     free.object.store(hide(object), std::memory_order_relaxed);
     free.handle.store(handle, std::memory_order_release);
@@ -77,6 +76,14 @@ void *Handles::find(const void *handle) {
     void *object = object_of(number);
     unlock();
     return object;
+}
+
+bool Handles::was_given_out(const void *handle) {
+    const auto number = reinterpret_cast<std::uintptr_t>(handle);
+    lock();
+    const std::uintptr_t last = last_;
+    unlock();
+    return (number & 1) != 0 && number >= one_generation && number < last + one_generation;
 }
 
 void *Handles::remove(void *handle) {

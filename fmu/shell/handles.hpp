@@ -25,6 +25,9 @@ public:
     // The object; null if the handle was freed, or was never given out.
     void *find(const void *handle);
 
+    // Whether it is a number that a handle has, or had: anything else was never one. An address of a pointer hardly ever is, being even.
+    bool was_given_out(const void *handle);
+
     // Frees the handle and gives the object back, to one caller only; null as above.
     void *remove(void *handle);
 
@@ -41,7 +44,9 @@ private:
         std::size_t next_free = 0;             // index + 1; 0: none
     };
 
-    static std::size_t index_of(std::uintptr_t handle) { return handle & ((std::uintptr_t{1} << index_bits) - 1); }
+    static constexpr std::uintptr_t one_generation = std::uintptr_t{2} << index_bits;
+
+    static std::size_t index_of(std::uintptr_t handle) { return (handle & (one_generation - 1)) >> 1; }
     // Null if there is no such slot (any more).
     Slot *slot(std::size_t index);
     void *object_of(std::uintptr_t handle);

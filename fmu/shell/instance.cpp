@@ -3,6 +3,7 @@
 #include "handles.hpp"
 #include "saved_state.hpp"
 #include "state_archive.hpp"
+#include "times.hpp"
 
 #include <cmath>
 #include <cstdarg>
@@ -17,9 +18,27 @@ namespace {
 // Of the saved states; one for all instances, which may take over each other's states.
 Handles saved_states;
 
-// Communication points are sums of step sizes; how far they may be off what we expect, as a share of
-// the step (an importer's sum over a million steps is off by less than 1e-9 of a step).
-constexpr double time_tolerance = 1e-6;
+// Communication points are sums of step sizes; how far they may be off what we expect, as a share of the step (an importer's sum
+// over a million steps is off by less than 1e-9 of a step), or by the rounding of two times that were added up differently.
+constexpr double share_of_step = 1e-6;
+
+double time_tolerance(double time, double expected, double step_size) {
+    return std::fmax(share_of_step * step_size, std::fmax(time_rounding(time), time_rounding(expected)));
+}
+
+// Two times with as few digits, from nine on, as tell them apart.
+struct TwoTimes {
+    char first[32];
+    char second[32];
+
+    TwoTimes(double one, double other) {
+        int digits = 9;
+        do {
+            std::snprintf(first, sizeof first, "%.*g", digits, one);
+            std::snprintf(second, sizeof second, "%.*g", digits, other);
+        } while (std::strcmp(first, second) == 0 && ++digits <= 17);
+    }
+};
 
 const char *state_name(State state) {
     switch (state) {
@@ -118,9 +137,13 @@ bool Instance::enter_initialisation(const char *function, double start_time, dou
     if (!std::isfinite(start_time)) {
         return refuse(function, "start time is %g, but must be finite", start_time);
     }
+    if (std::fabs(start_time) > greatest_start_time_s) {
+        return refuse(function, "start time is %.9g s, but must be in [%.9g, %.9g]: later times are too coarse for a servo tick",
+                      start_time, -greatest_start_time_s, greatest_start_time_s);
+    }
     if (!(stop_time >= start_time)) {
-        return refuse(function, "stop time is %g s, but must not be before the start time, %g s",
-                      stop_time, start_time);
+        const TwoTimes times(stop_time, start_time);
+        return refuse(function, "stop time is %s s, but must not be before the start time, %s s", times.first, times.second);
     }
     time_ = start_time;
     stop_time_ = stop_time;
@@ -145,14 +168,17 @@ bool Instance::step(const char *function, double time, double step_size) {
     if (!(step_size > 0.0) || !std::isfinite(step_size)) {
         return refuse(function, "communication step size is %g s, but must be positive", step_size);
     }
-    const double tolerance = time_tolerance * step_size;
+    const double tolerance = time_tolerance(time, time_, step_size);
     if (!(std::fabs(time - time_) <= tolerance)) {
-        return refuse(function, "communication point is %.9g s, but the last step ended at %.9g s",
-                      time, time_);
+        const TwoTimes times(time, time_);
+        return refuse(function, "communication point is %s s, but the last step ended at %s s", times.first, times.second);
+    }
+    if (!(time + step_size > time)) {
+        return refuse(function, "communication step size is %.9g s, too small to be added to %.9g s", step_size, time);
     }
     if (time + step_size > stop_time_ + tolerance) {
-        return refuse(function, "the step would end at %.9g s, after the stop time, %.9g s",
-                      time + step_size, stop_time_);
+        const TwoTimes times(time + step_size, stop_time_);
+        return refuse(function, "the step would end at %s s, after the stop time, %s s", times.first, times.second);
     }
     Message message{};
     if (model_->step(time, step_size, message) != Status::ok) {
@@ -206,9 +232,19 @@ bool Instance::update_events(const char *function, EventUpdate &update) {
     }
     Message message{};
     update = EventUpdate{};
+    double *before = reinterpret_cast<double *>(static_cast<unsigned char *>(model_->variables()) + model_info().states_offset);
+    write_states(before);
     if (equations_->update_events(update, message) != Status::ok) {
         return fail(function, message);
     }
+    const bool jumped = std::memcmp(before, equations_->states(), integrated_count() * sizeof(double)) != 0;
+    discontinuity_seen_ = discontinuity_seen_ || jumped || update.discontinuity;
+    const bool counted = discontinuity_seen_ && !update.again;
+    if (counted) {
+        discontinuities_ += 1.0;
+        discontinuity_seen_ = false;
+    }
+    update.states_changed = jumped || counted;
     update_pending_ = update.again;
     outputs_fresh_ = false;
     return true;
@@ -285,7 +321,8 @@ bool Instance::set_states(const char *function, const double *values, std::size_
                           values[i]);
         }
     }
-    std::memcpy(equations_->states(), values, count * sizeof(double));
+    std::memcpy(equations_->states(), values, integrated_count() * sizeof(double));
+    discontinuities_ = values[integrated_count()];
     outputs_fresh_ = false;
     return true;
 }
@@ -300,7 +337,7 @@ bool Instance::get_states(const char *function, double *values, std::size_t coun
         !check_array(function, values, count, model_info().state_count, "continuous states")) {
         return false;
     }
-    std::memcpy(values, equations_->states(), count * sizeof(double));
+    write_states(values);
     return true;
 }
 
@@ -309,7 +346,7 @@ bool Instance::get_derivatives(const char *function, double *values, std::size_t
         !check_array(function, values, count, model_info().state_count, "continuous states")) {
         return false;
     }
-    equations_->derivatives(values);
+    write_derivatives(values);
     return true;
 }
 
@@ -331,6 +368,16 @@ bool Instance::get_nominals(const char *function, States states, double *values,
     return true;
 }
 
+void Instance::write_states(double *values) {
+    std::memcpy(values, model_->equations()->states(), integrated_count() * sizeof(double));
+    values[integrated_count()] = discontinuities_;
+}
+
+void Instance::write_derivatives(double *values) {
+    model_->equations()->derivatives(values);
+    values[integrated_count()] = 0.0;
+}
+
 void Instance::refresh(Causality causality) {
     Equations *equations = model_->equations();
     if (equations_ != nullptr && causality == Causality::output && !outputs_fresh_) {
@@ -340,9 +387,8 @@ void Instance::refresh(Causality causality) {
     if (equations != nullptr && causality == Causality::local) {
         unsigned char *data = static_cast<unsigned char *>(model_->variables());
         const ModelInfo &info = model_info();
-        std::memcpy(data + info.states_offset, equations->states(),
-                    info.state_count * sizeof(double));
-        equations->derivatives(reinterpret_cast<double *>(data + info.derivatives_offset));
+        write_states(reinterpret_cast<double *>(data + info.states_offset));
+        write_derivatives(reinterpret_cast<double *>(data + info.derivatives_offset));
         equations->indicators(reinterpret_cast<double *>(data + info.indicators_offset));
     }
 }
@@ -352,6 +398,8 @@ bool Instance::reset(const char *function) {
         return false;
     }
     model_->reset();
+    discontinuities_ = 0.0;
+    discontinuity_seen_ = false;
     time_ = 0.0;
     state_ = State::instantiated;
     return true;
@@ -386,10 +434,11 @@ bool Instance::get_state(const char *function, void **saved) {
     return keep_state(function, std::move(bytes), sizeof(StateHeader) + size, saved);
 }
 
-// Fills the state that *saved stands for, or a new one if that is null.
+// Fills the state that *saved stands for, or a new one if that is null or was never one: some importers leave the pointer
+// uninitialised.
 bool Instance::keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes,
                           std::size_t size, void **saved) {
-    if (*saved != nullptr) {
+    if (saved_states.was_given_out(*saved)) {
         auto *old = static_cast<SavedState *>(saved_states.find(*saved));
         if (old == nullptr) {
             return refuse(function, "there is no such saved state to fill, or it was freed");
@@ -437,6 +486,9 @@ bool Instance::set_state(const char *function, const void *saved) {
 }
 
 bool Instance::free_state(const char *function, void **saved) {
+    if (saved_states.was_given_out(saved)) {
+        return refuse(function, "this is the saved state itself, but must be the address of where it is kept");
+    }
     if (saved == nullptr || *saved == nullptr) {
         return true; // nothing to free, as the standard has it
     }
@@ -627,13 +679,17 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
         }
     }
     unsigned char *data = static_cast<unsigned char *>(model_->variables());
+    bool jumps = false;
     for (std::size_t i = 0; i < count; ++i) {
         if (i >= remembered) {
             variable = find(function, references[i], type, i == remembered ? nullptr : variable);
         }
         const T value = static_cast<T>(values[i]);
-        std::memcpy(data + (i < remembered ? offsets[i] : variable->offset), &value, sizeof(T));
+        unsigned char *target = data + (i < remembered ? offsets[i] : variable->offset);
+        jumps = jumps || std::memcmp(target, &value, sizeof(T)) != 0;
+        std::memcpy(target, &value, sizeof(T));
     }
+    discontinuity_seen_ = discontinuity_seen_ || (jumps && state_ == State::event_mode);
     initialised_ = false;
     outputs_fresh_ = false;
     return true;

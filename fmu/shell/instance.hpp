@@ -130,6 +130,8 @@ private:
         a(initialised_);
         a(outputs_fresh_);
         a(update_pending_);
+        a(discontinuities_);
+        a(discontinuity_seen_);
     }
     template <typename T, typename Theirs>
     bool get(const char *function, VariableType type, const std::uint32_t *references,
@@ -150,6 +152,10 @@ private:
     bool check_value(const char *function, const VariableInfo &variable, double value);
     bool check_array(const char *function, const void *values, std::size_t count,
                      std::size_t expected, const char *what);
+    // States that the model integrates.
+    static std::size_t integrated_count() { return model_info().state_count == 0 ? 0 : model_info().state_count - 1; }
+    void write_states(double *values);
+    void write_derivatives(double *values);
     bool readable_exchange(const char *function);
     bool ensure_initialised(const char *function);
     // Outputs, states, derivatives and indicators in the Variables struct belong to what was set.
@@ -170,6 +176,10 @@ private:
     bool initialised_ = false; // the outputs in the initialisation mode belong to the values set
     bool outputs_fresh_ = true; // Model Exchange: the outputs belong to time, states and inputs
     bool update_pending_ = false; // the last event update asked for another
+    // The last of the states that an importer sees. It grows by one in every event at which inputs or equations jump: then a state has
+    // changed, to the letter, and an importer that starts its solver anew only when it hears that does so.
+    double discontinuities_ = 0.0;
+    bool discontinuity_seen_ = false; // it grows in the last update of this event
 };
 
 } // namespace giveway

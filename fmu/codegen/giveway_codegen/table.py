@@ -30,6 +30,16 @@ _STATE_KEYS = {"reference", "name", "count", "unit", "display_unit", "nominal", 
 _INDICATOR_KEYS = {"reference", "name", "count", "description"}
 # A state and its derivative: der(x) has the reference of x plus this.
 DERIVATIVE_OFFSET = 1000
+# The last state of every model that has any; the shell counts with it (fmu/shell/instance.hpp).
+_DISCONTINUITIES = {
+    "name": "state.discontinuities",
+    "reference": 2999,
+    "unit": "1",
+    "nominal": 1.0,
+    "dependencies": [],
+    "description": "Events of Model Exchange so far in which inputs or equations jumped; it changes with them, for "
+    "importers that restart their solver only when a state has changed",
+}
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
     "allow_nonfinite", "dependencies", "description", "display_unit", "plant",
@@ -123,7 +133,7 @@ class Table:
     def followed(self, group: Group) -> list[Variable]:
         """What ``group``, an output or a derivative, depends on within the same instant: inputs and states."""
         if group.dependencies is None:
-            return [variable for _, variable in self.with_role("state")]
+            return [v for group, v in self.with_role("state") if group.name != _DISCONTINUITIES["name"]]
         return self.members(group.dependencies)
 
     @property
@@ -465,7 +475,8 @@ def read_table(table_file: Path, robot_file: Path) -> Table:
     for position, raw in enumerate(document.get("variable", []), start=1):
         entry = _Entry(table_file, position, raw)
         parsed.append((entry, _parse_entry(entry, robot, robot_file)))
-    for position, raw in enumerate(document.get("state", []), start=1):
+    states = document.get("state", [])
+    for position, raw in enumerate([*states, _DISCONTINUITIES] if states else [], start=1):
         entry = _Entry(table_file, position, raw)
         parsed += [(entry, group) for group in _parse_state(entry)]
     for position, raw in enumerate(document.get("indicator", []), start=1):
@@ -491,4 +502,8 @@ def read_table(table_file: Path, robot_file: Path) -> Table:
                 label = f"{table_file}: variable {group.name}"
                 raise TableError(f"{label}: dependencies: there is no input or state {dependency!r}")
     groups.sort(key=lambda group: group.variables[0].reference)
+    states = [group.name for group in groups if group.role == "state"]
+    if states and states[-1] != _DISCONTINUITIES["name"]:
+        last = _DISCONTINUITIES["reference"]
+        raise TableError(f"{table_file}: variable {states[-1]}: reference: states must have references below {last}")
     return Table(name, " ".join(description.split()), step_size, tuple(groups))

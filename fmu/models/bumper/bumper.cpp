@@ -118,7 +118,6 @@ public:
             return Status::error;
         }
         system_.set_faces(faces(), now_s_);
-        update = {};
         return Status::ok;
     }
 

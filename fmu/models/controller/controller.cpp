@@ -2,6 +2,7 @@
 //
 // A step runs the control ticks that fall into [t, t + h), with the inputs held; tick k is due k periods after the
 // start. A step shorter than the period may run none.
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <new>
@@ -10,6 +11,7 @@
 #include "from_variables.hpp"
 #include "model.hpp"
 #include "state_archive.hpp"
+#include "times.hpp"
 
 namespace giveway::controller {
 
@@ -57,9 +59,9 @@ public:
     }
 
     Status step(double time_s, double step_size_s, Message &) override {
-        // Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
-        constexpr double rounding_ticks = 1e-6;
-        const double end_ticks = (time_s + step_size_s - start_time_s_) / v_.controller_period - rounding_ticks;
+        const double latest_s = std::fmax(std::fabs(time_s + step_size_s), std::fabs(start_time_s_));
+        const double end_ticks =
+            (time_s + step_size_s - start_time_s_) / v_.controller_period - tick_tolerance(latest_s, 1.0 / v_.controller_period);
         const gw_controller_input_t in = inputs(v_);
         while (static_cast<double>(ticks_) < end_ticks) {
             gw_controller_output_t output{};

@@ -14,13 +14,11 @@
 #include "model.hpp"
 #include "servo_axis.hpp"
 #include "state_archive.hpp"
+#include "times.hpp"
 
 namespace giveway::drivetrain {
 
 namespace {
-
-// Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
-constexpr double rounding_ticks = 1e-6;
 
 class Drivetrain final : public Model, public Equations {
 public:
@@ -137,9 +135,11 @@ public:
         if (!settle_now(update, message)) {
             return Status::error;
         }
+        const double held_nm = servo_torque_nm_;
         if (v_.servo_enabled && !reach_tick(message)) {
             return Status::error;
         }
+        update.discontinuity = update.discontinuity || servo_torque_nm_ != held_nm;
         change_torques();
         if (!settle_now(update, message)) {
             return Status::error;
@@ -168,6 +168,11 @@ public:
     }
 
 private:
+    // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
+    [[nodiscard]] double rounding_at(double since_start_s) const {
+        return tick_tolerance(std::fmax(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
+    }
+
     Status resume(Message& message) {
         if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
             return failure(integrator_, message);
@@ -189,6 +194,7 @@ private:
     // Acts on the tick of now, if it is one. The importer has to stop at each.
     bool reach_tick(Message& message) {
         const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
+        const double rounding_ticks = rounding_at(now_s_);
         if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
             ++tick_;
             due_ = true;
@@ -232,6 +238,7 @@ private:
 
     bool step_with_servo(double end_s) {
         const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
+        const double rounding_ticks = rounding_at(end_s);
         while (static_cast<double>(tick_) < end_ticks - rounding_ticks) {
             if (due_) {
                 leave_tick();

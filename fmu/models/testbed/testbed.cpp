@@ -13,14 +13,12 @@
 #include "start.hpp"
 #include "state_archive.hpp"
 #include "testbed_variables.hpp"
+#include "times.hpp"
 #include "truth.hpp"
 
 namespace giveway::testbed {
 
 namespace {
-
-// Ticks are counted in integers; a master's times carry rounding, far below a millionth of a tick.
-constexpr double rounding_ticks = 1e-6;
 
 class Testbed final : public Model, public Equations {
 public:
@@ -90,6 +88,7 @@ public:
     Status step(double time_s, double step_size_s, Message& message) override {
         const double end_s = time_s + step_size_s - start_time_s_;
         const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
+        const double rounding_ticks = rounding_at(end_s);
         change_push();
         integrator_.restart(); // so that the state of a step needs no history of the integration
         while (static_cast<double>(tick_) < end_ticks - rounding_ticks) {
@@ -173,6 +172,11 @@ public:
     }
 
 private:
+    // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
+    [[nodiscard]] double rounding_at(double since_start_s) const {
+        return tick_tolerance(std::fmax(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
+    }
+
     Status resume(Message& message) {
         if (running_) {
             system_.derive();
@@ -216,6 +220,7 @@ private:
     // The importer has to stop at each tick. At one of the bus first the sensors; in another update, when they have been passed on, the command.
     bool pass_tick(EventUpdate& update, Message& message) {
         const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
+        const double rounding_ticks = rounding_at(now_s_);
         if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
             ++tick_;
             due_ = true;
@@ -225,7 +230,9 @@ private:
             }
         }
         if (due_ && !update.again) {
+            const auto held = system_.inputs().motor_torque;
             leave_tick();
+            update.discontinuity = update.discontinuity || system_.inputs().motor_torque != held;
         }
         if (now_ticks > static_cast<double>(tick_) + 1.0 - rounding_ticks) {
             std::snprintf(message.text, sizeof message.text, "the event at t = %.9g s was passed over; it is now t = %.9g s",

@@ -1,6 +1,7 @@
 """The state machine in use: wrong times, a failing model, reset. Every call in every state: test_every_call.py."""
 
 import math
+import re
 
 import pytest
 from fmu_driver import ERROR, OK, Fmu
@@ -69,6 +70,36 @@ def test_summed_up_times_are_accepted(lag: Fmu) -> None:
     for k in range(1000):
         assert lag.step(time if k % 2 else k * 0.001, 0.001) == OK, lag.last_message
         time += 0.001
+
+
+@pytest.mark.parametrize("added_up", [True, False])
+@pytest.mark.parametrize("start", [1e7, 1e9, -1e9])
+def test_times_of_any_size_are_accepted(lag: Fmu, start: float, added_up: bool) -> None:
+    """What differs by more than rounding is refused, with digits enough to see it."""
+    assert lag.instantiate()
+    assert lag.setup(start, start + 1.001) == OK
+    assert lag.exit_initialisation() == OK
+    time = start
+    for k in range(1000):
+        assert lag.step(time if added_up else start + k * 0.001, 0.001) == OK, lag.last_message
+        time += 0.001
+    assert lag.step(start + 0.9, 0.001) == ERROR
+    assert len(set(re.findall(r"(-?[\d.e+]+) s\b", lag.last_message))) == 2, lag.last_message
+
+
+def test_steps_that_get_lost_in_rounding_are_refused(lag: Fmu) -> None:
+    assert lag.instantiate()
+    assert lag.setup(1e9) == OK
+    assert lag.exit_initialisation() == OK
+    assert lag.step(1e9, 1e-8) == ERROR
+    assert "too small to be added to 1e+09 s" in lag.last_message
+    assert lag.step(1e9, 1e-3) == OK
+
+
+def test_a_start_time_that_is_too_coarse_is_refused(lag: Fmu) -> None:
+    assert lag.instantiate()
+    assert lag.setup(1.1e10) == ERROR
+    assert "start time is 1.1e+10 s, but must be in [-1e+10, 1e+10]" in lag.last_message
 
 
 @pytest.mark.parametrize(("start", "stop"), [(math.nan, None), (math.inf, None), (1.0, 0.5), (0.0, math.nan)])

@@ -272,19 +272,21 @@ def test_states_make_a_table_one_for_model_exchange(tmp_path: Path) -> None:
         description = fmpy.read_model_description(str(_as_folder(tmp_path, version)))
         assert description.modelExchange is not None
         assert description.coSimulation is not None
-        assert (description.numberOfContinuousStates, description.numberOfEventIndicators) == (1, 2)
-        (derivative,) = description.derivatives
+        assert (description.numberOfContinuousStates, description.numberOfEventIndicators) == (2, 2)
+        derivative, counter = description.derivatives
+        assert (counter.variable.name, counter.dependencies) == ("der(state.discontinuities)", [])
         assert derivative.variable.name == "der(state.angle)"
         assert derivative.variable.valueReference == 1020
-        assert derivative.variable.unit == "rad/s"
+        assert derivative.variable.declaredType.unit == "rad/s"
         assert derivative.variable.derivative.name == "state.angle"
         assert [d.name for d in derivative.dependencies] == ["first"]
-        # An output that declares nothing follows the states.
+        # An output that declares nothing follows the states that the model integrates.
         assert [[d.name for d in unknown.dependencies] for unknown in description.outputs] == [["state.angle"]]
         initial = {u.variable.name: [d.name for d in u.dependencies] for u in description.initialUnknowns}
-        assert initial == {"group.second": [], "state.angle": [], "der(state.angle)": ["first"]}
+        added = {"state.discontinuities": [], "der(state.discontinuities)": []}
+        assert initial == {"group.second": [], "state.angle": [], "der(state.angle)": ["first"], **added}
     header = (tmp_path / "out" / "lag_variables.hpp").read_text()
-    assert "double states[1];" in header
+    assert "double states[2];" in header
     assert "double indicators[2];" in header
 
 
@@ -303,6 +305,10 @@ WRONG_LOCALS = {
     ),
     "state without unit": (STATE.replace('unit = "rad"', ""), "unit: missing"),
     "state without nominal": (STATE.replace("nominal = 0.5", ""), "nominal: None, but must be a finite number"),
+    "reference of a state beyond the last": (
+        STATE.replace("reference = 20\n", "reference = 3100\n"),
+        "reference: states must have references below 2999",
+    ),
     "nominal zero": (STATE.replace("nominal = 0.5", "nominal = 0"), "nominal: 0.0 is not positive"),
     "unknown dependency": (STATE.replace('["first"]', '["last"]'), "dependencies: there is no input or state 'last'"),
     "reference of an indicator taken": (
@@ -327,7 +333,8 @@ def test_descriptions_say_what_the_table_says(version: int) -> None:
     description = fmpy.read_model_description(str(fmu_path("lag", version)))
     variables = {v.name: v for v in description.modelVariables}
     u = variables["input.u"]
-    assert (u.unit, float(u.min), float(u.max), float(u.nominal), float(u.start)) == ("N.m", -5.0, 5.0, 2.0, 1.0)
+    assert (float(u.min), float(u.max), float(u.nominal), float(u.start)) == (-5.0, 5.0, 2.0, 1.0)
+    assert (u.unit, u.displayUnit, u.declaredType.unit) == (None, None, "N.m")  # once
     assert (u.causality, u.variability) == ("input", "continuous")
     assert variables["input.hold"].variability == "discrete"
     assert variables["lag.time_constant"].variability == "fixed"

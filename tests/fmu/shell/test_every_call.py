@@ -182,15 +182,48 @@ def test_a_saved_state_that_was_freed_is_gone(fmu: Fmu, model: str, version: int
     state = saved_state(fmu)
     copy = ctypes.c_void_p(state.value)
     assert fmu.call(f"Free{noun}", ctypes.byref(state)) == OK
-    for wrong in (copy, ctypes.c_void_p(7), ctypes.c_void_p(fmu.instance)):
+    for wrong in (copy, *map(ctypes.c_void_p, NEVER_A_STATE)):
         before = wrong.value
-        for name in (f"Free{noun}", f"Get{noun}"):
+        for name in (f"Free{noun}", *([f"Get{noun}"] if wrong is copy else [])):
             assert fmu.call(name, ctypes.byref(wrong)) == ERROR
             assert "no such saved state" in fmu.last_message
             assert wrong.value == before
         assert fmu.call(f"Set{noun}", wrong) == ERROR
         assert "no such saved state" in fmu.last_message
     assert fmu.exit_initialisation() == OK
+    fmu.free()
+
+
+# What a pointer that nobody initialised may hold: addresses of code, heap and stack, small and negative numbers.
+NEVER_A_STATE = (7, 0x401136, 0x55D1_2345_6789, 0x7FFD_1234_5671, 2**64 - 1)
+
+
+@every_kind
+def test_a_state_is_taken_into_an_uninitialised_pointer(fmu: Fmu, model: str, version: int, interface: str) -> None:
+    enter(fmu, interface, "initialisation mode")
+    noun = "FMUstate" if version == 2 else "FMUState"
+    for garbage in NEVER_A_STATE:
+        state = ctypes.c_void_p(garbage)
+        assert fmu.call(f"Get{noun}", ctypes.byref(state)) == OK, fmu.last_message
+        assert state.value != garbage
+        assert fmu.call(f"Set{noun}", state) == OK
+        assert fmu.call(f"Free{noun}", ctypes.byref(state)) == OK
+    fmu.free()
+
+
+@every_kind
+def test_a_state_given_instead_of_its_address_is_not_followed(
+    fmu: Fmu, model: str, version: int, interface: str
+) -> None:
+    enter(fmu, interface, "initialisation mode")
+    noun = "FMUstate" if version == 2 else "FMUState"
+    state = saved_state(fmu)
+    copy = ctypes.c_void_p(state.value)
+    assert fmu.call(f"Free{noun}", copy) == ERROR
+    assert "must be the address" in fmu.last_message
+    assert fmu.call(f"Set{noun}", state) == OK  # it is still there
+    assert fmu.call(f"Free{noun}", ctypes.byref(state)) == OK
+    assert fmu.call(f"Free{noun}", copy) == ERROR  # nor when it was freed
     fmu.free()
 
 

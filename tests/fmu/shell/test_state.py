@@ -142,7 +142,7 @@ def test_null_pointers_are_refused(version: int, make) -> None:
     assert "null pointer" in fmu.last_message
 
 
-STATE_COUNTS = {"testbed": 40, "drivetrain": 6, "bumper": 2}
+STATE_COUNTS = {"testbed": 41, "drivetrain": 7, "bumper": 3}
 EULER_S = 1e-4
 
 
