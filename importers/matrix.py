@@ -90,7 +90,8 @@ def write_reference(path: Path) -> None:
 
     scenario = experiments.get("motionless").scenario("magnetic")
     record = simulate(dataclasses.replace(scenario, duration_s=STEPS * STEP_S, controller={}))
-    assert dict(scenario.parameters("testbed")) == {"bumper.kind": 2}
+    # What the probes set; a slider is there by default.
+    assert dict(scenario.parameters("testbed")) == {"slider.present": True, "bumper.kind": 2}
     columns = [record.time_s, *(record.traces[f"testbed.{name}"] for name in RECORDED)]
     np.save(path, np.column_stack(columns))
 

@@ -31,7 +31,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
 def test_it_gives_the_bits_of_our_own_master() -> None:
     scenario = dataclasses.replace(experiments.get("motionless").scenario("magnetic"), duration_s=0.6)
     assert scenario.parameters("controller") == {"supervisor.after_settled": 0}
-    assert scenario.parameters("testbed") == {"bumper.kind": 2}
+    assert scenario.parameters("testbed") == {"slider.present": True, "bumper.kind": 2}  # a slider is there by default
     record = simulate(scenario)
     chosen = [word for name in RECORDED for word in ("--record", name)]
     done = run(*folders(), "--seconds", "0.6", *chosen, *PARAMETERS)
