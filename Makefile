@@ -89,7 +89,7 @@ clean: ## remove everything that was built or installed here
 	rm -rf .venv build out cosim/giveway/native
 
 build/CMakeCache.txt: .venv/packages-installed
-	$(BIN)/cmake -G Ninja -S . -B build -DGIVEWAY_BUILD_TESTS=ON -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+	$(BIN)/cmake -G Ninja -S . -B build -DGIVEWAY_BUILD_TESTS=ON -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python3 \
 	    -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja
 	@touch $@
 
