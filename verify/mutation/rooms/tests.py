@@ -7,17 +7,20 @@ import functools
 import json
 import os
 import resource
+import shutil
 import subprocess
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from verify.context import Context
-from verify.failure import RungFailed
-from verify.mutation.mutants import Mutant
+from verify.mutation.killers import AT_A_TIME
+from verify.mutation.mutants import Key, Mutant
 from verify.mutation.rooms.planted import Planted
+from verify.mutation.rooms.processes import WarmProcesses
 from verify.mutation.rooms.room import PROGRAMS, SLOW_TESTS, TESTS
 
 __all__ = ["Fate", "RoomTests", "Test"]
@@ -25,7 +28,7 @@ __all__ = ["Fate", "RoomTests", "Test"]
 # Of tests that end: time and processor time that a mutant may take, from those that the original took.
 SLOWER, AT_LEAST_S = 2.0, 10.0
 SLOWER_ON_A_BUSY_MACHINE = 4.0
-RECORD_WALL_S = 900.0
+RECORD_S = 600.0
 
 
 class Fate(enum.Enum):
@@ -52,30 +55,28 @@ class RoomTests:
         self.planted = planted
         self.folder = context.work / "trials"
         self.folder.mkdir()
-        self.marks = self.folder / "reached"
-        self.size = max(planted.drawn.values()) + 1
-        self.warm = self._started()
+        self.warm = WarmProcesses(planted.python, planted.tree, AT_A_TIME)
         self.failing: list[str] = []
         files = [path for folder in TESTS for path in (planted.tree / folder).rglob("test_*.py")]
         names = sorted(path.relative_to(planted.tree).as_posix() for path in files)
-        self.quick_files = [name for name in names if name.rsplit("/", 1)[1] not in SLOW_TESTS]
-        self.slow_files = [name for name in names if name not in self.quick_files]
-        self.quick = self._of_programs()
-        for file in self.quick_files:
-            self.quick += self._of_file(file)
+        self.slow_files = [name for name in names if name.rsplit("/", 1)[1] in SLOW_TESTS]
+        self.quick = self._of_programs() + self._of_files(name for name in names if name not in self.slow_files)
 
     @functools.cached_property
     def slow(self) -> list[Test]:
         """Recorded when first asked for: a trial in which all other survivors are listed does without."""
-        return [test for file in self.slow_files for test in self._of_file(file)]
+        return self._of_files(self.slow_files)
 
-    def fate(self, mutant: Mutant, *, is_listed: bool) -> Fate:
+    def fates(self, mutants: Sequence[Mutant], listed: Container[Key]) -> dict[Mutant, Fate]:
         """A listed mutant meets the quick tests only: what is known to survive all is not asked of all again."""
-        quick = self._fate(mutant, self.quick)
-        if quick is Fate.KILLED or is_listed:
-            return quick
-        slow = self._fate(mutant, self.slow)
-        return quick if slow is Fate.UNREACHED else slow
+        found = self._met(mutants, self.quick)
+        left = [mutant for mutant in mutants if found[mutant] is not Fate.KILLED and mutant.key not in listed]
+        of_slow = self._met(left, self.slow) if left else {}
+        return found | {mutant: fate for mutant, fate in of_slow.items() if fate is not Fate.UNREACHED}
+
+    def _met(self, mutants: Sequence[Mutant], tests: Sequence[Test]) -> dict[Mutant, Fate]:
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
+            return dict(zip(mutants, pool.map(lambda mutant: self._fate(mutant, tests), mutants), strict=True))
 
     def _fate(self, mutant: Mutant, tests: Sequence[Test]) -> Fate:
         number = self.planted.drawn[mutant]
@@ -93,9 +94,7 @@ class RoomTests:
         return Fate.SURVIVED if self._files_pass(files, number) else Fate.KILLED
 
     def close(self) -> None:
-        assert self.warm.stdin is not None
-        self.warm.stdin.close()
-        self.warm.wait()
+        self.warm.close()
 
     def _program_passes(self, tests: Sequence[Test], number: int) -> bool:
         environment = {"GIVEWAY_MUTANT": str(number)}
@@ -108,7 +107,7 @@ class RoomTests:
             return True
         names = [f"{test.group}::{test.name}" for test in tests]
         environment = {"GIVEWAY_MUTANT": str(number)}
-        return bool(self._pytest(["-x", *names], environment, _limit_s(tests), f"{number}.txt") == 0)
+        return bool(self._pytest(["-x", *names], environment, _limit_s(tests), str(number)) == 0)
 
     def _program(self, program: str, names: Iterable[str], environment: Mapping[str, str], seconds: float) -> bool:
         command = [str(self.planted.tree / "build" / program), f"--gtest_filter={':'.join(names)}", "--gtest_fail_fast"]
@@ -129,33 +128,49 @@ class RoomTests:
             return False
 
     def _of_programs(self) -> list[Test]:
-        found = []
-        environment = {"GIVEWAY_MUTANTS_REACHED": str(self.marks)}
-        for program in PROGRAMS:
-            for name in _cases(self.context, self.planted.tree / "build" / program):
-                self.marks.write_bytes(bytes(self.size))
-                start = time.perf_counter()
-                if self._program(program, [name], environment, RECORD_WALL_S):
-                    seconds = time.perf_counter() - start
-                    reached = frozenset(at for at, mark in enumerate(self.marks.read_bytes()) if mark)
-                    found.append(Test(program, name, seconds, reached))
-                else:
-                    self.failing.append(f"{program} {name}")
-        return found
+        cases = [(program, name) for program in PROGRAMS for name in self._cases(program)]
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
+            return [test for test in pool.map(self._of_case, cases) if test]
+
+    def _cases(self, program: str) -> Iterator[str]:
+        suite = ""
+        path = self.planted.tree / "build" / program
+        for line in self.context.run(path, "--gtest_list_tests", memory_gib=None).stdout.splitlines():
+            name = line.split("#")[0].rstrip()
+            if name.startswith(" "):
+                yield suite + name.strip()
+            elif name.endswith("."):
+                suite = name
+
+    def _of_case(self, case: tuple[str, str]) -> Test | None:
+        program, name = case
+        marks = self._fresh_marks("-".join(case).replace("/", "."))
+        start = time.perf_counter()
+        if not self._program(program, [name], {"GIVEWAY_MUTANTS_REACHED": str(marks)}, RECORD_S):
+            self.failing.append(f"{program} {name}")
+            return None
+        seconds = time.perf_counter() - start
+        reached = frozenset(at for at, mark in enumerate(marks.read_bytes()) if mark)
+        return Test(program, name, seconds, reached)
+
+    def _of_files(self, files: Iterable[str]) -> list[Test]:
+        with ThreadPoolExecutor(AT_A_TIME) as pool:
+            return [test for tests in pool.map(self._of_file, files) for test in tests]
 
     def _of_file(self, file: str) -> list[Test]:
         """Of pytest."""
         stem = file.removesuffix(".py").replace("/", ".")
         report = self.folder / f"{stem}.reach"
-        self.marks.write_bytes(bytes(self.size))
-        environment = {"GIVEWAY_MUTANTS_REACHED": str(self.marks), "GIVEWAY_REACH_REPORT": str(report)}
-        arguments = ["-p", "verify.mutation.rooms.reach", file]
-        code = self._pytest(arguments, environment, RECORD_WALL_S, f"{stem}.txt")
-        lines = report.read_text(encoding="utf-8").splitlines() if report.exists() else []
-        if not lines:
+        environment = {
+            "GIVEWAY_MUTANTS_REACHED": str(self._fresh_marks(stem)),
+            "GIVEWAY_REACH_REPORT": str(report),
+        }
+        code = self._pytest(["-p", "verify.mutation.rooms.reach", file], environment, RECORD_S, stem)
+        if code not in (0, 1):
             self.failing.append(f"{file} (ended with {code})")
         found = []
-        for entry in map(json.loads, lines):
+        for line in report.read_text(encoding="utf-8").splitlines() if report.exists() else []:
+            entry = json.loads(line)
             if entry["failed"]:
                 self.failing.append(entry["test"])
             else:
@@ -163,32 +178,24 @@ class RoomTests:
                 found.append(Test(file, name, entry["seconds"], frozenset(entry["reached"])))
         return found
 
-    def _pytest(self, arguments: Sequence[str], environment: Mapping[str, str], seconds: float, output: str) -> Any:
-        """pytest's exit code, or "time"."""
+    def _fresh_marks(self, name: str) -> Path:
+        marks = self.folder / f"{name}.marks"
+        marks.write_bytes(bytes(max(self.planted.drawn.values()) + 1))
+        return marks
+
+    def _pytest(self, arguments: Sequence[str], environment: Mapping[str, str], seconds: float, name: str) -> Any:
+        """pytest's exit code, or "time"; what it printed is in the folder, under the name."""
         request = {
-            "arguments": ["-q", f"--basetemp={self.folder / 'tmp'}", *arguments],
+            "arguments": ["-q", f"--basetemp={self.folder / name}", *arguments],
             "environment": dict(environment),
             "cpu_s": int(seconds),
             "wall_s": SLOWER_ON_A_BUSY_MACHINE * seconds,
-            "output": str(self.folder / output),
+            "output": str(self.folder / f"{name}.txt"),
         }
-        assert self.warm.stdin is not None
-        assert self.warm.stdout is not None
-        print(json.dumps(request), file=self.warm.stdin, flush=True)
-        answer = self.warm.stdout.readline()
-        if not answer:
-            raise RungFailed("the process that runs the tests in Python has ended")
-        return json.loads(answer)["code"]
-
-    def _started(self) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            [str(self.planted.python), "-m", "verify.mutation.rooms.warm"],
-            cwd=self.planted.tree,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
+        try:
+            return self.warm.ask(request)
+        finally:
+            shutil.rmtree(self.folder / name, ignore_errors=True)
 
 
 def _seconds(tests: Iterable[Test]) -> float:
@@ -198,16 +205,3 @@ def _seconds(tests: Iterable[Test]) -> float:
 def _limit_s(tests: Iterable[Test]) -> float:
     """Of processor time."""
     return AT_LEAST_S + SLOWER * _seconds(tests)
-
-
-def _cases(context: Context, program: Path) -> list[str]:
-    """The names of a program's tests."""
-    found = []
-    suite = ""
-    for line in context.run(program, "--gtest_list_tests", memory_gib=None).stdout.splitlines():
-        name = line.split("#")[0].rstrip()
-        if name.startswith(" "):
-            found.append(suite + name.strip())
-        elif name.endswith("."):
-            suite = name
-    return found

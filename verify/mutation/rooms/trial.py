@@ -41,15 +41,14 @@ class RoomsTrial:
 
 
 def try_all(tests: RoomTests, rooms: Iterable[Room] = ROOMS, say: Callable[[str], None] = print) -> RoomsTrial:
-    """One after another; says the score of each room, and each survivor as it is found."""
+    """Room by room; says the score of each, and its survivors."""
     listed = survivors.read(tests.context.root, LIST)
     fates: dict[Mutant, Fate] = {}
     for room in rooms:
-        of_room = {}
-        for mutant in tests.planted.of(room):
-            of_room[mutant] = tests.fate(mutant, is_listed=mutant.key in listed)
-            if of_room[mutant] is not Fate.KILLED:
-                say(f"  {of_room[mutant].value}: {mutant}")
+        of_room = tests.fates(tests.planted.of(room), listed)
+        for mutant, fate in of_room.items():
+            if fate is not Fate.KILLED:
+                say(f"  {fate.value}: {mutant}")
         killed = sum(fate is Fate.KILLED for fate in of_room.values())
         say(f"{room.folder}: {killed} of {len(of_room)} killed")
         fates |= of_room
