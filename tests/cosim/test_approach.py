@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import giveway
@@ -200,3 +201,13 @@ def test_edges_are_counted_from_their_first_corner() -> None:
         edge_middle(OUTLINE, 3)
     with pytest.raises(GivewayError, match="offset_m"):
         edge_middle(OUTLINE, 0, 0.31)
+
+
+@pytest.mark.parametrize("edge", range(len(OUTLINE)))
+def test_a_point_beside_the_robot_is_told_the_nearest_on_its_outline(edge: int) -> None:
+    middle = edge_middle(OUTLINE, edge)
+    beside = tuple(float(value) for value in np.asarray(middle) + 0.05 * np.asarray(outward_normal(OUTLINE, middle)))
+    with pytest.raises(GivewayError) as caught:
+        meet(Approach(beside, 0.5, time_s=0.5), parameters(), Rest())  # type: ignore[arg-type]
+    told = caught.value.allowed.partition("the nearest is ")[2]
+    assert json.loads(told) == pytest.approx(middle, abs=0.6e-3)  # it is told in millimetres

@@ -21,7 +21,7 @@ from verify.mutation.killers import AT_A_TIME
 from verify.mutation.mutants import Key, Mutant
 from verify.mutation.rooms.planted import Planted
 from verify.mutation.rooms.processes import WarmProcesses
-from verify.mutation.rooms.room import PROGRAMS, SLOW_TESTS, TESTS
+from verify.mutation.rooms.room import PLAIN_PROGRAMS, PROGRAMS, SLOW_TESTS, TESTS
 
 __all__ = ["Fate", "RoomTests", "Test"]
 
@@ -29,6 +29,7 @@ __all__ = ["Fate", "RoomTests", "Test"]
 SLOWER, AT_LEAST_S = 2.0, 10.0
 SLOWER_ON_A_BUSY_MACHINE = 4.0
 RECORD_S = 600.0
+ALL_PROGRAMS = (*PROGRAMS, *PLAIN_PROGRAMS)
 
 
 class Fate(enum.Enum):
@@ -88,9 +89,9 @@ class RoomTests:
             return Fate.UNREACHED
         quickest_first = sorted(groups.values(), key=_seconds)
         for together in quickest_first:
-            if together[0].group in PROGRAMS and not self._program_passes(together, number):
+            if together[0].group in ALL_PROGRAMS and not self._program_passes(together, number):
                 return Fate.KILLED
-        files = [together for together in quickest_first if together[0].group not in PROGRAMS]
+        files = [together for together in quickest_first if together[0].group not in ALL_PROGRAMS]
         return Fate.SURVIVED if self._files_pass(files, number) else Fate.KILLED
 
     def close(self) -> None:
@@ -110,7 +111,9 @@ class RoomTests:
         return bool(self._pytest(["-x", *names], environment, _limit_s(tests), str(number)) == 0)
 
     def _program(self, program: str, names: Iterable[str], environment: Mapping[str, str], seconds: float) -> bool:
-        command = [str(self.planted.tree / "build" / program), f"--gtest_filter={':'.join(names)}", "--gtest_fail_fast"]
+        command = [str(self.planted.tree / "build" / program)]
+        if program in PROGRAMS:
+            command += [f"--gtest_filter={':'.join(names)}", "--gtest_fail_fast"]
         process = subprocess.Popen(
             command,
             cwd=self.folder,
@@ -128,11 +131,14 @@ class RoomTests:
             return False
 
     def _of_programs(self) -> list[Test]:
-        cases = [(program, name) for program in PROGRAMS for name in self._cases(program)]
+        cases = [(program, name) for program in ALL_PROGRAMS for name in self._cases(program)]
         with ThreadPoolExecutor(AT_A_TIME) as pool:
             return [test for test in pool.map(self._of_case, cases) if test]
 
     def _cases(self, program: str) -> Iterator[str]:
+        if program in PLAIN_PROGRAMS:
+            yield ""
+            return
         suite = ""
         path = self.planted.tree / "build" / program
         for line in self.context.run(path, "--gtest_list_tests", memory_gib=None).stdout.splitlines():
