@@ -48,7 +48,7 @@ class TemporaryFolder:
         except OSError as error:
             raise FileError(tempfile.gettempdir(), f"cannot be written: {error.strerror}") from None
         self._janitor: subprocess.Popen[str] | None = None
-        if os.name == "posix":
+        with contextlib.suppress(OSError):  # a system without that shell: then a killed run leaves its folder
             self._janitor = subprocess.Popen(
                 ["/bin/sh", "-c", _JANITOR, "sh", str(self.path)],
                 stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,

@@ -82,6 +82,9 @@ def _limit_memory(memory_mb: int) -> None:
     import resource
 
     pages = int(Path("/proc/self/statm").read_text().split()[0]) if Path("/proc/self/statm").exists() else 0
-    most = pages * resource.getpagesize() + memory_mb * 1_000_000 if pages else resource.RLIM_INFINITY
-    resource.setrlimit(resource.RLIMIT_AS, (most, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    if pages:
+        most = pages * resource.getpagesize() + memory_mb * 1_000_000
+        own = resource.getrlimit(resource.RLIMIT_AS)
+        limits = [limit for limit in (most, *own) if limit != resource.RLIM_INFINITY]
+        resource.setrlimit(resource.RLIMIT_AS, (min(limits), own[1]))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
