@@ -16,6 +16,7 @@ import numpy as np
 
 from giveway.metrics import FIRST_PEAK
 from giveway.plan import Circle, Straight
+from giveway.stated_contact import StatedContact
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -100,23 +101,25 @@ class Stated:
             getattr(self, one.name)[where] = getattr(other, one.name)
 
     @classmethod
-    def of(cls, scenario: Scenario) -> Stated:
-        """What one scenario states."""
-        contact = scenario.contact
-        point = (None, None) if contact is None or contact.point_m is None else contact.point_m
+    def of(cls, scenarios: Sequence[Scenario]) -> Stated:
+        """What scenarios state."""
+        contacts = [scenario.contact or StatedContact() for scenario in scenarios]
+        points = [contact.point_m or (None, None) for contact in contacts]
+        planned = [None if scenario.contact is None else plan_speed(scenario) for scenario in scenarios]
         return cls(
-            _known(None if contact is None else contact.speed_mps),
-            _known(point[0]),
-            _known(point[1]),
-            _known(None if contact is None else contact.time_s),
-            _known(None if contact is None else plan_speed(scenario)),
-            np.array([contact is not None]),
-            np.array([scenario.judged is not None]),
+            _known([contact.speed_mps for contact in contacts]),
+            _known([x for x, _ in points]),
+            _known([y for _, y in points]),
+            _known([contact.time_s for contact in contacts]),
+            _known(planned),
+            np.array([scenario.contact is not None for scenario in scenarios], dtype=np.bool_),
+            np.array([scenario.judged is not None for scenario in scenarios], dtype=np.bool_),
         )
 
 
-def _known(value: float | None) -> Numbers:
-    return np.array([math.nan if value is None else value])
+def _known(values: Sequence[float | None]) -> Numbers:
+    """NaN for None."""
+    return np.array(values, dtype=np.float64)
 
 
 def plan_speed(scenario: Scenario) -> float | None:
@@ -297,7 +300,7 @@ def codes_of(stated: Stated, metrics: _Metrics) -> list[str]:
 def warnings_of(scenario: Scenario, metrics: Sequence[Metric]) -> tuple[RunWarning, ...]:
     """The warnings of a run of ``scenario`` that came to its end, in the order of `CODES`."""
     values = {metric.name: metric.value for metric in metrics}
-    found = {name: _known(values[name]) for name in METRICS}
-    stated = Stated.of(scenario)
+    found = {name: _known([values[name]]) for name in METRICS}
+    stated = Stated.of([scenario])
     which = masks(stated, found)
     return tuple(RunWarning(check.code, check.text(stated, found)) for check in _CHECKS if which[check.code][0])

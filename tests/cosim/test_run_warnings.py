@@ -66,7 +66,7 @@ OTHERWISE: dict[str, tuple[str, float, float]] = {
 
 def found(scenario: giveway.Scenario = SCENARIO, **changes: float) -> list[str]:
     numbers = {name: np.array([value]) for name, value in (AS_ASKED | changes).items()}
-    return [code for code, mask in masks(Stated.of(scenario), numbers).items() if mask[0]]
+    return [code for code, mask in masks(Stated.of([scenario]), numbers).items() if mask[0]]
 
 
 def test_every_warning_is_in_the_table() -> None:
