@@ -54,6 +54,15 @@ def judge(scenario: Scenario, record: Record) -> Result:
     return Result(traces, found, manifest, warnings, pushes)
 
 
+def _stated(scenario: Scenario) -> dict[str, Any] | None:
+    """The contact that is asked for, as JSON has it."""
+    contact = scenario.contact
+    if contact is None:
+        return None
+    point = None if contact.point_m is None else list(contact.point_m)
+    return {"speed_mps": contact.speed_mps, "point_m": point, "time_s": contact.time_s}
+
+
 def _begun(scenario: Scenario, record: Record) -> tuple[TimedPush, ...]:
     """The scheduled pushes that began before the run ended."""
     schedule = scenario.push.pushes if isinstance(scenario.push, Pushes) else ()
@@ -96,7 +105,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
             "body_region": scenario.body_region,
             "judge_as": scenario.judge_as,
             "contact_area_m2": scenario.contact_area_m2,
-            "contact": None if scenario.contact is None else dataclasses.asdict(scenario.contact),
+            "contact": _stated(scenario),
         },
         "robot": {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()},
         "exchange_order": EXCHANGE_ORDER,
