@@ -23,8 +23,12 @@ LOOPS: dict[str, Loop] = {
     # s^3 + K (s + 2)^2 = 0 is stable for K > 1 alone (Routh): K = 5 may fall to a fifth, and with a delay not grow.
     "must not fall": lambda s: 5.0 * (s + 2.0) ** 2 / s**3,
     "must neither fall nor grow": lambda s: 5.0 * (s + 2.0) ** 2 / s**3 * np.exp(-0.02 * s),
-    # Between two resonances the phase goes through -180 degrees again and again.
-    "many crossings": lambda s: 40.0 / (s * (s + 9.0)) * 400.0 / (s**2 + 2.0 * s + 400.0) * np.exp(-0.05 * s) * 20.0,
+    # Through -180 degrees again and again, first with gains above 1, then below.
+    "many crossings of the real axis": lambda s: (
+        5e5 / (s * (s + 9.0)) * 400.0 / (s**2 + 2.0 * s + 400.0) * np.exp(-0.3 * s)
+    ),
+    # Through a gain of 1 slowly, and twice more beside a resonance.
+    "many crossings of the gain": lambda s: 2.0 / s + 40.0 * s / (s**2 + s + 900.0),
 }
 
 
@@ -58,8 +62,12 @@ def test_of_many_crossings_the_nearest_is_the_margin(name: str) -> None:
     else:
         assert found.gain is None
     assert found.gain_least == (pytest.approx(max(falling), **near) if falling else None)
+    if name == "many crossings of the real axis":
+        assert min(len(growing), len(falling)) > 2
     unit_gain = crossings(loop, lambda value: math.log(abs(value)))
     angles = [(math.degrees(math.atan2(value.imag, value.real)) + 180.0, at) for at, value in unit_gain]  # type: ignore[misc]
+    if name == "many crossings of the gain":
+        assert len(angles) == 3
     assert found.phase_deg == pytest.approx(min(min(a, 360.0 - a) for a, _ in angles), rel=1e-4)
     assert found.delay_s == pytest.approx(min(math.radians(a) / at for a, at in angles), rel=1e-4)
     assert found.crossover_hz == pytest.approx(sorted(at / (2.0 * math.pi) for _, at in angles), **near)
