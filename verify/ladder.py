@@ -33,7 +33,7 @@ class Outcome:
 
     @property
     def line(self) -> str:
-        result = self.figure.text if self.figure else self.evidence.splitlines()[0]
+        result = self.figure.words if self.figure else self.evidence.splitlines()[0]
         return f"{'ok' if self.figure else 'FAILED':<7}{self.name:<14}{self.seconds:6.1f} s  {result}"
 
 
@@ -91,7 +91,7 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str, seconds: fl
         {
             "name": outcome.name,
             "passed": outcome.figure is not None,
-            "figure": outcome.figure.text if outcome.figure else None,
+            "figure": outcome.figure.words if outcome.figure else None,
             "values": dict(outcome.figure.values) if outcome.figure else {},
             "evidence": outcome.evidence or None,
             "seconds": round(outcome.seconds, 1),

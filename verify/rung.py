@@ -22,10 +22,20 @@ Value = str | int | float | bool
 
 @dataclass(frozen=True)
 class Figure:
-    """What a rung measured: one line for people, and the values for summary.json and VERIFIED.json."""
+    """What a rung measured: one line for people, and the values for summary.json and VERIFIED.json.
+
+    ``varies``: more words, of what comes out otherwise each time, such as how much was done in a given time. They are
+    printed and stand in summary.json; VERIFIED.json is the same for the same sources.
+    """
 
     text: str
     values: Mapping[str, Value] = field(default_factory=dict)
+    varies: str = ""
+
+    @property
+    def words(self) -> str:
+        """All of it."""
+        return f"{self.text} ({self.varies})" if self.varies else self.text
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,16 @@ def test_green_rungs_are_written_with_the_hash_of_the_sources(tmp_path: Path) ->
     assert document["rungs"]["second"] == {"figure": "3 of 3", "values": {"found": 3}}
 
 
+def test_what_varies_is_said_but_not_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root, written = tree(tmp_path), set()
+    for inputs in (1000, 1001):
+        rung = Rung("", (PYTHON,), lambda _, inputs=inputs: Figure("none bad", {"found": 3}, f"{inputs} inputs"))
+        outcomes = climb(root, fuzz=rung)
+        assert f"none bad ({inputs} inputs)" in capsys.readouterr().out
+        written.add(ladder.verified(root, outcomes, core_hash(root), ["fuzz"]).read_bytes())
+    assert len(written) == 1
+
+
 @pytest.mark.parametrize(("check", "evidence"), [(bad, "it is red"), (broken, "a mistake in the rung")])
 def test_a_red_rung_is_reported_and_does_not_hide_the_others(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], check: object, evidence: str
