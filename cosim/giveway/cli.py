@@ -222,11 +222,14 @@ def variables(
 ) -> None:
     """List the variables of an FMU: what can be set, its range and unit, and what comes out."""
     from giveway.variables import table
+    from giveway.words import counted
 
     wanted = grep.lower()
     chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
     rows = [(v.name, v.causality, "" if v.start is None else f"{v.start}", v.allowed, v.description) for v in chosen]
-    print_columns(f"{len(chosen)} variables of {model}", ("name", "kind", "start", "allowed", "meaning"), rows)
+    print_columns(
+        f"{counted(len(chosen), 'variable')} of {model}", ("name", "kind", "start", "allowed", "meaning"), rows
+    )
 
 
 @app.command()

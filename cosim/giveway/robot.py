@@ -120,6 +120,10 @@ def read_robot(path: Path) -> Robot:
             section = Section(part, values, keys)
             for key in section.values:
                 entries[section.full(key)] = _entry(section.full(key), section.values[key], *known[section.full(key)])
+        x, y = entries.get("outline.x"), entries.get("outline.y")
+        if x is not None and y is not None and len(x.values) != len(y.values):
+            allowed = f"as many as outline.x has, {len(x.values)}: every corner has both"
+            raise GivewayError("outline.y.value", f"{len(y.values)} numbers", allowed)
     return Robot(path, text, name, entries)
 
 

@@ -108,6 +108,19 @@ fmi3ValueReference fmu_reference(const Fmu *fmu, const char *variable) {
     return (fmi3ValueReference)strtoul(reference, NULL, 10);
 }
 
+const char *fmu_unit(const Fmu *fmu, const char *variable) {
+    const char *element = element_of(fmu, variable);
+    const char *unit = attribute(element, "unit");
+    const char *type = unit == NULL ? attribute(element, "declaredType") : NULL;
+    if (type != NULL) { /* which may state it for all its variables */
+        char pattern[1024 + 32];
+        (void)snprintf(pattern, sizeof pattern, "<Float64Type name=\"%s\"", type);
+        element = strstr(fmu->description, pattern);
+        unit = element == NULL ? NULL : attribute(element, "unit");
+    }
+    return unit == NULL ? "1" : unit;
+}
+
 void fmu_assign(Fmu *fmu, const char *assignment) {
     const char *equals = strchr(assignment, '=');
     char variable[256];

@@ -37,6 +37,8 @@ void fmu_check(const Fmu *fmu, fmi3Status status, const char *call);
 
 /* The value reference of a variable: look it up once, before the loop. */
 fmi3ValueReference fmu_reference(const Fmu *fmu, const char *variable);
+/* The unit of a real variable, "1" if it has none; valid until the next call of any of these. */
+const char *fmu_unit(const Fmu *fmu, const char *variable);
 /* Sets a parameter or an input of any type from a text such as "testbed.slider.mass=9.08" without its "testbed." */
 void fmu_assign(Fmu *fmu, const char *assignment);
 

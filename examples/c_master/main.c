@@ -180,8 +180,10 @@ int main(int count, char **arguments) {
     fmu_load(&controller, "controller", arguments[1]);
     fmu_load(&testbed, "testbed", arguments[2]);
     for (j = 0; j < recorded.count; ++j) {
+        const char *unit;
         recorded.references[j] = fmu_reference(&testbed, names[j]);
-        (void)printf("%s%s", j == 0 ? "time," : ",", names[j]);
+        unit = fmu_unit(&testbed, names[j]);
+        (void)printf(strcmp(unit, "1") == 0 ? "%s%s" : "%s%s [%s]", j == 0 ? "time [s]," : ",", names[j], unit);
     }
     if (recorded.count > 0) {
         (void)printf("\n");

@@ -12,6 +12,7 @@ import pytest
 from giveway import experiments, native
 from giveway.fmu import open_fmu
 from giveway.master import simulate
+from giveway.variables import table
 
 ROOT = Path(__file__).parents[2]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))
@@ -37,7 +38,8 @@ def test_it_gives_the_bits_of_our_own_master() -> None:
     done = run(*folders(), "--seconds", "0.6", *chosen, *PARAMETERS)
     assert done.returncode == 0, done.stderr
     header, *lines = done.stdout.splitlines()
-    assert header == ",".join(("time", *RECORDED))
+    variables = table("testbed")
+    assert header == ",".join(("time [s]", *(f"{name} [{variables[name].unit}]" for name in RECORDED)))
     rows = np.array([[float(cell) for cell in line.split(",")] for line in lines])
     ours = np.column_stack([record.time_s, *(record.traces[f"testbed.{name}"] for name in RECORDED)])
     assert rows.shape == ours.shape

@@ -15,7 +15,10 @@ from giveway.cli import _main
 from giveway.drivetrain import read
 from giveway.drivetrain_analysis import analyse
 from giveway.study import answers
+from giveway.study.command import overview, sizes
+from giveway.study.engine import Outcome, plan_runs
 from giveway.terminal import progress_bars, working
+from giveway.words import counted
 from study_helpers import small_study
 
 
@@ -91,3 +94,11 @@ def test_reading_a_study_says_how_far_it_is(tmp_path: Path) -> None:
     found = answers.load(tmp_path / "study", shares.append)
     assert shares == [0.0, *np.arange(4) / 4]
     assert found.complete
+
+
+def test_one_of_something_is_no_plural() -> None:
+    setup = small_study(vary=[]).setup()
+    assert sizes(setup, plan_runs(setup)) == "small: 1 design, 1 collision, 1 sample with the nominal one: 1 run"
+    done = Outcome(Path("out"), runs=1, stored=1, ran=1, reused=0, failed=0, wall_s=1.0, interrupted=False)
+    assert overview(setup, done).startswith("small: 1 of 1 run is stored in out; ")
+    assert (counted(0, "run"), counted(2000, "run")) == ("0 runs", "2,000 runs")

@@ -44,6 +44,10 @@ WRONG = {
     "drivetrain output is a device": (("drivetrain", "--out", "/dev/null"), ("/dev/null", "folder")),
     "picture in a file": (("drivetrain", "--out", "/dev/null/a.png"), ("/dev/null/a.png", "not a writable folder")),
     "sweep of a locked wheel": (("drivetrain", "--load", "locked", "--sweep"), ("load", "locked", "100 kg m2")),
+    "experiment of many runs": (
+        ("run", "roller_calibration", "--out", "out/run"),
+        ("experiment: roller_calibration", "motionless", "giveway reproduce --only roller_calibration"),
+    ),
     "demo output is a file": (("demo", "--out", "/dev/null"), ("/dev/null", "folder")),
 }
 
@@ -108,3 +112,14 @@ def test_an_fmu_that_refuses_its_parameters_is_one_line(cli: Cli, tmp_path: Path
     assert len(done.stderr.splitlines()) == 1
     assert "testbed" in done.stderr
     assert folder_content(tmp_path) == []
+
+
+def test_an_outline_with_more_x_than_y_says_so(cli: Cli, tmp_path: Path) -> None:
+    text = native.robot().read_text(encoding="utf-8")
+    x = next(line for line in text[text.index("[outline.x]") :].splitlines() if line.startswith("value"))
+    (tmp_path / "four.toml").write_text(text.replace(x, x.replace("]", ", 0.1]")), encoding="utf-8")
+    done = cli(*RUN, "--robot", "four.toml")
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "outline.y.value: 3 numbers is not allowed; allowed: as many as outline.x has, 4" in done.stderr
+    assert folder_content(tmp_path) == ["four.toml"]

@@ -27,7 +27,15 @@ class _MakesScenario(Protocol):
 
 
 def _no_single_run(bumper: str, *, robot: Path | None = None) -> Scenario:
-    raise GivewayError("bumper", bumper, "nothing: this experiment is more than one run; see `giveway reproduce`")
+    """Stands for `_refuse_single_run`, which an experiment gets when it knows its name."""
+    raise NotImplementedError(bumper, robot)
+
+
+def _refuse_single_run(name: str, _bumper: str, *, robot: Path | None = None) -> Scenario:
+    del robot
+    single = ", ".join(one.name for one in all_experiments().values() if one.is_single_run)
+    allowed = f"{single}; {name} is more than one run, and `giveway reproduce --only {name}` does them all"
+    raise GivewayError("experiment", name, allowed)
 
 
 @dataclass(frozen=True)
@@ -50,6 +58,15 @@ class Experiment:
     bumpers: tuple[str, ...] = ()
     scenario: _MakesScenario = _no_single_run
     reproduce: Callable[[Effort], Findings] | None = None
+
+    def __post_init__(self) -> None:
+        if self.scenario is _no_single_run:
+            object.__setattr__(self, "scenario", functools.partial(_refuse_single_run, self.name))
+
+    @property
+    def is_single_run(self) -> bool:
+        """It has a scenario, which `giveway run` runs."""
+        return not isinstance(self.scenario, functools.partial)
 
 
 @functools.cache

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.study.engine import Outcome, Progress, Report
+from giveway.words import counted
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
@@ -52,7 +53,7 @@ def showing(name: str) -> Iterator[Report]:
 
 def _words(progress: Progress) -> str:
     left = progress.left_s
-    words = f"{progress.done:,} of {progress.runs:,} runs"
+    words = f"{progress.done:,} of {counted(progress.runs, 'run')}"
     if left is not None and progress.done < progress.runs:
         words += f", {progress.rate:,.0f} per second, {duration(left)} left"
     if progress.failed:
@@ -69,7 +70,8 @@ def duration(seconds: float) -> str:
 
 def overview(setup: Setup, outcome: Outcome) -> str:
     """One line about a sweep that has ended."""
-    words = f"{setup.name}: {outcome.stored:,} of {outcome.runs:,} runs are stored in {outcome.folder}"
+    are = "is" if outcome.runs == 1 else "are"
+    words = f"{setup.name}: {outcome.stored:,} of {counted(outcome.runs, 'run')} {are} stored in {outcome.folder}"
     words += f"; {outcome.ran:,} run now in {duration(outcome.wall_s)}"
     if outcome.reused:
         words += f", {outcome.reused:,} taken from equal runs"
@@ -79,8 +81,8 @@ def overview(setup: Setup, outcome: Outcome) -> str:
 def sizes(setup: Setup, table: RunTable) -> str:
     """One line about a study that has not been run."""
     return (
-        f"{setup.name}: {len(table.designs):,} designs, {len(table.cases)} collisions, {table.samples} samples "
-        f"with the nominal one: {table.count:,} runs"
+        f"{setup.name}: {counted(len(table.designs), 'design')}, {counted(len(table.cases), 'collision')}, "
+        f"{counted(table.samples, 'sample')} with the nominal one: {counted(table.count, 'run')}"
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from giveway.words import counted
+
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
 
@@ -65,7 +67,7 @@ def sensitivity_header(answers: Answers) -> tuple[str, ...]:
 def counts(answers: Answers) -> str:
     """How many designs there are and what became of them, in one sentence."""
     done = int((answers.stored > 0).sum())
-    words = f"{len(answers.designs):,} designs"
+    words = counted(len(answers.designs), "design")
     if not answers.complete:
         words += f" ({done:,} begun; the study is not complete)"
     words += (
