@@ -10,7 +10,7 @@ from pathlib import Path
 import giveway
 import numpy as np
 import pytest
-from cosim_helpers import short
+from cosim_helpers import Cli, short
 from giveway import batch
 from giveway.errors import GivewayError
 from giveway.plan import Straight
@@ -19,6 +19,7 @@ from giveway.reproduction import warning_notes
 from giveway.run_warnings import BOUNDS, CODES, METRICS, Stated, masks, warnings_of
 from giveway.scenario_file import scenario_of
 from giveway.stated_contact import StatedContact
+from giveway.summary import summary, warning_lines
 from numpy.typing import NDArray
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
@@ -259,6 +260,23 @@ def test_warnings_are_kept_and_shown(tmp_path: Path) -> None:
     assert "<h2>Warnings</h2>" in page
     assert text in page
     assert "<h2>Warnings</h2>" not in render("as asked", "", [batch.run(short())])
+
+
+def test_several_results_say_whose_they_are() -> None:
+    results = {"none": batch.run(RUNS["hit twice"][0]), "spring": batch.run(RUNS["pressed into its stop"][0])}
+    twice, pressed = (result.warnings[0].text for result in results.values())
+    assert warning_lines(results) == [f"no bumper: {twice}", f"spring: {pressed}"]
+    assert warning_lines({"none": results["none"]}) == [twice]
+    assert summary(results)["warnings"] == [
+        {"bumper": "none", "code": "second hit harder", "text": twice},
+        {"bumper": "spring", "code": "bumper bottomed", "text": pressed},
+    ]
+
+
+def test_the_terminal_shows_them(cli: Cli) -> None:
+    said = cli("run", "motionless", "--bumper", "none", "--duration", "0.8", "--out", "out")
+    assert said.returncode == 0, said.stderr
+    assert "Warnings\n  a later contact was harder than the first: 203 N after 187 N\n" in said.stdout
 
 
 def test_an_interrupted_run_has_none() -> None:
