@@ -9,12 +9,13 @@ from pathlib import Path
 
 import pytest
 from fmu_driver import ERROR, OK
-from state_runner import AMPLITUDES, StatefulFmu
+from state_runner import AMPLITUDES, STEP_S, StatefulFmu
 
 MODELS = tuple(AMPLITUDES)
 HEADER_BYTES = 40
 # The testbed's slider is in contact from step 153 on; the controller has taken its tare by 100.
 SAVED, LAST = 165, 230
+START = 3000  # steps of a clock that does not start at zero
 
 pytestmark = pytest.mark.parametrize("version", [2, 3])
 
@@ -67,6 +68,22 @@ def test_a_state_put_back_repeats_the_run(model: str, version: int, make) -> Non
     assert other.instantiate()
     assert other.set_state(state) == OK, other.last_message
     assert other.run(SAVED, LAST) == once
+    fmu.free_state(state)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_state_knows_when_its_run_started(model: str, version: int, make) -> None:
+    fmu = make(model)
+    assert fmu.instantiate()
+    assert fmu.setup(start=START * STEP_S) == OK, fmu.last_message
+    assert fmu.exit_initialisation() == OK, fmu.last_message
+    fmu.run(START, START + SAVED)
+    state = fmu.get_state()
+    once = fmu.run(START + SAVED, START + LAST)
+    other = make(model)
+    assert other.instantiate()
+    assert other.set_state(state) == OK, other.last_message
+    assert other.run(START + SAVED, START + LAST) == once
     fmu.free_state(state)
 
 
