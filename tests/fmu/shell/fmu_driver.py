@@ -165,10 +165,10 @@ class Fmu:
     def update(self) -> tuple[int, dict[str, float]]:
         """One update of discrete states: status and what it says."""
         if self.version == 2:
-            info = _Fmi2EventInfo()
+            info = _Fmi2EventInfo(1, 1, 1, 1, 1)  # what is not written would show
             status = self.call("NewDiscreteStates", ctypes.byref(info))
             return status, {name: getattr(info, name) for name, _ in _Fmi2EventInfo._fields_}
-        flags = [ctypes.c_bool() for _ in range(5)]
+        flags = [ctypes.c_bool(True) for _ in range(5)]
         next_time = ctypes.c_double()
         status = self.call("UpdateDiscreteStates", *(ctypes.byref(flag) for flag in flags), ctypes.byref(next_time))
         values = [float(flag.value) for flag in flags] + [next_time.value]
@@ -179,6 +179,8 @@ class Fmu:
         for _ in range(100):
             status, said = self.update()
             assert status == OK, self.last_message
+            assert not said["terminate"]
+            assert not said["nominals_changed"]
             if not said["again"]:
                 return said
         raise AssertionError("updates without end")
@@ -199,7 +201,7 @@ class Fmu:
     def completed_step(self) -> tuple[int, bool]:
         """Status, and whether an event is needed."""
         kind = ctypes.c_int if self.version == 2 else ctypes.c_bool
-        event, terminate = kind(), kind()
+        event, terminate = kind(True), kind(True)  # what is not written would show
         status = self.call("CompletedIntegratorStep", True, ctypes.byref(event), ctypes.byref(terminate))
         assert not terminate.value
         return status, bool(event.value)
