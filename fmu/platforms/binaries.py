@@ -14,6 +14,8 @@ import lief
 
 __all__ = ["inspected"]
 
+lief.logging.disable()
+
 GLIBC = (2, 17)
 MACOS = [11, 0, 0]
 # The C library of each system, by whatever name it comes in.
