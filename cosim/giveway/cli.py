@@ -363,16 +363,22 @@ def bench(
         finally:
             print_columns(title, bench_batch.SCALE_HEADER, found_rows)
         return
-    rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
+    with working("co-simulation over FMPy"):
+        rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
     print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
     title = f"Collisions of {bench_batch.SIMULATED_S:g} s with metrics, best and median of {repeats}"
-    print_columns(title, bench_batch.HEADER, bench_batch.measure(repeats))
-    found, lines = bench_batch.accuracy()
+    with working("collisions per second"):
+        measured = bench_batch.measure(repeats)
+    print_columns(title, bench_batch.HEADER, measured)
+    with working("fixed steps against event-exact"):
+        found, lines = bench_batch.accuracy()
     print_columns("Fixed steps against event-exact, random collisions", bench_batch.ACCURACY_HEADER, found)
     typer.echo("\n".join(["Detected on another tick:", *lines] if lines else ["All detected on the same tick."]))
     title = "Integration methods on stiffer designs: 1 s of the testbed FMU alone at relative tolerance 1e-6"
-    print_columns(title, HEADER, [measurement.cells for measurement in measure_solvers(repeats, fmi)])
+    with working("integration methods"):
+        cells = [measurement.cells for measurement in measure_solvers(repeats, fmi)]
+    print_columns(title, HEADER, cells)
 
 
 @app.command()

@@ -142,3 +142,4 @@ def test_bench_prints_all_parts(cli: Cli) -> None:
     assert done.returncode == 0, done.stderr
     for part in ("run", "stepping", "testbed FMU", "controller FMU", "ERK", "Adams", "BDF"):
         assert part in done.stdout
+    assert len(done.stderr.splitlines()) == 4  # each of its parts is announced
