@@ -90,6 +90,7 @@ class Judgement:
         lasting_time_s: when; None if none lasted so long.
         longest_contact_s: length of the longest contact, s.
         contact_area_m2: area of the contact, m2; None if it is not known, and the pressure neither.
+        lasting_known: the trace goes on for more than 0.5 s after the first touch, so that what lasts can be told.
     """
 
     region: BodyRegion
@@ -99,6 +100,7 @@ class Judgement:
     lasting_time_s: float | None
     longest_contact_s: float
     contact_area_m2: float | None = None
+    lasting_known: bool = True
 
     @property
     def peak_ok(self) -> bool:
@@ -122,17 +124,21 @@ class Judgement:
 
     @property
     def ok(self) -> bool:
-        """Both limits are kept."""
-        return self.peak_ok and self.lasting_ok
+        """Both limits are known to be kept."""
+        return self.peak_ok and self.lasting_ok and self.lasting_known
 
     def __str__(self) -> str:
         """One line with the verdict, both forces and mean pressures, their limits, and who decides in the end."""
         region = self.region
         allowed = f"{region.peak_limit_n:g} N" if region.peak_limit_n else "no transient contact"
-        verdict = "within" if self.ok else "above"
+        known = "within" if self.peak_ok and self.lasting_ok else "above"
+        verdict = (
+            f"{known} the limits" if self.lasting_known or known == "above" else "not known to be within the limits"
+        )
+        lasting = f"{self.lasting_n:.0f} N" if self.lasting_known else "not known, the run ended too soon"
         return (
-            f"{region.name}: {verdict} the limits: peak {self.peak_n:.0f} N (allowed: {allowed}), "
-            f"lasting {self.lasting_n:.0f} N (allowed: {region.lasting_limit_n:g} N){self._pressures()}. {NOTICE}"
+            f"{region.name}: {verdict}: peak {self.peak_n:.0f} N (allowed: {allowed}), "
+            f"lasting {lasting} (allowed: {region.lasting_limit_n:g} N){self._pressures()}. {NOTICE}"
         )
 
     def _pressures(self) -> str:
@@ -140,9 +146,10 @@ class Judgement:
         if area is None:
             return ""
         peak = f" (allowed: {region.peak_pressure_limit:g} N/cm2)" if region.peak_pressure_limit else ""
+        lasting = f"{self.lasting_pressure:.1f} N/cm2" if self.lasting_known else "not known"
         return (
             f"; mean pressure on {CM2_PER_M2 * area:g} cm2: peak {self.peak_pressure:.1f} N/cm2{peak}, "
-            f"lasting {self.lasting_pressure:.1f} N/cm2 (allowed: {region.lasting_pressure_limit:g} N/cm2)"
+            f"lasting {lasting} (allowed: {region.lasting_pressure_limit:g} N/cm2)"
         )
 
 
@@ -207,7 +214,8 @@ def judge(
         longest = max(longest, float(since[-1]))
         peak = max(peak, _largest(time, force, rows[since <= TRANSIENT_S]), key=_force)
         lasting = max(lasting, _largest(time, force, rows[since > TRANSIENT_S]), key=_force)
-    return Judgement(chosen, *peak, *lasting, longest_contact_s=longest, contact_area_m2=contact_area_m2)
+    known = not touching.size or bool(time[-1] - time[touching[0]] > TRANSIENT_S)
+    return Judgement(chosen, *peak, *lasting, longest, contact_area_m2, known)
 
 
 def contact_peak(region: BodyRegion | str, speed_mps: float, robot_kg: float, padding_npm: float = math.inf) -> float:

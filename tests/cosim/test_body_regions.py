@@ -117,6 +117,20 @@ def test_each_limit_fails_alone(pieces: list[tuple[float, float, float]], peak_o
     assert ("within" if found.ok else "above") in str(found)
 
 
+def test_a_run_too_short_for_the_lasting_force_is_not_called_within_the_limits() -> None:
+    """The force counts as lasting from 0.5 s after the first touch."""
+    for end_s, known in ((1.49, False), (1.52, True)):
+        rows = end_s > TIME_S
+        found = judge(TIME_S[rows], trace((1.0, 3.0, 100.0))[rows], "lower leg", contact_area_m2=1e-3)
+        assert found.lasting_known == known
+        assert found.ok == known
+        assert str(found).startswith(f"lower leg: {'' if known else 'not known to be '}within the limits: peak 100 N")
+        assert ("lasting 100 N" in str(found)) == known
+        assert ("lasting not known, the run ended too soon" in str(found)) != known
+    above = judge(TIME_S[TIME_S < 1.2], trace((1.0, 3.0, 300.0))[TIME_S < 1.2], "lower leg")
+    assert str(above).startswith("lower leg: above the limits: peak 300 N")
+
+
 def test_no_transient_contact_with_the_face() -> None:
     assert judge(TIME_S, trace(), "face").ok
     touched = judge(TIME_S, trace((1.0, 1.1, 1.0)), "face")
