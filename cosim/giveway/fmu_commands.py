@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import islice
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +16,7 @@ from giveway.terminal import print_columns, progress_bar
 __all__ = ["fmu_app"]
 
 FAILED = 1  # exit code of a check that found a fault, and of a run that failed on its way
+LONGEST_TABLE = 2000  # rows
 SCHEMA_VERSION = 1  # of `fmu check --json`
 
 fmu_app = typer.Typer(
@@ -89,10 +91,18 @@ def info(
     from giveway.fmu_info import VARIABLE_HEADER, describe, variable_rows
 
     limits = Limits(unpacked, entries, xml, elements)
-    print_columns(file.name, ("", ""), describe(file, limits))
+    facts, description = describe(file, limits)
+    print_columns(file.name, ("", ""), facts)
     if variables or grep:
-        rows = variable_rows(file, grep, limits)
-        print_columns(f"{len(rows)} variables", VARIABLE_HEADER, rows)
+        found = variable_rows(description, grep)
+        first = list(islice(found, LONGEST_TABLE + 1))
+        if len(first) <= LONGEST_TABLE:
+            print_columns(f"{len(first)} variables", VARIABLE_HEADER, first)
+        else:  # a table is laid out as a whole, which takes long and much memory
+            for row in (VARIABLE_HEADER, *first):
+                typer.echo("  ".join(row))
+            for row in found:
+                typer.echo("  ".join(row))
 
 
 @fmu_app.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 from giveway.errors import FileError
@@ -17,8 +18,8 @@ __all__ = ["VARIABLE_HEADER", "describe", "variable_rows"]
 VARIABLE_HEADER = ("name", "kind", "type", "start", "range", "unit", "meaning")
 
 
-def describe(path: Path, limits: Limits | None = None) -> list[tuple[str, str]]:
-    """Facts about the FMU, (what, value); FileError if it is not safe to read, or cannot be read."""
+def describe(path: Path, limits: Limits | None = None) -> tuple[list[tuple[str, str]], Description]:
+    """Facts about the FMU, (what, value), and its model description; FileError if it is not safe to read."""
     archive, description = open_safely(path, limits)
     with archive:
         platforms = _platforms(archive)
@@ -44,7 +45,7 @@ def describe(path: Path, limits: Limits | None = None) -> list[tuple[str, str]]:
         rows.append(
             ("default experiment", times + (f" at {experiment['stepSize']} s" if "stepSize" in experiment else ""))
         )
-    return rows
+    return rows, description
 
 
 def _indicators(description: Description) -> str:
@@ -70,13 +71,11 @@ def _platforms(archive: Archive) -> list[str]:
     return sorted(shown(platform) + note for platform, note in found.items())
 
 
-def variable_rows(path: Path, grep: str = "", limits: Limits | None = None) -> list[tuple[str, ...]]:
+def variable_rows(description: Description, grep: str = "") -> Iterator[tuple[str, ...]]:
     """One row under `VARIABLE_HEADER` per variable whose name or description has ``grep`` in it."""
     wanted = grep.lower()
-    archive, description = open_safely(path, limits)
-    archive.close()
     chosen = (v for v in description.variables if wanted in f"{v.name} {v.get('description')}".lower())
-    return [_row(description, variable) for variable in chosen]
+    return (_row(description, variable) for variable in chosen)
 
 
 def _row(description: Description, variable: VariableEntry) -> tuple[str, ...]:
