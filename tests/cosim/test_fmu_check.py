@@ -183,6 +183,7 @@ FAULTS: list[tuple[str, int, Plant, str, bool]] = [
     ),
     ("identity", 3, lambda d: d.edit('canGetAndSetFMUState="true"', ""), "can serialise its state, but not", True),
     ("identity", 2, lambda d: d.edit('stopTime="1.0"', 'stopTime="0.0"'), "stops at 0 s", True),
+    ("identity", 2, lambda d: d.edit('startTime="0.0"', 'startTime="2.0"'), "not after its start at 2 s", True),
     ("identity", 2, lambda d: d.edit('stepSize="0.001"', 'stepSize="-0.001"'), "step size is -0.001 s", True),
     (
         "names and references",

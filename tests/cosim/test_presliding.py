@@ -176,3 +176,11 @@ def test_the_readme_calibrates() -> None:
 def test_a_base_needs_its_numbers() -> None:
     with pytest.raises(GivewayError, match=r"Base\.wheel_radius_m"):
         Base(0.0, 0.24, 668.0)
+
+
+def test_a_wheel_whose_rollers_carry_nothing_is_not_refused() -> None:
+    # Its stiffness comes out within the noise of zero, on either side.
+    stiffness = np.array([12e3, 0.0, 60e3])
+    found = calibrate([known(placement, stiffness) for placement in middles(default_outline())], BASE)
+    # Torques of the model itself: rounding remains, 4e-12 N/m are seen.
+    np.testing.assert_allclose(found.stiffness_n_per_m, stiffness, rtol=1e-12, atol=1e-9)
