@@ -1,6 +1,7 @@
 // What rounding does to an importer's times.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +15,6 @@ inline double time_rounding(double time_s) { return 4.0 * std::numeric_limits<do
 
 // How far a time may be off a tick, in ticks of `rate_hz`, and still be that tick. Ticks are counted in integers; times are an importer's sums,
 // and carry the rounding of their magnitude.
-inline double tick_tolerance(double time_s, double rate_hz) { return std::fmax(1e-6, rate_hz * time_rounding(time_s)); }
+inline double tick_tolerance(double time_s, double rate_hz) { return std::max(1e-6, rate_hz * time_rounding(time_s)); }
 
 } // namespace giveway

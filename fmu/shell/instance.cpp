@@ -5,6 +5,7 @@
 #include "state_archive.hpp"
 #include "times.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -23,7 +24,7 @@ Handles saved_states;
 constexpr double share_of_step = 1e-6;
 
 double time_tolerance(double time, double expected, double step_size) {
-    return std::fmax(share_of_step * step_size, std::fmax(time_rounding(time), time_rounding(expected)));
+    return std::max(share_of_step * step_size, std::max(time_rounding(time), time_rounding(expected)));
 }
 
 // Two times with as few digits, from nine on, as tell them apart.

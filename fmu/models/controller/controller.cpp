@@ -2,6 +2,7 @@
 //
 // A step runs the control ticks that fall into [t, t + h), with the inputs held; tick k is due k periods after the
 // start. A step shorter than the period may run none.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -59,7 +60,7 @@ public:
     }
 
     Status step(double time_s, double step_size_s, Message &) override {
-        const double latest_s = std::fmax(std::fabs(time_s + step_size_s), std::fabs(start_time_s_));
+        const double latest_s = std::max(std::fabs(time_s + step_size_s), std::fabs(start_time_s_));
         const double end_ticks =
             (time_s + step_size_s - start_time_s_) / v_.controller_period - tick_tolerance(latest_s, 1.0 / v_.controller_period);
         const gw_controller_input_t in = inputs(v_);

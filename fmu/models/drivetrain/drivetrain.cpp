@@ -170,7 +170,7 @@ public:
 private:
     // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
     [[nodiscard]] double rounding_at(double since_start_s) const {
-        return tick_tolerance(std::fmax(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
+        return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
     }
 
     Status resume(Message& message) {

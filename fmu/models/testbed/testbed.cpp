@@ -2,6 +2,7 @@
 //
 // Time runs in servo ticks of 0.5 ms. Reaching a bus tick samples the sensors; leaving it takes the command in. So sensor outputs at the end of a step
 // belong to that instant (less the bus delay), and the command set before the next step acts from there on.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -174,7 +175,7 @@ public:
 private:
     // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
     [[nodiscard]] double rounding_at(double since_start_s) const {
-        return tick_tolerance(std::fmax(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
+        return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
     }
 
     Status resume(Message& message) {
