@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import stat
 import struct
@@ -20,6 +19,7 @@ from giveway.errors import FileError, SimulationError
 from giveway.fmu_check import check_fmu
 from giveway.fmu_limits import Limits
 from giveway.fmu_run import FmuStoppedError, run_fmu
+from measured_process import measure
 from stub_fmus import (
     DESCRIPTION,
     binary_name,
@@ -158,18 +158,12 @@ def test_what_is_large_is_refused_in_little_memory(large: Path, kind: str, tmp_p
     path = large
     assert path.stat().st_size < 10e6
     folder, environment = own_temporary_folder(tmp_path)
-    process = subprocess.Popen(
-        [command(), "fmu", kind, str(path)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-    )
-    assert process.stdout is not None
-    said = process.stdout.read().decode()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    assert process.returncode == (1 if kind == "check" else 2), said
-    assert "--max-" in said or "4 MB" in said
-    assert "Traceback" not in said
-    assert usage.ru_maxrss < 500_000  # kB
-    assert usage.ru_utime + usage.ru_stime < 10.0  # of the processor: the machine may do other things
+    found = measure([command(), "fmu", kind, str(path)], tmp_path, environment)
+    assert found.code == (1 if kind == "check" else 2), found.said
+    assert "--max-" in found.said or "4 MB" in found.said
+    assert "Traceback" not in found.said
+    assert found.memory_kb < 500_000
+    assert found.processor_s < 10.0  # of the processor: the machine may do other things
     assert list(folder.iterdir()) == []
 
 
@@ -177,15 +171,11 @@ def test_a_long_list_of_variables_takes_little(tmp_path: Path) -> None:
     """150,000 rows as a table took 1.1 GB and 81 s; line by line it is 183 MB and 3 s."""
     path = tmp_path / "many.fmu"
     many_variables(path, 150_000)
-    process = subprocess.Popen([command(), "fmu", "info", "--variables", str(path)], stdout=subprocess.PIPE)
-    assert process.stdout is not None
-    lines = process.stdout.read().decode().splitlines()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    assert process.returncode == 0
-    assert lines[-1].split()[:3] == ["v149999", "local", "Float64"]
-    assert usage.ru_maxrss < 500_000  # kB
-    assert usage.ru_utime + usage.ru_stime < 10.0
+    found = measure([command(), "fmu", "info", "--variables", str(path)], tmp_path)
+    assert found.code == 0
+    assert found.said.splitlines()[-1].split()[:3] == ["v149999", "local", "Float64"]
+    assert found.memory_kb < 500_000
+    assert found.processor_s < 10.0
 
 
 @pytest.mark.parametrize(
