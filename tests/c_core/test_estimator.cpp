@@ -89,28 +89,6 @@ TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait) {
                        10.0 * tolerance);
 }
 
-TEST(Estimator, AShakenRobotIsNotTared) {
-    Estimated e(trikey());
-    e.tare({0, 0, 0});
-    (void)e.step(moving_at(0.1, {0, 0, 0}));
-    for (int i = 0; i < 2000; ++i) {
-        const double shake = i % 2 == 0 ? 1.0 : -1.0;
-        ASSERT_EQ(e.step(moving_at(0.0, {shake, 0, 0})).regime, GW_REGIME_CREEPING);
-    }
-    for (int i = 0; i < 99; ++i) {
-        ASSERT_EQ(e.step(moving_at(0.0, {0.5, 0, 0})).regime, GW_REGIME_CREEPING) << i;
-    }
-    EXPECT_EQ(e.step(moving_at(0.0, {0.5, 0, 0})).regime, GW_REGIME_REST);
-}
-
-TEST(Estimator, ATurningRobotIsNotAtRest) {
-    Estimated e(trikey());
-    e.tare({0, 0, 0});
-    auto in = moving_at(0.0, {0, 0, 0});
-    in.planned_twist.omega_radps = real(1.0);
-    EXPECT_EQ(e.step(in).regime, GW_REGIME_MOTION);
-}
-
 TEST(Estimator, MeasuredSourcesSeeARobotThatIsPushedAway) {
     // Motors hold, the base accelerates by a push: the planned form sees only what the wheels carry, the measured one
     // all of it.
@@ -145,18 +123,6 @@ TEST(Estimator, MeasuredSourcesSeeARobotThatIsPushedAway) {
     EXPECT_NEAR(m.measured_twist.vx_mps, a * 0.39, 0.01);
 }
 
-TEST(Estimator, ZeroAccelerationSourceLeavesInertiaOut) {
-    auto config = trikey();
-    config.estimator.acceleration_source = GW_SOURCE_ZERO;
-    Estimated e(config);
-    e.tare({0, 0, 0});
-    auto in = moving_at(0.2, {0, 0, 0});
-    in.planned_acceleration = {real(1), real(-2), real(3)};
-    const auto with = e.step(in);
-    in.planned_acceleration = {real(0), real(0), real(0)};
-    EXPECT_VECTOR_NEAR(vector(e.step(in).nominal_nm), vector(with.nominal_nm), 0.0);
-}
-
 TEST(Estimator, CountersMayWrap) {
     auto config = trikey();
     config.estimator.velocity_source = GW_SOURCE_MEASURED;
@@ -180,56 +146,6 @@ TEST(Estimator, CountersMayWrap) {
         ASSERT_EQ(a.wrench.force_x_n, b.wrench.force_x_n);
         ASSERT_EQ(a.wrench.torque_nm, b.wrench.torque_nm);
     }
-}
-
-TEST(Estimator, EncoderAngleIsWithinOneTurn) {
-    Estimated e(trikey());
-    for (const std::int32_t count : {0, 1, 4250, 8499, 8500, -1, INT32_MAX, INT32_MIN}) {
-        const Real angle = gw_estimator_encoder_angle(e.state.get(), count);
-        const long double truth = static_cast<long double>(count % 8500) * 2.0L * std::numbers::pi_v<long double> / 8500;
-        EXPECT_LE(std::fabs(std::remainder(angle - truth, 2.0L * std::numbers::pi_v<long double>)), 8.0L * epsilon);
-        EXPECT_GE(angle, -GW_PI);
-        EXPECT_LT(angle, GW_PI);
-    }
-}
-
-TEST(Estimator, BrokenInputsGiveNoWrenchAndLeaveNoTrace) {
-    Estimated e(trikey());
-    e.tare({0, 0, 0});
-    gw_estimator_output_t out{};
-    for (const Real bad : {not_a_number, infinite, GW_REAL_MAX}) {
-        auto in = moving_at(0.0, {0, 0, 0});
-        in.torque_nm.wheel[1] = bad;
-        EXPECT_EQ(gw_estimator_step(e.state.get(), &in, &out), GW_STATUS_INPUT_INVALID);
-        EXPECT_EQ(out.wrench.force_x_n, real(0));
-        EXPECT_EQ(out.mean_samples, 0U);
-        in = moving_at(0.0, {0, 0, 0});
-        in.planned_acceleration.ay_mps2 = bad;
-        if (bad != GW_REAL_MAX) {
-            EXPECT_EQ(gw_estimator_step(e.state.get(), &in, &out), GW_STATUS_INPUT_INVALID);
-        }
-        ASSERT_TRUE(gw_estimator_invariant_holds(e.state.get()));
-        EXPECT_VECTOR_NEAR(vector(e.step(moving_at(0.0, {0, 0, 0})).wrench), Eigen::Vector3d(0, 0, 0), 0.0);
-    }
-    auto raw = std::make_unique<gw_estimator_t>();
-    const auto in = moving_at(0.0, {0, 0, 0});
-    EXPECT_EQ(gw_estimator_step(raw.get(), &in, &out), GW_STATUS_NOT_INITIALISED);
-    EXPECT_FALSE(gw_estimator_invariant_holds(raw.get()));
-    EXPECT_FALSE(gw_estimator_invariant_holds(nullptr));
-    auto config = trikey();
-    EXPECT_EQ(gw_estimator_init(nullptr, &config.estimator, &config.geometry, &config.base, &config.friction,
-                                config.period_s),
-              GW_STATUS_NULL_POINTER);
-    EXPECT_EQ(gw_estimator_init(raw.get(), &config.estimator, nullptr, &config.base, &config.friction, config.period_s),
-              GW_STATUS_NULL_POINTER);
-    EXPECT_EQ(gw_estimator_init(raw.get(), &config.estimator, &config.geometry, nullptr, &config.friction,
-                                config.period_s),
-              GW_STATUS_NULL_POINTER);
-    config.estimator.rest_ticks = 0;
-    EXPECT_EQ(gw_estimator_init(raw.get(), &config.estimator, &config.geometry, &config.base, &config.friction,
-                                config.period_s),
-              GW_STATUS_CONFIG_INVALID);
-    EXPECT_FALSE(gw_estimator_invariant_holds(raw.get()));
 }
 
 gw_controller_config_t with_bristles() {

@@ -136,27 +136,4 @@ TEST(Kinematics, SignOfTheTorqueOfAPush) {
     EXPECT_NEAR(-gw_kinematics_torques_of_wrench(&k, push).wheel[0], 5.866, 0.001);
 }
 
-TEST(Kinematics, RefusesWheelsThatShareASlot) {
-    gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
-    for (std::uint32_t a = 0; a < 4; ++a) {
-        for (std::uint32_t b = 0; b < 4; ++b) {
-            for (std::uint32_t c = 0; c < 4; ++c) {
-                gw_geometry_config_t g = config.geometry;
-                g.wheel_slot[0] = a;
-                g.wheel_slot[1] = b;
-                g.wheel_slot[2] = c;
-                const bool permutation = a < 3 && b < 3 && c < 3 && a != b && b != c && a != c;
-                gw_kinematics_t k{};
-                ASSERT_EQ(gw_kinematics_init(&k, &g) == GW_STATUS_OK, permutation);
-            }
-        }
-    }
-    EXPECT_EQ(gw_kinematics_init(nullptr, &config.geometry), GW_STATUS_NULL_POINTER);
-    gw_kinematics_t k{};
-    EXPECT_EQ(gw_kinematics_init(&k, nullptr), GW_STATUS_NULL_POINTER);
-    EXPECT_FALSE(gw_kinematics_invariant_holds(&k));
-    EXPECT_FALSE(gw_kinematics_invariant_holds(nullptr));
-}
-
 } // namespace

@@ -42,28 +42,4 @@ TEST_P(MovingAverage, IsEigensMeanOverAMillionSamples) {
 
 INSTANTIATE_TEST_SUITE_P(Windows, MovingAverage, testing::Values(1U, 2U, 3U, 20U, 1000U, 1023U, 1024U));
 
-TEST(MovingAverage, ResetAndRefusals) {
-    auto average = std::make_unique<gw_moving_average_t>();
-    EXPECT_EQ(gw_moving_average_init(nullptr, 5), GW_STATUS_NULL_POINTER);
-    EXPECT_EQ(gw_moving_average_init(average.get(), 0), GW_STATUS_CONFIG_INVALID);
-    EXPECT_EQ(gw_moving_average_init(average.get(), 1025), GW_STATUS_CONFIG_INVALID);
-    EXPECT_TRUE(gw_moving_average_invariant_holds(average.get())); // usable even then, with window 1
-    ASSERT_EQ(gw_moving_average_init(average.get(), 4), GW_STATUS_OK);
-    EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), Eigen::Vector3d(0, 0, 0), 0.0);
-    for (int i = 0; i < 7; ++i) {
-        ASSERT_EQ(gw_moving_average_add(average.get(), wrench({1e6, 1e6, 1e6})), GW_STATUS_OK);
-    }
-    for (const Real bad : {not_a_number, infinite, real(2e9)}) {
-        EXPECT_EQ(gw_moving_average_add(average.get(), {real(0), bad, real(0)}), GW_STATUS_INPUT_INVALID);
-    }
-    EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), Eigen::Vector3d(1e6, 1e6, 1e6), 0.0);
-    gw_moving_average_reset(average.get());
-    EXPECT_EQ(gw_moving_average_count(average.get()), 0U);
-    ASSERT_EQ(gw_moving_average_add(average.get(), wrench({2, 4, 6})), GW_STATUS_OK);
-    EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), Eigen::Vector3d(2, 4, 6), 0.0);
-    EXPECT_VECTOR_NEAR(vector(gw_moving_average_window_mean(average.get())), Eigen::Vector3d(0.5, 1, 1.5), 0.0);
-    EXPECT_EQ(gw_moving_average_add(nullptr, wrench({2, 4, 6})), GW_STATUS_NULL_POINTER);
-    EXPECT_FALSE(gw_moving_average_invariant_holds(nullptr));
-}
-
 } // namespace

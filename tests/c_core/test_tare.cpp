@@ -24,23 +24,4 @@ TEST(Tare, IsTheMeanOfItsSamples) {
     }
 }
 
-TEST(Tare, RefusesWhatVariesAndStartsAnew) {
-    gw_tare_t tare{};
-    gw_tare_start(&tare);
-    gw_wheels_t mean{};
-    const auto add = [&](double torque) {
-        const gw_wheels_t sample = wheels({0.0, 0.0, torque});
-        return gw_tare_add(&tare, &sample, 4, real(0.5), &mean);
-    };
-    EXPECT_EQ(add(1.0), GW_TARE_RUNNING);
-    EXPECT_EQ(add(1.5), GW_TARE_RUNNING);
-    EXPECT_EQ(add(0.99), GW_TARE_REFUSED);
-    EXPECT_EQ(add(3.0), GW_TARE_RUNNING);
-    EXPECT_EQ(add(3.1), GW_TARE_RUNNING);
-    EXPECT_EQ(add(3.2), GW_TARE_RUNNING);
-    EXPECT_EQ(add(3.3), GW_TARE_DONE);
-    EXPECT_NEAR(mean.wheel[2], 3.15, 10.0 * tolerance);
-    EXPECT_FALSE(gw_tare_invariant_holds(nullptr));
-}
-
 } // namespace

@@ -51,6 +51,52 @@ static void bad_sensors_command_no_motion(void)
     }
 }
 
+/* In every mode that moves or measures: a fault stops at once, and what was interrupted is taken up again, but for an
+ * escape, which is abandoned. */
+static void bad_sensors_interrupt_every_mode(void)
+{
+    const struct {
+        gw_mode_t before;
+        gw_mode_t after;
+    } rows[] = {
+        {GW_MODE_TARING, GW_MODE_TARING},
+        {GW_MODE_TRACKING, GW_MODE_REJOINING},
+        {GW_MODE_REACTING, GW_MODE_REACTING},
+        {GW_MODE_STOPPED, GW_MODE_REJOINING},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        unit_row(i);
+        on_the_way();
+        if (rows[i].before == GW_MODE_TARING) {
+            rig_set_up();
+            rig_begin();
+            rig_tick(GW_STATUS_OK);
+        } else if (rows[i].before == GW_MODE_REACTING) {
+            rig_push(R(200.0));
+            rig_until(GW_MODE_REACTING, 50U);
+        } else {
+            rig_input.stop_request = (rows[i].before == GW_MODE_STOPPED);
+            rig_tick(GW_STATUS_OK);
+        }
+        CHECK_STATUS(rig_output.mode, rows[i].before);
+        rig_push(GW_ZERO);
+        rig_input.sensor.present = false;
+        rig_tick(GW_STATUS_SENSOR_MISSING);
+        CHECK_STATUS(rig_output.mode, GW_MODE_FAULT);
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            CHECK(rig_output.command.speed_radps[k] == GW_ZERO);
+        }
+        rig_input.sensor.present = true;
+        rig_input.stop_request = false;
+        for (uint32_t k = 0U; k < rig_config.sensor_check.recover_ticks; k++) {
+            rig_tick(GW_STATUS_SENSOR_RECOVERING);
+            CHECK_STATUS(rig_output.mode, GW_MODE_FAULT);
+        }
+        rig_tick(GW_STATUS_OK);
+        CHECK_STATUS(rig_output.mode, rows[i].after);
+    }
+}
+
 static void a_sample_counter_that_stands_is_a_fault(void)
 {
     on_the_way();
@@ -229,6 +275,7 @@ static void the_invariant_sees_every_member(void)
 void suite_controller_faults(void)
 {
     unit_run("bad_sensors_command_no_motion", bad_sensors_command_no_motion);
+    unit_run("bad_sensors_interrupt_every_mode", bad_sensors_interrupt_every_mode);
     unit_run("a_sample_counter_that_stands_is_a_fault", a_sample_counter_that_stands_is_a_fault);
     unit_run("before_the_first_sample_the_drives_are_off", before_the_first_sample_the_drives_are_off);
     unit_run("a_plan_that_is_not_finite_slows_it_down", a_plan_that_is_not_finite_slows_it_down);

@@ -373,8 +373,32 @@ static void counters_start_anew_after_24_days(void)
     CHECK(rig_output.detection_count == 0U);
 }
 
+/* Taken in the middle of a reaction: it goes on as the original does. */
+static void a_copy_is_a_checkpoint(void)
+{
+    rig_set_up();
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(200.0));
+    rig_until(GW_MODE_REACTING, 20U);
+    gw_controller_t copy = rig_controller;
+    for (uint32_t tick = 0U; tick < 100U; tick++) {
+        gw_controller_output_t again;
+        rig_push((gw_real_t)(tick % 9U));
+        rig_tick(GW_STATUS_OK);
+        unit_row(tick);
+        CHECK_STATUS(gw_controller_step(&copy, &rig_input, &again), GW_STATUS_OK);
+        CHECK((again.mode == rig_output.mode) && (again.estimate.force_x_n == rig_output.estimate.force_x_n));
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            CHECK(again.command.angle_rad[i] == rig_output.command.angle_rad[i]);
+            CHECK(again.command.speed_radps[i] == rig_output.command.speed_radps[i]);
+        }
+    }
+}
+
 void suite_controller(void)
 {
+    unit_run("a_copy_is_a_checkpoint", a_copy_is_a_checkpoint);
     unit_run("bad_arguments_are_refused", bad_arguments_are_refused);
     unit_run("it_tares_and_then_follows_its_plan", it_tares_and_then_follows_its_plan);
     unit_run("without_a_tare_it_starts_at_the_plan_s_speed", without_a_tare_it_starts_at_the_plan_s_speed);

@@ -242,8 +242,37 @@ static void the_invariant_sees_every_member(void)
     CHECK(!gw_detector_invariant_holds(&detector));
 }
 
+/* 30 N at 25 Hz for twenty seconds: the integral of the magnitude would trip in the second period. */
+static void alternating_forces_cancel(void)
+{
+    gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
+    for (uint32_t tick = 0U; tick < 20000U; tick++) {
+        const gw_rotation_t phase = gw_sincos(GW_TWO * GW_PI * R(0.025) * (gw_real_t)(tick % 40U));
+        const gw_detector_input_t input = push(R(30.0) * phase.sine, GW_REGIME_REST);
+        unit_row(tick);
+        CHECK(!step(&detector, &input).tripped);
+    }
+}
+
+/* The moment shrinks as the impulse does: the mean wrench keeps the lever arm of 0.1 m. */
+static void a_varying_force_keeps_its_lever_arm(void)
+{
+    gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
+    bool tripped = false;
+    for (uint32_t tick = 0U; (tick < 200U) && (!tripped); tick++) {
+        const gw_detector_input_t input = push((gw_real_t)((tick * 7U) % 30U), GW_REGIME_REST);
+        const gw_detector_output_t output = step(&detector, &input);
+        unit_row(tick);
+        CHECK_NEAR(output.mean_wrench.torque_nm, R(0.1) * output.mean_wrench.force_x_n, R(30.0) * ROUNDING);
+        tripped = output.tripped;
+    }
+    CHECK(tripped);
+}
+
 void suite_detector(void)
 {
+    unit_run("alternating_forces_cancel", alternating_forces_cancel);
+    unit_run("a_varying_force_keeps_its_lever_arm", a_varying_force_keeps_its_lever_arm);
     unit_run("bad_arguments_are_refused", bad_arguments_are_refused);
     unit_run("the_impulse_trips_once_it_exceeds_the_threshold", the_impulse_trips_once_it_exceeds_the_threshold);
     unit_run("what_is_forgiven_depends_on_the_motion", what_is_forgiven_depends_on_the_motion);
