@@ -280,11 +280,11 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    gw_wheels_t nominal = gw_nominal_torques_with_friction(&estimator->nominal, &estimator->kinematics, twist,
+    gw_wheels_t nominal = gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist,
                                                            acceleration, &friction_nm);
-    nominal.wheel[0] += zero->wheel[0];
-    nominal.wheel[1] += zero->wheel[1];
-    nominal.wheel[2] += zero->wheel[2];
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        nominal.wheel[i] += zero->wheel[i];
+    }
     return nominal;
 }
 

@@ -2,9 +2,6 @@
 
 #include "giveway/gw_math.h"
 
-#define THREE_HALVES ((gw_real_t)1.5)
-#define THREE ((gw_real_t)3.0)
-
 GW_SELDOM void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_BASE_MASS, config->mass_kg);
@@ -32,10 +29,10 @@ GW_SELDOM gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_co
             const gw_real_t roller_mass_kg =
                 (inertia->roller_inertia_kgm2 * kinematics->per_roller_radius) * kinematics->per_roller_radius;
             const gw_real_t distance_squared_m2 = kinematics->wheel_distance_m * kinematics->wheel_distance_m;
-            nominal->rolling_mass_kg = THREE_HALVES * (wheel_mass_kg + roller_mass_kg);
+            nominal->rolling_mass_kg = GW_HALF_WHEELS * (wheel_mass_kg + roller_mass_kg);
             nominal->total_mass_kg = inertia->mass_kg + nominal->rolling_mass_kg;
             nominal->total_yaw_inertia_kgm2 =
-                inertia->yaw_inertia_kgm2 + ((THREE * wheel_mass_kg) * distance_squared_m2);
+                inertia->yaw_inertia_kgm2 + ((GW_WHEELS * wheel_mass_kg) * distance_squared_m2);
             nominal->friction = *friction;
         }
     }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "giveway/giveway.h"
+#include "matrix_forms.h"
 
 using Real = gw_real_t;
 
@@ -99,7 +100,7 @@ inline gw_wrench_t wrench(const Eigen::Vector3d &v) { return {real(v(0)), real(v
 inline gw_twist_t twist(const Eigen::Vector3d &v) { return {real(v(0)), real(v(1)), real(v(2))}; }
 inline gw_acceleration_t acceleration(const Eigen::Vector3d &v) { return {real(v(0)), real(v(1)), real(v(2))}; }
 
-inline Eigen::Matrix3d matrix(const gw_matrix_t &m) {
+inline Eigen::Matrix3d matrix(const matrix_t &m) {
     Eigen::Matrix3d result;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {

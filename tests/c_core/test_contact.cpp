@@ -108,7 +108,7 @@ TEST(Contact, APushOnTheOutlineIsFoundWhereItIs) {
         const double angle = std::atan2(edge.x(), -edge.y()) + random.uniform(-1.4, 1.4);
         const double force = random.uniform(1.0, 200.0);
         const gw_wrench_t at_point = wrench({force * std::cos(angle), force * std::sin(angle), 0.0});
-        const gw_wrench_t push = gw_kinematics_wrench_at_centre({real(p.x()), real(p.y())}, at_point);
+        const gw_wrench_t push = wrench_at_centre({real(p.x()), real(p.y())}, at_point);
         gw_contact_estimate_t estimate{};
         ASSERT_EQ(gw_contact_locate(&contact, push, {real(0), real(0)}, &estimate), GW_STATUS_OK);
         ASSERT_TRUE(estimate.valid);

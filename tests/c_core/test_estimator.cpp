@@ -83,7 +83,7 @@ TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait) {
     // In motion again, the zero is that of the run.
     const auto again = e.step(moving_at(0.2, run_zero));
     EXPECT_EQ(again.regime, GW_REGIME_MOTION);
-    EXPECT_VECTOR_NEAR(vector(again.nominal_nm) - run_zero, vector(gw_nominal_torques(&e.state->nominal,
+    EXPECT_VECTOR_NEAR(vector(again.nominal_nm) - run_zero, vector(nominal_torques(&e.state->nominal,
                                                                   &e.state->kinematics, {real(0.2), real(0), real(0)},
                                                                   {real(0), real(0), real(0)})),
                        10.0 * tolerance);

@@ -31,10 +31,10 @@ TEST(Kinematics, JacobiansAndInverseAreEigens) {
         const auto yaw = real(theta);
         const Eigen::Matrix3d wheel = wheel_jacobian(robot.geometry, theta);
         const Eigen::Matrix3d roller = roller_jacobian(robot.geometry, theta);
-        expect_close(matrix(gw_kinematics_wheel_jacobian(&robot.kinematics, yaw)), wheel);
-        expect_close(matrix(gw_kinematics_roller_jacobian(&robot.kinematics, yaw)), roller);
+        expect_close(matrix(wheel_jacobian(&robot.kinematics, yaw)), wheel);
+        expect_close(matrix(roller_jacobian(&robot.kinematics, yaw)), roller);
         // Rows of the inverse differ in unit: compare row by row.
-        const Eigen::Matrix3d inverse = matrix(gw_kinematics_wheel_jacobian_inverse(&robot.kinematics, yaw));
+        const Eigen::Matrix3d inverse = matrix(wheel_jacobian_inverse(&robot.kinematics, yaw));
         const Eigen::Matrix3d truth = wheel.inverse();
         for (int row = 0; row < 3; ++row) {
             expect_close(inverse.row(row), truth.row(row));
@@ -43,7 +43,7 @@ TEST(Kinematics, JacobiansAndInverseAreEigens) {
         constraint.block<3, 3>(0, 0) = wheel;
         constraint.block<3, 3>(3, 0) = roller;
         constraint.block<6, 6>(0, 3) = -Eigen::Matrix<double, 6, 6>::Identity();
-        const gw_constraint_matrix_t found = gw_kinematics_constraint_jacobian(&robot.kinematics, yaw);
+        const constraint_matrix_t found = constraint_jacobian(&robot.kinematics, yaw);
         Eigen::Matrix<double, 6, 9> actual;
         for (int i = 0; i < 6; ++i) {
             for (int j = 0; j < 9; ++j) {
@@ -102,10 +102,10 @@ TEST(Kinematics, AccelerationsOfASpinningBase) {
         const double size = (wheel.inverse().cwiseAbs() * rate_change.cwiseAbs()).maxCoeff() + v.squaredNorm();
         EXPECT_VECTOR_NEAR(vector(found), to_base(theta) * a, tolerance * size);
         const gw_twist_t base_twist = gw_kinematics_twist(&robot.kinematics, &rates);
-        const gw_wheels_t wheel_back = gw_kinematics_wheel_accelerations(&robot.kinematics, base_twist, found);
+        const gw_wheels_t wheel_back = wheel_accelerations(&robot.kinematics, base_twist, found);
         const double wheel_size = (wheel.cwiseAbs() * a.cwiseAbs()).maxCoeff() + 50.0 + v.squaredNorm() * 50.0;
         EXPECT_VECTOR_NEAR(vector(wheel_back), rate_change, 10.0 * tolerance * wheel_size);
-        const gw_wheels_t rollers = gw_kinematics_roller_accelerations(&robot.kinematics, base_twist, found);
+        const gw_wheels_t rollers = roller_accelerations(&robot.kinematics, base_twist, found);
         const double roller_size = (size + v.squaredNorm()) / robot.geometry.roller_radius_m;
         EXPECT_VECTOR_NEAR(vector(rollers), roller_change, 10.0 * tolerance * roller_size);
     }
@@ -119,8 +119,8 @@ TEST(Kinematics, ExternalJacobian) {
         const gw_vector_t point = {real(p(0)), real(p(1))};
         Eigen::Matrix3d expected; // (34) about the centre
         expected << 1, 0, -p(1), 0, 1, p(0), 0, 0, 1;
-        EXPECT_VECTOR_NEAR(matrix(gw_kinematics_external_jacobian(point)), expected, 0.0);
-        EXPECT_VECTOR_NEAR(vector(gw_kinematics_wrench_at_centre(point, wrench(force))), expected.transpose() * force,
+        EXPECT_VECTOR_NEAR(matrix(external_jacobian(point)), expected, 0.0);
+        EXPECT_VECTOR_NEAR(vector(wrench_at_centre(point, wrench(force))), expected.transpose() * force,
                            200.0 * tolerance);
     }
 }

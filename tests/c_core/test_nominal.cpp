@@ -65,7 +65,7 @@ TEST(Nominal, WrenchOfTheMultiplierSystemIsRecovered) {
         ASSERT_EQ(gw_nominal_init(&nominal, &c.inertia, &c.friction, &kinematics), GW_STATUS_OK);
         ASSERT_TRUE(gw_nominal_invariant_holds(&nominal));
         const Eigen::Matrix3d turn = to_base(c.theta);
-        const gw_wheels_t expected = gw_nominal_torques(&nominal, &kinematics, twist(turn * c.twist),
+        const gw_wheels_t expected = nominal_torques(&nominal, &kinematics, twist(turn * c.twist),
                                                         acceleration(turn * c.acceleration));
         const gw_wheels_t sensed = wheels(c.torque);
         const gw_wrench_t found = gw_wrench_external(&kinematics, &expected, &sensed);
@@ -96,7 +96,7 @@ TEST(Nominal, NeglectedInertiasLeaveTheEquation38) {
         const Eigen::Vector3d mass(c.inertia.mass_kg, c.inertia.mass_kg, c.inertia.yaw_inertia_kgm2);
         const Eigen::Vector3d forces = mass.cwiseProduct(a) + roller.transpose() * friction;
         const Eigen::Vector3d expected = wheel_jacobian(c.geometry, 0.0).transpose().inverse() * forces;
-        EXPECT_VECTOR_NEAR(vector(gw_nominal_torques(&nominal, &kinematics, twist(c.twist), acceleration(a))), expected,
+        EXPECT_VECTOR_NEAR(vector(nominal_torques(&nominal, &kinematics, twist(c.twist), acceleration(a))), expected,
                            tolerance * (forces.cwiseAbs().maxCoeff() + 100.0));
     }
 }

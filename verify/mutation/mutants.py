@@ -54,6 +54,8 @@ KINDS = (
     ("GW_FIELD_", "GW_FIELD_NONE", "GW_FIELD_CONTROLLER_PERIOD"),
 )
 NO_DELETION = {"if", "else", "for", "while", "do", "switch", "case", "default", "return", "goto"}
+# GW_UNROLLED is a pragma.
+BESIDE_STATEMENTS = {"{", "}", ";", "else", "do", "GW_UNROLLED"}
 INTEGER = re.compile(r"(\d+)([uU]?)")
 
 
@@ -234,7 +236,7 @@ def _deleted(run: list[Token]) -> Iterator[Fault]:
             while run[at].text != ":":
                 at += 1
             at += 1
-        elif token.text in ("{", "}", ";", "else", "do"):
+        elif token.text in BESIDE_STATEMENTS:
             at += 1
         else:
             end = at

@@ -21,10 +21,12 @@ void gw_friction_config_check(const gw_friction_config_t *config, gw_config_erro
 /* B_r tanh(alpha rate) per roller, N m. config is checked, rates are finite; pointers not NULL. */
 static inline gw_wheels_t gw_friction_torques(const gw_friction_config_t *config, const gw_wheels_t *roller_rates_radps)
 {
-    const gw_real_t slope = config->tanh_slope_s_per_rad;
-    const gw_wheels_t torques = {{config->coulomb_torque_nm * gw_tanh(slope * roller_rates_radps->wheel[0]),
-                                  config->coulomb_torque_nm * gw_tanh(slope * roller_rates_radps->wheel[1]),
-                                  config->coulomb_torque_nm * gw_tanh(slope * roller_rates_radps->wheel[2])}};
+    gw_wheels_t torques;
+    GW_UNROLLED
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_real_t slide = gw_tanh(config->tanh_slope_s_per_rad * roller_rates_radps->wheel[i]);
+        torques.wheel[i] = config->coulomb_torque_nm * slide;
+    }
     return torques;
 }
 

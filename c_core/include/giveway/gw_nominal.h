@@ -42,7 +42,7 @@ gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *in
 bool gw_nominal_invariant_holds(const gw_nominal_t *nominal);
 /* T|0, N m, at a twist and an acceleration over the floor, both along the base's axes and finite, with the rollers'
  * friction, N m per roller, as somebody else knows it. Pointers not NULL. */
-static inline gw_wheels_t gw_nominal_torques_with_friction(const gw_nominal_t *nominal,
+static inline gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal,
                                                            const gw_kinematics_t *kinematics, gw_twist_t twist,
                                                            gw_acceleration_t acceleration,
                                                            const gw_wheels_t *friction_nm)
@@ -53,17 +53,6 @@ static inline gw_wheels_t gw_nominal_torques_with_friction(const gw_nominal_t *n
     wrench.force_y_n += (nominal->total_mass_kg * acceleration.ay_mps2) - (turning * twist.vx_mps);
     wrench.torque_nm += nominal->total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
     return gw_kinematics_torques_of_wrench(kinematics, wrench);
-}
-
-/* The same with (28). */
-static inline gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics,
-                                             gw_twist_t twist, gw_acceleration_t acceleration)
-{
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t roller_rates = gw_kinematics_roller_rates(kinematics, twist);
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_wheels_t friction_nm = gw_friction_torques(&nominal->friction, &roller_rates);
-    return gw_nominal_torques_with_friction(nominal, kinematics, twist, acceleration, &friction_nm);
 }
 
 #ifdef __cplusplus

@@ -41,15 +41,21 @@ static inline gw_wrench_t gw_wrench_limited(gw_wrench_t wrench)
 /* Likewise for torques and GW_TORQUE_MAX. */
 static inline bool gw_torques_are_valid(const gw_wheels_t *torque_nm)
 {
-    return gw_within(torque_nm->wheel[0], GW_TORQUE_MAX) && gw_within(torque_nm->wheel[1], GW_TORQUE_MAX) &&
-           gw_within(torque_nm->wheel[2], GW_TORQUE_MAX);
+    bool valid = true;
+    GW_UNROLLED
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        valid = valid && gw_within(torque_nm->wheel[i], GW_TORQUE_MAX);
+    }
+    return valid;
 }
 
 static inline gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm)
 {
-    const gw_wheels_t limited = {{gw_limited(torque_nm->wheel[0], GW_TORQUE_MAX),
-                                  gw_limited(torque_nm->wheel[1], GW_TORQUE_MAX),
-                                  gw_limited(torque_nm->wheel[2], GW_TORQUE_MAX)}};
+    gw_wheels_t limited;
+    GW_UNROLLED
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        limited.wheel[i] = gw_limited(torque_nm->wheel[i], GW_TORQUE_MAX);
+    }
     return limited;
 }
 
@@ -58,6 +64,7 @@ static inline gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, 
                                const gw_wheels_t *sensed_nm)
 {
     gw_wheels_t missing;
+    GW_UNROLLED
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         missing.wheel[i] = nominal_nm->wheel[i] - sensed_nm->wheel[i];
     }

@@ -1,3 +1,4 @@
+#include "../matrix_forms.h"
 #include "giveway/gw_friction.h"
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
@@ -11,7 +12,7 @@ static gw_acceleration_t random_acceleration(generator_t *generator)
     return acceleration;
 }
 
-static void add_matrix(digest_t *digest, gw_matrix_t matrix)
+static void add_matrix(digest_t *digest, matrix_t matrix)
 {
     for (uint32_t row = 0U; row < 3U; row++) {
         digest_reals(digest, matrix.m[row], 3U);
@@ -20,12 +21,12 @@ static void add_matrix(digest_t *digest, gw_matrix_t matrix)
 
 static void jacobians(digest_t *digest, const gw_kinematics_t *kinematics, gw_real_t theta_rad)
 {
-    const gw_constraint_matrix_t constraint = gw_kinematics_constraint_jacobian(kinematics, theta_rad);
+    const constraint_matrix_t constraint = constraint_jacobian(kinematics, theta_rad);
     const gw_vector_t point_m = {theta_rad, -theta_rad};
-    add_matrix(digest, gw_kinematics_wheel_jacobian(kinematics, theta_rad));
-    add_matrix(digest, gw_kinematics_roller_jacobian(kinematics, theta_rad));
-    add_matrix(digest, gw_kinematics_wheel_jacobian_inverse(kinematics, theta_rad));
-    add_matrix(digest, gw_kinematics_external_jacobian(point_m));
+    add_matrix(digest, wheel_jacobian(kinematics, theta_rad));
+    add_matrix(digest, roller_jacobian(kinematics, theta_rad));
+    add_matrix(digest, wheel_jacobian_inverse(kinematics, theta_rad));
+    add_matrix(digest, external_jacobian(point_m));
     for (uint32_t row = 0U; row < 6U; row++) {
         digest_reals(digest, constraint.m[row], 9U);
     }
@@ -45,8 +46,8 @@ digest_t drive_kinematics(void)
         const gw_wheels_t results[6] = {
             gw_kinematics_wheel_rates(&kinematics, twist),
             gw_kinematics_roller_rates(&kinematics, twist),
-            gw_kinematics_wheel_accelerations(&kinematics, twist, acceleration),
-            gw_kinematics_roller_accelerations(&kinematics, twist, acceleration),
+            wheel_accelerations(&kinematics, twist, acceleration),
+            roller_accelerations(&kinematics, twist, acceleration),
             gw_kinematics_torques_of_wrench(&kinematics, wrench),
             others,
         };
@@ -57,7 +58,7 @@ digest_t drive_kinematics(void)
         digest_acceleration(&digest, gw_kinematics_acceleration(&kinematics, &wheels, &others));
         digest_wrench(&digest, gw_kinematics_wrench_of_torques(&kinematics, &wheels));
         digest_wrench(&digest, gw_kinematics_wrench_of_rollers(&kinematics, &wheels));
-        digest_wrench(&digest, gw_kinematics_wrench_at_centre(generator_vector(&generator, GW_ONE), wrench));
+        digest_wrench(&digest, wrench_at_centre(generator_vector(&generator, GW_ONE), wrench));
         jacobians(&digest, &kinematics, generator_between(&generator, -GW_PI, GW_PI));
     }
     return digest;
@@ -86,7 +87,7 @@ digest_t drive_nominal(void)
         const gw_kinematics_t kinematics = random_kinematics(&generator);
         const gw_nominal_t nominal = random_nominal(&generator, &kinematics);
         const gw_twist_t twist = generator_twist(&generator, GW_ONE, GW_TWO);
-        const gw_wheels_t torques = gw_nominal_torques(&nominal, &kinematics, twist, random_acceleration(&generator));
+        const gw_wheels_t torques = nominal_torques(&nominal, &kinematics, twist, random_acceleration(&generator));
         digest_wheels(&digest, &torques);
         digest_real(&digest, nominal.total_mass_kg);
         digest_real(&digest, nominal.total_yaw_inertia_kgm2);

@@ -1,3 +1,4 @@
+#include "../matrix_forms.h"
 #include "script.h"
 
 #include "giveway/gw_math.h"
@@ -57,7 +58,7 @@ static void load_wheels(script_t *script, const gw_controller_output_t *before)
     const gw_vector_t world = {before->reference_twist.vx_mps, before->reference_twist.vy_mps};
     const gw_vector_t base = gw_rotate_back(gw_sincos(before->reference_pose.theta_rad), world);
     const gw_twist_t twist = {base.x, base.y, before->reference_twist.omega_radps};
-    const gw_wheels_t model_nm = gw_nominal_torques(&script->nominal, &script->kinematics, twist, steady);
+    const gw_wheels_t model_nm = nominal_torques(&script->nominal, &script->kinematics, twist, steady);
     const gw_wheels_t noise_nm = generator_wheels(&script->generator, (gw_real_t)0.05);
     if (script->push_ticks > 0U) {
         script->push_ticks--;

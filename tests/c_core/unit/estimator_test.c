@@ -1,3 +1,4 @@
+#include "../matrix_forms.h"
 #include "unit.h"
 
 #define PERIOD R(0.001)
@@ -261,7 +262,7 @@ static void the_motion_comes_from_the_source_that_is_chosen(void)
         }
         const gw_acceleration_t used = {rows[i].acceleration_mps2, R(0.0), R(0.0)};
         const gw_wheels_t expected =
-            gw_nominal_torques(&nominal, &kinematics, ahead(rows[i].friction_speed), used);
+            nominal_torques(&nominal, &kinematics, ahead(rows[i].friction_speed), used);
         /* Rates jitter by a count per tick, 0.6 mm/s, of which the filter's derivative passes (50 rad/s)^2 * 1 ms:
          * 1.6 mm/s^2, 4 mN m. */
         CHECK_NEAR(output.measured_twist.vx_mps, R(0.2), R(0.0006));

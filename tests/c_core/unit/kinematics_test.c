@@ -1,3 +1,4 @@
+#include "../matrix_forms.h"
 #include "unit.h"
 
 /* Wheels of 0.1 m, 0.25 m from the centre, in the given order. */
@@ -100,7 +101,7 @@ static void the_invariant_sees_every_member(void)
 static void the_wheel_jacobian_is_that_of_15(void)
 {
     const gw_kinematics_t kinematics = made();
-    const gw_matrix_t jacobian = gw_kinematics_wheel_jacobian(&kinematics, GW_ZERO);
+    const matrix_t jacobian = wheel_jacobian(&kinematics, GW_ZERO);
     CHECK_NEAR(jacobian.m[0][0], R(-2.95520206661339575), R(10.0) * ROUNDING);
     CHECK_NEAR(jacobian.m[0][1], R(9.55336489125606020), R(10.0) * ROUNDING);
     for (uint32_t i = 0U; i < 3U; i++) {
@@ -111,8 +112,8 @@ static void the_wheel_jacobian_is_that_of_15(void)
 static void the_inverse_is_the_inverse(void)
 {
     const gw_kinematics_t kinematics = made();
-    const gw_matrix_t jacobian = gw_kinematics_wheel_jacobian(&kinematics, R(1.1));
-    const gw_matrix_t inverse = gw_kinematics_wheel_jacobian_inverse(&kinematics, R(1.1));
+    const matrix_t jacobian = wheel_jacobian(&kinematics, R(1.1));
+    const matrix_t inverse = wheel_jacobian_inverse(&kinematics, R(1.1));
     for (uint32_t row = 0U; row < 3U; row++) {
         for (uint32_t column = 0U; column < 3U; column++) {
             gw_real_t sum = GW_ZERO;
@@ -128,9 +129,9 @@ static void the_inverse_is_the_inverse(void)
 static void the_constraint_matrix_is_that_of_19(void)
 {
     const gw_kinematics_t kinematics = made();
-    const gw_matrix_t wheel = gw_kinematics_wheel_jacobian(&kinematics, R(0.7));
-    const gw_matrix_t roller = gw_kinematics_roller_jacobian(&kinematics, R(0.7));
-    const gw_constraint_matrix_t constraint = gw_kinematics_constraint_jacobian(&kinematics, R(0.7));
+    const matrix_t wheel = wheel_jacobian(&kinematics, R(0.7));
+    const matrix_t roller = roller_jacobian(&kinematics, R(0.7));
+    const constraint_matrix_t constraint = constraint_jacobian(&kinematics, R(0.7));
     for (uint32_t row = 0U; row < 6U; row++) {
         for (uint32_t column = 0U; column < 9U; column++) {
             gw_real_t expected = ((column - 3U) == row) ? -GW_ONE : GW_ZERO;
@@ -147,8 +148,8 @@ static void rates_follow_from_the_twist_and_give_it_back(void)
 {
     const gw_kinematics_t kinematics = made();
     const gw_twist_t twist = {R(0.3), R(-0.2), R(0.5)};
-    const gw_matrix_t wheel = gw_kinematics_wheel_jacobian(&kinematics, GW_ZERO);
-    const gw_matrix_t roller = gw_kinematics_roller_jacobian(&kinematics, GW_ZERO);
+    const matrix_t wheel = wheel_jacobian(&kinematics, GW_ZERO);
+    const matrix_t roller = roller_jacobian(&kinematics, GW_ZERO);
     const gw_wheels_t rates = gw_kinematics_wheel_rates(&kinematics, twist);
     const gw_wheels_t rollers = gw_kinematics_roller_rates(&kinematics, twist);
     const gw_twist_t back = gw_kinematics_twist(&kinematics, &rates);
@@ -174,8 +175,8 @@ static void accelerations_include_the_turning_of_the_axes(void)
     const gw_wheels_t rates = gw_kinematics_wheel_rates(&kinematics, twist);
     const gw_wheels_t steady = {{GW_ZERO, GW_ZERO, GW_ZERO}};
     const gw_acceleration_t acceleration = gw_kinematics_acceleration(&kinematics, &rates, &steady);
-    const gw_wheels_t wheels = gw_kinematics_wheel_accelerations(&kinematics, twist, towards_the_centre);
-    const gw_wheels_t rollers = gw_kinematics_roller_accelerations(&kinematics, twist, towards_the_centre);
+    const gw_wheels_t wheels = wheel_accelerations(&kinematics, twist, towards_the_centre);
+    const gw_wheels_t rollers = roller_accelerations(&kinematics, twist, towards_the_centre);
     CHECK_NEAR(acceleration.ax_mps2, GW_ZERO, ROUNDING);
     CHECK_NEAR(acceleration.ay_mps2, R(0.2), ROUNDING);
     CHECK_NEAR(acceleration.alpha_radps2, GW_ZERO, ROUNDING);
@@ -217,8 +218,8 @@ static void a_wrench_at_a_point_turns_about_the_centre(void)
 {
     const gw_vector_t point = {R(0.5), R(-0.25)};
     const gw_wrench_t push = {R(4.0), R(8.0), R(1.0)};
-    const gw_wrench_t at_centre = gw_kinematics_wrench_at_centre(point, push);
-    const gw_matrix_t jacobian = gw_kinematics_external_jacobian(point);
+    const gw_wrench_t at_centre = wrench_at_centre(point, push);
+    const matrix_t jacobian = external_jacobian(point);
     CHECK((at_centre.force_x_n == R(4.0)) && (at_centre.force_y_n == R(8.0)) && (at_centre.torque_nm == R(6.0)));
     /* J_ext^T F, (34) */
     CHECK(((jacobian.m[0][2] * push.force_x_n) + (jacobian.m[1][2] * push.force_y_n) +

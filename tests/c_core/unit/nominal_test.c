@@ -1,3 +1,4 @@
+#include "../matrix_forms.h"
 #include "unit.h"
 
 static const gw_geometry_config_t geometry = {R(0.1), R(0.01), R(0.25), {0U, 1U, 2U}, R(0.0)};
@@ -64,7 +65,7 @@ static void turning_needs_the_same_torque_of_every_wheel(void)
     const gw_nominal_t nominal = made(&kinematics);
     const gw_twist_t still = {GW_ZERO, GW_ZERO, GW_ZERO};
     const gw_acceleration_t turning = {GW_ZERO, GW_ZERO, R(2.0)};
-    const gw_wheels_t torques = gw_nominal_torques(&nominal, &kinematics, still, turning);
+    const gw_wheels_t torques = nominal_torques(&nominal, &kinematics, still, turning);
     for (uint32_t i = 0U; i < 3U; i++) {
         unit_row(i);
         CHECK_NEAR(torques.wheel[i], R(0.41), R(0.5) * ROUNDING); /* 1.5375 * 2 * 0.1/(3 * 0.25) */
@@ -78,7 +79,7 @@ static void going_round_needs_the_force_of_38(void)
     const gw_nominal_t nominal = made(&kinematics);
     const gw_twist_t twist = {R(0.5), R(0.0), R(0.8)};
     const gw_acceleration_t acceleration = {R(0.0), R(0.4), R(0.0)};
-    const gw_wheels_t torques = gw_nominal_torques(&nominal, &kinematics, twist, acceleration);
+    const gw_wheels_t torques = nominal_torques(&nominal, &kinematics, twist, acceleration);
     const gw_wrench_t wrench = gw_kinematics_wrench_of_torques(&kinematics, &torques);
     const gw_wheels_t rates = gw_kinematics_roller_rates(&kinematics, twist);
     const gw_wheels_t roller_torques = gw_friction_torques(&friction, &rates);
