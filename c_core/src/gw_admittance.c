@@ -14,7 +14,7 @@ static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
     return result;
 }
 
-GW_SELDOM void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
+void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_count(error, GW_FIELD_ADMITTANCE_KIND, config->kind);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_MASS, config->mass_kg);
@@ -25,7 +25,7 @@ GW_SELDOM void gw_admittance_config_check(const gw_admittance_config_t *config, 
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, config->finish_speed_mps);
 }
 
-GW_SELDOM gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
+gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
 {
     static const gw_vector_t zero = {(gw_real_t)0.0, (gw_real_t)0.0};
     gw_status_t status = GW_STATUS_OK;
@@ -54,7 +54,7 @@ GW_SELDOM gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_a
     return status;
 }
 
-GW_SELDOM bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
+bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
 {
     bool holds = (admittance != NULL);
     if (holds) {

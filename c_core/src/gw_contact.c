@@ -33,7 +33,7 @@ static gw_vector_t from_to(gw_vector_t a, gw_vector_t b)
     return difference;
 }
 
-GW_SELDOM void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error)
+void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error)
 {
     const uint32_t count = config->vertex_count;
     gw_config_check_real(error, GW_FIELD_CONTACT_MINIMUM_FORCE, config->minimum_force_n);
@@ -62,7 +62,7 @@ GW_SELDOM void gw_contact_config_check(const gw_contact_config_t *config, gw_con
     }
 }
 
-GW_SELDOM gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config)
+gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((contact == NULL) || (config == NULL)) {
@@ -88,7 +88,7 @@ GW_SELDOM gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_co
     return status;
 }
 
-GW_SELDOM bool gw_contact_invariant_holds(const gw_contact_t *contact)
+bool gw_contact_invariant_holds(const gw_contact_t *contact)
 {
     bool holds = (contact != NULL);
     if (holds) {
@@ -157,7 +157,7 @@ static void cut_outline(const gw_contact_config_t *config, gw_vector_t direction
     }
 }
 
-static GW_SELDOM void no_contact(gw_contact_estimate_t *estimate)
+static void no_contact(gw_contact_estimate_t *estimate)
 {
     estimate->valid = false;
     estimate->on_outline = false;

@@ -3,7 +3,7 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_trikey.h"
 
-GW_SELDOM void gw_controller_config_trikey(gw_controller_config_t *config)
+void gw_controller_config_trikey(gw_controller_config_t *config)
 {
     static const gw_vector_t outline[GW_TRIKEY_OUTLINE_COUNT] = {
         {GW_TRIKEY_OUTLINE_X0_M, GW_TRIKEY_OUTLINE_Y0_M},
@@ -95,7 +95,7 @@ GW_SELDOM void gw_controller_config_trikey(gw_controller_config_t *config)
     config->drives_enabled = true;
 }
 
-GW_SELDOM gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)
+gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_begin(error);
     gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, config->period_s);
@@ -112,7 +112,7 @@ GW_SELDOM gw_status_t gw_controller_config_check(const gw_controller_config_t *c
     return (error->field == GW_FIELD_NONE) ? GW_STATUS_OK : GW_STATUS_CONFIG_INVALID;
 }
 
-static GW_SELDOM void forget_detection(gw_controller_t *controller)
+static void forget_detection(gw_controller_t *controller)
 {
     static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
     static const gw_contact_estimate_t no_contact = {false,
@@ -128,7 +128,7 @@ static GW_SELDOM void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
-static GW_SELDOM void blank_tick(gw_controller_t *controller)
+static void blank_tick(gw_controller_t *controller)
 {
     static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
                                                       {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
@@ -145,7 +145,7 @@ static GW_SELDOM void blank_tick(gw_controller_t *controller)
     controller->detection = no_detection;
 }
 
-GW_SELDOM gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
+gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
                                gw_config_error_t *error)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -183,7 +183,7 @@ GW_SELDOM gw_status_t gw_controller_init(gw_controller_t *controller, const gw_c
     return status;
 }
 
-GW_SELDOM void gw_controller_safe_output(gw_controller_output_t *output)
+void gw_controller_safe_output(gw_controller_output_t *output)
 {
     static const gw_controller_output_t safe = {
         {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
@@ -379,13 +379,13 @@ static void give_way(gw_controller_t *controller)
 }
 
 /* The plan, valid, as the provers need it; apart, so that it is there once. */
-static GW_APART gw_plan_t within_ranges(const gw_plan_t *plan)
+static gw_plan_t within_ranges(const gw_plan_t *plan)
 {
     return gw_plan_limited(plan);
 }
 
 /* Onto the plan if the reference was not on it yet, else along it. plan valid. */
-static GW_APART void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
+static void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
 {
     const gw_plan_t valid = within_ranges(plan);
     if (controller->on_plan) {
@@ -457,7 +457,7 @@ static void report(const gw_controller_t *controller, gw_controller_output_t *ou
 }
 
 /* Is the reference as good as on a valid plan? */
-static GW_APART bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
+static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
     const gw_plan_t valid = within_ranges(plan);
     return (gw_reference_distance(&controller->reference, &valid) < controller->supervisor.config.rejoin_distance_m) &&
@@ -533,7 +533,7 @@ gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_
     return status;
 }
 
-GW_SELDOM bool gw_controller_invariant_holds(const gw_controller_t *controller)
+bool gw_controller_invariant_holds(const gw_controller_t *controller)
 {
     bool holds = (controller != NULL);
     if (holds) {

@@ -8,7 +8,7 @@
 /* Impulse below which no lever arm can be told, N s; below every threshold. */
 #define IMPULSE_MIN ((gw_real_t)0.0001)
 
-GW_SELDOM void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
+void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_count(error, GW_FIELD_DETECTOR_KIND, config->kind);
     gw_config_check_real(error, GW_FIELD_DETECTOR_FORCE_THRESHOLD, config->force_threshold_n);
@@ -20,7 +20,7 @@ GW_SELDOM void gw_detector_config_check(const gw_detector_config_t *config, gw_c
     gw_config_check_count(error, GW_FIELD_DETECTOR_BLANKING_TICKS, config->blanking_ticks);
 }
 
-GW_SELDOM gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s)
+gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((detector == NULL) || (config == NULL)) {
@@ -42,7 +42,7 @@ GW_SELDOM gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detecto
     return status;
 }
 
-GW_SELDOM bool gw_detector_invariant_holds(const gw_detector_t *detector)
+bool gw_detector_invariant_holds(const gw_detector_t *detector)
 {
     bool holds = (detector != NULL);
     if (holds) {

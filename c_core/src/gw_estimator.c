@@ -5,7 +5,7 @@
 static const gw_wheels_t no_torque = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
 static const gw_twist_t no_twist = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
 
-GW_SELDOM void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
+void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, config->velocity_source);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, config->acceleration_source);
@@ -44,7 +44,7 @@ static void keep_config(gw_estimator_config_t *kept, const gw_estimator_config_t
     kept->presliding = config->presliding;
 }
 
-GW_SELDOM gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
+gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
                               const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
                               const gw_friction_config_t *friction, gw_real_t period_s)
 {
@@ -88,7 +88,7 @@ GW_SELDOM gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_esti
     return status;
 }
 
-GW_SELDOM bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
+bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
 {
     bool holds = (estimator != NULL);
     if (holds) {
@@ -112,7 +112,7 @@ GW_SELDOM bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
     return holds;
 }
 
-static GW_SELDOM void restart_filters(gw_estimator_t *estimator)
+static void restart_filters(gw_estimator_t *estimator)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_restart(&estimator->rate[i]);
@@ -120,19 +120,19 @@ static GW_SELDOM void restart_filters(gw_estimator_t *estimator)
     gw_moving_average_reset(&estimator->average);
 }
 
-GW_SELDOM void gw_estimator_restart(gw_estimator_t *estimator)
+void gw_estimator_restart(gw_estimator_t *estimator)
 {
     restart_filters(estimator);
     gw_presliding_gap(&estimator->presliding);
 }
 
-GW_SELDOM void gw_estimator_start_tare(gw_estimator_t *estimator)
+void gw_estimator_start_tare(gw_estimator_t *estimator)
 {
     gw_tare_start(&estimator->run_tare);
 }
 
 /* The zero of a tare: its mean torque, less what deflected bristles have a part in. */
-static GW_SELDOM void take_zero(gw_estimator_t *estimator, const gw_wheels_t *mean_nm, gw_wheels_t *zero_nm)
+static void take_zero(gw_estimator_t *estimator, const gw_wheels_t *mean_nm, gw_wheels_t *zero_nm)
 {
     *zero_nm = *mean_nm;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {
@@ -148,7 +148,7 @@ static GW_SELDOM void take_zero(gw_estimator_t *estimator, const gw_wheels_t *me
     }
 }
 
-GW_SELDOM gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm)
+gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm)
 {
     gw_tare_progress_t progress = GW_TARE_DONE;
     gw_wheels_t mean_nm = no_torque;
@@ -168,7 +168,7 @@ GW_SELDOM gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const 
     return progress;
 }
 
-GW_SELDOM gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count)
+gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count)
 {
     const int32_t within_turn = count % (int32_t)estimator->config.encoder_counts;
     return gw_wrap_angle((gw_real_t)within_turn * estimator->rate_constants.rad_per_count);
@@ -322,7 +322,7 @@ static gw_regime_t regime_of(const gw_estimator_t *estimator, gw_real_t speed_mp
     return regime;
 }
 
-static GW_SELDOM void nothing_known(gw_estimator_output_t *output)
+static void nothing_known(gw_estimator_output_t *output)
 {
     static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
     output->wrench = no_wrench;

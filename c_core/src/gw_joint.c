@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-GW_SELDOM void gw_joint_init(gw_joint_t *joint)
+void gw_joint_init(gw_joint_t *joint)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         joint->angle_rad[i] = gw_sum_of(GW_ZERO);
@@ -10,7 +10,7 @@ GW_SELDOM void gw_joint_init(gw_joint_t *joint)
     joint->placed = false;
 }
 
-GW_SELDOM void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad)
+void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         joint->angle_rad[i] = gw_sum_of(gw_wrap_angle(angle_rad->wheel[i]));
@@ -38,7 +38,7 @@ void gw_joint_step(gw_joint_t *joint, const gw_kinematics_t *kinematics, gw_pose
     }
 }
 
-GW_SELDOM void gw_joint_hold(const gw_joint_t *joint, gw_joint_command_t *command)
+void gw_joint_hold(const gw_joint_t *joint, gw_joint_command_t *command)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         command->angle_rad[i] = joint->angle_rad[i].value;
@@ -46,7 +46,7 @@ GW_SELDOM void gw_joint_hold(const gw_joint_t *joint, gw_joint_command_t *comman
     }
 }
 
-GW_SELDOM bool gw_joint_invariant_holds(const gw_joint_t *joint)
+bool gw_joint_invariant_holds(const gw_joint_t *joint)
 {
     bool holds = (joint != NULL);
     if (holds) {

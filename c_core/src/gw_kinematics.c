@@ -6,7 +6,7 @@
 #define EVERY_SLOT (((uint32_t)1U << GW_WHEEL_COUNT) - 1U)
 #define HALF_SQRT_3 ((gw_real_t)0.8660254037844386467637)
 
-GW_SELDOM void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
+void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
 {
     uint32_t slots_seen = 0U;
     gw_config_check_real(error, GW_FIELD_GEOMETRY_WHEEL_RADIUS, config->wheel_radius_m);
@@ -26,7 +26,7 @@ GW_SELDOM void gw_geometry_config_check(const gw_geometry_config_t *config, gw_c
     gw_config_check_real(error, GW_FIELD_GEOMETRY_AZIMUTH, config->azimuth_rad);
 }
 
-GW_SELDOM gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config)
+gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config)
 {
     /* cos and sin of 0, 120 and 240 degrees, better than computed ones. */
     static const gw_vector_t slot_direction[GW_WHEEL_COUNT] = {
@@ -58,7 +58,7 @@ GW_SELDOM gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_g
     return status;
 }
 
-GW_SELDOM bool gw_kinematics_invariant_holds(const gw_kinematics_t *kinematics)
+bool gw_kinematics_invariant_holds(const gw_kinematics_t *kinematics)
 {
     bool holds = (kinematics != NULL);
     if (holds) {

@@ -206,7 +206,7 @@ static inline gw_real_t short_expm1(gw_real_t r)
 }
 
 /* e^x = scale * (1 + result), for EXP_LOWEST <= x <= EXP_HIGHEST; scale is a power of 2. */
-static GW_SELDOM gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
+static gw_real_t reduced_expm1(gw_real_t x, gw_real_t *scale)
 {
     const int32_t exponent = nearest_integer(x * LOG2_E);
     const gw_real_t k = (gw_real_t)exponent;

@@ -5,7 +5,7 @@
 
 static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
 
-GW_SELDOM gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
+gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
 {
     gw_status_t status = GW_STATUS_OK;
     if (average == NULL) {
@@ -22,7 +22,7 @@ GW_SELDOM gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint3
     return status;
 }
 
-GW_SELDOM void gw_moving_average_reset(gw_moving_average_t *average)
+void gw_moving_average_reset(gw_moving_average_t *average)
 {
     /* Old samples need not be erased: none is subtracted before it was overwritten. */
     average->window_sum = no_wrench;
@@ -31,7 +31,7 @@ GW_SELDOM void gw_moving_average_reset(gw_moving_average_t *average)
     average->count = 0U;
 }
 
-GW_SELDOM bool gw_moving_average_invariant_holds(const gw_moving_average_t *average)
+bool gw_moving_average_invariant_holds(const gw_moving_average_t *average)
 {
     bool holds = (average != NULL);
     if (holds) {

@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-GW_SELDOM void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
+void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_BASE_MASS, config->mass_kg);
     gw_config_check_real(error, GW_FIELD_BASE_YAW_INERTIA, config->yaw_inertia_kgm2);
@@ -10,7 +10,7 @@ GW_SELDOM void gw_inertia_config_check(const gw_inertia_config_t *config, gw_con
     gw_config_check_real(error, GW_FIELD_BASE_ROLLER_INERTIA, config->roller_inertia_kgm2);
 }
 
-GW_SELDOM gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
+gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
                             const gw_friction_config_t *friction, const gw_kinematics_t *kinematics)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -39,7 +39,7 @@ GW_SELDOM gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_co
     return status;
 }
 
-GW_SELDOM bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
+bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
 {
     bool holds = (nominal != NULL);
     if (holds) {

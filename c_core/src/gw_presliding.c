@@ -9,7 +9,7 @@
 #define WAY_MAX_M GW_ONE
 #define THREE ((gw_real_t)3.0)
 
-GW_SELDOM void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
+void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_config_check_element(error, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, i, config->stiffness_n_per_m[i]);
@@ -19,7 +19,7 @@ GW_SELDOM void gw_presliding_config_check(const gw_presliding_config_t *config, 
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, config->elastic_fraction);
 }
 
-GW_SELDOM gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
+gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
                                const gw_friction_config_t *friction, const gw_kinematics_t *kinematics)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -53,7 +53,7 @@ static gw_real_t deflection_of(const gw_presliding_t *presliding, uint32_t wheel
     return force_n / presliding->config.stiffness_n_per_m[wheel];
 }
 
-GW_SELDOM bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
+bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
 {
     bool holds = (presliding != NULL);
     if (holds) {
@@ -72,19 +72,19 @@ GW_SELDOM bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
     return holds;
 }
 
-GW_SELDOM void gw_presliding_gap(gw_presliding_t *presliding)
+void gw_presliding_gap(gw_presliding_t *presliding)
 {
     presliding->torque_known = false;
     presliding->count_known = false;
 }
 
-GW_SELDOM void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm)
+void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm)
 {
     presliding->last_torque_nm = *mean_torque_nm;
     presliding->torque_known = true;
 }
 
-GW_SELDOM gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics)
+gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics)
 {
     gw_wheels_t torques;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {

@@ -4,7 +4,7 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
 
-GW_SELDOM gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
+gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
                                      uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad)
 {
     gw_status_t status = GW_STATUS_OK;
@@ -32,7 +32,7 @@ GW_SELDOM gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *const
     return status;
 }
 
-GW_SELDOM void gw_rate_filter_restart(gw_rate_filter_t *filter)
+void gw_rate_filter_restart(gw_rate_filter_t *filter)
 {
     filter->last_count = 0;
     filter->last_torque_nm = GW_ZERO;
@@ -41,7 +41,7 @@ GW_SELDOM void gw_rate_filter_restart(gw_rate_filter_t *filter)
     filter->started = false;
 }
 
-GW_SELDOM bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
+bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
 {
     return (filter != NULL) && gw_within(filter->last_torque_nm, GW_TORQUE_MAX) &&
            gw_within(filter->rate_radps, GW_RATE_MAX) &&

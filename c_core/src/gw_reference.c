@@ -10,7 +10,7 @@
 #define CORRECTION_FREE ((gw_real_t)0.001)
 #define YAW_CORRECTION_FREE ((gw_real_t)0.005)
 
-GW_SELDOM void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error)
+void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_CONTROLLER_PERIOD, period_s);
     gw_config_check_real(error, GW_FIELD_REFERENCE_FOLLOW_GAIN, config->follow_gain_per_s);
@@ -27,7 +27,7 @@ GW_SELDOM void gw_reference_config_check(const gw_reference_config_t *config, gw
     }
 }
 
-GW_SELDOM gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s)
+gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s)
 {
     static const gw_plan_t origin = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
@@ -51,7 +51,7 @@ GW_SELDOM gw_status_t gw_reference_init(gw_reference_t *reference, const gw_refe
     return status;
 }
 
-GW_SELDOM bool gw_reference_invariant_holds(const gw_reference_t *reference)
+bool gw_reference_invariant_holds(const gw_reference_t *reference)
 {
     bool holds = (reference != NULL);
     if (holds) {
@@ -85,7 +85,7 @@ static void stand(gw_reference_t *reference)
     reference->displacement.theta_rad = GW_ZERO;
 }
 
-GW_SELDOM void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving)
+void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving)
 {
     stand(reference);
     reference->x_m = gw_sum_of(plan->pose.x_m);
@@ -217,7 +217,7 @@ void gw_reference_brake(gw_reference_t *reference)
     add_displacement(reference);
 }
 
-GW_SELDOM void gw_reference_freeze(gw_reference_t *reference)
+void gw_reference_freeze(gw_reference_t *reference)
 {
     stand(reference);
 }

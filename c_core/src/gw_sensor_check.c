@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-GW_SELDOM void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error)
+void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, config->torque_limit_nm);
     gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, config->stale_ticks_max);
@@ -10,7 +10,7 @@ GW_SELDOM void gw_sensor_check_config_check(const gw_sensor_check_config_t *conf
     gw_config_check_count(error, GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, config->recover_ticks);
 }
 
-GW_SELDOM gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config)
+gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((check == NULL) || (config == NULL)) {
@@ -38,7 +38,7 @@ GW_SELDOM gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_se
     return status;
 }
 
-GW_SELDOM bool gw_sensor_check_invariant_holds(const gw_sensor_check_t *check)
+bool gw_sensor_check_invariant_holds(const gw_sensor_check_t *check)
 {
     bool holds = (check != NULL);
     if (holds) {

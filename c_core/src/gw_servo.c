@@ -6,7 +6,7 @@
 /* No motor turns faster; whatever the counts do, the measured speed stays a number. */
 #define SPEED_MAX ((gw_real_t)1.0e6)
 
-GW_SELDOM void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
+void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_SERVO_PERIOD, config->period_s);
     gw_config_check_real(error, GW_FIELD_SERVO_KP, config->kp_nm_per_rad);
@@ -18,7 +18,7 @@ GW_SELDOM void gw_servo_config_check(const gw_servo_config_t *config, gw_config_
     gw_config_check_count(error, GW_FIELD_SERVO_STALE_TICKS_MAX, config->stale_ticks_max);
 }
 
-GW_SELDOM gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)
+gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((servo == NULL) || (config == NULL)) {
@@ -51,7 +51,7 @@ GW_SELDOM gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *
     return status;
 }
 
-GW_SELDOM bool gw_servo_invariant_holds(const gw_servo_t *servo)
+bool gw_servo_invariant_holds(const gw_servo_t *servo)
 {
     bool holds = (servo != NULL);
     if (holds) {

@@ -9,7 +9,7 @@
 #define TURN_REMAINDER ((gw_real_t)-1.7484556000744971323e-7)
 #endif
 
-GW_SELDOM gw_sum_t gw_sum_within_turn(gw_sum_t sum)
+gw_sum_t gw_sum_within_turn(gw_sum_t sum)
 {
     gw_sum_t result = sum;
     /* value -+ 2 GW_PI is exact; the excess takes up that 2 GW_PI is not quite a turn. */
@@ -26,7 +26,7 @@ GW_SELDOM gw_sum_t gw_sum_within_turn(gw_sum_t sum)
     return result;
 }
 
-GW_SELDOM bool gw_sum_invariant_holds(gw_sum_t sum)
+bool gw_sum_invariant_holds(gw_sum_t sum)
 {
     return gw_is_finite(sum.value) && gw_within(sum.excess, GW_SUM_EXCESS_MAX);
 }

@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-GW_SELDOM void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error)
+void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_SUPERVISOR_SETTLED_SPEED, config->settled_speed_mps);
     gw_config_check_count(error, GW_FIELD_SUPERVISOR_SETTLED_TICKS, config->settled_ticks);
@@ -11,7 +11,7 @@ GW_SELDOM void gw_supervisor_config_check(const gw_supervisor_config_t *config, 
     gw_config_check_real(error, GW_FIELD_SUPERVISOR_REJOIN_ANGLE, config->rejoin_angle_rad);
 }
 
-GW_SELDOM gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_supervisor_config_t *config)
+gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_supervisor_config_t *config)
 {
     gw_status_t status = GW_STATUS_OK;
     if ((supervisor == NULL) || (config == NULL)) {
@@ -35,7 +35,7 @@ GW_SELDOM gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_s
     return status;
 }
 
-GW_SELDOM bool gw_supervisor_invariant_holds(const gw_supervisor_t *supervisor)
+bool gw_supervisor_invariant_holds(const gw_supervisor_t *supervisor)
 {
     bool holds = (supervisor != NULL);
     if (holds) {

@@ -6,7 +6,7 @@
 /* Bound of a sum of valid torques: GW_TORQUE_MAX times the longest tare. */
 #define SUM_MAX ((gw_real_t)1.0e11)
 
-GW_SELDOM void gw_tare_start(gw_tare_t *tare)
+void gw_tare_start(gw_tare_t *tare)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         tare->sum_nm[i] = gw_sum_of(GW_ZERO);
@@ -16,7 +16,7 @@ GW_SELDOM void gw_tare_start(gw_tare_t *tare)
     tare->count = 0U;
 }
 
-GW_SELDOM gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *torque_nm, uint32_t samples, gw_real_t variation_nm,
+gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *torque_nm, uint32_t samples, gw_real_t variation_nm,
                                gw_wheels_t *mean_nm)
 {
     gw_tare_progress_t progress = GW_TARE_RUNNING;
@@ -45,7 +45,7 @@ GW_SELDOM gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *tor
     return progress;
 }
 
-GW_SELDOM bool gw_tare_invariant_holds(const gw_tare_t *tare)
+bool gw_tare_invariant_holds(const gw_tare_t *tare)
 {
     bool holds = (tare != NULL);
     if (holds) {

@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-GW_SELDOM gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm)
+gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm)
 {
     gw_wrench_sigma_t sigma;
     const gw_real_t traction_n = torque_noise_nm * kinematics->per_wheel_radius;

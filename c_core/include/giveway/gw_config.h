@@ -1,6 +1,5 @@
-/* Every configuration field: its name, and the inclusive range that init checks.
- *
- * The names are those of the FMU's parameters. gw_config_limit gives the row of a field; tests walk the same table.
+/* Every configuration field: its name, and the inclusive range that init checks. One table, from which everything else
+ * follows: the enumeration below, gw_config_limit, gw_config_name, and what the tests walk through.
  */
 #ifndef GW_CONFIG_H
 #define GW_CONFIG_H
@@ -11,84 +10,89 @@
 extern "C" {
 #endif
 
-typedef enum {
-    GW_FIELD_NONE = 0,
-    GW_FIELD_CONTROLLER_PERIOD,
-    GW_FIELD_GEOMETRY_WHEEL_RADIUS,
-    GW_FIELD_GEOMETRY_ROLLER_RADIUS,
-    GW_FIELD_GEOMETRY_WHEEL_DISTANCE,
-    GW_FIELD_GEOMETRY_WHEEL_SLOT,
-    GW_FIELD_GEOMETRY_AZIMUTH,
-    GW_FIELD_BASE_MASS,
-    GW_FIELD_BASE_YAW_INERTIA,
-    GW_FIELD_BASE_WHEEL_INERTIA,
-    GW_FIELD_BASE_ROLLER_INERTIA,
-    GW_FIELD_FRICTION_COULOMB_TORQUE,
-    GW_FIELD_FRICTION_TANH_SLOPE,
-    GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT,
-    GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX,
-    GW_FIELD_SENSOR_CHECK_ENCODER_JUMP,
-    GW_FIELD_SENSOR_CHECK_RECOVER_TICKS,
-    GW_FIELD_ESTIMATOR_VELOCITY_SOURCE,
-    GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE,
-    GW_FIELD_ESTIMATOR_TORQUE_NOISE,
-    GW_FIELD_ESTIMATOR_RATE_CUTOFF,
-    GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS,
-    GW_FIELD_ESTIMATOR_ENCODER_COUNTS,
-    GW_FIELD_ESTIMATOR_AVERAGE_WINDOW,
-    GW_FIELD_ESTIMATOR_REST_SPEED,
-    GW_FIELD_ESTIMATOR_CREEP_SPEED,
-    GW_FIELD_ESTIMATOR_REST_TICKS,
-    GW_FIELD_ESTIMATOR_TARE_TICKS,
-    GW_FIELD_ESTIMATOR_RETARE_TICKS,
-    GW_FIELD_ESTIMATOR_TARE_VARIATION,
-    GW_FIELD_ESTIMATOR_FRICTION_MODEL,
-    GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS,
-    GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING,
-    GW_FIELD_ESTIMATOR_STRIBECK_SPEED,
-    GW_FIELD_ESTIMATOR_ELASTIC_FRACTION,
-    GW_FIELD_CONTACT_MINIMUM_FORCE,
-    GW_FIELD_OUTLINE_COUNT,
-    GW_FIELD_OUTLINE_X,
-    GW_FIELD_OUTLINE_Y,
-    GW_FIELD_OUTLINE_CONVEX,
-    GW_FIELD_DETECTOR_KIND,
-    GW_FIELD_DETECTOR_FORCE_THRESHOLD,
-    GW_FIELD_DETECTOR_IMPULSE_THRESHOLD,
-    GW_FIELD_DETECTOR_LEAK_REST,
-    GW_FIELD_DETECTOR_LEAK_CREEP,
-    GW_FIELD_DETECTOR_LEAK_MOTION,
-    GW_FIELD_DETECTOR_RELEASE_FORCE,
-    GW_FIELD_DETECTOR_BLANKING_TICKS,
-    GW_FIELD_ADMITTANCE_KIND,
-    GW_FIELD_ADMITTANCE_MASS,
-    GW_FIELD_ADMITTANCE_DAMPING,
-    GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE,
-    GW_FIELD_ADMITTANCE_SPEED_LIMIT,
-    GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT,
-    GW_FIELD_ADMITTANCE_FINISH_SPEED,
-    GW_FIELD_REFERENCE_FOLLOW_GAIN,
-    GW_FIELD_REFERENCE_SPEED_LIMIT,
-    GW_FIELD_REFERENCE_ACCELERATION_LIMIT,
-    GW_FIELD_REFERENCE_YAW_RATE_LIMIT,
-    GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT,
-    GW_FIELD_REFERENCE_REJOIN_SPEED,
-    GW_FIELD_REFERENCE_FINISH_SPEED,
-    GW_FIELD_SUPERVISOR_SETTLED_SPEED,
-    GW_FIELD_SUPERVISOR_SETTLED_TICKS,
-    GW_FIELD_SUPERVISOR_AFTER_SETTLED,
-    GW_FIELD_SUPERVISOR_REJOIN_DISTANCE,
-    GW_FIELD_SUPERVISOR_REJOIN_ANGLE,
-    GW_FIELD_SERVO_PERIOD,
-    GW_FIELD_SERVO_KP,
-    GW_FIELD_SERVO_KD,
-    GW_FIELD_SERVO_TORQUE_LIMIT,
-    GW_FIELD_SERVO_TORQUE_RATE_LIMIT,
-    GW_FIELD_SERVO_ENCODER_COUNTS,
-    GW_FIELD_SERVO_DERIVATIVE_CUTOFF,
-    GW_FIELD_SERVO_STALE_TICKS_MAX,
-    GW_FIELD_COUNT
-} gw_config_field_t;
+/* Field, name, minimum, maximum. Names are those of the FMU's parameters, which a test holds against this table; units
+ * are in the headers of the modules. The last number of a count is at most 2^24, so that float holds it. */
+#define GW_CONFIG_FIELDS(ROW) \
+    ROW(GW_FIELD_NONE, "none", 0, 0) \
+    ROW(GW_FIELD_CONTROLLER_PERIOD, "controller.period", 0.0001, 0.1) \
+    ROW(GW_FIELD_GEOMETRY_WHEEL_RADIUS, "geometry.wheel_radius", 0.005, 1) \
+    ROW(GW_FIELD_GEOMETRY_ROLLER_RADIUS, "geometry.roller_radius", 0.001, 0.5) \
+    ROW(GW_FIELD_GEOMETRY_WHEEL_DISTANCE, "geometry.wheel_distance", 0.01, 5) \
+    ROW(GW_FIELD_GEOMETRY_WHEEL_SLOT, "geometry.wheel_slot", 0, GW_WHEEL_COUNT - 1U) \
+    ROW(GW_FIELD_GEOMETRY_AZIMUTH, "geometry.azimuth", -3.2, 3.2) \
+    ROW(GW_FIELD_BASE_MASS, "base.mass", 0.1, 2000) \
+    ROW(GW_FIELD_BASE_YAW_INERTIA, "base.yaw_inertia", 0.0001, 10000) \
+    ROW(GW_FIELD_BASE_WHEEL_INERTIA, "base.wheel_inertia", 0, 10) \
+    ROW(GW_FIELD_BASE_ROLLER_INERTIA, "base.roller_inertia", 0, 1) \
+    ROW(GW_FIELD_FRICTION_COULOMB_TORQUE, "friction.coulomb_torque", 0, 100) \
+    ROW(GW_FIELD_FRICTION_TANH_SLOPE, "friction.tanh_slope", 0, 1000) \
+    ROW(GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, "sensor_check.torque_limit", 0.1, 10000) \
+    ROW(GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, "sensor_check.stale_ticks_max", 1, 1000) \
+    ROW(GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, "sensor_check.encoder_jump", 1, 1000000) \
+    ROW(GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, "sensor_check.recover_ticks", 1, 100000) \
+    ROW(GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, "estimator.velocity_source", 0, 1) \
+    ROW(GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, "estimator.acceleration_source", 0, 2) \
+    ROW(GW_FIELD_ESTIMATOR_TORQUE_NOISE, "estimator.torque_noise", 0, 100) \
+    ROW(GW_FIELD_ESTIMATOR_RATE_CUTOFF, "estimator.rate_cutoff", 0.1, 10000) \
+    ROW(GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, "estimator.drivetrain_stiffness", 0, 10000000) \
+    ROW(GW_FIELD_ESTIMATOR_ENCODER_COUNTS, "estimator.encoder_counts", 4, 1000000) \
+    ROW(GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, "estimator.average_window", 1, GW_MOVING_AVERAGE_CAPACITY) \
+    ROW(GW_FIELD_ESTIMATOR_REST_SPEED, "estimator.rest_speed", 0, 1) \
+    ROW(GW_FIELD_ESTIMATOR_CREEP_SPEED, "estimator.creep_speed", 0, 1) \
+    ROW(GW_FIELD_ESTIMATOR_REST_TICKS, "estimator.rest_ticks", 1, 100000) \
+    ROW(GW_FIELD_ESTIMATOR_TARE_TICKS, "estimator.tare_ticks", 0, 100000) \
+    ROW(GW_FIELD_ESTIMATOR_RETARE_TICKS, "estimator.retare_ticks", 1, 100000) \
+    ROW(GW_FIELD_ESTIMATOR_TARE_VARIATION, "estimator.tare_variation", 0, 100) \
+    ROW(GW_FIELD_ESTIMATOR_FRICTION_MODEL, "estimator.friction_model", 0, 1) \
+    ROW(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, "estimator.presliding_stiffness", 10, 10000000) \
+    ROW(GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, "estimator.presliding_damping", 0, 100000) \
+    ROW(GW_FIELD_ESTIMATOR_STRIBECK_SPEED, "estimator.stribeck_speed", 0.000001, 1) \
+    ROW(GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, "estimator.elastic_fraction", 0, 0.99) \
+    ROW(GW_FIELD_CONTACT_MINIMUM_FORCE, "contact.minimum_force", 0.001, 1000) \
+    ROW(GW_FIELD_OUTLINE_COUNT, "outline.count", 3, GW_OUTLINE_VERTEX_MAX) \
+    ROW(GW_FIELD_OUTLINE_X, "outline.x", -10, 10) \
+    ROW(GW_FIELD_OUTLINE_Y, "outline.y", -10, 10) \
+    ROW(GW_FIELD_OUTLINE_CONVEX, "outline (counter-clockwise, strictly convex)", 0, 0) \
+    ROW(GW_FIELD_DETECTOR_KIND, "detector.kind", 0, 1) \
+    ROW(GW_FIELD_DETECTOR_FORCE_THRESHOLD, "detector.force_threshold", 0.01, 10000) \
+    ROW(GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, "detector.impulse_threshold", 0.001, 1000) \
+    ROW(GW_FIELD_DETECTOR_LEAK_REST, "detector.leak_rest", 0, 1000) \
+    ROW(GW_FIELD_DETECTOR_LEAK_CREEP, "detector.leak_creep", 0, 1000) \
+    ROW(GW_FIELD_DETECTOR_LEAK_MOTION, "detector.leak_motion", 0, 1000) \
+    ROW(GW_FIELD_DETECTOR_RELEASE_FORCE, "detector.release_force", 0, 10000) \
+    ROW(GW_FIELD_DETECTOR_BLANKING_TICKS, "detector.blanking_ticks", 0, 100000) \
+    ROW(GW_FIELD_ADMITTANCE_KIND, "admittance.kind", 0, 1) \
+    ROW(GW_FIELD_ADMITTANCE_MASS, "admittance.mass", 0.01, 10000) \
+    ROW(GW_FIELD_ADMITTANCE_DAMPING, "admittance.damping", 0.01, 10000) \
+    ROW(GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, "admittance.escape_impulse", 0, 1000) \
+    ROW(GW_FIELD_ADMITTANCE_SPEED_LIMIT, "admittance.speed_limit", 0.001, 10) \
+    ROW(GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, "admittance.acceleration_limit", 0.001, 1000) \
+    ROW(GW_FIELD_ADMITTANCE_FINISH_SPEED, "admittance.finish_speed", 0, 1) \
+    ROW(GW_FIELD_REFERENCE_FOLLOW_GAIN, "reference.follow_gain", 0, 100) \
+    ROW(GW_FIELD_REFERENCE_SPEED_LIMIT, "reference.speed_limit", 0.001, 10) \
+    ROW(GW_FIELD_REFERENCE_ACCELERATION_LIMIT, "reference.acceleration_limit", 0.001, 1000) \
+    ROW(GW_FIELD_REFERENCE_YAW_RATE_LIMIT, "reference.yaw_rate_limit", 0.001, 100) \
+    ROW(GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, "reference.yaw_acceleration_limit", 0.001, 10000) \
+    ROW(GW_FIELD_REFERENCE_REJOIN_SPEED, "reference.rejoin_speed", 0.001, 10) \
+    ROW(GW_FIELD_REFERENCE_FINISH_SPEED, "reference.finish_speed", 0, 1) \
+    ROW(GW_FIELD_SUPERVISOR_SETTLED_SPEED, "supervisor.settled_speed", 0.000001, 1) \
+    ROW(GW_FIELD_SUPERVISOR_SETTLED_TICKS, "supervisor.settled_ticks", 1, 100000) \
+    ROW(GW_FIELD_SUPERVISOR_AFTER_SETTLED, "supervisor.after_settled", 0, 1) \
+    ROW(GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, "supervisor.rejoin_distance", 0.00001, 1) \
+    ROW(GW_FIELD_SUPERVISOR_REJOIN_ANGLE, "supervisor.rejoin_angle", 0.0001, 1) \
+    ROW(GW_FIELD_SERVO_PERIOD, "servo.period", 0.00001, 0.1) \
+    ROW(GW_FIELD_SERVO_KP, "servo.kp", 0, 1000000) \
+    ROW(GW_FIELD_SERVO_KD, "servo.kd", 0, 100000) \
+    ROW(GW_FIELD_SERVO_TORQUE_LIMIT, "servo.torque_limit", 0.01, 10000) \
+    ROW(GW_FIELD_SERVO_TORQUE_RATE_LIMIT, "servo.torque_rate_limit", 0, 10000000) \
+    ROW(GW_FIELD_SERVO_ENCODER_COUNTS, "servo.encoder_counts", 4, 1000000) \
+    ROW(GW_FIELD_SERVO_DERIVATIVE_CUTOFF, "servo.derivative_cutoff", 0.1, 10000) \
+    ROW(GW_FIELD_SERVO_STALE_TICKS_MAX, "servo.stale_ticks_max", 1, 100000)
+
+#define GW_CONFIG_FIELD_OF_ROW(field, name, minimum, maximum) field,
+
+/* The fields, in the order of the table. */
+typedef enum { GW_CONFIG_FIELDS(GW_CONFIG_FIELD_OF_ROW) GW_FIELD_COUNT } gw_config_field_t;
 
 /* One row of the table. minimum and maximum are inclusive, in the unit that the field's comment gives. */
 typedef struct {

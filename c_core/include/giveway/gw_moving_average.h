@@ -16,9 +16,6 @@
 extern "C" {
 #endif
 
-/* Compile-time capacity: 12 bytes of RAM per sample in float. */
-#define GW_MOVING_AVERAGE_CAPACITY 1024U
-
 typedef struct {
     gw_wrench_t window_sum;
     gw_wrench_t fresh_sum;

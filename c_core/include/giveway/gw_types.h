@@ -27,17 +27,6 @@
 #define GW_REAL_DOUBLE 0
 #endif
 
-/* Functions that the compiler is not to merge into their callers: the stack of one is free again when the next begins.
- * GW_SELDOM: besides, what no tick needs, or hardly one: small rather than fast. Other compilers may ignore
- * both, and Frama-C has to: it forgets what functions with these attributes return. */
-#if defined(__GNUC__) && !defined(__FRAMAC__)
-#define GW_APART __attribute__((noinline))
-#define GW_SELDOM __attribute__((noinline, cold))
-#else
-#define GW_APART
-#define GW_SELDOM
-#endif
-
 /* Before a loop over the wheels in which a tick spends its time: gcc writes out its passes, as other compilers do by
  * themselves. Without it the longest step takes a tenth more instructions. */
 #if defined(__GNUC__) && (__GNUC__ >= 8) && !defined(__clang__) && !defined(__FRAMAC__)
@@ -63,6 +52,8 @@ typedef float gw_real_t;
 #define GW_WHEEL_COUNT 3U
 /* Most vertices that an outline may have. */
 #define GW_OUTLINE_VERTEX_MAX 16U
+/* Longest window of the moving average, samples; 12 bytes of RAM each in float. */
+#define GW_MOVING_AVERAGE_CAPACITY 1024U
 /* Tick counters run modulo 2^31 (24.8 days at 1 kHz), so that they fit a signed 32-bit integer. */
 #define GW_TICK_MASK 0x7FFFFFFFU
 
