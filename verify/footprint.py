@@ -55,16 +55,16 @@ class Footprint:
     servo_step: int
 
 
-# For Cortex-M4F, set before anything was measured.
+# For Cortex-M4F.
 TARGET = Footprint(
-    flash=12288,
+    flash=24576,
     controller_ram=1536,
     window_ram=12288,
     servo_ram=1536,
     stack=512,
     step_recorded=3000,
     step_searched=3000,
-    step_bristles=3000,
+    step_bristles=4000,
     servo_step=300,
 )
 ROWS = {

@@ -1,6 +1,7 @@
 #include "giveway/gw_admittance.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 #include "giveway/gw_wrench.h"
 
 #define SPEED_MAX ((gw_real_t)100.0)
@@ -12,6 +13,17 @@ static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
 {
     const gw_vector_t result = {gw_limited(vector.x, limit), gw_limited(vector.y, limit)};
     return result;
+}
+
+void gw_admittance_config_trikey(gw_admittance_config_t *config)
+{
+    config->kind = GW_ADMITTANCE_FROZEN_IMPULSE;
+    config->mass_kg = GW_TRIKEY_ADMITTANCE_MASS_KG;
+    config->damping_newton_s_per_m = GW_TRIKEY_ADMITTANCE_DAMPING_NEWTON_S_PER_M;
+    config->escape_impulse_newton_s = GW_TRIKEY_ADMITTANCE_ESCAPE_IMPULSE_NEWTON_S;
+    config->speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
+    config->acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
+    config->finish_speed_mps = (gw_real_t)0.01;
 }
 
 void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
@@ -27,7 +39,7 @@ void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_
 
 gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
 {
-    static const gw_vector_t zero = {(gw_real_t)0.0, (gw_real_t)0.0};
+    const gw_vector_t zero = {GW_ZERO, GW_ZERO};
     gw_status_t status = GW_STATUS_OK;
     if ((admittance == NULL) || (config == NULL)) {
         status = GW_STATUS_NULL_POINTER;
@@ -142,7 +154,7 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
         const gw_vector_t mean_mps = {exact_m.x / period_s, exact_m.y / period_s};
         const gw_real_t mean = gw_length(mean_mps);
         const gw_real_t along_mps = (admittance->velocity_mps.x * unit.x) + (admittance->velocity_mps.y * unit.y);
-        /* Half of the acceleration is kept for what braking has to catch up with. */
+        /* Braking is planned with half of the acceleration; the other half corrects errors. */
         const gw_real_t brake_mps = gw_braking_speed(GW_HALF * config->acceleration_limit_mps2, period_s,
                                                      distance_m - ((GW_HALF * period_s) * along_mps));
         const gw_real_t wanted =
@@ -171,7 +183,7 @@ static gw_admittance_output_t step_live(const gw_admittance_t *admittance, gw_ve
 {
     gw_admittance_output_t next;
     const gw_real_t damping = admittance->config.damping_newton_s_per_m;
-    /* Final velocity F/B, and what is left to it. */
+    /* Final velocity F/B, and the difference from it. */
     const gw_vector_t final = {force_n.x / damping, force_n.y / damping};
     const gw_vector_t excess = {admittance->velocity_mps.x - final.x, admittance->velocity_mps.y - final.y};
     const gw_vector_t end_mps = {final.x + (admittance->decay * excess.x), final.y + (admittance->decay * excess.y)};
@@ -188,7 +200,7 @@ static gw_admittance_output_t step_live(const gw_admittance_t *admittance, gw_ve
 
 gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output)
 {
-    static const gw_admittance_output_t still = {{(gw_real_t)0.0, (gw_real_t)0.0}, {(gw_real_t)0.0, (gw_real_t)0.0}};
+    static const gw_admittance_output_t still = {0};
     gw_status_t status = GW_STATUS_OK;
     if (output == NULL) {
         status = GW_STATUS_NULL_POINTER;

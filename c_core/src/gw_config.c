@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-/* Two arrays from one table, so that a linker can drop the names where nobody asks for them. */
+/* Two arrays from one table: a linker drops the names from programs that do not print them. */
 #define LIMIT_OF_ROW(field, name, minimum, maximum) {(gw_real_t)(minimum), (gw_real_t)(maximum)},
 #define NAME_OF_ROW(field, name, minimum, maximum) (name),
 

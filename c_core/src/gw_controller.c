@@ -1,97 +1,20 @@
 #include "giveway/gw_controller.h"
 
 #include "giveway/gw_math.h"
-#include "giveway/gw_trikey.h"
 
 void gw_controller_config_trikey(gw_controller_config_t *config)
 {
-    static const gw_vector_t outline[GW_TRIKEY_OUTLINE_COUNT] = {
-        {GW_TRIKEY_OUTLINE_X0_M, GW_TRIKEY_OUTLINE_Y0_M},
-        {GW_TRIKEY_OUTLINE_X1_M, GW_TRIKEY_OUTLINE_Y1_M},
-        {GW_TRIKEY_OUTLINE_X2_M, GW_TRIKEY_OUTLINE_Y2_M},
-    };
     config->period_s = (gw_real_t)0.001;
-
-    config->geometry.wheel_radius_m = GW_TRIKEY_WHEEL_RADIUS_M;
-    config->geometry.roller_radius_m = GW_TRIKEY_ROLLER_RADIUS_M;
-    config->geometry.wheel_distance_m = GW_TRIKEY_WHEEL_DISTANCE_M;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        config->geometry.wheel_slot[i] = i;
-    }
-    config->geometry.azimuth_rad = GW_ZERO;
-
-    config->base.mass_kg = GW_TRIKEY_BASE_MASS_KG;
-    config->base.yaw_inertia_kgm2 = GW_TRIKEY_BASE_YAW_INERTIA_KGM2;
-    config->base.wheel_inertia_kgm2 = GW_TRIKEY_WHEEL_INERTIA_KGM2;
-    config->base.roller_inertia_kgm2 = GW_TRIKEY_ROLLER_INERTIA_KGM2;
-
-    config->friction.coulomb_torque_nm = GW_TRIKEY_ROLLER_COULOMB_TORQUE_NM;
-    config->friction.tanh_slope_s_per_rad = GW_TRIKEY_ROLLER_TANH_SLOPE_S_PER_RAD;
-
-    config->sensor_check.torque_limit_nm = GW_TRIKEY_DRIVETRAIN_TORQUE_SENSOR_LIMIT_NM;
-    config->sensor_check.stale_ticks_max = 3U;
-    config->sensor_check.encoder_jump_counts = 200U; /* 148 rad/s */
-    config->sensor_check.recover_ticks = 10U;
-
-    config->estimator.velocity_source = GW_SOURCE_PLANNED;
-    config->estimator.acceleration_source = GW_SOURCE_PLANNED;
-    config->estimator.torque_noise_nm = GW_TRIKEY_DRIVETRAIN_TORQUE_NOISE_NM;
-    config->estimator.rate_cutoff_radps = (gw_real_t)200.0;
-    config->estimator.drivetrain_stiffness_nm_per_rad = GW_TRIKEY_DRIVETRAIN_STIFFNESS_NM_PER_RAD;
-    config->estimator.encoder_counts = GW_TRIKEY_DRIVETRAIN_ENCODER_COUNTS;
-    config->estimator.average_window = 20U;
-    config->estimator.rest_speed_mps = (gw_real_t)0.002;
-    config->estimator.creep_speed_mps = (gw_real_t)0.03; /* rollers slide steadily above */
-    config->estimator.rest_ticks = 300U;
-    config->estimator.tare_ticks = 100U;
-    config->estimator.retare_ticks = 100U;
-    config->estimator.tare_variation_nm = (gw_real_t)0.5;
-    config->estimator.friction_model = GW_FRICTION_TANH;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        config->estimator.presliding.stiffness_n_per_m[i] = GW_TRIKEY_ROLLER_PRESLIDING_STIFFNESS_N_PER_M;
-    }
-    config->estimator.presliding.damping_newton_s_per_m = GW_TRIKEY_ROLLER_PRESLIDING_DAMPING_NEWTON_S_PER_M;
-    config->estimator.presliding.stribeck_speed_mps = GW_TRIKEY_ROLLER_STRIBECK_SPEED_MPS;
-    config->estimator.presliding.elastic_fraction = GW_TRIKEY_ROLLER_ELASTIC_FRACTION;
-
-    config->contact.minimum_force_n = GW_ONE;
-    config->contact.vertex_count = GW_TRIKEY_OUTLINE_COUNT;
-    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
-        config->contact.vertex_m[i].x = (i < GW_TRIKEY_OUTLINE_COUNT) ? outline[i].x : GW_ZERO;
-        config->contact.vertex_m[i].y = (i < GW_TRIKEY_OUTLINE_COUNT) ? outline[i].y : GW_ZERO;
-    }
-
-    config->detector.kind = GW_DETECTOR_IMPULSE;
-    config->detector.force_threshold_n = (gw_real_t)10.0;
-    config->detector.impulse_threshold_newton_s = GW_TRIKEY_DETECTOR_IMPULSE_THRESHOLD_NEWTON_S;
-    config->detector.leak_rest_n = GW_TRIKEY_DETECTOR_LEAK_REST_N;
-    config->detector.leak_creep_n = (gw_real_t)42.0; /* two rollers' worth of B_r/r_r: stuck ones can hold it */
-    config->detector.leak_motion_n = GW_TRIKEY_DETECTOR_LEAK_MOTION_N;
-    config->detector.release_force_n = (gw_real_t)6.0; /* twice the error of the friction model */
-    config->detector.blanking_ticks = 300U;            /* the reaction's own acceleration */
-
-    config->admittance.kind = GW_ADMITTANCE_FROZEN_IMPULSE;
-    config->admittance.mass_kg = GW_TRIKEY_ADMITTANCE_MASS_KG;
-    config->admittance.damping_newton_s_per_m = GW_TRIKEY_ADMITTANCE_DAMPING_NEWTON_S_PER_M;
-    config->admittance.escape_impulse_newton_s = GW_TRIKEY_ADMITTANCE_ESCAPE_IMPULSE_NEWTON_S;
-    config->admittance.speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
-    config->admittance.acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
-    config->admittance.finish_speed_mps = (gw_real_t)0.01;
-
-    config->reference.follow_gain_per_s = GW_TWO;
-    config->reference.speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
-    config->reference.acceleration_limit_mps2 = (gw_real_t)1.5;
-    config->reference.yaw_rate_limit_radps = (gw_real_t)1.5;
-    config->reference.yaw_acceleration_limit_radps2 = (gw_real_t)6.0;
-    config->reference.rejoin_speed_mps = (gw_real_t)0.1;
-    config->reference.finish_speed_mps = (gw_real_t)0.01;
-
-    config->supervisor.settled_speed_mps = (gw_real_t)0.005;
-    config->supervisor.settled_ticks = 500U;
-    config->supervisor.after_settled = GW_AFTER_SETTLED_REJOIN;
-    config->supervisor.rejoin_distance_m = (gw_real_t)0.0002;
-    config->supervisor.rejoin_angle_rad = (gw_real_t)0.0005;
-
+    gw_geometry_config_trikey(&config->geometry);
+    gw_inertia_config_trikey(&config->base);
+    gw_friction_config_trikey(&config->friction);
+    gw_sensor_check_config_trikey(&config->sensor_check);
+    gw_estimator_config_trikey(&config->estimator);
+    gw_contact_config_trikey(&config->contact);
+    gw_detector_config_trikey(&config->detector);
+    gw_admittance_config_trikey(&config->admittance);
+    gw_reference_config_trikey(&config->reference);
+    gw_supervisor_config_trikey(&config->supervisor);
     config->drives_enabled = true;
 }
 
@@ -114,33 +37,19 @@ gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_
 
 static void forget_detection(gw_controller_t *controller)
 {
-    static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
-    static const gw_contact_estimate_t no_contact = {false,
-                                                     false,
-                                                     {(gw_real_t)0.0, (gw_real_t)0.0},
-                                                     (gw_real_t)0.0,
-                                                     (gw_real_t)0.0,
-                                                     (gw_real_t)0.0,
-                                                     (gw_real_t)0.0};
+    static const gw_wrench_t no_wrench = {0};
+    static const gw_contact_estimate_t no_contact = {0};
     controller->detection_wrench = no_wrench;
     controller->detection_contact = no_contact;
     controller->detection_count = 0U;
     controller->detection_tick = -1;
 }
 
+/* A tick without an estimate: nothing pushes as far as anyone can tell, and the model is not to be trusted. */
 static void blank_tick(gw_controller_t *controller)
 {
-    static const gw_estimator_output_t no_estimate = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      0U,
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0},
-                                                      {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
-                                                      {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                                      GW_REGIME_CREEPING,
-                                                      false};
-    static const gw_detector_output_t no_detection = {
-        false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
+    static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
+    static const gw_detector_output_t no_detection = {0};
     controller->estimate = no_estimate;
     controller->detection = no_detection;
 }
@@ -185,39 +94,11 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
 
 void gw_controller_safe_output(gw_controller_output_t *output)
 {
-    static const gw_controller_output_t safe = {
-        {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}},
-        false,
-        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-        {false,
-         false,
-         {(gw_real_t)0.0, (gw_real_t)0.0},
-         (gw_real_t)0.0,
-         (gw_real_t)0.0,
-         (gw_real_t)0.0,
-         (gw_real_t)0.0},
-        false,
-        (gw_real_t)0.0,
-        0U,
-        -1,
-        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-        {false,
-         false,
-         {(gw_real_t)0.0, (gw_real_t)0.0},
-         (gw_real_t)0.0,
-         (gw_real_t)0.0,
-         (gw_real_t)0.0,
-         (gw_real_t)0.0},
-        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-        {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-        GW_MODE_FAULT,
-        0U,
-        0U,
-    };
+    static const gw_controller_output_t safe = {.detection_tick = -1, .mode = GW_MODE_FAULT};
     *output = safe;
 }
 
-/* The reference, before it moves. */
+/* Is the reference about to stand still? As it was at the end of the last tick. */
 static bool is_slow(const gw_controller_t *controller)
 {
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
@@ -226,6 +107,7 @@ static bool is_slow(const gw_controller_t *controller)
     return gw_max(gw_length(velocity), rim) < controller->supervisor.config.settled_speed_mps;
 }
 
+/* Standard deviation of a mean of so many samples. */
 static gw_wrench_sigma_t sigma_of_mean(gw_wrench_sigma_t sigma, uint32_t samples)
 {
     gw_wrench_sigma_t result = sigma;
@@ -289,34 +171,38 @@ static void detect(gw_controller_t *controller, bool slow)
     }
 }
 
-static gw_tare_progress_t tare(gw_controller_t *controller, const gw_sensor_sample_t *sensor)
-{
-    const gw_wheels_t torque_nm = {{sensor->torque_nm[0], sensor->torque_nm[1], sensor->torque_nm[2]}};
-    return gw_estimator_tare(&controller->estimator, &torque_nm);
-}
-
 /* A new tare of the run was asked for: only a robot that stands may take one. */
 static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, bool *accepted)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool asked = requested && (!controller->tare_request_before);
-    gw_status_t status = GW_STATUS_OK;
     controller->tare_request_before = requested;
-    *accepted = asked && (controller->estimate.regime == GW_REGIME_REST) && ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
-    if (asked && (!*accepted)) {
-        status = GW_STATUS_TARE_REFUSED;
+    *accepted = asked && (controller->estimate.regime == GW_REGIME_REST) &&
+                ((mode == GW_MODE_TRACKING) || (mode == GW_MODE_SETTLED));
+    return (asked && (!*accepted)) ? GW_STATUS_TARE_REFUSED : GW_STATUS_OK;
+}
+
+/* One sample of the tare that runs in GW_MODE_TARING. */
+static gw_status_t continue_tare(gw_controller_t *controller, const gw_sensor_sample_t *sensor, bool *done)
+{
+    gw_wheels_t torque_nm;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        torque_nm.wheel[i] = sensor->torque_nm[i];
     }
-    return status;
+    const gw_tare_progress_t progress = gw_estimator_tare(&controller->estimator, &torque_nm);
+    *done = (progress == GW_TARE_DONE);
+    return (progress == GW_TARE_REFUSED) ? GW_STATUS_TARE_REFUSED : GW_STATUS_OK;
 }
 
 /* The direction of the hit in the world frame, as a unit vector. */
 static gw_vector_t hit_direction(const gw_controller_t *controller)
 {
-    const gw_vector_t force = {controller->detection.mean_wrench.force_x_n, controller->detection.mean_wrench.force_y_n};
+    const gw_wrench_t wrench = controller->detection.mean_wrench;
+    const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};
     return gw_rotate(controller->reference.yaw, gw_unit(force.x, force.y, gw_length(force)));
 }
 
-/* What changes once, when a mode begins. */
+/* What happens once, when a mode begins. */
 static void enter_mode(gw_controller_t *controller, gw_mode_t before)
 {
     const gw_mode_t mode = controller->supervisor.mode;
@@ -325,7 +211,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
         (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
-            /* Resumed: nobody knows whether the way is still free, so the escape is not. */
+            /* After an interruption the space may no longer be free: come to rest, do not go on with the escape. */
             const gw_vector_t nowhere = {GW_ZERO, GW_ZERO};
             (void)gw_admittance_start(&controller->admittance, velocity, nowhere);
         } else if (mode == GW_MODE_TARING) {
@@ -342,17 +228,19 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     }
 }
 
-/* The force that live admittance feels: what exceeds the error that the detector forgives. World frame. */
+/* The force that live admittance feels, world frame: what the detector does not forgive of the mean force. */
 static gw_vector_t live_force(const gw_controller_t *controller)
 {
     const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     const gw_real_t length = gw_length(base);
-    /* The push that started the reaction is real: it must be able to bring the robot out of creeping. */
-    const bool just_hit =
-        controller->detector.active &&
-        (controller->detector.ticks_since_trip < controller->detector.config.blanking_ticks);
-    const gw_regime_t regime =
-        (just_hit && (controller->estimate.regime == GW_REGIME_CREEPING)) ? GW_REGIME_MOTION : controller->estimate.regime;
+    /* The push that started the reaction is real: it must be able to bring the robot out of creeping, in which more is
+     * forgiven than in motion. */
+    const bool just_hit = controller->detector.active &&
+                          (controller->detector.ticks_since_trip < controller->detector.config.blanking_ticks);
+    gw_regime_t regime = controller->estimate.regime;
+    if (just_hit && (regime == GW_REGIME_CREEPING)) {
+        regime = GW_REGIME_MOTION;
+    }
     const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
@@ -363,10 +251,11 @@ static gw_vector_t live_force(const gw_controller_t *controller)
     return gw_rotate(controller->reference.yaw, felt);
 }
 
+/* The reaction: the reference moves as the admittance says. */
 static void give_way(gw_controller_t *controller)
 {
     gw_admittance_output_t motion;
-    gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse feels none */
+    gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse does not read it */
     if (controller->admittance.config.kind == GW_ADMITTANCE_LIVE_FORCE) {
         force_n = live_force(controller);
     }
@@ -378,16 +267,11 @@ static void give_way(gw_controller_t *controller)
     }
 }
 
-/* The plan, valid, as the provers need it; apart, so that it is there once. */
-static gw_plan_t within_ranges(const gw_plan_t *plan)
-{
-    return gw_plan_limited(plan);
-}
-
-/* Onto the plan if the reference was not on it yet, else along it. plan valid. */
+/* Puts the reference on the plan if it was never there, else lets it follow. The plan is valid; that its values are
+ * within their ranges is said again, in a form that the provers understand. */
 static void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
 {
-    const gw_plan_t valid = within_ranges(plan);
+    const gw_plan_t valid = gw_plan_limited(plan);
     if (controller->on_plan) {
         gw_reference_follow(&controller->reference, &valid, controller->supervisor.mode == GW_MODE_REJOINING);
     } else {
@@ -442,7 +326,8 @@ static void report(const gw_controller_t *controller, gw_controller_output_t *ou
     output->estimate = controller->estimate.mean;
     /* The estimate is valid or zero; both are accepted. */
     (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
-                            sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples), &output->contact);
+                            sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples),
+                            &output->contact);
     output->detection_active = controller->detector.active;
     output->detection_statistic = controller->detection.statistic;
     output->detection_count = controller->detection_count;
@@ -456,53 +341,70 @@ static void report(const gw_controller_t *controller, gw_controller_output_t *ou
     output->tick = controller->tick;
 }
 
-/* Is the reference as good as on a valid plan? */
+/* Has the reference come back to the plan? Asked for a valid plan only. */
 static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
-    const gw_plan_t valid = within_ranges(plan);
+    const gw_plan_t valid = gw_plan_limited(plan);
     return (gw_reference_distance(&controller->reference, &valid) < controller->supervisor.config.rejoin_distance_m) &&
            (gw_reference_angle(&controller->reference, &valid) < controller->supervisor.config.rejoin_angle_rad);
 }
 
+/* Does nothing push any more? */
+static bool is_quiet(const gw_controller_t *controller)
+{
+    const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
+    return gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime);
+}
+
+/* Are the sensors good, what pushes, and is that a hit? */
+static gw_status_t sense(gw_controller_t *controller, const gw_controller_input_t *input, bool slow)
+{
+    gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
+    if (status == GW_STATUS_OK) {
+        status = estimate(controller, input);
+    }
+    if (status == GW_STATUS_OK) {
+        detect(controller, slow);
+    } else {
+        blank_tick(controller);
+    }
+    return status;
+}
+
+/* The status that a step returns: bad sensors tell more than a bad plan, and that more than a refused tare. */
+static gw_status_t worst_of(gw_status_t sensor_status, bool plan_valid, gw_status_t tare_status)
+{
+    gw_status_t status = tare_status;
+    if (sensor_status != GW_STATUS_OK) {
+        status = sensor_status;
+    } else if (!plan_valid) {
+        status = GW_STATUS_PLAN_INVALID;
+    } else {
+        /* a refused tare or nothing */
+    }
+    return status;
+}
+
+/* A step of an initialised controller: what happened, what follows for the mode, what follows for the motion. */
 static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
                         gw_controller_output_t *output)
 {
     gw_supervisor_events_t events;
-    gw_status_t tare_status;
-    gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
     const gw_mode_t before = controller->supervisor.mode;
     const bool slow = is_slow(controller);
+    const gw_status_t sensor_status = sense(controller, input, slow);
+    events.sensors_good = (sensor_status == GW_STATUS_OK);
     events.plan_valid = gw_plan_is_valid(&input->plan);
-    if (status == GW_STATUS_OK) {
-        status = estimate(controller, input);
-    }
-    events.sensors_good = (status == GW_STATUS_OK);
-    if (events.sensors_good) {
-        detect(controller, slow);
-        if (!events.plan_valid) {
-            status = GW_STATUS_PLAN_INVALID;
-        }
-    } else {
-        blank_tick(controller);
-    }
-    tare_status = judge_tare_request(controller, input->tare_request, &events.tare_accepted);
     events.stop_request = input->stop_request;
     events.hit = controller->detection.tripped;
     events.tare_done = false;
+    gw_status_t tare_status = judge_tare_request(controller, input->tare_request, &events.tare_accepted);
     if (events.sensors_good && (before == GW_MODE_TARING) && (!input->stop_request)) {
-        const gw_tare_progress_t progress = tare(controller, &input->sensor);
-        events.tare_done = (progress == GW_TARE_DONE);
-        if (progress == GW_TARE_REFUSED) {
-            tare_status = GW_STATUS_TARE_REFUSED;
-        }
+        const gw_status_t progress = continue_tare(controller, &input->sensor, &events.tare_done);
+        tare_status = (progress == GW_STATUS_OK) ? tare_status : progress;
     }
-    if (status == GW_STATUS_OK) {
-        status = tare_status;
-    }
-    const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
-    /* Each is asked for in one mode only. */
-    events.quiet = slow && (before == GW_MODE_REACTING) &&
-                   (gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime));
+    /* Each of these is asked for in one mode only. */
+    events.quiet = slow && (before == GW_MODE_REACTING) && is_quiet(controller);
     events.on_path = events.plan_valid && slow && (before == GW_MODE_REJOINING) && is_near(controller, &input->plan);
     (void)gw_supervisor_step(&controller->supervisor, &events);
     enter_mode(controller, before);
@@ -510,7 +412,7 @@ static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t
     command_wheels(controller, input, events.sensors_good, output);
     report(controller, output);
     controller->tick = (controller->tick + 1U) & GW_TICK_MASK;
-    return status;
+    return worst_of(sensor_status, events.plan_valid, tare_status);
 }
 
 gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_input_t *input,

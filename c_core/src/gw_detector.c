@@ -1,12 +1,25 @@
 #include "giveway/gw_detector.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 #include "giveway/gw_wrench.h"
 
-/* Bounds of the integral: it trips and starts anew far below; a pure moment, which does not trip, ends there. */
+/* Bounds of the integral: it trips and starts anew far below. A pure moment, which never trips, is limited by it. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
-/* Impulse below which no lever arm can be told, N s; below every threshold. */
+/* A smaller impulse, N s, gives no lever arm: it is rounding. Every threshold is larger. */
 #define IMPULSE_MIN ((gw_real_t)0.0001)
+
+void gw_detector_config_trikey(gw_detector_config_t *config)
+{
+    config->kind = GW_DETECTOR_IMPULSE;
+    config->force_threshold_n = (gw_real_t)10.0;
+    config->impulse_threshold_newton_s = GW_TRIKEY_DETECTOR_IMPULSE_THRESHOLD_NEWTON_S;
+    config->leak_rest_n = GW_TRIKEY_DETECTOR_LEAK_REST_N;
+    config->leak_creep_n = (gw_real_t)42.0; /* two rollers' worth of B_r/r_r: stuck ones can hold it */
+    config->leak_motion_n = GW_TRIKEY_DETECTOR_LEAK_MOTION_N;
+    config->release_force_n = (gw_real_t)6.0; /* twice the error of the friction model */
+    config->blanking_ticks = 300U;            /* the reaction's own acceleration */
+}
 
 void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error)
 {
@@ -131,8 +144,7 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
 
 gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
 {
-    static const gw_detector_output_t nothing = {
-        false, false, (gw_real_t)0.0, {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}, 0U};
+    static const gw_detector_output_t nothing = {0};
     gw_status_t status = GW_STATUS_OK;
     if (output == NULL) {
         status = GW_STATUS_NULL_POINTER;

@@ -1,9 +1,28 @@
 #include "giveway/gw_estimator.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 
-static const gw_wheels_t no_torque = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
-static const gw_twist_t no_twist = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+static const gw_wheels_t no_torque = {0};
+
+void gw_estimator_config_trikey(gw_estimator_config_t *config)
+{
+    config->velocity_source = GW_SOURCE_PLANNED;
+    config->acceleration_source = GW_SOURCE_PLANNED;
+    config->torque_noise_nm = GW_TRIKEY_DRIVETRAIN_TORQUE_NOISE_NM;
+    config->rate_cutoff_radps = (gw_real_t)200.0;
+    config->drivetrain_stiffness_nm_per_rad = GW_TRIKEY_DRIVETRAIN_STIFFNESS_NM_PER_RAD;
+    config->encoder_counts = GW_TRIKEY_DRIVETRAIN_ENCODER_COUNTS;
+    config->average_window = 20U;
+    config->rest_speed_mps = (gw_real_t)0.002;
+    config->creep_speed_mps = (gw_real_t)0.03; /* rollers slide steadily above */
+    config->rest_ticks = 300U;
+    config->tare_ticks = 100U;
+    config->retare_ticks = 100U;
+    config->tare_variation_nm = (gw_real_t)0.5;
+    config->friction_model = GW_FRICTION_TANH;
+    gw_presliding_config_trikey(&config->presliding);
+}
 
 void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
 {
@@ -22,26 +41,6 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, config->tare_variation_nm);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, config->friction_model);
     gw_presliding_config_check(&config->presliding, error);
-}
-
-/* Member by member: as a whole it would be a call of memcpy, alone 2 % of a program of 12 KiB. */
-static void keep_config(gw_estimator_config_t *kept, const gw_estimator_config_t *config)
-{
-    kept->velocity_source = config->velocity_source;
-    kept->acceleration_source = config->acceleration_source;
-    kept->torque_noise_nm = config->torque_noise_nm;
-    kept->rate_cutoff_radps = config->rate_cutoff_radps;
-    kept->drivetrain_stiffness_nm_per_rad = config->drivetrain_stiffness_nm_per_rad;
-    kept->encoder_counts = config->encoder_counts;
-    kept->average_window = config->average_window;
-    kept->rest_speed_mps = config->rest_speed_mps;
-    kept->creep_speed_mps = config->creep_speed_mps;
-    kept->rest_ticks = config->rest_ticks;
-    kept->tare_ticks = config->tare_ticks;
-    kept->retare_ticks = config->retare_ticks;
-    kept->tare_variation_nm = config->tare_variation_nm;
-    kept->friction_model = config->friction_model;
-    kept->presliding = config->presliding;
 }
 
 gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
@@ -73,7 +72,7 @@ gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_conf
         }
         if (status == GW_STATUS_OK) {
             estimator->initialised = true;
-            keep_config(&estimator->config, config);
+            estimator->config = *config;
             (void)gw_moving_average_init(&estimator->average, config->average_window); /* window was checked */
             estimator->run_zero_nm = no_torque;
             estimator->rest_zero_nm = no_torque;
@@ -131,7 +130,7 @@ void gw_estimator_start_tare(gw_estimator_t *estimator)
     gw_tare_start(&estimator->run_tare);
 }
 
-/* The zero of a tare: its mean torque, less what deflected bristles have a part in. */
+/* The zero that a tare gives: its mean torque, less what the deflected bristles contribute to it. */
 static void take_zero(gw_estimator_t *estimator, const gw_wheels_t *mean_nm, gw_wheels_t *zero_nm)
 {
     *zero_nm = *mean_nm;
@@ -189,10 +188,11 @@ static bool input_is_valid(const gw_estimator_input_t *input)
            gw_torques_are_valid(&input->torque_nm);
 }
 
-/* The same for a valid input: what follows is bounded by it. */
+/* The same twist for a valid input. It gives the provers the bounds of all that follows. */
 static gw_twist_t limited_twist(gw_twist_t twist)
 {
-    const gw_twist_t limited = {gw_limited(twist.vx_mps, PLANNED_SPEED_MAX), gw_limited(twist.vy_mps, PLANNED_SPEED_MAX),
+    const gw_twist_t limited = {gw_limited(twist.vx_mps, PLANNED_SPEED_MAX),
+                                gw_limited(twist.vy_mps, PLANNED_SPEED_MAX),
                                 gw_limited(twist.omega_radps, PLANNED_SPEED_MAX)};
     return limited;
 }
@@ -213,7 +213,7 @@ static gw_real_t faster_of(const gw_estimator_t *estimator, gw_twist_t twist)
     return gw_max(gw_length(velocity), rim);
 }
 
-/* Rest or not, and the tare after a stop. Returns true if that changed. */
+/* Decides whether the robot is at rest, and takes the tare after a stop. Returns true if the decision changed. */
 static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, gw_real_t speed_mps)
 {
     const bool was_at_rest = estimator->rest;
@@ -241,7 +241,7 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, 
     return estimator->rest != was_at_rest;
 }
 
-/* The acceleration of the model; at planned rest the tare is all there is to plan. */
+/* The acceleration that the model is given. At rest no acceleration is planned: the tare says all. */
 static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, gw_acceleration_t planned,
                                              const gw_wheels_t *rates, const gw_wheels_t *derivatives)
 {
@@ -262,7 +262,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
                                      gw_twist_t measured_twist, gw_acceleration_t acceleration)
 {
     const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
-    gw_twist_t twist = no_twist;
+    gw_twist_t twist = {GW_ZERO, GW_ZERO, GW_ZERO};
     if (estimator->config.velocity_source == GW_SOURCE_MEASURED) {
         twist = measured_twist;
     } else if (!estimator->rest) {
@@ -280,8 +280,9 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    gw_wheels_t nominal = gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist,
-                                                           acceleration, &friction_nm);
+    gw_wheels_t nominal =
+        gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist, acceleration, &friction_nm);
+    GW_UNROLLED
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         nominal.wheel[i] += zero->wheel[i];
     }
@@ -296,14 +297,14 @@ static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
         const gw_wheels_t planned_rates = gw_kinematics_wheel_rates(&estimator->kinematics, planned_twist);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            /* Without it a robot that already moves would seem to be thrown into motion. */
+            /* Without this a robot that already moves would seem to accelerate from rest. */
             gw_rate_filter_presume(&estimator->rate[i], planned_rates.wheel[i]);
         }
     }
-    const gw_rate_filter_constants_t constants = estimator->rate_constants; /* a copy stays in registers */
+    GW_UNROLLED
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_t *const filter = &estimator->rate[i];
-        gw_rate_filter_step(filter, &constants, input->encoder_count[i], torque_nm->wheel[i]);
+        gw_rate_filter_step(filter, &estimator->rate_constants, input->encoder_count[i], torque_nm->wheel[i]);
         rates->wheel[i] = filter->rate_radps;
         derivatives->wheel[i] = filter->derivative_radps2;
     }
@@ -322,19 +323,11 @@ static gw_regime_t regime_of(const gw_estimator_t *estimator, gw_real_t speed_mp
     return regime;
 }
 
+/* The output of a tick that gives no estimate. */
 static void nothing_known(gw_estimator_output_t *output)
 {
-    static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
-    output->wrench = no_wrench;
-    output->mean = no_wrench;
-    output->window_mean = no_wrench;
-    output->mean_samples = 0U;
-    output->sigma.force_n = GW_ZERO;
-    output->sigma.torque_nm = GW_ZERO;
-    output->nominal_nm = no_torque;
-    output->measured_twist = no_twist;
-    output->regime = GW_REGIME_CREEPING;
-    output->zero_changed = false;
+    static const gw_estimator_output_t nothing = {.regime = GW_REGIME_CREEPING};
+    *output = nothing;
 }
 
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
@@ -363,9 +356,11 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         gw_wheels_t derivatives;
         filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
-        const gw_acceleration_t acceleration = chosen_acceleration(estimator, planned_acceleration, &rates, &derivatives);
+        const gw_acceleration_t acceleration =
+            chosen_acceleration(estimator, planned_acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
-        output->nominal_nm = nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration);
+        output->nominal_nm =
+            nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &torque_nm);
         output->sigma = estimator->sigma;
         status = gw_moving_average_add(&estimator->average, output->wrench);
@@ -374,7 +369,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
             output->window_mean = gw_moving_average_window_mean(&estimator->average);
             output->mean_samples = gw_moving_average_count(&estimator->average);
         } else {
-            /* Torque or measured motion beyond any robot. */
+            /* Torques or a measured motion that no robot has. */
             nothing_known(output);
             gw_estimator_restart(estimator);
         }

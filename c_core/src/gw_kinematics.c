@@ -1,10 +1,22 @@
 #include "giveway/gw_kinematics.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 
 /* One bit for each slot. */
 #define EVERY_SLOT (((uint32_t)1U << GW_WHEEL_COUNT) - 1U)
 #define HALF_SQRT_3 ((gw_real_t)0.8660254037844386467637)
+
+void gw_geometry_config_trikey(gw_geometry_config_t *config)
+{
+    config->wheel_radius_m = GW_TRIKEY_WHEEL_RADIUS_M;
+    config->roller_radius_m = GW_TRIKEY_ROLLER_RADIUS_M;
+    config->wheel_distance_m = GW_TRIKEY_WHEEL_DISTANCE_M;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        config->wheel_slot[i] = i;
+    }
+    config->azimuth_rad = GW_ZERO;
+}
 
 void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error)
 {

@@ -48,7 +48,7 @@ gw_real_t gw_fraction(gw_real_t part, gw_real_t whole)
     if (gw_magnitude(part) < whole) {
         fraction = part / whole;
     } else if (!(whole > GW_ZERO)) {
-        /* nothing to have a part of */
+        /* no whole: 0 */
     } else if (part >= whole) {
         fraction = GW_ONE;
     } else if (part <= -whole) {

@@ -3,7 +3,7 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
 
-static const gw_wrench_t no_wrench = {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0};
+static const gw_wrench_t no_wrench = {0};
 
 gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window)
 {

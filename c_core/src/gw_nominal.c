@@ -1,6 +1,15 @@
 #include "giveway/gw_nominal.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
+
+void gw_inertia_config_trikey(gw_inertia_config_t *config)
+{
+    config->mass_kg = GW_TRIKEY_BASE_MASS_KG;
+    config->yaw_inertia_kgm2 = GW_TRIKEY_BASE_YAW_INERTIA_KGM2;
+    config->wheel_inertia_kgm2 = GW_TRIKEY_WHEEL_INERTIA_KGM2;
+    config->roller_inertia_kgm2 = GW_TRIKEY_ROLLER_INERTIA_KGM2;
+}
 
 void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error)
 {

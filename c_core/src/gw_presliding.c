@@ -1,13 +1,24 @@
 #include "giveway/gw_presliding.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 #include "giveway/gw_wrench.h"
 
 /* Keeps rho finite for rollers without friction, N. */
 #define BEARABLE_MIN_N ((gw_real_t)0.000001)
-/* Longest way of a wheel within a sample, m; beyond it the sensors are wrong, and nothing is learnt from them. */
-#define WAY_MAX_M GW_ONE
+/* Longest displacement of a wheel within a sample, m; beyond it the sensors are wrong, and the deflection stays. */
+#define DISPLACEMENT_MAX_M GW_ONE
 #define THREE ((gw_real_t)3.0)
+
+void gw_presliding_config_trikey(gw_presliding_config_t *config)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        config->stiffness_n_per_m[i] = GW_TRIKEY_ROLLER_PRESLIDING_STIFFNESS_N_PER_M;
+    }
+    config->damping_newton_s_per_m = GW_TRIKEY_ROLLER_PRESLIDING_DAMPING_NEWTON_S_PER_M;
+    config->stribeck_speed_mps = GW_TRIKEY_ROLLER_STRIBECK_SPEED_MPS;
+    config->elastic_fraction = GW_TRIKEY_ROLLER_ELASTIC_FRACTION;
+}
 
 void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error)
 {
@@ -35,7 +46,8 @@ gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_
         } else {
             presliding->config = *config;
             presliding->friction = *friction;
-            presliding->bearable_n = gw_max(friction->coulomb_torque_nm * kinematics->per_roller_radius, BEARABLE_MIN_N);
+            presliding->bearable_n =
+                gw_max(friction->coulomb_torque_nm * kinematics->per_roller_radius, BEARABLE_MIN_N);
             for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
                 presliding->deflection_m[i] = gw_sum_of(GW_ZERO);
                 presliding->last_torque_nm.wheel[i] = GW_ZERO;
@@ -94,7 +106,7 @@ gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, con
     return torques;
 }
 
-/* Wheel angles since the last sample: encoders, less the change of the drivetrains' twist. */
+/* How far the wheels turned since the last sample: encoders, less the change of the drivetrains' twist. */
 static gw_wheels_t turned(gw_presliding_t *presliding, const gw_rate_filter_constants_t *rate_constants,
                           const int32_t encoder_count[GW_WHEEL_COUNT], const gw_wheels_t *torque_nm)
 {
@@ -124,13 +136,13 @@ static gw_real_t bearable_at(const gw_presliding_t *presliding, const gw_kinemat
     return gw_clamp(presliding->bearable_n * share, BEARABLE_MIN_N, presliding->bearable_n);
 }
 
-/* Does a motion that way deflect the bristle further? */
-static bool deflects_further(gw_real_t deflection_m, gw_real_t way)
+/* Does a displacement, or speed, with this sign deflect the bristle further? */
+static bool deflects_further(gw_real_t deflection_m, gw_real_t motion)
 {
-    return ((deflection_m > GW_ZERO) && (way > GW_ZERO)) || ((deflection_m < GW_ZERO) && (way < GW_ZERO));
+    return ((deflection_m > GW_ZERO) && (motion > GW_ZERO)) || ((deflection_m < GW_ZERO) && (motion < GW_ZERO));
 }
 
-/* 1 - A rho: how much of such a motion goes into the bristle. */
+/* 1 - A rho: how much of a motion that deflects the bristle further goes into it; the rest is sliding. */
 static gw_real_t deflecting_share(const gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n)
 {
     const gw_real_t deflection_m = presliding->deflection_m[wheel].value;
@@ -142,18 +154,18 @@ static gw_real_t deflecting_share(const gw_presliding_t *presliding, uint32_t wh
     return GW_ONE - (sliding * rho);
 }
 
-/* Moves the deflection by one sample's way. The exact solution ends at g/sigma0 and never passes it, from either side:
- * nor does this, however long the way. */
-static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t way_m,
+/* Moves the deflection by the displacement of one sample. The exact solution approaches g/sigma0 from either side and
+ * never passes it; neither does this, however long the displacement. */
+static void deflect(gw_presliding_t *presliding, uint32_t wheel, gw_real_t bearable_n, gw_real_t displacement_m,
                     gw_real_t share)
 {
     const gw_sum_t before_m = presliding->deflection_m[wheel];
     const gw_real_t most_m = deflection_of(presliding, wheel, presliding->bearable_n);
-    const gw_real_t end_m = deflection_of(presliding, wheel, (way_m > GW_ZERO) ? bearable_n : -bearable_n);
+    const gw_real_t end_m = deflection_of(presliding, wheel, (displacement_m > GW_ZERO) ? bearable_n : -bearable_n);
     const bool below = before_m.value < end_m;
     const gw_real_t low_m = below ? -most_m : end_m;
     const gw_real_t high_m = below ? end_m : most_m;
-    gw_sum_t after_m = gw_sum_add(before_m, way_m * share);
+    gw_sum_t after_m = gw_sum_add(before_m, displacement_m * share);
     if (!gw_in_range(after_m.value, low_m, high_m)) {
         after_m = gw_sum_of(gw_clamp(after_m.value, low_m, high_m));
     }
@@ -168,20 +180,23 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
     gw_wheels_t torques;
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_wheels_t turned_rad = turned(presliding, rate_constants, encoder_count, torque_nm);
+    /* Angles instead of rates: the displacement of the base, in m and rad. */
     const gw_twist_t moved = gw_kinematics_twist(kinematics, &turned_rad);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         const gw_vector_t n = kinematics->radial[i];
-        const gw_real_t speed_mps = (n.x * twist.vx_mps) + (n.y * twist.vy_mps);
-        const gw_real_t way_m = (n.x * moved.vx_mps) + (n.y * moved.vy_mps);
+        const gw_real_t speed_mps = gw_along_radial(n, twist.vx_mps, twist.vy_mps);
+        const gw_real_t displacement_m = gw_along_radial(n, moved.vx_mps, moved.vy_mps);
         const gw_real_t bearable_n = bearable_at(presliding, kinematics, speed_mps);
-        /* The share is that of speed and way, as far as they go the same way. */
+        /* Speed and displacement may differ in sign: the filtered speed lags. Of each that deflects the bristle further
+         * this share goes into it; one that relieves the bristle does so whole. */
         const bool speed_deflects = deflects_further(presliding->deflection_m[i].value, speed_mps);
-        const bool way_deflects = deflects_further(presliding->deflection_m[i].value, way_m);
+        const bool displacement_deflects = deflects_further(presliding->deflection_m[i].value, displacement_m);
         const gw_real_t share =
-            (speed_deflects || way_deflects) ? deflecting_share(presliding, i, bearable_n) : GW_ONE;
+            (speed_deflects || displacement_deflects) ? deflecting_share(presliding, i, bearable_n) : GW_ONE;
         const gw_real_t rate_mps = speed_deflects ? (speed_mps * share) : speed_mps;
-        if (gw_within(way_m, WAY_MAX_M)) {
-            deflect(presliding, i, bearable_n, gw_limited(way_m, WAY_MAX_M), way_deflects ? share : GW_ONE);
+        if (gw_within(displacement_m, DISPLACEMENT_MAX_M)) {
+            deflect(presliding, i, bearable_n, gw_limited(displacement_m, DISPLACEMENT_MAX_M),
+                    displacement_deflects ? share : GW_ONE);
         }
         const gw_real_t force_n = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) +
                                   (presliding->config.damping_newton_s_per_m * rate_mps);

@@ -24,7 +24,7 @@ gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_r
             constants->cutoff_radps = cutoff_radps;
             constants->decay = gw_exp(-cutoff_radps * period_s);
             constants->rad_per_count = (GW_TWO * GW_PI) / (gw_real_t)counts_per_turn;
-            /* A stiffness below one millionth would only amplify noise beyond any number: rigid as well. */
+            /* A smaller stiffness would only amplify noise without bounds: such a drivetrain is taken for rigid, too. */
             constants->compliance_rad_per_nm =
                 (stiffness_nm_per_rad >= (gw_real_t)0.000001) ? (GW_ONE / stiffness_nm_per_rad) : GW_ZERO;
         }

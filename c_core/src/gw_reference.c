@@ -1,14 +1,26 @@
 #include "giveway/gw_reference.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 
 #define SPEED_MAX ((gw_real_t)100.0)
 #define YAW_RATE_MAX ((gw_real_t)1000.0)
-/* A reference that walked this far from the origin stops there. */
+/* A reference that comes this far from the origin stops there. */
 #define REFERENCE_MAX ((gw_real_t)1.0e5)
 /* Correction speeds, m/s and rad/s, up to which the reference counts as being on the plan. */
 #define CORRECTION_FREE ((gw_real_t)0.001)
 #define YAW_CORRECTION_FREE ((gw_real_t)0.005)
+
+void gw_reference_config_trikey(gw_reference_config_t *config)
+{
+    config->follow_gain_per_s = GW_TWO;
+    config->speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
+    config->acceleration_limit_mps2 = (gw_real_t)1.5;
+    config->yaw_rate_limit_radps = (gw_real_t)1.5;
+    config->yaw_acceleration_limit_radps2 = (gw_real_t)6.0;
+    config->rejoin_speed_mps = (gw_real_t)0.1;
+    config->finish_speed_mps = (gw_real_t)0.01;
+}
 
 void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error)
 {
@@ -29,9 +41,7 @@ void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t pe
 
 gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s)
 {
-    static const gw_plan_t origin = {{(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                     {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0},
-                                     {(gw_real_t)0.0, (gw_real_t)0.0, (gw_real_t)0.0}};
+    static const gw_plan_t origin = {0};
     gw_status_t status = GW_STATUS_OK;
     if ((reference == NULL) || (config == NULL)) {
         status = GW_STATUS_NULL_POINTER;
@@ -64,7 +74,8 @@ bool gw_reference_invariant_holds(const gw_reference_t *reference)
         holds = (error.field == GW_FIELD_NONE) && gw_sum_invariant_holds(reference->x_m) &&
                 gw_sum_invariant_holds(reference->y_m) && gw_sum_invariant_holds(reference->theta_rad) &&
                 gw_within(reference->theta_rad.value, GW_PI) && gw_within(reference->twist.vx_mps, SPEED_MAX) &&
-                gw_within(reference->twist.vy_mps, SPEED_MAX) && gw_within(reference->twist.omega_radps, YAW_RATE_MAX) &&
+                gw_within(reference->twist.vy_mps, SPEED_MAX) &&
+                gw_within(reference->twist.omega_radps, YAW_RATE_MAX) &&
                 gw_is_finite(reference->acceleration.ax_mps2) && gw_is_finite(reference->acceleration.ay_mps2) &&
                 gw_is_finite(reference->acceleration.alpha_radps2) && gw_within(reference->yaw.cosine, GW_ONE) &&
                 gw_within(reference->yaw.sine, GW_ONE);
@@ -150,7 +161,8 @@ static void add_displacement(gw_reference_t *reference)
     reference->yaw = gw_sincos(reference->theta_rad.value);
 }
 
-/* Speed towards the path when rejoining: not below the finish speed, but such that half the acceleration stops there. */
+/* Speed towards the path when rejoining: not below the finish speed, but such that half the acceleration can stop it
+ * there. */
 static gw_real_t rejoining_speed(const gw_reference_t *reference, gw_real_t distance, gw_real_t finish_speed,
                                  gw_real_t acceleration)
 {

@@ -1,6 +1,15 @@
 #include "giveway/gw_sensor_check.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
+
+void gw_sensor_check_config_trikey(gw_sensor_check_config_t *config)
+{
+    config->torque_limit_nm = GW_TRIKEY_DRIVETRAIN_TORQUE_SENSOR_LIMIT_NM;
+    config->stale_ticks_max = 3U;
+    config->encoder_jump_counts = 200U; /* 148 rad/s */
+    config->recover_ticks = 10U;
+}
 
 void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error)
 {
@@ -122,7 +131,7 @@ gw_status_t gw_sensor_check_step(gw_sensor_check_t *check, const gw_sensor_sampl
         bool is_new = false;
         if (!sample->present) {
             status = GW_STATUS_SENSOR_MISSING;
-            check->encoder_known = false; /* nobody knows how far the wheels went meanwhile */
+            check->encoder_known = false; /* the wheels may have turned any distance meanwhile */
         } else {
             const uint32_t elapsed_ticks = check->age_ticks + 1U;
             is_new = note_counter(check, sample->counter);

@@ -3,7 +3,7 @@
 #include "giveway/gw_math.h"
 
 #define REFERENCE_SPEED_MAX ((gw_real_t)1.0e4)
-/* No motor turns faster; whatever the counts do, the measured speed stays a number. */
+/* No motor turns faster. The limit keeps the measured speed finite for any counts. */
 #define SPEED_MAX ((gw_real_t)1.0e6)
 
 void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error)
@@ -62,7 +62,8 @@ bool gw_servo_invariant_holds(const gw_servo_t *servo)
         gw_config_check_begin(&error);
         gw_servo_config_check(&servo->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_sum_invariant_holds(servo->desired_rad) &&
-                gw_within(servo->desired_rad.value, GW_PI) && gw_within(servo->desired_speed_radps, REFERENCE_SPEED_MAX) &&
+                gw_within(servo->desired_rad.value, GW_PI) &&
+                gw_within(servo->desired_speed_radps, REFERENCE_SPEED_MAX) &&
                 gw_within(servo->speed_radps, SPEED_MAX) && (servo->position_count >= 0) &&
                 (servo->position_count < (int32_t)servo->config.encoder_counts) &&
                 gw_in_range(servo->filter_gain, GW_ZERO, GW_ONE) &&
@@ -84,7 +85,8 @@ static void measure(gw_servo_t *servo, int32_t count)
     if (servo->started) {
         const int32_t moved = gw_count_difference(count, servo->last_count);
         const gw_real_t raw_radps = (gw_real_t)moved * servo->count_rate;
-        servo->speed_radps = gw_limited(servo->speed_radps + (servo->filter_gain * (raw_radps - servo->speed_radps)), SPEED_MAX);
+        const gw_real_t filtered_radps = servo->speed_radps + (servo->filter_gain * (raw_radps - servo->speed_radps));
+        servo->speed_radps = gw_limited(filtered_radps, SPEED_MAX);
         servo->position_count =
             modulo_turn(servo->position_count + modulo_turn(moved, servo->config.encoder_counts),
                         servo->config.encoder_counts);
@@ -143,7 +145,7 @@ gw_status_t gw_servo_step(gw_servo_t *servo, const gw_servo_input_t *input, gw_s
             take_reference(servo, input);
             const gw_real_t measured_rad = (gw_real_t)servo->position_count * servo->rad_per_count;
             if ((!input->enable) && (servo->reference_status != GW_STATUS_OK)) {
-                /* Nothing to hold to: enabling must not pull back to where the wheel once was. */
+                /* There is no reference to hold: enabling must not pull back to where the wheel once was. */
                 servo->desired_rad = gw_sum_of(gw_wrap_angle(measured_rad));
             }
             output->angle_error_rad = gw_wrap_angle(servo->desired_rad.value - measured_rad);

@@ -12,7 +12,7 @@
 gw_sum_t gw_sum_within_turn(gw_sum_t sum)
 {
     gw_sum_t result = sum;
-    /* value -+ 2 GW_PI is exact; the excess takes up that 2 GW_PI is not quite a turn. */
+    /* value -+ 2 GW_PI is exact; the excess takes up the difference between 2 GW_PI and a turn. */
     if (result.value >= GW_PI) {
         result.value -= GW_TWO * GW_PI;
         result.excess += TURN_REMAINDER;

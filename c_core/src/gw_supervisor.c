@@ -2,6 +2,15 @@
 
 #include "giveway/gw_math.h"
 
+void gw_supervisor_config_trikey(gw_supervisor_config_t *config)
+{
+    config->settled_speed_mps = (gw_real_t)0.005;
+    config->settled_ticks = 500U;
+    config->after_settled = GW_AFTER_SETTLED_REJOIN;
+    config->rejoin_distance_m = (gw_real_t)0.0002;
+    config->rejoin_angle_rad = (gw_real_t)0.0005;
+}
+
 void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_SUPERVISOR_SETTLED_SPEED, config->settled_speed_mps);
@@ -53,7 +62,7 @@ bool gw_supervisor_invariant_holds(const gw_supervisor_t *supervisor)
     return holds;
 }
 
-/* Where to go on after an interruption: the path is always rejoined, never resumed from afar. */
+/* The mode that follows an interruption. A path is always rejoined: the robot may have been moved away from it. */
 static gw_mode_t resumption_of(gw_mode_t mode)
 {
     return (mode == GW_MODE_TRACKING) ? GW_MODE_REJOINING : mode;

@@ -6,7 +6,7 @@ gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t t
 {
     gw_wrench_sigma_t sigma;
     const gw_real_t traction_n = torque_noise_nm * kinematics->per_wheel_radius;
-    sigma.force_n = gw_sqrt(GW_HALF_WHEELS) * traction_n;
-    sigma.torque_nm = (gw_sqrt(GW_WHEELS) * kinematics->wheel_distance_m) * traction_n;
+    sigma.force_n = GW_ROOT_OF_HALF_WHEELS * traction_n;
+    sigma.torque_nm = (GW_ROOT_OF_WHEELS * kinematics->wheel_distance_m) * traction_n;
     return sigma;
 }

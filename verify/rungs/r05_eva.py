@@ -57,7 +57,7 @@ DRIVERS = {
     "controller": Driver(
         Mutant(
             "gw_controller.c",
-            "valid = within_ranges(plan);\n    if (controller->on_plan) {",
+            "valid = gw_plan_limited(plan);\n    if (controller->on_plan) {",
             "valid = *plan;\n    if (controller->on_plan) {",
         ),
         "gw_controller_init:0,next_undisturbed:full",

@@ -1,7 +1,7 @@
 /* The motion that gives way, (1)-(4), in the world frame.
  *
  * Frozen impulse: at a hit the robot aims at x_inf = x + (p/B) u and goes there as v = (B/M) (x_inf - x): without
- * limits exactly (2) with p as the impulse; with limits it still ends at exactly p/B. The last part is made at the
+ * limits exactly (2) with p as the impulse; with limits it still ends at exactly p/B. The last part is covered at the
  * finish speed, because the exponential tail of (2) would keep the robot creeping for seconds.
  * Live force: (1), M v' + B v = F, with the force of each tick.
  * Both steps are exact for an input held over the tick; speed and acceleration vectors are limited in length.
@@ -35,7 +35,7 @@ typedef struct {
     gw_real_t speed_limit_mps;
     /* Longest acceleration, m/s^2, [0.001, 1000]. */
     gw_real_t acceleration_limit_mps2;
-    /* Frozen impulse: slowest speed on the way to the goal, m/s, [0, 1]; 0: the endless tail of (2). */
+    /* Frozen impulse: slowest speed towards the goal, m/s, [0, 1]; 0: the endless tail of (2). */
     gw_real_t finish_speed_mps;
 } gw_admittance_config_t;
 
@@ -58,11 +58,13 @@ typedef struct {
     gw_vector_t displacement_m;
 } gw_admittance_output_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_admittance_config_trikey(gw_admittance_config_t *config);
 void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. */
 gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s);
 bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
-/* A hit: from the present velocity along the unit vector direction; (0, 0) means come to rest where you are.
+/* A hit: from the present velocity along the unit vector direction; (0, 0) means: come to rest here.
  * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction);
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:

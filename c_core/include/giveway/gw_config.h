@@ -10,15 +10,19 @@
 extern "C" {
 #endif
 
-/* Field, name, minimum, maximum. Names are those of the FMU's parameters, which a test holds against this table; units
- * are in the headers of the modules. The last number of a count is at most 2^24, so that float holds it. */
+/* Field, name, minimum, maximum; the units are in the headers of the modules. The names are those of the FMU's parameters,
+ * whose ranges a test compares with these. No maximum of a count exceeds 2^24, so that float holds every count exactly.
+ *
+ * A field stands here, in the configuration of its module, and in that module's source: Trikey's value, the check, the
+ * use. */
+/* cppcheck-suppress misra-c2012-20.7 ; DEV-02 ROW is the name of a macro */
 #define GW_CONFIG_FIELDS(ROW) \
     ROW(GW_FIELD_NONE, "none", 0, 0) \
     ROW(GW_FIELD_CONTROLLER_PERIOD, "controller.period", 0.0001, 0.1) \
     ROW(GW_FIELD_GEOMETRY_WHEEL_RADIUS, "geometry.wheel_radius", 0.005, 1) \
     ROW(GW_FIELD_GEOMETRY_ROLLER_RADIUS, "geometry.roller_radius", 0.001, 0.5) \
     ROW(GW_FIELD_GEOMETRY_WHEEL_DISTANCE, "geometry.wheel_distance", 0.01, 5) \
-    ROW(GW_FIELD_GEOMETRY_WHEEL_SLOT, "geometry.wheel_slot", 0, GW_WHEEL_COUNT - 1U) \
+    ROW(GW_FIELD_GEOMETRY_WHEEL_SLOT, "geometry.wheel_slot", 0, GW_WHEELS - (gw_real_t)1) \
     ROW(GW_FIELD_GEOMETRY_AZIMUTH, "geometry.azimuth", -3.2, 3.2) \
     ROW(GW_FIELD_BASE_MASS, "base.mass", 0.1, 2000) \
     ROW(GW_FIELD_BASE_YAW_INERTIA, "base.yaw_inertia", 0.0001, 10000) \
@@ -101,9 +105,9 @@ typedef struct {
 } gw_config_limit_t;
 
 /* The first field that a check refused; field is GW_FIELD_NONE if all are in range. index counts within an array.
- * Where a rule relates several fields, value is the value of the one that is named, and minimum and maximum are
- * what the others leave it; for GW_FIELD_OUTLINE_CONVEX they are 0 and index is the edge (from that vertex) with a vertex on its right; for a
- * slot that is taken twice the range is empty (1 to 0). */
+ * Some rules relate several fields; value is then that of the field that is named, and minimum and maximum are the
+ * range that the other fields leave for it. A slot that is taken twice has the empty range from 1 to 0. For
+ * GW_FIELD_OUTLINE_CONVEX the range is 0 to 0, and the edge that starts at vertex index has a vertex on its right. */
 typedef struct {
     gw_config_field_t field;
     uint32_t index;
@@ -114,8 +118,8 @@ typedef struct {
 
 /* The row of a field; the row "none" for GW_FIELD_NONE and anything that is no field. */
 gw_config_limit_t gw_config_limit(gw_config_field_t field);
-/* Its name, "none" likewise. The names take 2.3 kB of flash, which a linker that drops unused sections gives back to
- * who does not call this. */
+/* Its name, "none" likewise. The names take 2.1 kB of flash in programs that call this, and none in others if the
+ * linker drops unused sections. */
 const char *gw_config_name(gw_config_field_t field);
 
 /* error->field = GW_FIELD_NONE: start of a check. error is not NULL here and below. */

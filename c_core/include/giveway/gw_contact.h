@@ -45,6 +45,8 @@ typedef struct {
     gw_real_t lever_arm_sigma_m;
 } gw_contact_estimate_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_contact_config_trikey(gw_contact_config_t *config);
 void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error);
 gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config);
 bool gw_contact_invariant_holds(const gw_contact_t *contact);

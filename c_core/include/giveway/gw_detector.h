@@ -2,8 +2,8 @@
  *
  * Force average: trips when the moving average of the force exceeds a threshold.
  * Impulse: s = I + F T; I = s max(0, 1 - F0 T/|s|); trips when |I| exceeds a threshold. The integral is that of the
- * force VECTOR, so noise cancels; F0 is the force that is forgiven for ever. The moment shrinks alongside, so the
- * contact can be located from the impulse itself.
+ * force VECTOR, so noise cancels; a force below F0 never trips, however long it lasts. The moment shrinks in
+ * proportion, so the contact can be located from the impulse itself.
  *
  * Hysteresis: after a trip the detector stays active, with its integral at zero, until the blanking time is over AND
  * the averaged force has fallen below the release force (or the caller says that the reaction is over). Then a new
@@ -53,9 +53,9 @@ typedef struct {
     uint32_t mean_samples;
     /* Chooses F0. */
     gw_regime_t regime;
-    /* False: nobody wants to know. Nothing is integrated. */
+    /* False: hits are not looked for, and nothing is integrated. */
     bool enabled;
-    /* True: the reaction is over, a push that is still there may trip again. */
+    /* True: the reaction is over, and a push that still lasts may trip again. */
     bool reaction_over;
 } gw_detector_input_t;
 
@@ -83,6 +83,8 @@ typedef struct {
     bool initialised;
 } gw_detector_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_detector_config_trikey(gw_detector_config_t *config);
 void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. */
 gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s);

@@ -1,13 +1,17 @@
 /* The external wrench at every tick: nominal torques, tares, rest or motion, (40), moving average.
  *
- * Rest: the planned speed was at most rest_speed for rest_ticks AND a quiet tare was taken in the end of that while.
- * Then T|0 is that tare (with measured sources: plus the model). Motion: T|0 is the model (38) plus the tare of the run.
- * Creeping: slower than creep_speed, or just stopped. The model holds badly, because stuck rollers keep wind-up while
- * tanh(0) = 0; the detector forgives more. To come to rest or to leave it empties the average.
+ * T|0, the torques without contact, depends on the regime:
+ *     Rest: the planned speed was at most rest_speed for rest_ticks AND a quiet tare was taken at the end of that time.
+ *     T|0 is that tare; with measured sources the model is added.
+ *     Motion: T|0 is the model (38) plus the tare of the run.
+ *     Creeping: slower than creep_speed, or just stopped. T|0 is as in motion, but the model is poor: stuck rollers
+ *     stay deflected, while tanh(0) = 0. The detector therefore forgives more.
+ * Coming to rest and leaving it empties the average.
  *
- * With bristles the wind-up is in the model: a tare takes as zero what their deflections leave of the torques, so the
- * deflections live on from motion to rest and back, and leaving rest brings no step of the estimate but their error.
- * At rest a push is then seen whole: what the drivetrains feel and what the rollers carry past them.
+ * With bristles the deflection of stuck rollers is part of the model. A tare then takes as zero only that part of the
+ * torques that the deflections do not explain. The deflections persist from motion to rest and back, so leaving rest
+ * changes the estimate only by their error. At rest a push is seen whole: the part that the drivetrains feel and the
+ * part that the rollers carry past them.
  *
  * Life cycle: gw_estimator_init; gw_estimator_tare per tick until done (at once if tare_ticks is 0); then
  * gw_estimator_step per tick; gw_estimator_restart after a gap in the samples. All members are private.
@@ -51,7 +55,7 @@ typedef struct {
     uint32_t encoder_counts;
     /* Window of the moving average, samples, [1, 1024]. */
     uint32_t average_window;
-    /* Planned speed (and speed of the wheels' circle) up to which the robot counts as standing, m/s, [0, 1]. */
+    /* Planned speed, of the centre and of the wheels' circle, up to which the robot counts as standing, m/s, [0, 1]. */
     gw_real_t rest_speed_mps;
     /* Planned speed up to which the robot creeps, unless it is at rest, m/s, [0, 1]. */
     gw_real_t creep_speed_mps;
@@ -108,6 +112,8 @@ typedef struct {
     bool zero_changed; /* the robot came to rest or left it in this tick */
 } gw_estimator_output_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_estimator_config_trikey(gw_estimator_config_t *config);
 void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error);
 gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
                               const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
@@ -119,7 +125,7 @@ void gw_estimator_start_tare(gw_estimator_t *estimator);
 gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm);
 /* Filters and average start afresh after a gap; zeros and mode stay. */
 void gw_estimator_restart(gw_estimator_t *estimator);
-/* One tick. Input that is not finite or beyond any robot, or a wrench that is not gw_wrench_is_valid:
+/* One tick. Input that is not finite or larger than any robot's, or a wrench that is not gw_wrench_is_valid:
  * GW_STATUS_INPUT_INVALID, wrench zero, filters and average start afresh. */
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                               gw_estimator_output_t *output);

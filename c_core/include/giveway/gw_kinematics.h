@@ -18,10 +18,14 @@ extern "C" {
 
 /* Wheels are evenly spaced: the sums of n_i n_i^T and of t_i t_i^T are half their number times the unit matrix. All
  * closed forms follow from these: the inverses below, the masses of (27) and the noise of (40). */
-#define GW_WHEELS ((gw_real_t)GW_WHEEL_COUNT)
 #define GW_HALF_WHEELS (GW_HALF * GW_WHEELS)
 #define GW_PER_WHEEL (GW_ONE / GW_WHEELS)
 #define GW_TWO_PER_WHEEL (GW_TWO / GW_WHEELS)
+#define GW_ROOT_OF_WHEELS ((gw_real_t)1.732050807568877293527)
+#define GW_ROOT_OF_HALF_WHEELS ((gw_real_t)1.224744871391589049099)
+#if (GW_WHEEL_COUNT != 3U)
+#error "these two roots, and the directions of the slots in gw_kinematics.c, are those of three wheels"
+#endif
 
 typedef struct {
     /* Wheel radius r_w, m, [0.005, 1]. */
@@ -46,6 +50,8 @@ typedef struct {
     gw_real_t per_roller_radius;
 } gw_kinematics_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_geometry_config_trikey(gw_geometry_config_t *config);
 void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error);
 gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config);
 bool gw_kinematics_invariant_holds(const gw_kinematics_t *kinematics);

@@ -31,7 +31,7 @@ extern "C" {
 /* Largest magnitude that gw_sincos and gw_wrap_angle take. */
 #define GW_ANGLE_MAX ((gw_real_t)1.0e4)
 
-/* The one-liners are inline: called, they would be a quarter of a step's instructions. */
+/* Short functions are inline: called, they would be a quarter of a step's instructions. */
 
 /* True if low <= x <= high; false for NaN. */
 static inline bool gw_in_range(gw_real_t x, gw_real_t low, gw_real_t high)
@@ -62,7 +62,8 @@ static inline gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
     return gw_min(gw_max(x, low), high);
 }
 
-/* Where |x| is one instruction, ranges around zero take one comparison instead of two: same truth, same bits. */
+/* 1 where |x| of a float is one instruction. A range around zero then takes one comparison instead of two, with the
+ * same result. */
 #if defined(__GNUC__) && defined(__arm__) && defined(__ARM_FP) && ((__ARM_FP & 4) != 0) && (GW_REAL_DOUBLE == 0)
 #define GW_ARM_FLOAT 1
 #else
@@ -77,7 +78,7 @@ static inline gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
 #endif
 #endif
 
-/* |x| where it is only compared: the sign of a zero depends on the machine. */
+/* |x| for comparisons only: the sign of a zero depends on the machine. */
 static inline gw_real_t gw_magnitude(gw_real_t x)
 {
 #if (GW_ARM_FLOAT == 1)
@@ -97,7 +98,7 @@ static inline bool gw_within(gw_real_t x, gw_real_t limit)
 #endif
 }
 
-/* x limited to [-limit, limit]; -limit if x is NaN. After gw_within it costs nothing, but the provers need it. */
+/* x limited to [-limit, limit]; -limit if x is NaN. After gw_within it changes nothing: it tells provers the range. */
 static inline gw_real_t gw_limited(gw_real_t x, gw_real_t limit)
 {
 #if (GW_ARM_FLOAT == 1)
@@ -113,7 +114,7 @@ static inline bool gw_is_finite(gw_real_t x)
     return gw_within(x, GW_REAL_MAX);
 }
 
-/* Square root, correctly rounded; 0 for negative x and NaN; infinity stays GW_REAL_MAX's root at most. */
+/* Square root, correctly rounded; 0 for negative x and NaN; for infinity the root of GW_REAL_MAX. */
 #if (GW_HARDWARE_SQRT == 1)
 /* One instruction rounds correctly: the same bits as the portable function in a tenth of the time. */
 static inline gw_real_t gw_sqrt_by_fpu(gw_real_t x)
@@ -137,7 +138,7 @@ static inline gw_real_t gw_sqrt(gw_real_t x)
 gw_real_t gw_sqrt(gw_real_t x);
 #endif
 
-/* The same for x >= 0 that is known to be finite: nothing is asked again. */
+/* The same for x that is known to be finite and not negative: without checks. */
 static inline gw_real_t gw_sqrt_of_square(gw_real_t x)
 {
 #if (GW_HARDWARE_SQRT == 1)
@@ -147,9 +148,9 @@ static inline gw_real_t gw_sqrt_of_square(gw_real_t x)
 #endif
 }
 
-/* part / whole limited to [-1, 1], for the share of a whole that rounding must not exceed; 0 unless whole > 0. */
+/* part / whole, limited to [-1, 1] so that no rounding leads beyond; 0 unless whole > 0. */
 gw_real_t gw_fraction(gw_real_t part, gw_real_t whole);
-/* The same; where a tick's instructions are counted, the usual case without a call. */
+/* The same; the usual case takes no call. */
 static inline gw_real_t gw_fraction_inline(gw_real_t part, gw_real_t whole)
 {
 #if (GW_ARM_FLOAT == 1)
@@ -186,7 +187,6 @@ static inline int32_t gw_count_difference(int32_t later, int32_t earlier)
     return result;
 }
 
-
 /* The vector turned by the angle, and turned back. */
 static inline gw_vector_t gw_rotate(gw_rotation_t rotation, gw_vector_t vector)
 {
@@ -204,7 +204,7 @@ static inline gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vec
     return result;
 }
 
-/* Length of the vector, for components below 1e18 in magnitude: rung `eva` shows that no step asks for another. */
+/* Length of the vector, for components below 1e18 in magnitude; the rung `eva` shows that no step needs others. */
 static inline gw_real_t gw_length(gw_vector_t vector)
 {
     return gw_sqrt_of_square((vector.x * vector.x) + (vector.y * vector.y));

@@ -22,7 +22,7 @@ typedef struct {
     uint32_t window;
     uint32_t index;
     uint32_t count;
-    gw_wrench_t sample[GW_MOVING_AVERAGE_CAPACITY]; /* last: what lies behind it takes longer to address */
+    gw_wrench_t sample[GW_MOVING_AVERAGE_CAPACITY]; /* last, so that the other members are cheap to address */
 } gw_moving_average_t;
 
 /* window: samples, [1, 1024]. */
@@ -45,14 +45,14 @@ static inline gw_wrench_t gw_wrench_sum(gw_wrench_t a, gw_wrench_t b)
     return sum;
 }
 
-/* Not limited: a sample is added at once. */
+/* Not limited: the next operation, the addition of a sample, does that. */
 static inline gw_wrench_t gw_wrench_difference(gw_wrench_t a, gw_wrench_t b)
 {
     const gw_wrench_t difference = {a.force_x_n - b.force_x_n, a.force_y_n - b.force_y_n, a.torque_nm - b.torque_nm};
     return difference;
 }
 
-/* Adds one sample; not gw_wrench_is_valid: refused with GW_STATUS_INPUT_INVALID. Inline: at every tick, in one place. */
+/* Adds one sample; one that is not gw_wrench_is_valid is refused with GW_STATUS_INPUT_INVALID. */
 static inline gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw_wrench_t sample)
 {
     const gw_wrench_t nothing = {GW_ZERO, GW_ZERO, GW_ZERO};

@@ -3,6 +3,7 @@
  *     T|0 = J_w^-T [M_t a + c(nu) + J_r^T B_r]
  *     M_t = diag(M + 1.5 I_w/r_w^2 + 1.5 I_r/r_r^2, same, I_b + 3 I_w R^2/r_w^2)
  *     c   = 1.5 (I_w/r_w^2 + I_r/r_r^2) omega (v_y, -v_x, 0)
+ * for three wheels; the factors come from gw_kinematics.h.
  *
  * Life cycle: gw_nominal_init, then read-only. All members are private.
  */
@@ -36,12 +37,14 @@ typedef struct {
     gw_friction_config_t friction;
 } gw_nominal_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_inertia_config_trikey(gw_inertia_config_t *config);
 void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error);
 gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
                             const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
 bool gw_nominal_invariant_holds(const gw_nominal_t *nominal);
-/* T|0, N m, at a twist and an acceleration over the floor, both along the base's axes and finite, with the rollers'
- * friction, N m per roller, as somebody else knows it. Pointers not NULL. */
+/* T|0, N m, at a twist and an acceleration over the floor, both along the base's axes and finite, and with this
+ * friction of the rollers, N m per roller. Pointers not NULL. */
 static inline gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal,
                                                            const gw_kinematics_t *kinematics, gw_twist_t twist,
                                                            gw_acceleration_t acceleration,

@@ -1,12 +1,12 @@
-/* Friction of the rollers with the elastic deflection that comes before they slide: an elasto-plastic bristle per wheel.
+/* Friction of the rollers with the elastic deflection before they slide: an elasto-plastic bristle per wheel.
  *
  *     g  = B_r/r_r (w + (1 - w) tanh(alpha |v|/r_r)),  w = exp(-(v/v_S)^2)       what the roller bears at speed v
- *     z' = v (1 - A rho),  rho = sigma0 |z|/g          A: 0 up to rho_ba, smoothly to 1 at rho = 1; 0 on the way back
+ *     z' = v (1 - A rho),  rho = sigma0 |z|/g          A: 0 up to rho_ba, smoothly to 1 at rho = 1; 0 unloading
  *     f  = sigma0 z + sigma1 z'                        on the base, against n_i
  *
- * v is the speed of the wheel along its axle. The deflection follows positions, not speeds: what encoder and sensed
- * twist of the drivetrain moved since the last sample. A push that stays keeps its deflection, whatever noise rides on
- * it, as long as rho < rho_ba. In steady motion f is (28).
+ * v is the speed of the wheel along its axle. The deflection follows displacements, not speeds: those since the last
+ * sample, from the encoders less the twist of the drivetrains. While rho < rho_ba, noise on a constant push does not
+ * make the deflection drift. In steady motion f is (28).
  *
  * Life cycle: gw_presliding_init, then gw_presliding_step once per tick; gw_presliding_gap after a gap in the samples.
  * All members are private; a copy of the struct is a checkpoint.
@@ -47,14 +47,17 @@ typedef struct {
     bool count_known;
 } gw_presliding_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_presliding_config_trikey(gw_presliding_config_t *config);
 void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error);
 /* Rollers not deflected. */
 gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
                                const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
 bool gw_presliding_invariant_holds(const gw_presliding_t *presliding);
-/* Nobody knows how far the wheels moved until the next sample: the deflections stay. Pointers not NULL here and below. */
+/* After a gap in the samples: how far the wheels moved is unknown, so the deflections stay. Pointers not NULL here and
+ * below. */
 void gw_presliding_gap(gw_presliding_t *presliding);
-/* The present deflections belong to this torque: the mean of a tare, whose last sample has noise. */
+/* The present deflections belong to this torque, the mean of a tare: noise of its last sample must not move them. */
 void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm);
 /* Elastic part of the friction, sigma0 z r_r per roller, N m. */
 gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics);

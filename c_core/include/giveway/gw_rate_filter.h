@@ -16,7 +16,7 @@
 extern "C" {
 #endif
 
-/* No wheel turns or accelerates faster; whatever the counts do, the filter's state stays a number. */
+/* No wheel turns or accelerates faster. The limits keep the filter's state finite for any counts. */
 #define GW_RATE_MAX ((gw_real_t)1.0e6)
 #define GW_RATE_DERIVATIVE_MAX ((gw_real_t)1.0e10)
 
@@ -51,7 +51,7 @@ static inline void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t ra
     }
 }
 
-/* How far a wheel turned, rad: its motor side by so many counts, less the twist torque/k of the drivetrain. */
+/* How far a wheel turned, rad: its motor side by so many counts, less the change of the drivetrain's twist torque/k. */
 static inline gw_real_t gw_rate_filter_turned(const gw_rate_filter_constants_t *constants, int32_t counts,
                                               gw_real_t torque_change_nm)
 {

@@ -29,7 +29,7 @@ typedef struct {
     gw_real_t yaw_acceleration_limit_radps2;
     /* Speed limit while the path is rejoined, m/s, [0.001, 10]. */
     gw_real_t rejoin_speed_mps;
-    /* Slowest speed on the way back to the path, m/s, [0, 1]; the yaw's is in proportion to its limit. 0: the path is
+    /* Slowest speed back to the path, m/s, [0, 1]; that of the yaw is in proportion to its limit. 0: the path is
      * approached ever more slowly. */
     gw_real_t finish_speed_mps;
 } gw_reference_config_t;
@@ -57,10 +57,12 @@ typedef struct {
     gw_acceleration_t acceleration;
     /* What the last tick moved. */
     gw_pose_t displacement;
-    gw_rotation_t yaw; /* of theta: what follows needs it twice */
+    gw_rotation_t yaw; /* sine and cosine of theta */
     bool initialised;
 } gw_reference_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_reference_config_trikey(gw_reference_config_t *config);
 void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. The reference starts at the origin, at rest. */
 gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s);
@@ -71,7 +73,8 @@ static inline bool gw_plan_is_valid(const gw_plan_t *plan)
 {
     return gw_within(plan->pose.x_m, GW_PLAN_POSITION_MAX) && gw_within(plan->pose.y_m, GW_PLAN_POSITION_MAX) &&
            gw_within(plan->pose.theta_rad, GW_ANGLE_MAX) && gw_within(plan->twist.vx_mps, GW_PLAN_SPEED_MAX) &&
-           gw_within(plan->twist.vy_mps, GW_PLAN_SPEED_MAX) && gw_within(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX) &&
+           gw_within(plan->twist.vy_mps, GW_PLAN_SPEED_MAX) &&
+           gw_within(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX) &&
            gw_within(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX) &&
            gw_within(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX) &&
            gw_within(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX);
@@ -85,7 +88,8 @@ static inline gw_plan_t gw_plan_limited(const gw_plan_t *plan)
          gw_limited(plan->pose.theta_rad, GW_ANGLE_MAX)},
         {gw_limited(plan->twist.vx_mps, GW_PLAN_SPEED_MAX), gw_limited(plan->twist.vy_mps, GW_PLAN_SPEED_MAX),
          gw_limited(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX)},
-        {gw_limited(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX), gw_limited(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX),
+        {gw_limited(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX),
+         gw_limited(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX),
          gw_limited(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX)}};
     return result;
 }
@@ -119,7 +123,6 @@ static inline gw_real_t gw_reference_angle(const gw_reference_t *reference, cons
 {
     return gw_abs(gw_wrap_angle(gw_sum_subtract_from(plan->pose.theta_rad, reference->theta_rad)));
 }
-
 
 #ifdef __cplusplus
 }

@@ -18,8 +18,8 @@ typedef struct {
     gw_real_t excess;
 } gw_sum_t;
 
-/* The excess is at most half a unit in the last place of the value; this bounds it for values up to 1e10 in float, and
- * does so whatever the sum was before. */
+/* The excess is at most half a unit in the last place of the value: for values up to 1e10 in float less than this. As a
+ * limit it also holds after any input. */
 #define GW_SUM_EXCESS_MAX ((gw_real_t)1024.0)
 
 /* The sum with this value and no rounding error. */
@@ -45,8 +45,9 @@ gw_sum_t gw_sum_within_turn(gw_sum_t sum);
 static inline gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
 {
     const gw_real_t almost_pi = (gw_real_t)3.0;
-    /* Increments are small: a tick's. */
-    const gw_real_t small = gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE) : gw_wrap_angle(increment_rad);
+    /* The usual increment, that of a tick, is small. */
+    const gw_real_t small =
+        gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE) : gw_wrap_angle(increment_rad);
     gw_sum_t result = gw_sum_add(sum, small);
     if (gw_within(result.value, almost_pi)) {
         result.value = gw_limited(result.value, almost_pi);

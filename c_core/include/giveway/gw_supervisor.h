@@ -1,10 +1,11 @@
-/* Which of its few modes the robot is in. Nothing else: what a mode does is in gw_controller.
+/* Decides which mode the robot is in, and nothing else: what a mode does is in gw_controller.
  *
  *     TARING --zero taken--> TRACKING --hit--> REACTING --quiet--> SETTLED --> REJOINING --on the path--> TRACKING
  *     any but FAULT --stop request--> STOPPED      any --bad sensors--> FAULT      a hit leads to REACTING from every
  *     mode but TARING, STOPPED and FAULT; SETTLED holds for ever if the configuration says so.
  * After STOPPED and FAULT: back to TARING, REACTING (the escape is abandoned) or SETTLED; a robot that was TRACKING or
- * REJOINING goes to REJOINING. A new tare, when asked for, leads from TRACKING or SETTLED to TARING and back. The path clock runs in TRACKING only.
+ * REJOINING goes to REJOINING. A new tare, when asked for, leads from TRACKING or SETTLED to TARING and back. The path
+ * clock runs in TRACKING only.
  *
  * Life cycle: gw_supervisor_init, gw_supervisor_step per tick. All members are private.
  */
@@ -23,7 +24,7 @@ typedef enum {
     GW_MODE_TRACKING = 1,  /* following the plan */
     GW_MODE_REACTING = 2,  /* giving way */
     GW_MODE_SETTLED = 3,   /* came to rest after a reaction */
-    GW_MODE_REJOINING = 4, /* going back to the path, whose clock stands */
+    GW_MODE_REJOINING = 4, /* going back to the path; its clock stands still */
     GW_MODE_STOPPED = 5,   /* stop request */
     GW_MODE_FAULT = 6      /* bad sensors: zero motion */
 } gw_mode_t;
@@ -58,13 +59,15 @@ typedef struct {
 typedef struct {
     gw_supervisor_config_t config;
     gw_mode_t mode;
-    gw_mode_t resume; /* where to go on after STOPPED, FAULT or a tare */
+    gw_mode_t resume; /* the mode that follows STOPPED, FAULT or a tare */
     uint32_t quiet_ticks;
     uint32_t path_ticks;
     bool tare_pending; /* a tare was interrupted and must be taken again first */
     bool initialised;
 } gw_supervisor_t;
 
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_supervisor_config_trikey(gw_supervisor_config_t *config);
 void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error);
 gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_supervisor_config_t *config);
 bool gw_supervisor_invariant_holds(const gw_supervisor_t *supervisor);

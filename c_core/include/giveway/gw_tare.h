@@ -1,6 +1,6 @@
-/* The torques that the sensors show while nothing touches the robot: a mean over a quiet while.
+/* The torques that the sensors show while nothing touches the robot: a mean over a quiet period.
  *
- * Refused if any torque varies by more than a limit within the while; the tare then starts anew.
+ * Refused if any torque varies by more than a limit within the period; the tare then starts anew.
  *
  * Life cycle: gw_tare_start, then gw_tare_add per tick until it is done. All members are private.
  */

@@ -50,6 +50,8 @@ typedef float gw_real_t;
 
 /* Number of wheels; their radial directions are 120 degrees apart. */
 #define GW_WHEEL_COUNT 3U
+/* The same as a real number. */
+#define GW_WHEELS ((gw_real_t)GW_WHEEL_COUNT)
 /* Most vertices that an outline may have. */
 #define GW_OUTLINE_VERTEX_MAX 16U
 /* Longest window of the moving average, samples; 12 bytes of RAM each in float. */

@@ -19,7 +19,7 @@ typedef struct {
 /* Largest force, N, and torque, N m, that the library works with; beyond it a value is a fault, not a push. */
 #define GW_WRENCH_MAX ((gw_real_t)1.0e9)
 
-/* Largest torque at a wheel that is taken for one, N m: beyond any sensor's limit. */
+/* Largest torque at a wheel that is valid, N m: more than any sensor measures. */
 #define GW_TORQUE_MAX ((gw_real_t)1.0e6)
 
 /* True if no component is NaN or beyond GW_WRENCH_MAX. */

@@ -1,6 +1,6 @@
 #include "unit.h"
 
-/* Every field of the one table of limits, where it is kept, and what it counts in. */
+/* Every field of the table, and where it is kept. */
 typedef struct {
     gw_controller_config_t controller;
     gw_servo_config_t servo;
@@ -10,88 +10,82 @@ typedef struct {
     gw_config_field_t field;
     size_t offset;
     bool is_count;
-    gw_real_t minimum; /* as the headers promise */
-    gw_real_t maximum;
 } place_t;
 
-#define REAL_FIELD(field, member, minimum, maximum) {(field), offsetof(robot_t, member), false, R(minimum), R(maximum)}
-#define COUNT_FIELD(field, member, minimum, maximum) {(field), offsetof(robot_t, member), true, R(minimum), R(maximum)}
+#define REAL_FIELD(field, member) {(field), offsetof(robot_t, member), false}
+#define COUNT_FIELD(field, member) {(field), offsetof(robot_t, member), true}
 
 static const place_t places[] = {
-    REAL_FIELD(GW_FIELD_CONTROLLER_PERIOD, controller.period_s, 0.0001, 0.1),
-    REAL_FIELD(GW_FIELD_GEOMETRY_WHEEL_RADIUS, controller.geometry.wheel_radius_m, 0.005, 1.0),
-    REAL_FIELD(GW_FIELD_GEOMETRY_ROLLER_RADIUS, controller.geometry.roller_radius_m, 0.001, 0.5),
-    REAL_FIELD(GW_FIELD_GEOMETRY_WHEEL_DISTANCE, controller.geometry.wheel_distance_m, 0.01, 5.0),
-    REAL_FIELD(GW_FIELD_GEOMETRY_AZIMUTH, controller.geometry.azimuth_rad, -3.2, 3.2),
-    REAL_FIELD(GW_FIELD_BASE_MASS, controller.base.mass_kg, 0.1, 2000.0),
-    REAL_FIELD(GW_FIELD_BASE_YAW_INERTIA, controller.base.yaw_inertia_kgm2, 0.0001, 10000.0),
-    REAL_FIELD(GW_FIELD_BASE_WHEEL_INERTIA, controller.base.wheel_inertia_kgm2, 0.0, 10.0),
-    REAL_FIELD(GW_FIELD_BASE_ROLLER_INERTIA, controller.base.roller_inertia_kgm2, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_FRICTION_COULOMB_TORQUE, controller.friction.coulomb_torque_nm, 0.0, 100.0),
-    REAL_FIELD(GW_FIELD_FRICTION_TANH_SLOPE, controller.friction.tanh_slope_s_per_rad, 0.0, 1000.0),
-    REAL_FIELD(GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, controller.sensor_check.torque_limit_nm, 0.1, 10000.0),
-    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, controller.sensor_check.stale_ticks_max, 1.0, 1000.0),
-    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, controller.sensor_check.encoder_jump_counts, 1.0, 1000000.0),
-    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, controller.sensor_check.recover_ticks, 1.0, 100000.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, controller.estimator.velocity_source, 0.0, 1.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, controller.estimator.acceleration_source, 0.0, 2.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_TORQUE_NOISE, controller.estimator.torque_noise_nm, 0.0, 100.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_RATE_CUTOFF, controller.estimator.rate_cutoff_radps, 0.1, 10000.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, controller.estimator.drivetrain_stiffness_nm_per_rad,
-               0.0, 10000000.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_ENCODER_COUNTS, controller.estimator.encoder_counts, 4.0, 1000000.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, controller.estimator.average_window, 1.0, 1024.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_REST_SPEED, controller.estimator.rest_speed_mps, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_CREEP_SPEED, controller.estimator.creep_speed_mps, 0.0, 1.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_REST_TICKS, controller.estimator.rest_ticks, 1.0, 100000.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_TARE_TICKS, controller.estimator.tare_ticks, 0.0, 100000.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_RETARE_TICKS, controller.estimator.retare_ticks, 1.0, 100000.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_TARE_VARIATION, controller.estimator.tare_variation_nm, 0.0, 100.0),
-    COUNT_FIELD(GW_FIELD_ESTIMATOR_FRICTION_MODEL, controller.estimator.friction_model, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, controller.estimator.presliding.stiffness_n_per_m[1],
-               10.0, 10000000.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, controller.estimator.presliding.damping_newton_s_per_m,
-               0.0, 100000.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_STRIBECK_SPEED, controller.estimator.presliding.stribeck_speed_mps, 0.000001, 1.0),
-    REAL_FIELD(GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, controller.estimator.presliding.elastic_fraction, 0.0, 0.99),
-    REAL_FIELD(GW_FIELD_CONTACT_MINIMUM_FORCE, controller.contact.minimum_force_n, 0.001, 1000.0),
-    COUNT_FIELD(GW_FIELD_OUTLINE_COUNT, controller.contact.vertex_count, 3.0, 16.0),
-    COUNT_FIELD(GW_FIELD_DETECTOR_KIND, controller.detector.kind, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_DETECTOR_FORCE_THRESHOLD, controller.detector.force_threshold_n, 0.01, 10000.0),
-    REAL_FIELD(GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, controller.detector.impulse_threshold_newton_s, 0.001, 1000.0),
-    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_REST, controller.detector.leak_rest_n, 0.0, 1000.0),
-    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_CREEP, controller.detector.leak_creep_n, 0.0, 1000.0),
-    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_MOTION, controller.detector.leak_motion_n, 0.0, 1000.0),
-    REAL_FIELD(GW_FIELD_DETECTOR_RELEASE_FORCE, controller.detector.release_force_n, 0.0, 10000.0),
-    COUNT_FIELD(GW_FIELD_DETECTOR_BLANKING_TICKS, controller.detector.blanking_ticks, 0.0, 100000.0),
-    COUNT_FIELD(GW_FIELD_ADMITTANCE_KIND, controller.admittance.kind, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_ADMITTANCE_MASS, controller.admittance.mass_kg, 0.01, 10000.0),
-    REAL_FIELD(GW_FIELD_ADMITTANCE_DAMPING, controller.admittance.damping_newton_s_per_m, 0.01, 10000.0),
-    REAL_FIELD(GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, controller.admittance.escape_impulse_newton_s, 0.0, 1000.0),
-    REAL_FIELD(GW_FIELD_ADMITTANCE_SPEED_LIMIT, controller.admittance.speed_limit_mps, 0.001, 10.0),
-    REAL_FIELD(GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, controller.admittance.acceleration_limit_mps2, 0.001, 1000.0),
-    REAL_FIELD(GW_FIELD_ADMITTANCE_FINISH_SPEED, controller.admittance.finish_speed_mps, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_FOLLOW_GAIN, controller.reference.follow_gain_per_s, 0.0, 100.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_SPEED_LIMIT, controller.reference.speed_limit_mps, 0.001, 10.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_ACCELERATION_LIMIT, controller.reference.acceleration_limit_mps2, 0.001, 1000.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_YAW_RATE_LIMIT, controller.reference.yaw_rate_limit_radps, 0.001, 100.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, controller.reference.yaw_acceleration_limit_radps2,
-               0.001, 10000.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_REJOIN_SPEED, controller.reference.rejoin_speed_mps, 0.001, 10.0),
-    REAL_FIELD(GW_FIELD_REFERENCE_FINISH_SPEED, controller.reference.finish_speed_mps, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_SUPERVISOR_SETTLED_SPEED, controller.supervisor.settled_speed_mps, 0.000001, 1.0),
-    COUNT_FIELD(GW_FIELD_SUPERVISOR_SETTLED_TICKS, controller.supervisor.settled_ticks, 1.0, 100000.0),
-    COUNT_FIELD(GW_FIELD_SUPERVISOR_AFTER_SETTLED, controller.supervisor.after_settled, 0.0, 1.0),
-    REAL_FIELD(GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, controller.supervisor.rejoin_distance_m, 0.00001, 1.0),
-    REAL_FIELD(GW_FIELD_SUPERVISOR_REJOIN_ANGLE, controller.supervisor.rejoin_angle_rad, 0.0001, 1.0),
-    REAL_FIELD(GW_FIELD_SERVO_PERIOD, servo.period_s, 0.00001, 0.1),
-    REAL_FIELD(GW_FIELD_SERVO_KP, servo.kp_nm_per_rad, 0.0, 1000000.0),
-    REAL_FIELD(GW_FIELD_SERVO_KD, servo.kd_nms_per_rad, 0.0, 100000.0),
-    REAL_FIELD(GW_FIELD_SERVO_TORQUE_LIMIT, servo.torque_limit_nm, 0.01, 10000.0),
-    REAL_FIELD(GW_FIELD_SERVO_TORQUE_RATE_LIMIT, servo.torque_rate_limit_nm_per_s, 0.0, 10000000.0),
-    COUNT_FIELD(GW_FIELD_SERVO_ENCODER_COUNTS, servo.encoder_counts, 4.0, 1000000.0),
-    REAL_FIELD(GW_FIELD_SERVO_DERIVATIVE_CUTOFF, servo.derivative_cutoff_hz, 0.1, 10000.0),
-    COUNT_FIELD(GW_FIELD_SERVO_STALE_TICKS_MAX, servo.stale_ticks_max, 1.0, 100000.0),
+    REAL_FIELD(GW_FIELD_CONTROLLER_PERIOD, controller.period_s),
+    REAL_FIELD(GW_FIELD_GEOMETRY_WHEEL_RADIUS, controller.geometry.wheel_radius_m),
+    REAL_FIELD(GW_FIELD_GEOMETRY_ROLLER_RADIUS, controller.geometry.roller_radius_m),
+    REAL_FIELD(GW_FIELD_GEOMETRY_WHEEL_DISTANCE, controller.geometry.wheel_distance_m),
+    REAL_FIELD(GW_FIELD_GEOMETRY_AZIMUTH, controller.geometry.azimuth_rad),
+    REAL_FIELD(GW_FIELD_BASE_MASS, controller.base.mass_kg),
+    REAL_FIELD(GW_FIELD_BASE_YAW_INERTIA, controller.base.yaw_inertia_kgm2),
+    REAL_FIELD(GW_FIELD_BASE_WHEEL_INERTIA, controller.base.wheel_inertia_kgm2),
+    REAL_FIELD(GW_FIELD_BASE_ROLLER_INERTIA, controller.base.roller_inertia_kgm2),
+    REAL_FIELD(GW_FIELD_FRICTION_COULOMB_TORQUE, controller.friction.coulomb_torque_nm),
+    REAL_FIELD(GW_FIELD_FRICTION_TANH_SLOPE, controller.friction.tanh_slope_s_per_rad),
+    REAL_FIELD(GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, controller.sensor_check.torque_limit_nm),
+    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, controller.sensor_check.stale_ticks_max),
+    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, controller.sensor_check.encoder_jump_counts),
+    COUNT_FIELD(GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, controller.sensor_check.recover_ticks),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, controller.estimator.velocity_source),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, controller.estimator.acceleration_source),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_TORQUE_NOISE, controller.estimator.torque_noise_nm),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_RATE_CUTOFF, controller.estimator.rate_cutoff_radps),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, controller.estimator.drivetrain_stiffness_nm_per_rad),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_ENCODER_COUNTS, controller.estimator.encoder_counts),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, controller.estimator.average_window),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_REST_SPEED, controller.estimator.rest_speed_mps),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_CREEP_SPEED, controller.estimator.creep_speed_mps),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_REST_TICKS, controller.estimator.rest_ticks),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_TARE_TICKS, controller.estimator.tare_ticks),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_RETARE_TICKS, controller.estimator.retare_ticks),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_TARE_VARIATION, controller.estimator.tare_variation_nm),
+    COUNT_FIELD(GW_FIELD_ESTIMATOR_FRICTION_MODEL, controller.estimator.friction_model),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, controller.estimator.presliding.stiffness_n_per_m[1]),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, controller.estimator.presliding.damping_newton_s_per_m),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_STRIBECK_SPEED, controller.estimator.presliding.stribeck_speed_mps),
+    REAL_FIELD(GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, controller.estimator.presliding.elastic_fraction),
+    REAL_FIELD(GW_FIELD_CONTACT_MINIMUM_FORCE, controller.contact.minimum_force_n),
+    COUNT_FIELD(GW_FIELD_OUTLINE_COUNT, controller.contact.vertex_count),
+    COUNT_FIELD(GW_FIELD_DETECTOR_KIND, controller.detector.kind),
+    REAL_FIELD(GW_FIELD_DETECTOR_FORCE_THRESHOLD, controller.detector.force_threshold_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, controller.detector.impulse_threshold_newton_s),
+    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_REST, controller.detector.leak_rest_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_CREEP, controller.detector.leak_creep_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_LEAK_MOTION, controller.detector.leak_motion_n),
+    REAL_FIELD(GW_FIELD_DETECTOR_RELEASE_FORCE, controller.detector.release_force_n),
+    COUNT_FIELD(GW_FIELD_DETECTOR_BLANKING_TICKS, controller.detector.blanking_ticks),
+    COUNT_FIELD(GW_FIELD_ADMITTANCE_KIND, controller.admittance.kind),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_MASS, controller.admittance.mass_kg),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_DAMPING, controller.admittance.damping_newton_s_per_m),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, controller.admittance.escape_impulse_newton_s),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_SPEED_LIMIT, controller.admittance.speed_limit_mps),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, controller.admittance.acceleration_limit_mps2),
+    REAL_FIELD(GW_FIELD_ADMITTANCE_FINISH_SPEED, controller.admittance.finish_speed_mps),
+    REAL_FIELD(GW_FIELD_REFERENCE_FOLLOW_GAIN, controller.reference.follow_gain_per_s),
+    REAL_FIELD(GW_FIELD_REFERENCE_SPEED_LIMIT, controller.reference.speed_limit_mps),
+    REAL_FIELD(GW_FIELD_REFERENCE_ACCELERATION_LIMIT, controller.reference.acceleration_limit_mps2),
+    REAL_FIELD(GW_FIELD_REFERENCE_YAW_RATE_LIMIT, controller.reference.yaw_rate_limit_radps),
+    REAL_FIELD(GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, controller.reference.yaw_acceleration_limit_radps2),
+    REAL_FIELD(GW_FIELD_REFERENCE_REJOIN_SPEED, controller.reference.rejoin_speed_mps),
+    REAL_FIELD(GW_FIELD_REFERENCE_FINISH_SPEED, controller.reference.finish_speed_mps),
+    REAL_FIELD(GW_FIELD_SUPERVISOR_SETTLED_SPEED, controller.supervisor.settled_speed_mps),
+    COUNT_FIELD(GW_FIELD_SUPERVISOR_SETTLED_TICKS, controller.supervisor.settled_ticks),
+    COUNT_FIELD(GW_FIELD_SUPERVISOR_AFTER_SETTLED, controller.supervisor.after_settled),
+    REAL_FIELD(GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, controller.supervisor.rejoin_distance_m),
+    REAL_FIELD(GW_FIELD_SUPERVISOR_REJOIN_ANGLE, controller.supervisor.rejoin_angle_rad),
+    REAL_FIELD(GW_FIELD_SERVO_PERIOD, servo.period_s),
+    REAL_FIELD(GW_FIELD_SERVO_KP, servo.kp_nm_per_rad),
+    REAL_FIELD(GW_FIELD_SERVO_KD, servo.kd_nms_per_rad),
+    REAL_FIELD(GW_FIELD_SERVO_TORQUE_LIMIT, servo.torque_limit_nm),
+    REAL_FIELD(GW_FIELD_SERVO_TORQUE_RATE_LIMIT, servo.torque_rate_limit_nm_per_s),
+    COUNT_FIELD(GW_FIELD_SERVO_ENCODER_COUNTS, servo.encoder_counts),
+    REAL_FIELD(GW_FIELD_SERVO_DERIVATIVE_CUTOFF, servo.derivative_cutoff_hz),
+    COUNT_FIELD(GW_FIELD_SERVO_STALE_TICKS_MAX, servo.stale_ticks_max),
 };
 
 /* Of the fields that are arrays the table holds one element. */
@@ -140,10 +134,10 @@ static robot_t with_count(const place_t *place, uint32_t value)
 
 static void check_real(const place_t *place)
 {
-    const gw_real_t accepted[] = {place->minimum, unit_above(place->minimum), unit_below(place->maximum),
-                                  place->maximum};
-    const gw_real_t outside[] = {unit_below(place->minimum), unit_above(place->maximum), unit_nan(),
-                                 unit_infinity(), -unit_infinity()};
+    const gw_config_limit_t limit = gw_config_limit(place->field);
+    const gw_real_t accepted[] = {limit.minimum, unit_above(limit.minimum), unit_below(limit.maximum), limit.maximum};
+    const gw_real_t outside[] = {unit_below(limit.minimum), unit_above(limit.maximum), unit_nan(), unit_infinity(),
+                                 -unit_infinity()};
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(accepted); i++) {
         const robot_t made = with_real(place, accepted[i]);
         CHECK_STATUS(refused(&made).field, GW_FIELD_NONE);
@@ -153,15 +147,15 @@ static void check_real(const place_t *place)
         const gw_config_error_t error = refused(&made);
         CHECK_STATUS(error.field, place->field);
         CHECK(error.index == index_of(place));
-        CHECK((error.minimum == place->minimum) && (error.maximum == place->maximum));
+        CHECK((error.minimum == limit.minimum) && (error.maximum == limit.maximum));
         CHECK((error.value == outside[i]) || (!gw_is_finite(outside[i])));
     }
 }
 
 static void check_count(const place_t *place)
 {
-    const uint32_t minimum = (uint32_t)place->minimum;
-    const uint32_t maximum = (uint32_t)place->maximum;
+    const uint32_t minimum = (uint32_t)gw_config_limit(place->field).minimum;
+    const uint32_t maximum = (uint32_t)gw_config_limit(place->field).maximum;
     const uint32_t accepted[] = {minimum, minimum + 1U, maximum - 1U, maximum};
     const uint32_t outside[] = {maximum + 1U, minimum - 1U, 0xFFFFFFFFU}; /* 0 - 1 wraps: refused as well */
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(accepted); i++) {
@@ -370,8 +364,20 @@ static void what_is_no_field_has_the_row_of_none(void)
     CHECK(gw_config_name((gw_config_field_t)beyond) == gw_config_name(GW_FIELD_NONE));
 }
 
+/* What is accepted fits into the arrays that hold it. */
+static void arrays_are_as_long_as_their_fields_allow(void)
+{
+    const gw_controller_config_t config = robot().controller;
+    CHECK(gw_config_limit(GW_FIELD_OUTLINE_COUNT).maximum == (gw_real_t)UNIT_COUNT_OF(config.contact.vertex_m));
+    CHECK(gw_config_limit(GW_FIELD_ESTIMATOR_AVERAGE_WINDOW).maximum ==
+          (gw_real_t)UNIT_COUNT_OF(((const gw_moving_average_t *)NULL)->sample));
+    CHECK(gw_config_limit(GW_FIELD_GEOMETRY_WHEEL_SLOT).maximum ==
+          ((gw_real_t)UNIT_COUNT_OF(config.geometry.wheel_slot) - GW_ONE));
+}
+
 void suite_config(void)
 {
+    unit_run("arrays_are_as_long_as_their_fields_allow", arrays_are_as_long_as_their_fields_allow);
     unit_run("every_bound_is_met_at_both_neighbours", every_bound_is_met_at_both_neighbours);
     unit_run("no_field_is_forgotten", no_field_is_forgotten);
     unit_run("corners_of_the_outline_meet_their_bounds", corners_of_the_outline_meet_their_bounds);

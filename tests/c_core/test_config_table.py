@@ -1,0 +1,99 @@
+"""One table of configuration fields: what headers, checks and the controller's FMU say of them is what it says."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CORE = ROOT / "c_core"
+HEADERS = CORE / "include" / "giveway"
+ROW = re.compile(r'ROW\((GW_FIELD_\w+), "([^"]+)", ([^,]+), (.+?)\)(?: \\)?$', re.MULTILINE)
+CHECK = re.compile(
+    r"gw_config_check_(?:real|count|element)\(\s*&?error, (GW_FIELD_\w+),(?: \w+,)?\s*(?:\(gw_real_t\))?config->(\w+)"
+)
+# A comment and the members below it.
+DESCRIBED = re.compile(r"/\*((?:[^*]|\*(?!/))*)\*/\n((?:    (?:gw_real_t|uint32_t) \w+(?:\[\w+\])?;\n)+)")
+RANGE = re.compile(r"\[(-?[\d.]+), (-?[\d.]+)\]")
+CHOICE = re.compile(r"GW_\w+ \((\d)\)")  # a value that has a name
+# Parameters of the FMU that are no numbers of the configuration.
+OTHER_PARAMETERS = {"controller.drives_enabled"}
+
+
+def text(name: str) -> str:
+    return (HEADERS / name).read_text(encoding="utf-8")
+
+
+def number(expression: str) -> float:
+    """Of the table's cells: numbers, and the constants of gw_types.h."""
+    known = dict(re.findall(r"#define (GW_\w+) (\d+)U$", text("gw_types.h"), re.MULTILINE))
+    if expression == "GW_WHEELS - (gw_real_t)1":
+        return float(known["GW_WHEEL_COUNT"]) - 1.0
+    return float(known.get(expression, expression))
+
+
+def rows() -> dict[str, tuple[str, float, float]]:
+    """Field to name, minimum, maximum."""
+    return {
+        field: (name, number(low), number(high))
+        for field, name, low, high in ROW.findall(text("gw_config.h"))
+        if field != "GW_FIELD_NONE"
+    }
+
+
+def described() -> dict[tuple[str, str], tuple[float, float]]:
+    """(Module, member) to the range in the comment above it; a comment with one range speaks of all members below."""
+    ranges = {}
+    for header in sorted(HEADERS.glob("gw_*.h")):
+        for structure in re.findall(r"typedef struct \{\n(.*?)\} gw_\w+_config_t;", header.read_text(), re.DOTALL):
+            for comment, members in DESCRIBED.findall(structure):
+                names = re.findall(r"(\w+)(?:\[\w+\])?;", members)
+                found = [(float(low), float(high)) for low, high in RANGE.findall(comment)]
+                if choices := [float(value) for value in CHOICE.findall(comment)]:
+                    found = [(min(choices), max(choices))]
+                if len(found) == 1:
+                    found *= len(names)
+                assert not found or len(found) == len(names), f"{header.name}: {comment}"
+                ranges |= {(header.stem, name): bounds for name, bounds in zip(names, found, strict=False)}
+    return ranges
+
+
+def checked() -> dict[str, tuple[str, str]]:
+    """Field to the module that checks it and its member."""
+    return {
+        field: (source.stem, member)
+        for source in sorted((CORE / "src").glob("*.c"))
+        for field, member in CHECK.findall(source.read_text(encoding="utf-8"))
+        if source.stem != "gw_rate_filter"  # takes some of the estimator's again
+    }
+
+
+def test_every_row_is_read() -> None:
+    assert len(rows()) == text("gw_config.h").count("    ROW(GW_FIELD_") - 1
+
+
+# The convexity of the outline has no number; coordinates are checked member by member of a vertex.
+@pytest.mark.parametrize("field", sorted(set(rows()) - {"GW_FIELD_OUTLINE_CONVEX"}))
+def test_every_field_is_checked_and_described_as_in_the_table(field: str) -> None:
+    name, low, high = rows()[field]
+    assert field in checked(), f"{name} is checked nowhere"
+    module, member = checked()[field]
+    if (module, member) in {("gw_kinematics", "wheel_slot"), ("gw_contact", "vertex_m")}:
+        return  # said in words: "each of 0, 1, 2 once", "each in [-10, 10]" of both coordinates
+    bounds = described().get((module, member))
+    assert bounds is not None, f"{module}.h gives no range for {member}"
+    assert bounds == (low, high)
+
+
+def test_parameters_of_the_fmu_are_the_fields() -> None:
+    table = tomllib.loads((ROOT / "fmu/models/controller/variables.toml").read_text(encoding="utf-8"))
+    parameters = {entry["name"]: entry for entry in table["variable"] if entry["causality"] == "parameter"}
+    fields = {name: bounds for name, *bounds in rows().values()}
+    own = {name for name in fields if not name.startswith(("servo.", "outline ("))}  # the servo is in the testbed
+    assert set(parameters) - own == OTHER_PARAMETERS
+    assert own - set(parameters) == set()
+    for name in own:
+        assert [parameters[name]["minimum"], parameters[name]["maximum"]] == fields[name], name
