@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import FileError, SimulationError, WriteError
+from giveway.fmi2_callbacks import fmi2_callbacks
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -122,7 +123,6 @@ _listeners: weakref.WeakValueDictionary[int, Instance] = weakref.WeakValueDictio
 @functools.cache
 def _shared_fmi2_callbacks() -> Any:
     from fmpy import fmi2
-    from fmpy.logging import addLoggerProxy
 
     def dispatch(environment: int | None, name: bytes, status: int, category: bytes, text: bytes) -> None:
         listener = _listeners.get(environment or 0)
@@ -131,12 +131,7 @@ def _shared_fmi2_callbacks() -> Any:
         else:
             listener._logged(status, text)
 
-    callbacks = fmi2.fmi2CallbackFunctions()
-    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(dispatch)
-    callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
-    callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
-    addLoggerProxy(ctypes.byref(callbacks))
-    return callbacks
+    return fmi2_callbacks(dispatch)
 
 
 class Instance:

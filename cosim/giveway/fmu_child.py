@@ -8,7 +8,6 @@ it prints is the FMU's.
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import json
 import mmap
 import os
@@ -16,6 +15,8 @@ import struct
 import sys
 from pathlib import Path
 from typing import Any
+
+from giveway.fmi2_callbacks import fmi2_callbacks
 
 __all__ = ["STATUS_BYTES", "main", "read_status"]
 
@@ -85,7 +86,7 @@ def _run(folder: Path, job: dict[str, Any], status: _Status) -> None:
     if is_fmi3:
         fmu.instantiate(logMessage=_print_message)
     else:
-        fmu.instantiate(callbacks=_callbacks())
+        fmu.instantiate(callbacks=fmi2_callbacks(_log))
 
     def stepped(time_s: float, _recorder: object) -> bool:
         status.time_s = time_s
@@ -121,17 +122,5 @@ def _print_message(_environment: object, _status: int, _category: bytes, text: b
     print(text.decode("utf-8", "replace"), flush=True)
 
 
-def _callbacks() -> Any:
-    """FMI 2 messages come with printf arguments, which FMPy's native proxy puts in."""
-    from fmpy import fmi2
-    from fmpy.logging import addLoggerProxy
-
-    def log(_environment: object, _instance: bytes, status: int, category: bytes, text: bytes) -> None:
-        _print_message(None, status, category, text)
-
-    callbacks = fmi2.fmi2CallbackFunctions()
-    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
-    callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
-    callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
-    addLoggerProxy(ctypes.byref(callbacks))
-    return callbacks
+def _log(_environment: object, _instance: bytes, status: int, category: bytes, text: bytes) -> None:
+    _print_message(None, status, category, text)

@@ -26,16 +26,14 @@ class _MakesScenario(Protocol):
     def __call__(self, bumper: str, *, robot: Path | None = None) -> Scenario: ...
 
 
-def _no_single_run(bumper: str, *, robot: Path | None = None) -> Scenario:
-    """Stands for `_refuse_single_run`, which an experiment gets when it knows its name."""
-    raise NotImplementedError(bumper, robot)
-
-
 def _refuse_single_run(name: str, _bumper: str, *, robot: Path | None = None) -> Scenario:
     del robot
     single = ", ".join(one.name for one in all_experiments().values() if one.is_single_run)
     allowed = f"{single}; {name} is more than one run, and `giveway reproduce --only {name}` does them all"
     raise GivewayError("experiment", name, allowed)
+
+
+_NO_SINGLE_RUN: _MakesScenario = functools.partial(_refuse_single_run, "")  # until an experiment knows its name
 
 
 @dataclass(frozen=True)
@@ -56,11 +54,11 @@ class Experiment:
     summary: str
     section: str = ""
     bumpers: tuple[str, ...] = ()
-    scenario: _MakesScenario = _no_single_run
+    scenario: _MakesScenario = _NO_SINGLE_RUN
     reproduce: Callable[[Effort], Findings] | None = None
 
     def __post_init__(self) -> None:
-        if self.scenario is _no_single_run:
+        if self.scenario is _NO_SINGLE_RUN:
             object.__setattr__(self, "scenario", functools.partial(_refuse_single_run, self.name))
 
     @property

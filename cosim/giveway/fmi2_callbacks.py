@@ -1,0 +1,25 @@
+"""The functions that an FMI 2 importer hands to an FMU."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+__all__ = ["fmi2_callbacks"]
+
+
+def fmi2_callbacks(log: Callable[[Any, bytes, int, bytes, bytes], None]) -> Any:
+    """FMPy's own, but for ``log`` (environment, instance, status, category, text).
+
+    Messages come with printf arguments; FMPy's native proxy puts them into the text.
+    """
+    from fmpy import fmi2
+    from fmpy.logging import addLoggerProxy
+
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
+    callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
+    callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
+    addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
