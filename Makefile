@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint lock clean platforms
+.PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -70,10 +70,17 @@ build: build/CMakeCache.txt .venv/package-installed ## compile everything and pr
 	@$(BIN)/cmake --build build -j $(JOBS) -- --quiet
 	@$(BIN)/cmake --install build --component native --prefix cosim > build/install.log
 
-lint: .venv/packages-installed ## ruff and mypy
+C_SOURCES = $$(git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
+
+lint: .venv/packages-installed ## ruff, mypy, clang-format
 	$(BIN)/ruff check --quiet .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
+	$(BIN)/clang-format --dry-run -Werror $(C_SOURCES)
+
+format: .venv/packages-installed ## format C, C++ and Python in place
+	$(BIN)/ruff format --quiet .
+	$(BIN)/clang-format -i $(C_SOURCES)
 
 LOCKS := requirements verify/requirements verify/modelica/requirements bench/requirements importers/requirements
 

@@ -79,11 +79,9 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
         gw_admittance_config_check(&admittance->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
                 gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
-                gw_within(admittance->goal_m.x, ESCAPE_MAX) &&
-                gw_within(admittance->goal_m.y, ESCAPE_MAX) &&
+                gw_within(admittance->goal_m.x, ESCAPE_MAX) && gw_within(admittance->goal_m.y, ESCAPE_MAX) &&
                 gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
-                gw_within(admittance->velocity_mps.x, SPEED_MAX) &&
-                gw_within(admittance->velocity_mps.y, SPEED_MAX);
+                gw_within(admittance->velocity_mps.x, SPEED_MAX) && gw_within(admittance->velocity_mps.y, SPEED_MAX);
     }
     return holds;
 }
@@ -210,8 +208,7 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
             status = GW_STATUS_NULL_POINTER;
         } else if (!admittance->initialised) {
             status = GW_STATUS_NOT_INITIALISED;
-        } else if (!(gw_within(force_n.x, GW_WRENCH_MAX) &&
-                     gw_within(force_n.y, GW_WRENCH_MAX))) {
+        } else if (!(gw_within(force_n.x, GW_WRENCH_MAX) && gw_within(force_n.y, GW_WRENCH_MAX))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
             if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {

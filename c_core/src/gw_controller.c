@@ -156,8 +156,8 @@ static void detect(gw_controller_t *controller, bool slow)
     detector_input.mean = controller->estimate.mean;
     detector_input.mean_samples = controller->estimate.mean_samples;
     detector_input.regime = controller->estimate.regime;
-    detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) ||
-                             (mode == GW_MODE_SETTLED) || (mode == GW_MODE_REJOINING);
+    detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
+                             (mode == GW_MODE_REJOINING);
     detector_input.reaction_over = slow;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &controller->detection);
@@ -386,8 +386,7 @@ static gw_status_t worst_of(gw_status_t sensor_status, bool plan_valid, gw_statu
 }
 
 /* A step of an initialised controller: what happened, what follows for the mode, what follows for the motion. */
-static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input,
-                        gw_controller_output_t *output)
+static gw_status_t step(gw_controller_t *controller, const gw_controller_input_t *input, gw_controller_output_t *output)
 {
     gw_supervisor_events_t events;
     const gw_mode_t before = controller->supervisor.mode;
@@ -442,16 +441,14 @@ bool gw_controller_invariant_holds(const gw_controller_t *controller)
         holds = controller->initialised;
     }
     if (holds) {
-        holds = gw_sensor_check_invariant_holds(&controller->sensor_check) &&
-                gw_estimator_invariant_holds(&controller->estimator) &&
-                gw_contact_invariant_holds(&controller->contact) &&
-                gw_detector_invariant_holds(&controller->detector) &&
-                gw_admittance_invariant_holds(&controller->admittance) &&
-                gw_reference_invariant_holds(&controller->reference) &&
-                gw_joint_invariant_holds(&controller->joint) &&
-                gw_supervisor_invariant_holds(&controller->supervisor) &&
-                (controller->detection_count <= GW_TICK_MASK) && (controller->detection_tick >= -1) &&
-                (controller->tick <= GW_TICK_MASK);
+        holds =
+            gw_sensor_check_invariant_holds(&controller->sensor_check) &&
+            gw_estimator_invariant_holds(&controller->estimator) && gw_contact_invariant_holds(&controller->contact) &&
+            gw_detector_invariant_holds(&controller->detector) &&
+            gw_admittance_invariant_holds(&controller->admittance) &&
+            gw_reference_invariant_holds(&controller->reference) && gw_joint_invariant_holds(&controller->joint) &&
+            gw_supervisor_invariant_holds(&controller->supervisor) && (controller->detection_count <= GW_TICK_MASK) &&
+            (controller->detection_tick >= -1) && (controller->tick <= GW_TICK_MASK);
     }
     return holds;
 }

@@ -258,8 +258,8 @@ static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, gw
 
 /* T|0 from the present zero and the model. */
 static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
-                                     const gw_wheels_t *torque_nm, gw_twist_t planned_twist,
-                                     gw_twist_t measured_twist, gw_acceleration_t acceleration)
+                                     const gw_wheels_t *torque_nm, gw_twist_t planned_twist, gw_twist_t measured_twist,
+                                     gw_acceleration_t acceleration)
 {
     const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
     gw_twist_t twist = {GW_ZERO, GW_ZERO, GW_ZERO};

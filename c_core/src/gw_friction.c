@@ -14,4 +14,3 @@ void gw_friction_config_check(const gw_friction_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_FRICTION_COULOMB_TORQUE, config->coulomb_torque_nm);
     gw_config_check_real(error, GW_FIELD_FRICTION_TANH_SLOPE, config->tanh_slope_s_per_rad);
 }
-

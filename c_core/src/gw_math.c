@@ -8,13 +8,13 @@
 #define HALF_PI_HIGH ((gw_real_t)1.5707963267923333)
 #define HALF_PI_MIDDLE ((gw_real_t)2.5633441515839558e-12)
 #define HALF_PI_LOW ((gw_real_t)1.0562999066987428e-23)
-#define EXP_LOWEST ((gw_real_t)-708.0)
+#define EXP_LOWEST ((gw_real_t) - 708.0)
 #define EXP_HIGHEST ((gw_real_t)709.0)
-#define EXPM1_LOWEST ((gw_real_t)-40.0) /* e^x is below half an ulp of 1 */
+#define EXPM1_LOWEST ((gw_real_t) - 40.0) /* e^x is below half an ulp of 1 */
 #define TANH_SATURATED ((gw_real_t)20.0)
 typedef uint64_t tanh_power_t; /* beyond e^(2 TANH_SATURATED) */
 #define SQRT_SCALINGS 9U
-#define SQRT_LIFT ((gw_real_t)4.149515568880993e180) /* 2^600 */
+#define SQRT_LIFT ((gw_real_t)4.149515568880993e180)      /* 2^600 */
 #define SQRT_LIFT_ROOT ((gw_real_t)4.909093465297727e-91) /* 2^-300 */
 #define SQRT_NEWTON_STEPS 4U
 #define BELOW_TWO (GW_TWO - DBL_EPSILON)
@@ -25,9 +25,9 @@ typedef uint64_t tanh_power_t; /* beyond e^(2 TANH_SATURATED) */
 #define HALF_PI_HIGH ((gw_real_t)1.5703125)
 #define HALF_PI_MIDDLE ((gw_real_t)0.00048351287841796875)
 #define HALF_PI_LOW ((gw_real_t)3.139164786504813e-07)
-#define EXP_LOWEST ((gw_real_t)-87.0)
+#define EXP_LOWEST ((gw_real_t) - 87.0)
 #define EXP_HIGHEST ((gw_real_t)88.0)
-#define EXPM1_LOWEST ((gw_real_t)-20.0)
+#define EXPM1_LOWEST ((gw_real_t) - 20.0)
 #define TANH_SATURATED ((gw_real_t)10.0)
 typedef uint32_t tanh_power_t;
 #define SQRT_SCALINGS 6U
@@ -91,21 +91,18 @@ static gw_real_t root_of(gw_real_t x)
     static const power_of_four_t powers_of_four[SQRT_SCALINGS] = {
 #if (GW_REAL_DOUBLE == 1)
         /* 2^512 */
-        {(gw_real_t)1.3407807929942597e+154, (gw_real_t)7.458340731200207e-155,
-         (gw_real_t)1.157920892373162e+77},
+        {(gw_real_t)1.3407807929942597e+154, (gw_real_t)7.458340731200207e-155, (gw_real_t)1.157920892373162e+77},
         /* 2^256 */
-        {(gw_real_t)1.157920892373162e+77, (gw_real_t)8.636168555094445e-78,
-         (gw_real_t)3.402823669209385e+38},
+        {(gw_real_t)1.157920892373162e+77, (gw_real_t)8.636168555094445e-78, (gw_real_t)3.402823669209385e+38},
         /* 2^128 */
-        {(gw_real_t)3.402823669209385e+38, (gw_real_t)2.938735877055719e-39,
-         (gw_real_t)1.8446744073709552e+19},
+        {(gw_real_t)3.402823669209385e+38, (gw_real_t)2.938735877055719e-39, (gw_real_t)1.8446744073709552e+19},
 #endif
         {(gw_real_t)1.8446744073709552e+19, (gw_real_t)5.421010862427522e-20, (gw_real_t)4294967296.0}, /* 2^64 */
-        {(gw_real_t)4294967296.0, (gw_real_t)2.3283064365386963e-10, (gw_real_t)65536.0}, /* 2^32 */
-        {(gw_real_t)65536.0, (gw_real_t)1.52587890625e-05, (gw_real_t)256.0}, /* 2^16 */
-        {(gw_real_t)256.0, (gw_real_t)0.00390625, (gw_real_t)16.0}, /* 2^8 */
-        {(gw_real_t)16.0, (gw_real_t)0.0625, (gw_real_t)4.0}, /* 2^4 */
-        {(gw_real_t)4.0, (gw_real_t)0.25, (gw_real_t)2.0}, /* 2^2 */
+        {(gw_real_t)4294967296.0, (gw_real_t)2.3283064365386963e-10, (gw_real_t)65536.0},               /* 2^32 */
+        {(gw_real_t)65536.0, (gw_real_t)1.52587890625e-05, (gw_real_t)256.0},                           /* 2^16 */
+        {(gw_real_t)256.0, (gw_real_t)0.00390625, (gw_real_t)16.0},                                     /* 2^8 */
+        {(gw_real_t)16.0, (gw_real_t)0.0625, (gw_real_t)4.0},                                           /* 2^4 */
+        {(gw_real_t)4.0, (gw_real_t)0.25, (gw_real_t)2.0},                                              /* 2^2 */
     };
     /* x = reduced * scale^2 with reduced in [1, 4). Factors are powers of 4, so nothing is rounded. */
     gw_real_t reduced = gw_min(x, GW_REAL_MAX);

@@ -61,4 +61,3 @@ bool gw_nominal_invariant_holds(const gw_nominal_t *nominal)
     }
     return holds;
 }
-

@@ -100,8 +100,8 @@ gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, con
 {
     gw_wheels_t torques;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        torques.wheel[i] = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) *
-                           kinematics->roller_radius_m;
+        torques.wheel[i] =
+            (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) * kinematics->roller_radius_m;
     }
     return torques;
 }
@@ -147,8 +147,8 @@ static gw_real_t deflecting_share(const gw_presliding_t *presliding, uint32_t wh
 {
     const gw_real_t deflection_m = presliding->deflection_m[wheel].value;
     const gw_real_t rho = (presliding->config.stiffness_n_per_m[wheel] * gw_magnitude(deflection_m)) / bearable_n;
-    const gw_real_t beyond = (rho - presliding->config.elastic_fraction) /
-                             (GW_ONE - presliding->config.elastic_fraction);
+    const gw_real_t beyond =
+        (rho - presliding->config.elastic_fraction) / (GW_ONE - presliding->config.elastic_fraction);
     const gw_real_t y = gw_clamp(beyond, GW_ZERO, GW_ONE);
     const gw_real_t sliding = (y * y) * (THREE - (GW_TWO * y));
     return GW_ONE - (sliding * rho);

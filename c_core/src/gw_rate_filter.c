@@ -24,7 +24,8 @@ gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_r
             constants->cutoff_radps = cutoff_radps;
             constants->decay = gw_exp(-cutoff_radps * period_s);
             constants->rad_per_count = (GW_TWO * GW_PI) / (gw_real_t)counts_per_turn;
-            /* A smaller stiffness would only amplify noise without bounds: such a drivetrain is taken for rigid, too. */
+            /* A smaller stiffness would only amplify noise without bounds: such a drivetrain is taken for rigid, too.
+             */
             constants->compliance_rad_per_nm =
                 (stiffness_nm_per_rad >= (gw_real_t)0.000001) ? (GW_ONE / stiffness_nm_per_rad) : GW_ZERO;
         }
@@ -44,6 +45,5 @@ void gw_rate_filter_restart(gw_rate_filter_t *filter)
 bool gw_rate_filter_invariant_holds(const gw_rate_filter_t *filter)
 {
     return (filter != NULL) && gw_within(filter->last_torque_nm, GW_TORQUE_MAX) &&
-           gw_within(filter->rate_radps, GW_RATE_MAX) &&
-           gw_within(filter->derivative_radps2, GW_RATE_DERIVATIVE_MAX);
+           gw_within(filter->rate_radps, GW_RATE_MAX) && gw_within(filter->derivative_radps2, GW_RATE_DERIVATIVE_MAX);
 }

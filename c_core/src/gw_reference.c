@@ -108,9 +108,8 @@ void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool m
         const gw_vector_t velocity = gw_limit_length(planned, reference->config.speed_limit_mps);
         reference->twist.vx_mps = velocity.x;
         reference->twist.vy_mps = velocity.y;
-        reference->twist.omega_radps =
-            gw_clamp(plan->twist.omega_radps, -reference->config.yaw_rate_limit_radps,
-                     reference->config.yaw_rate_limit_radps);
+        reference->twist.omega_radps = gw_clamp(plan->twist.omega_radps, -reference->config.yaw_rate_limit_radps,
+                                                reference->config.yaw_rate_limit_radps);
         reference->acceleration = plan->acceleration;
     }
 }
@@ -192,8 +191,8 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
             rejoining_speed(reference, distance_m, config->finish_speed_mps, config->acceleration_limit_mps2);
         const gw_real_t finish_rate =
             config->finish_speed_mps * (config->yaw_rate_limit_radps / config->speed_limit_mps);
-        const gw_real_t rate = rejoining_speed(reference, gw_abs(yaw_error), finish_rate,
-                                                config->yaw_acceleration_limit_radps2);
+        const gw_real_t rate =
+            rejoining_speed(reference, gw_abs(yaw_error), finish_rate, config->yaw_acceleration_limit_radps2);
         if (distance_m > GW_ZERO) {
             wanted.x = gw_fraction(error.x, distance_m) * speed;
             wanted.y = gw_fraction(error.y, distance_m) * speed;
@@ -233,4 +232,3 @@ void gw_reference_freeze(gw_reference_t *reference)
 {
     stand(reference);
 }
-

@@ -32,8 +32,7 @@ gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config)
             servo->config = *config;
             servo->rad_per_count = (GW_TWO * GW_PI) / (gw_real_t)config->encoder_counts;
             servo->count_rate = servo->rad_per_count / config->period_s;
-            servo->filter_gain =
-                -gw_expm1(-((GW_TWO * GW_PI) * config->derivative_cutoff_hz) * config->period_s);
+            servo->filter_gain = -gw_expm1(-((GW_TWO * GW_PI) * config->derivative_cutoff_hz) * config->period_s);
             servo->torque_step_nm = config->torque_rate_limit_nm_per_s * config->period_s;
             servo->desired_rad = gw_sum_of(GW_ZERO);
             servo->desired_speed_radps = GW_ZERO;
@@ -87,9 +86,8 @@ static void measure(gw_servo_t *servo, int32_t count)
         const gw_real_t raw_radps = (gw_real_t)moved * servo->count_rate;
         const gw_real_t filtered_radps = servo->speed_radps + (servo->filter_gain * (raw_radps - servo->speed_radps));
         servo->speed_radps = gw_limited(filtered_radps, SPEED_MAX);
-        servo->position_count =
-            modulo_turn(servo->position_count + modulo_turn(moved, servo->config.encoder_counts),
-                        servo->config.encoder_counts);
+        servo->position_count = modulo_turn(servo->position_count + modulo_turn(moved, servo->config.encoder_counts),
+                                            servo->config.encoder_counts);
     } else {
         servo->position_count = modulo_turn(count, servo->config.encoder_counts);
         servo->desired_rad = gw_sum_of(gw_wrap_angle((gw_real_t)servo->position_count * servo->rad_per_count));
@@ -102,8 +100,7 @@ static void take_reference(gw_servo_t *servo, const gw_servo_input_t *input)
 {
     if (input->reference_is_new) {
         servo->reference_age = 0U;
-        if (gw_within(input->angle_rad, GW_ANGLE_MAX) &&
-            gw_within(input->speed_radps, REFERENCE_SPEED_MAX)) {
+        if (gw_within(input->angle_rad, GW_ANGLE_MAX) && gw_within(input->speed_radps, REFERENCE_SPEED_MAX)) {
             servo->desired_rad = gw_sum_of(gw_wrap_angle(input->angle_rad));
             servo->desired_speed_radps = gw_limited(input->speed_radps, REFERENCE_SPEED_MAX);
             servo->reference_status = GW_STATUS_OK;
@@ -121,8 +118,7 @@ static void take_reference(gw_servo_t *servo, const gw_servo_input_t *input)
                 servo->reference_status = GW_STATUS_REFERENCE_STALE;
             }
         }
-        servo->desired_rad =
-            gw_sum_add_angle(servo->desired_rad, servo->desired_speed_radps * servo->config.period_s);
+        servo->desired_rad = gw_sum_add_angle(servo->desired_rad, servo->desired_speed_radps * servo->config.period_s);
     }
 }
 

@@ -34,8 +34,7 @@ gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *torque_nm, ui
         gw_tare_start(tare);
     } else if (tare->count >= samples) {
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            mean_nm->wheel[i] =
-                gw_limited(tare->sum_nm[i].value / (gw_real_t)tare->count, GW_TORQUE_MAX);
+            mean_nm->wheel[i] = gw_limited(tare->sum_nm[i].value / (gw_real_t)tare->count, GW_TORQUE_MAX);
         }
         gw_tare_start(tare);
         progress = GW_TARE_DONE;

@@ -21,7 +21,8 @@
 #define EXTENSION ".so"
 #endif
 
-static void die(const char *format, ...) {
+static void die(const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
     (void)fputs("c_master: ", stderr);
@@ -31,20 +32,23 @@ static void die(const char *format, ...) {
     exit(1);
 }
 
-static void log_message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
+static void log_message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message)
+{
     const Fmu *fmu = environment;
     (void)status;
     (void)category;
     (void)fprintf(stderr, "%s: %s\n", fmu->name, message);
 }
 
-void fmu_check(const Fmu *fmu, fmi3Status status, const char *call) {
+void fmu_check(const Fmu *fmu, fmi3Status status, const char *call)
+{
     if (status > fmi3Warning) {
         die("%s: %s failed with status %d", fmu->name, call, (int)status);
     }
 }
 
-static char *read_text(const char *path) {
+static char *read_text(const char *path)
+{
     FILE *file = fopen(path, "rb");
     long size;
     char *text;
@@ -63,9 +67,11 @@ static char *read_text(const char *path) {
     return text;
 }
 
-/* The value of an attribute of the element at `element` (its "<"), in a buffer that the next call reuses. Enough for the
-   descriptions of giveway, which write attributes with double quotes and without entities in names; use an XML parser for others. */
-static const char *attribute(const char *element, const char *name) {
+/* The value of an attribute of the element at `element` (its "<"), in a buffer that the next call reuses. Enough for
+   the descriptions of giveway, which write attributes with double quotes and without entities in names; use an XML
+   parser for others. */
+static const char *attribute(const char *element, const char *name)
+{
     static char value[1024];
     char pattern[64];
     const char *end = strchr(element, '>');
@@ -86,7 +92,8 @@ static const char *attribute(const char *element, const char *name) {
     return value;
 }
 
-static const char *element_of(const Fmu *fmu, const char *variable) {
+static const char *element_of(const Fmu *fmu, const char *variable)
+{
     char pattern[256];
     const char *found;
     (void)snprintf(pattern, sizeof pattern, " name=\"%s\"", variable);
@@ -100,7 +107,8 @@ static const char *element_of(const Fmu *fmu, const char *variable) {
     return found;
 }
 
-fmi3ValueReference fmu_reference(const Fmu *fmu, const char *variable) {
+fmi3ValueReference fmu_reference(const Fmu *fmu, const char *variable)
+{
     const char *reference = attribute(element_of(fmu, variable), "valueReference");
     if (reference == NULL) {
         die("%s: %s has no value reference", fmu->name, variable);
@@ -108,7 +116,8 @@ fmi3ValueReference fmu_reference(const Fmu *fmu, const char *variable) {
     return (fmi3ValueReference)strtoul(reference, NULL, 10);
 }
 
-const char *fmu_unit(const Fmu *fmu, const char *variable) {
+const char *fmu_unit(const Fmu *fmu, const char *variable)
+{
     const char *element = element_of(fmu, variable);
     const char *unit = attribute(element, "unit");
     const char *type = unit == NULL ? attribute(element, "declaredType") : NULL;
@@ -121,7 +130,8 @@ const char *fmu_unit(const Fmu *fmu, const char *variable) {
     return unit == NULL ? "1" : unit;
 }
 
-void fmu_assign(Fmu *fmu, const char *assignment) {
+void fmu_assign(Fmu *fmu, const char *assignment)
+{
     const char *equals = strchr(assignment, '=');
     char variable[256];
     const char *element;
@@ -147,7 +157,8 @@ void fmu_assign(Fmu *fmu, const char *assignment) {
 }
 
 /* POSIX hands functions out as data pointers; copying the bits is the way that C allows. */
-static void bind_function(const Fmu *fmu, void *target, const char *name) {
+static void bind_function(const Fmu *fmu, void *target, const char *name)
+{
     void *symbol = dlsym(fmu->library, name);
     if (symbol == NULL) {
         die("%s: its binary has no %s", fmu->name, name);
@@ -155,7 +166,8 @@ static void bind_function(const Fmu *fmu, void *target, const char *name) {
     memcpy(target, &symbol, sizeof symbol);
 }
 
-void fmu_load(Fmu *fmu, const char *name, const char *folder) {
+void fmu_load(Fmu *fmu, const char *name, const char *folder)
+{
     char path[4096];
     const char *identifier;
     memset(fmu, 0, sizeof *fmu);
@@ -189,7 +201,8 @@ void fmu_load(Fmu *fmu, const char *name, const char *folder) {
     bind_function(fmu, &fmu->set_boolean, "fmi3SetBoolean");
 }
 
-void fmu_instantiate(Fmu *fmu) {
+void fmu_instantiate(Fmu *fmu)
+{
     const char *token = attribute(strstr(fmu->description, "<fmiModelDescription"), "instantiationToken");
     fmu->instance = fmu->instantiate(fmu->name, token, NULL, fmi3False, fmi3True, fmi3False, fmi3False, NULL, 0, fmu,
                                      log_message, NULL);
@@ -198,24 +211,29 @@ void fmu_instantiate(Fmu *fmu) {
     }
 }
 
-void fmu_initialise(Fmu *fmu) {
+void fmu_initialise(Fmu *fmu)
+{
     fmu_check(fmu, fmu->enter_initialisation(fmu->instance, fmi3False, 0.0, 0.0, fmi3False, 0.0), "initialisation");
     fmu_check(fmu, fmu->exit_initialisation(fmu->instance), "initialisation");
 }
 
-void fmu_step(Fmu *fmu, double time_s, double step_s) {
+void fmu_step(Fmu *fmu, double time_s, double step_s)
+{
     fmi3Boolean event, terminate, early;
     fmi3Float64 reached;
-    fmu_check(fmu, fmu->do_step(fmu->instance, time_s, step_s, fmi3True, &event, &terminate, &early, &reached), "fmi3DoStep");
+    fmu_check(fmu, fmu->do_step(fmu->instance, time_s, step_s, fmi3True, &event, &terminate, &early, &reached),
+              "fmi3DoStep");
 }
 
-void fmu_free(Fmu *fmu) {
+void fmu_free(Fmu *fmu)
+{
     fmu_check(fmu, fmu->terminate(fmu->instance), "fmi3Terminate");
     fmu->free_instance(fmu->instance);
     fmu->instance = NULL;
 }
 
-void fmu_unload(Fmu *fmu) {
+void fmu_unload(Fmu *fmu)
+{
     (void)dlclose(fmu->library);
     free(fmu->description);
 }

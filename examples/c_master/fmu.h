@@ -1,4 +1,5 @@
-/* The few things a C program needs to run an FMI 3.0 Co-Simulation FMU that lies unzipped in a folder. POSIX (dlopen). */
+/* The few things a C program needs to run an FMI 3.0 Co-Simulation FMU that lies unzipped in a folder. POSIX (dlopen).
+ */
 #ifndef FMU_H
 #define FMU_H
 
@@ -7,7 +8,7 @@
 #include <stddef.h>
 
 typedef struct {
-    const char *name;  /* of the instance, for messages */
+    const char *name; /* of the instance, for messages */
     void *library;
     char *description; /* the text of modelDescription.xml */
     fmi3Instance instance;

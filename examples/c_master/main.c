@@ -1,9 +1,12 @@
-/* Controller and testbed, coupled by a program of two pages: how to load giveway's FMUs from C, and in which order to exchange.
+/* Controller and testbed, coupled by a program of two pages: how to load giveway's FMUs from C, and in which order to
+   exchange.
 
-     c_master CONTROLLER TESTBED [--seconds S] [--repeat N] [--profile] [--record NAME]... [controller.NAME=VALUE | testbed.NAME=VALUE]...
+     c_master CONTROLLER TESTBED [--seconds S] [--repeat N] [--profile] [--record NAME]... [controller.NAME=VALUE |
+   testbed.NAME=VALUE]...
 
-   CONTROLLER and TESTBED are folders with the unzipped FMI 3.0 FMUs. With --record the variables of the testbed that are named come out
-   as CSV, one line each millisecond; without, the runs per second, and with --profile the time inside each FMU's steps. */
+   CONTROLLER and TESTBED are folders with the unzipped FMI 3.0 FMUs. With --record the variables of the testbed that
+   are named come out as CSV, one line each millisecond; without, the runs per second, and with --profile the time
+   inside each FMU's steps. */
 #define _POSIX_C_SOURCE 200809L
 #include "fmu.h"
 
@@ -19,10 +22,12 @@
 
 /* What passes between the two, under the same names in both. */
 static const char *const sensed_reals[] = {"sensor.torque[0]", "sensor.torque[1]", "sensor.torque[2]"};
-static const char *const sensed_integers[] = {"sensor.encoder[0]", "sensor.encoder[1]", "sensor.encoder[2]", "sensor.counter"};
+static const char *const sensed_integers[] = {"sensor.encoder[0]", "sensor.encoder[1]", "sensor.encoder[2]",
+                                              "sensor.counter"};
 static const char *const sensed_booleans[] = {"sensor.present"};
-static const char *const commanded_reals[] = {"command.wheel_angle[0]", "command.wheel_angle[1]", "command.wheel_angle[2]",
-                                              "command.wheel_speed[0]", "command.wheel_speed[1]", "command.wheel_speed[2]"};
+static const char *const commanded_reals[] = {"command.wheel_angle[0]", "command.wheel_angle[1]",
+                                              "command.wheel_angle[2]", "command.wheel_speed[0]",
+                                              "command.wheel_speed[1]", "command.wheel_speed[2]"};
 static const char *const commanded_booleans[] = {"command.enable"};
 
 typedef struct {
@@ -30,14 +35,16 @@ typedef struct {
     size_t real_count, integer_count, boolean_count;
 } Bundle;
 
-static void look_up(const Fmu *fmu, const char *const *names, size_t count, fmi3ValueReference *references) {
+static void look_up(const Fmu *fmu, const char *const *names, size_t count, fmi3ValueReference *references)
+{
     size_t i;
     for (i = 0; i < count; ++i) {
         references[i] = fmu_reference(fmu, names[i]);
     }
 }
 
-static Bundle sensors_of(const Fmu *fmu) {
+static Bundle sensors_of(const Fmu *fmu)
+{
     Bundle bundle = {{0}, {0}, {0}, COUNT(sensed_reals), COUNT(sensed_integers), COUNT(sensed_booleans)};
     look_up(fmu, sensed_reals, bundle.real_count, bundle.reals);
     look_up(fmu, sensed_integers, bundle.integer_count, bundle.integers);
@@ -45,7 +52,8 @@ static Bundle sensors_of(const Fmu *fmu) {
     return bundle;
 }
 
-static Bundle commands_of(const Fmu *fmu) {
+static Bundle commands_of(const Fmu *fmu)
+{
     Bundle bundle = {{0}, {0}, {0}, COUNT(commanded_reals), 0, COUNT(commanded_booleans)};
     look_up(fmu, commanded_reals, bundle.real_count, bundle.reals);
     look_up(fmu, commanded_booleans, bundle.boolean_count, bundle.booleans);
@@ -53,7 +61,8 @@ static Bundle commands_of(const Fmu *fmu) {
 }
 
 /* Hands a bundle of outputs of one FMU to the inputs of the other. */
-static void pass(const Fmu *from, const Bundle *outputs, const Fmu *to, const Bundle *inputs) {
+static void pass(const Fmu *from, const Bundle *outputs, const Fmu *to, const Bundle *inputs)
+{
     fmi3Float64 reals[8];
     fmi3Int32 integers[4];
     fmi3Boolean booleans[1];
@@ -73,10 +82,12 @@ typedef struct {
     size_t count;
 } Recorded;
 
-static void record(const Fmu *testbed, const Recorded *recorded, double time_s) {
+static void record(const Fmu *testbed, const Recorded *recorded, double time_s)
+{
     fmi3Float64 values[MOST];
     size_t i;
-    fmu_check(testbed, testbed->get_real(testbed->instance, recorded->references, recorded->count, values, recorded->count),
+    fmu_check(testbed,
+              testbed->get_real(testbed->instance, recorded->references, recorded->count, values, recorded->count),
               "fmi3GetFloat64");
     (void)printf("%.17g", time_s);
     for (i = 0; i < recorded->count; ++i) {
@@ -85,14 +96,16 @@ static void record(const Fmu *testbed, const Recorded *recorded, double time_s) 
     (void)printf("\n");
 }
 
-static double now_s(void) {
+static double now_s(void)
+{
     struct timespec time;
     (void)clock_gettime(CLOCK_MONOTONIC, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 /* Adds what the step took to *spent_s, if that is wanted. */
-static void step(Fmu *fmu, double time_s, double *spent_s) {
+static void step(Fmu *fmu, double time_s, double *spent_s)
+{
     const double started_s = spent_s == NULL ? 0.0 : now_s();
     fmu_step(fmu, time_s, STEP_S);
     if (spent_s != NULL) {
@@ -100,9 +113,11 @@ static void step(Fmu *fmu, double time_s, double *spent_s) {
     }
 }
 
-/* One run from new instances; the order of exchange is that of fmu/README.md. `spent_s`: of controller and testbed, or null. */
+/* One run from new instances; the order of exchange is that of fmu/README.md. `spent_s`: of controller and testbed, or
+ * null. */
 static void run(Fmu *controller, Fmu *testbed, const char *const *assignments, size_t assignment_count, long steps,
-                const Recorded *recorded, double *spent_s) {
+                const Recorded *recorded, double *spent_s)
+{
     const Bundle sensors_out = sensors_of(testbed), sensors_in = sensors_of(controller);
     const Bundle commands_out = commands_of(controller), commands_in = commands_of(testbed);
     size_t i;
@@ -132,13 +147,18 @@ static void run(Fmu *controller, Fmu *testbed, const char *const *assignments, s
     fmu_free(controller);
 }
 
-static int usage(const char *what) {
-    (void)fprintf(stderr, "c_master: %s\nusage: c_master CONTROLLER TESTBED [--seconds S] [--repeat N] [--profile] [--record NAME]... "
-                          "[controller.NAME=VALUE | testbed.NAME=VALUE]...\n", what);
+static int usage(const char *what)
+{
+    (void)fprintf(
+        stderr,
+        "c_master: %s\nusage: c_master CONTROLLER TESTBED [--seconds S] [--repeat N] [--profile] [--record NAME]... "
+        "[controller.NAME=VALUE | testbed.NAME=VALUE]...\n",
+        what);
     return 2;
 }
 
-int main(int count, char **arguments) {
+int main(int count, char **arguments)
+{
     const char *assignments[MOST], *names[MOST];
     size_t assignment_count = 0;
     Recorded recorded = {{0}, 0};
@@ -201,10 +221,11 @@ int main(int count, char **arguments) {
         }
     }
     if (recorded.count == 0) {
-        (void)printf("%.3f ms for a run of %g s, the best of %ld: %.1f runs per second\n", 1e3 * best_s, seconds, repeats, 1.0 / best_s);
+        (void)printf("%.3f ms for a run of %g s, the best of %ld: %.1f runs per second\n", 1e3 * best_s, seconds,
+                     repeats, 1.0 / best_s);
         if (profiled) {
-            (void)printf("%.3f ms in the controller's steps, %.3f ms in the testbed's, the best of each\n", 1e3 * best_spent_s[0],
-                         1e3 * best_spent_s[1]);
+            (void)printf("%.3f ms in the controller's steps, %.3f ms in the testbed's, the best of each\n",
+                         1e3 * best_spent_s[0], 1e3 * best_spent_s[1]);
         }
     }
     fmu_unload(&controller);

@@ -66,17 +66,22 @@ constexpr gwb_metric_info_t metric_infos[] = {
 };
 static_assert(std::size(metric_infos) == GWB_METRIC_COUNT);
 
-int describe(std::uint32_t model, const VariableInfo* found, gwb_variable_t* variable) {
+int describe(std::uint32_t model, const VariableInfo *found, gwb_variable_t *variable) {
     if (found == nullptr || variable == nullptr) {
         return 0;
     }
-    *variable = {model,          found->reference, static_cast<std::uint32_t>(found->type),
-                 static_cast<std::uint32_t>(found->causality), found->minimum, found->maximum, found->name};
+    *variable = {model,
+                 found->reference,
+                 static_cast<std::uint32_t>(found->type),
+                 static_cast<std::uint32_t>(found->causality),
+                 found->minimum,
+                 found->maximum,
+                 found->name};
     return 1;
 }
 
 // Always 0.
-template <class Value> [[gnu::format(printf, 2, 0)]] int refuse(char* message, const char* format, Value value) {
+template <class Value> [[gnu::format(printf, 2, 0)]] int refuse(char *message, const char *format, Value value) {
     if (message != nullptr) {
         std::snprintf(message, GWB_MESSAGE_SIZE, format, value);
     }
@@ -88,11 +93,11 @@ constexpr double plant_step_min_s = 1e-6;
 constexpr double plant_step_max_s = 5e-4;
 
 // 1 if they can be used, else 0 and a message.
-int check_options(const gwb_options_t* options, char* message) {
+int check_options(const gwb_options_t *options, char *message) {
     if (options == nullptr) {
         return refuse(message, "options is a null pointer%s", "");
     }
-    const gwb_options_t& o = *options;
+    const gwb_options_t &o = *options;
     if (o.threads < 1 || o.threads > GWB_THREADS_MAX) {
         return refuse(message, "threads = %u is not allowed: [1, 1024]", o.threads);
     }
@@ -117,9 +122,9 @@ int check_options(const gwb_options_t* options, char* message) {
 // Workers take the next runs until none is left; each writes only its own runs' results, so the order in which they
 // come to it does not matter.
 struct gwb_batch final : batch::RunDone {
-    const gwb_spec_t* specs = nullptr;
+    const gwb_spec_t *specs = nullptr;
     std::size_t count = 0;
-    gwb_result_t* results = nullptr;
+    gwb_result_t *results = nullptr;
     std::uint64_t steps = 0; // of all runs
     gwb_options_t options{};
     std::size_t portion = 1; // runs that a worker takes at once
@@ -177,8 +182,8 @@ struct gwb_batch final : batch::RunDone {
 
     void done() override { runs_done.fetch_add(1, std::memory_order_release); }
 
-    static void* thread(void* self) {
-        static_cast<gwb_batch*>(self)->work();
+    static void *thread(void *self) {
+        static_cast<gwb_batch *>(self)->work();
         return nullptr;
     }
 
@@ -193,7 +198,7 @@ struct gwb_batch final : batch::RunDone {
         return thread_count > 0 || wanted == 0;
     }
 
-    void wait_until(const timespec& deadline) {
+    void wait_until(const timespec &deadline) {
         pthread_mutex_lock(&mutex);
         while (working > 0 && pthread_cond_timedwait(&finished, &mutex, &deadline) == 0) {
         }
@@ -211,27 +216,25 @@ struct gwb_batch final : batch::RunDone {
 
 extern "C" {
 
-const char* gwb_version(void) { return GWB_VERSION; }
+const char *gwb_version(void) { return GWB_VERSION; }
 
-const char* gwb_token(uint32_t model) { return model < GWB_MODEL_COUNT ? batch::info_of(model).token : nullptr; }
+const char *gwb_token(uint32_t model) { return model < GWB_MODEL_COUNT ? batch::info_of(model).token : nullptr; }
 
-size_t gwb_variable_count(uint32_t model) {
-    return model < GWB_MODEL_COUNT ? batch::info_of(model).variable_count : 0;
-}
+size_t gwb_variable_count(uint32_t model) { return model < GWB_MODEL_COUNT ? batch::info_of(model).variable_count : 0; }
 
-int gwb_variable_at(uint32_t model, size_t index, gwb_variable_t* variable) {
+int gwb_variable_at(uint32_t model, size_t index, gwb_variable_t *variable) {
     const bool exists = index < gwb_variable_count(model);
     return describe(model, exists ? &batch::info_of(model).variables[index] : nullptr, variable);
 }
 
-int gwb_find_variable(uint32_t model, const char* name, gwb_variable_t* variable) {
+int gwb_find_variable(uint32_t model, const char *name, gwb_variable_t *variable) {
     const bool possible = model < GWB_MODEL_COUNT && name != nullptr;
     return describe(model, possible ? batch::find(batch::info_of(model), name) : nullptr, variable);
 }
 
 uint32_t gwb_metric_count(void) { return GWB_METRIC_COUNT; }
 
-int gwb_metric_info(uint32_t metric, gwb_metric_info_t* info) {
+int gwb_metric_info(uint32_t metric, gwb_metric_info_t *info) {
     if (metric >= GWB_METRIC_COUNT || info == nullptr) {
         return 0;
     }
@@ -239,7 +242,7 @@ int gwb_metric_info(uint32_t metric, gwb_metric_info_t* info) {
     return 1;
 }
 
-uint32_t gwb_run(const gwb_spec_t* spec, gwb_result_t* result) {
+uint32_t gwb_run(const gwb_spec_t *spec, gwb_result_t *result) {
     if (spec == nullptr || result == nullptr) {
         return GWB_WRONG_SPEC;
     }
@@ -250,8 +253,8 @@ uint32_t gwb_run(const gwb_spec_t* spec, gwb_result_t* result) {
 
 uint32_t gwb_widest_lanes(void) { return static_cast<std::uint32_t>(batch::widest_lanes()); }
 
-int gwb_start(const gwb_spec_t* specs, size_t count, const gwb_options_t* options, gwb_result_t* results,
-              gwb_batch_t** started, char* message) {
+int gwb_start(const gwb_spec_t *specs, size_t count, const gwb_options_t *options, gwb_result_t *results,
+              gwb_batch_t **started, char *message) {
     if (message != nullptr) {
         message[0] = '\0';
     }
@@ -296,7 +299,7 @@ int gwb_start(const gwb_spec_t* specs, size_t count, const gwb_options_t* option
     return 1;
 }
 
-int gwb_wait(gwb_batch_t* running, double timeout_s, gwb_progress_t* progress) {
+int gwb_wait(gwb_batch_t *running, double timeout_s, gwb_progress_t *progress) {
     if (running == nullptr) {
         return 1;
     }
@@ -311,19 +314,18 @@ int gwb_wait(gwb_batch_t* running, double timeout_s, gwb_progress_t* progress) {
     running->wait_until(deadline);
     const std::uint64_t done = running->runs_done.load(std::memory_order_acquire);
     if (progress != nullptr) {
-        *progress = {done, running->count, running->monitor.steps_done.load(std::memory_order_relaxed),
-                     running->steps};
+        *progress = {done, running->count, running->monitor.steps_done.load(std::memory_order_relaxed), running->steps};
     }
     return done == running->count ? 1 : 0;
 }
 
-void gwb_cancel(gwb_batch_t* running) {
+void gwb_cancel(gwb_batch_t *running) {
     if (running != nullptr) {
         running->monitor.cancelled.store(true, std::memory_order_relaxed);
     }
 }
 
-void gwb_finish(gwb_batch_t* running) {
+void gwb_finish(gwb_batch_t *running) {
     gwb_cancel(running);
     delete running;
 }

@@ -82,8 +82,9 @@ enum {
     GWB_ROPE_TAUT_AT_END = 21,   /* 0 or 1 */
     GWB_EVENTS = 22,             /* 1: located by the integrator */
     /* A contact ends when no force came for 0.5 s (cosim/giveway/body_regions.py). */
-    GWB_TRANSIENT_FORCE = 23,  /* N: largest within the first 0.5 s of a contact */
-    GWB_LASTING_FORCE = 24,    /* N: largest later than 0.5 s into a contact; NaN if the run ended within 0.5 s of the first */
+    GWB_TRANSIENT_FORCE = 23, /* N: largest within the first 0.5 s of a contact */
+    GWB_LASTING_FORCE =
+        24, /* N: largest later than 0.5 s into a contact; NaN if the run ended within 0.5 s of the first */
     GWB_LONGEST_CONTACT = 25,  /* s */
     GWB_TRANSIENT_SHARE = 26,  /* 1: of the body region's transient limit; infinite where none is allowed and one was */
     GWB_LASTING_SHARE = 27,    /* 1: of the body region's lasting limit */
@@ -94,15 +95,15 @@ enum {
     GWB_RELATCH_TIME = 32,     /* ms: contact to the first of them */
     GWB_TIP_MARGIN = 33,       /* 1: least of the run; 0: a wheel lifts (on a plane), or it goes over (base.tipping) */
     /* What happened otherwise than asked (cosim/giveway/run_warnings.py). */
-    GWB_FIRST_PEAK_FORCE = 34,      /* N: largest true contact force of the first contact; GWB_PEAK_FORCE is the run's */
-    GWB_FIRST_CONTACT_X = 35,       /* mm, base frame: true point in the first row of the first contact */
-    GWB_FIRST_CONTACT_Y = 36,       /* mm */
-    GWB_ROBOT_SPEED = 37,           /* m/s: of the base in the last row before contact */
-    GWB_PLAN_DISTANCE = 38,         /* mm: largest of the reference from the plan while it tracks, up to the first reaction */
-    GWB_PLAN_ANGLE = 39,            /* deg: likewise */
-    GWB_SENSED_TORQUE_SHARE = 40,   /* 1: largest sensed torque over what counts as saturated */
-    GWB_MOTOR_TORQUE_SHARE = 41,    /* 1: largest motor torque over its limit */
-    GWB_FAULT_TIME = 42,            /* s: in the controller's mode 6, sensor fault */
+    GWB_FIRST_PEAK_FORCE = 34, /* N: largest true contact force of the first contact; GWB_PEAK_FORCE is the run's */
+    GWB_FIRST_CONTACT_X = 35,  /* mm, base frame: true point in the first row of the first contact */
+    GWB_FIRST_CONTACT_Y = 36,  /* mm */
+    GWB_ROBOT_SPEED = 37,      /* m/s: of the base in the last row before contact */
+    GWB_PLAN_DISTANCE = 38, /* mm: largest of the reference from the plan while it tracks, up to the first reaction */
+    GWB_PLAN_ANGLE = 39,    /* deg: likewise */
+    GWB_SENSED_TORQUE_SHARE = 40, /* 1: largest sensed torque over what counts as saturated */
+    GWB_MOTOR_TORQUE_SHARE = 41,  /* 1: largest motor torque over its limit */
+    GWB_FAULT_TIME = 42,          /* s: in the controller's mode 6, sensor fault */
     GWB_METRIC_COUNT = 43
 };
 
@@ -215,17 +216,18 @@ typedef struct gwb_progress {
     uint64_t steps_done, steps; /* of all runs; a run that ends early counts all of its steps */
 } gwb_progress_t;
 
-/* GWB_FIXED_STEP trades a bounded error (README.md of fmu/batch has the figures) for speed. A design gives the same bits
- * in every lane, with any number of lanes, on any thread and in any batch. Its step follows from its own parameters
- * alone; the integrator's settings (solver.*) do not act. What it cannot do is run event-exact, and the result's method
- * says so: a base that tips, a communication step that is not a whole number of servo ticks (0.5 ms), and designs so
- * stiff that their step would be below 0.5 ms / 32. */
+/* GWB_FIXED_STEP trades a bounded error (README.md of fmu/batch has the figures) for speed. A design gives the same
+ * bits in every lane, with any number of lanes, on any thread and in any batch. Its step follows from its own
+ * parameters alone; the integrator's settings (solver.*) do not act. What it cannot do is run event-exact, and the
+ * result's method says so: a base that tips, a communication step that is not a whole number of servo ticks (0.5 ms),
+ * and designs so stiff that their step would be below 0.5 ms / 32. */
 typedef struct gwb_options {
     uint32_t threads;    /* [1, GWB_THREADS_MAX]; not more than runs are started */
     uint32_t method;     /* GWB_EVENT_EXACT or GWB_FIXED_STEP */
     uint32_t lanes;      /* of GWB_FIXED_STEP: 1, 4 or 8, at most gwb_widest_lanes(); 0: these */
     uint32_t reserved;   /* 0 */
-    double plant_step_s; /* of GWB_FIXED_STEP: [1e-6, 5e-4], rounded down to a whole part of 0.5 ms; 0: as the design needs */
+    double plant_step_s; /* of GWB_FIXED_STEP: [1e-6, 5e-4], rounded down to a whole part of 0.5 ms; 0: as the design
+                            needs */
 } gwb_options_t;
 
 /* Designs that this processor computes side by side: 8 with AVX-512 (F, DQ, VL), 4 with AVX2, else 1. */

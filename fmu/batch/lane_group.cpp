@@ -32,12 +32,13 @@ int ticks_in(double step_s) {
 // One design of a group: everything of its run but the plant's motion.
 class Lane {
 public:
-    Lane(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) : run_(spec, monitor, result), ticks_per_step_(ticks_in(spec.step_s)) {
+    Lane(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result)
+        : run_(spec, monitor, result), ticks_per_step_(ticks_in(spec.step_s)) {
         testbed::set_start_values(v_);
     }
 
     // False if the run has ended already, with its message.
-    bool prepare(testbed::PlantSystem& system, const FixedStep& how) {
+    bool prepare(testbed::PlantSystem &system, const FixedStep &how) {
         if (!run_.prepare(v_) || !run_.start_controller()) {
             return false;
         }
@@ -56,20 +57,22 @@ public:
     }
 
     // What designs have to share to run side by side.
-    [[nodiscard]] auto key() const { return std::tuple(steps_per_tick_, ticks_per_step_, run_.spec().step_count, Structure(start_.parameters)); }
+    [[nodiscard]] auto key() const {
+        return std::tuple(steps_per_tick_, ticks_per_step_, run_.spec().step_count, Structure(start_.parameters));
+    }
     [[nodiscard]] bool fits() const { return steps_per_tick_ > 0; }
     [[nodiscard]] int steps_per_tick() const { return steps_per_tick_; }
     [[nodiscard]] int ticks_per_step() const { return ticks_per_step_; }
-    [[nodiscard]] const LaneStart& start() const { return start_; }
-    [[nodiscard]] RecordedRun& run() { return run_; }
-    [[nodiscard]] testbed::Variables& variables() { return v_; }
-    [[nodiscard]] testbed::Drives& drives() { return drives_; }
+    [[nodiscard]] const LaneStart &start() const { return start_; }
+    [[nodiscard]] RecordedRun &run() { return run_; }
+    [[nodiscard]] testbed::Variables &variables() { return v_; }
+    [[nodiscard]] testbed::Drives &drives() { return drives_; }
     [[nodiscard]] double stored_at_start_j() const { return stored_at_start_j_; }
 
     bool running = true;
 
 private:
-    [[nodiscard]] int choose_steps(const FixedStep& how) const {
+    [[nodiscard]] int choose_steps(const FixedStep &how) const {
         if (ticks_per_step_ == 0 || v_.base_tipping) {
             return 0;
         }
@@ -77,7 +80,8 @@ private:
             return static_cast<int>(std::ceil(tick_s / how.plant_step_s - 1e-9));
         }
         const double base_mps = std::hypot(v_.start_vx, v_.start_vy) + std::fabs(v_.start_omega) * v_.wheel_distance;
-        return lane_steps_per_tick(start_.parameters, greatest_impact_speed(start_.parameters, std::fabs(v_.slider_speed), base_mps));
+        return lane_steps_per_tick(start_.parameters,
+                                   greatest_impact_speed(start_.parameters, std::fabs(v_.slider_speed), base_mps));
     }
 
     RecordedRun run_;
@@ -92,19 +96,21 @@ private:
 // Designs side by side, from their start to the end of the last of them.
 class Group {
 public:
-    Group(LanePlant& plant, LaneNoise noise, std::array<SampleRoom, widest>& rooms, std::unique_ptr<Lane>* lanes, std::size_t count)
-        : plant_(plant), noise_(noise), rooms_(rooms), width_(static_cast<std::size_t>(plant.lanes())), lanes_(lanes), count_(count) {}
+    Group(LanePlant &plant, LaneNoise noise, std::array<SampleRoom, widest> &rooms, std::unique_ptr<Lane> *lanes,
+          std::size_t count)
+        : plant_(plant), noise_(noise), rooms_(rooms), width_(static_cast<std::size_t>(plant.lanes())), lanes_(lanes),
+          count_(count) {}
 
     void go() {
         std::array<LaneStart, widest> starts;
         for (std::size_t i = 0; i < width_; ++i) {
-            Lane& lane = *lanes_[i < count_ ? i : 0]; // spare lanes repeat the first design
+            Lane &lane = *lanes_[i < count_ ? i : 0]; // spare lanes repeat the first design
             starts[i] = lane.start();
             seeds_[i] = lane.drives().sensors().seed;
             noisy_ = noisy_ || lane.drives().sensors().torque_noise_nm > 0.0;
         }
         plant_.start(starts.data());
-        each([&](Lane& lane, std::size_t i) {
+        each([&](Lane &lane, std::size_t i) {
             if (!lane.run().begin(rooms_[i])) {
                 stop(lane);
                 return;
@@ -113,11 +119,11 @@ public:
             lane.run().result().plant_step_s = tick_s / lane.steps_per_tick();
         });
         sample();
-        each([&](Lane& lane, std::size_t i) { write_outputs(lane, i); });
+        each([&](Lane &lane, std::size_t i) { write_outputs(lane, i); });
         const std::uint32_t steps = lanes_[0]->run().spec().step_count;
         const int ticks = lanes_[0]->ticks_per_step();
         for (std::uint32_t k = 0; k <= steps && running_ > 0; ++k) {
-            each([&](Lane& lane, std::size_t) {
+            each([&](Lane &lane, std::size_t) {
                 if (!lane.run().exchange(k)) {
                     stop(lane);
                 } else if (k == steps) {
@@ -140,7 +146,7 @@ private:
         }
     }
 
-    void stop(Lane& lane) {
+    void stop(Lane &lane) {
         lane.running = false;
         --running_;
     }
@@ -148,15 +154,15 @@ private:
     // One communication step, as the testbed's.
     void step(std::uint32_t k, int ticks) {
         double push[4 * widest] = {};
-        each([&](Lane& lane, std::size_t i) {
-            const testbed::Variables& v = lane.variables();
+        each([&](Lane &lane, std::size_t i) {
+            const testbed::Variables &v = lane.variables();
             const double values[4] = {v.push_force_x, v.push_force_y, v.push_point_x, v.push_point_y};
             put(push, values, i);
         });
         plant_.set_pushes(push);
         for (int tick = 0; tick < ticks; ++tick, ++tick_) {
             double torque[3 * widest] = {};
-            each([&](Lane& lane, std::size_t i) {
+            each([&](Lane &lane, std::size_t i) {
                 if (tick_ % testbed::servo_ticks_per_cycle == 0) {
                     lane.drives().receive(testbed::bus_command(lane.variables()));
                 }
@@ -174,11 +180,12 @@ private:
                 sample();
             }
         }
-        each([&](Lane& lane, std::size_t i) {
+        each([&](Lane &lane, std::size_t i) {
             write_outputs(lane, i);
             if (!std::isfinite(lane.variables().energy_stored)) {
                 Message message{};
-                std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s", lane.run().time_s(k + 1));
+                std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s",
+                              lane.run().time_s(k + 1));
                 lane.run().model_failed(GWB_FAILED, GWB_TESTBED, message);
                 stop(lane);
                 return;
@@ -187,14 +194,14 @@ private:
         });
     }
 
-    template <class Values> void put(double* rows, const Values& values, std::size_t i) const {
+    template <class Values> void put(double *rows, const Values &values, std::size_t i) const {
         std::size_t row = 0;
         for (const double value : values) {
             rows[row++ * width_ + i] = value;
         }
     }
     // Design i's share of rows.
-    template <class Block> Block take(const double* rows, std::size_t i) const {
+    template <class Block> Block take(const double *rows, std::size_t i) const {
         static_assert(sizeof(Block) % sizeof(double) == 0);
         std::array<double, sizeof(Block) / sizeof(double)> values;
         for (std::size_t row = 0; row < values.size(); ++row) {
@@ -203,7 +210,9 @@ private:
         return std::bit_cast<Block>(values);
     }
 
-    [[nodiscard]] std::array<double, 3> motor_angles(std::size_t i) const { return take<std::array<double, 3>>(plant_.state() + plant::motor_angle * width_, i); }
+    [[nodiscard]] std::array<double, 3> motor_angles(std::size_t i) const {
+        return take<std::array<double, 3>>(plant_.state() + plant::motor_angle * width_, i);
+    }
 
     // What the sensors measure in this bus cycle.
     void sample() {
@@ -212,19 +221,21 @@ private:
             noise_(seeds_.data(), static_cast<int>(testbed::Deviates{}.size()), cycle_, drawn.data());
         }
         ++cycle_;
-        each([&](Lane& lane, std::size_t i) {
+        each([&](Lane &lane, std::size_t i) {
             using Outputs = plant::Outputs<double>;
-            const double* torque = plant_.outputs() + offsetof(Outputs, wheel_torque) / sizeof(double) * width_;
-            testbed::write_sensors(lane.variables(), lane.drives().sample(motor_angles(i), take<std::array<double, 3>>(torque, i),
-                                                                          take<testbed::Deviates>(drawn.data(), i)));
+            const double *torque = plant_.outputs() + offsetof(Outputs, wheel_torque) / sizeof(double) * width_;
+            testbed::write_sensors(lane.variables(),
+                                   lane.drives().sample(motor_angles(i), take<std::array<double, 3>>(torque, i),
+                                                        take<testbed::Deviates>(drawn.data(), i)));
         });
     }
 
-    void write_outputs(Lane& lane, std::size_t i) {
-        testbed::Variables& v = lane.variables();
+    void write_outputs(Lane &lane, std::size_t i) {
+        testbed::Variables &v = lane.variables();
         const auto state = take<plant::StateVector<double>>(plant_.state(), i);
-        testbed::write_truth(v, state.data(), take<plant::Outputs<double>>(plant_.outputs(), i), take<plant::Modes<double>>(plant_.modes(), i),
-                             lane.start().parameters, motor_torque_[i], {0.0, plant_.first_contact_s()[i]}, lane.stored_at_start_j());
+        testbed::write_truth(v, state.data(), take<plant::Outputs<double>>(plant_.outputs(), i),
+                             take<plant::Modes<double>>(plant_.modes(), i), lane.start().parameters, motor_torque_[i],
+                             {0.0, plant_.first_contact_s()[i]}, lane.stored_at_start_j());
         v.events = static_cast<std::int32_t>(plant_.events()[i]);
         v.last_event_time = plant_.last_event_s()[i];
         v.solver_steps = static_cast<std::int32_t>(tick_ * lane.steps_per_tick());
@@ -232,11 +243,11 @@ private:
         v.solver_jacobian_calls = 0;
     }
 
-    LanePlant& plant_;
+    LanePlant &plant_;
     LaneNoise noise_;
-    std::array<SampleRoom, widest>& rooms_;
+    std::array<SampleRoom, widest> &rooms_;
     std::size_t width_;
-    std::unique_ptr<Lane>* lanes_;
+    std::unique_ptr<Lane> *lanes_;
     std::size_t count_;
     std::size_t running_ = count_;
     std::int64_t tick_ = 0;
@@ -248,7 +259,7 @@ private:
 
 // What is compiled for a width.
 struct Width {
-    LanePlant* (*new_plant)();
+    LanePlant *(*new_plant)();
     LaneNoise noise;
 };
 Width width_of(int lanes) {
@@ -265,13 +276,15 @@ Width width_of(int lanes) {
 } // namespace
 
 int widest_lanes() {
-    if (__builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0) {
+    if (__builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+        __builtin_cpu_supports("avx512vl") != 0) {
         return 8;
     }
     return __builtin_cpu_supports("avx2") != 0 ? 4 : 1;
 }
 
-void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep& how, Monitor& monitor, gwb_result_t* results, RunDone& listener) {
+void run_fixed_step(const gwb_spec_t *specs, std::size_t count, const FixedStep &how, Monitor &monitor,
+                    gwb_result_t *results, RunDone &listener) {
     const Width width = width_of(how.lanes);
     const std::unique_ptr<testbed::PlantSystem> system(new (std::nothrow) testbed::PlantSystem);
     const std::unique_ptr<LanePlant> plant(width.new_plant());
@@ -294,11 +307,13 @@ void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep&
         lane.reset();
         listener.done();
     }
-    std::stable_sort(lanes.get(), lanes.get() + fitting, [](const auto& a, const auto& b) { return a->key() < b->key(); });
+    std::stable_sort(lanes.get(), lanes.get() + fitting,
+                     [](const auto &a, const auto &b) { return a->key() < b->key(); });
     std::array<SampleRoom, widest> rooms;
     for (std::size_t first = 0; first < fitting;) {
         std::size_t last = first + 1;
-        while (last < fitting && last - first < static_cast<std::size_t>(how.lanes) && lanes[last]->key() == lanes[first]->key()) {
+        while (last < fitting && last - first < static_cast<std::size_t>(how.lanes) &&
+               lanes[last]->key() == lanes[first]->key()) {
             ++last;
         }
         Group(*plant, width.noise, rooms, &lanes[first], last - first).go();

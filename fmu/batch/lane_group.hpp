@@ -16,13 +16,15 @@ struct FixedStep {
 // Widest lanes of this processor.
 int widest_lanes();
 
-// Runs `count` specs one after the other or side by side; results[i] is that of specs[i], whatever the others are. A design that cannot be
-// run over fixed steps is run event-exact. Calls done() once for each run when its result is written.
+// Runs `count` specs one after the other or side by side; results[i] is that of specs[i], whatever the others are. A
+// design that cannot be run over fixed steps is run event-exact. Calls done() once for each run when its result is
+// written.
 class RunDone {
 public:
     virtual ~RunDone() = default;
     virtual void done() = 0;
 };
-void run_fixed_step(const gwb_spec_t* specs, std::size_t count, const FixedStep& how, Monitor& monitor, gwb_result_t* results, RunDone& listener);
+void run_fixed_step(const gwb_spec_t *specs, std::size_t count, const FixedStep &how, Monitor &monitor,
+                    gwb_result_t *results, RunDone &listener);
 
 } // namespace giveway::batch

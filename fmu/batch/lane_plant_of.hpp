@@ -1,5 +1,6 @@
-// LanePlant for N lanes: the plant's equations in Lanes<N>, the classic Runge-Kutta method of order 4, modes that change at step ends.
-// Included by one file per width, compiled for the processors that have it; nothing here is to be used by code for all processors.
+// LanePlant for N lanes: the plant's equations in Lanes<N>, the classic Runge-Kutta method of order 4, modes that
+// change at step ends. Included by one file per width, compiled for the processors that have it; nothing here is to be
+// used by code for all processors.
 #pragma once
 
 #include <cstring>
@@ -10,25 +11,29 @@
 
 namespace giveway::batch {
 
-// Where a number of the first design is; those of the others follow at the distance of a whole design. In place of a scalar type it
-// makes convert() gather designs into lanes.
+// Where a number of the first design is; those of the others follow at the distance of a whole design. In place of a
+// scalar type it makes convert() gather designs into lanes.
 template <int N> struct Strided {
-    const double* first = nullptr;
+    const double *first = nullptr;
     Strided() = default;
-    explicit Strided(const double& number) : first(&number) {}
+    explicit Strided(const double &number) : first(&number) {}
 
     explicit operator math::Lanes<N>() const {
         double row[N];
         for (int i = 0; i < N; ++i) {
-            std::memcpy(&row[i], reinterpret_cast<const unsigned char*>(first) + static_cast<std::size_t>(i) * sizeof(LaneStart), sizeof(double));
+            std::memcpy(&row[i],
+                        reinterpret_cast<const unsigned char *>(first) +
+                            static_cast<std::size_t>(i) * sizeof(LaneStart),
+                        sizeof(double));
         }
         return math::Lanes<N>::load(row);
     }
 };
 
-// Contacts, stops and the rope see for themselves whether they act; their modes only report it. What a mode decides, a gear that sticks or slides and an
-// idealised latch, changes at the end of a step too, and the way the state would have gone is made up for: the instant at which the indicator was zero and
-// the state there are interpolated, the mode changes there, and the rest of the step is done again.
+// Contacts, stops and the rope see for themselves whether they act; their modes only report it. What a mode decides, a
+// gear that sticks or slides and an idealised latch, changes at the end of a step too, and the way the state would have
+// gone is made up for: the instant at which the indicator was zero and the state there are interpolated, the mode
+// changes there, and the rest of the step is done again.
 template <int N> class LanePlantOf final : public LanePlant {
     using L = math::Lanes<N>;
     using State = plant::StateVector<L>;
@@ -38,7 +43,7 @@ template <int N> class LanePlantOf final : public LanePlant {
 public:
     [[nodiscard]] int lanes() const override { return N; }
 
-    void start(const LaneStart* designs) override {
+    void start(const LaneStart *designs) override {
         p_ = plant::convert<L>(plant::convert<Strided<N>>(designs[0].parameters));
         d_ = plant::derive(p_);
         x_ = plant::detail::converted<L>(plant::detail::converted<Strided<N>>(designs[0].state));
@@ -69,16 +74,16 @@ public:
         observe();
     }
 
-    void set_motor_torques(const double* rows) override {
+    void set_motor_torques(const double *rows) override {
         for (std::size_t i = 0; i < u_.motor_torque.size(); ++i) {
             u_.motor_torque[i] = L::load(rows + i * N);
         }
         torques_are_new_ = true;
     }
 
-    void set_pushes(const double* rows) override {
-        L* const pushes[] = {&u_.push_force_x, &u_.push_force_y, &u_.push_point_x, &u_.push_point_y};
-        for (L* const push : pushes) {
+    void set_pushes(const double *rows) override {
+        L *const pushes[] = {&u_.push_force_x, &u_.push_force_y, &u_.push_point_x, &u_.push_point_y};
+        for (L *const push : pushes) {
             evaluated_ = evaluated_ && std::memcmp(push, rows, sizeof *push) == 0;
             *push = L::load(rows);
             rows += N;
@@ -88,7 +93,7 @@ public:
     [[gnu::flatten]] void advance(int count, double step_s) override {
         const double start_s = now_s_;
         for (int step = 1; step <= count; ++step) {
-            const Evaluation& e = settled();
+            const Evaluation &e = settled();
             before_ = x_;
             rate_before_ = e.rate;
             indicators_before_ = plant::event_indicators(e, x_, m_, p_, d_);
@@ -102,31 +107,33 @@ public:
 
     [[gnu::flatten]] void observe() override { outputs_ = plant::outputs(settled(), x_, p_, d_); }
 
-    [[nodiscard]] const double* state() const override { return rows(x_); }
-    [[nodiscard]] const double* modes() const override { return rows(m_); }
-    [[nodiscard]] const double* outputs() const override { return rows(outputs_); }
-    [[nodiscard]] const double* first_contact_s() const override { return rows(first_contact_); }
-    [[nodiscard]] const double* events() const override { return rows(events_); }
-    [[nodiscard]] const double* last_event_s() const override { return rows(last_event_); }
+    [[nodiscard]] const double *state() const override { return rows(x_); }
+    [[nodiscard]] const double *modes() const override { return rows(m_); }
+    [[nodiscard]] const double *outputs() const override { return rows(outputs_); }
+    [[nodiscard]] const double *first_contact_s() const override { return rows(first_contact_); }
+    [[nodiscard]] const double *events() const override { return rows(events_); }
+    [[nodiscard]] const double *last_event_s() const override { return rows(last_event_); }
 
 private:
-    template <class Block> static const double* rows(const Block& block) { return reinterpret_cast<const double*>(&block); }
+    template <class Block> static const double *rows(const Block &block) {
+        return reinterpret_cast<const double *>(&block);
+    }
 
     // Not inlined, so that all who need it share one copy in the instruction cache.
-    [[gnu::noinline, gnu::flatten]] void evaluate(Evaluation& e, const State& x, const plant::Inputs<L>& u) {
+    [[gnu::noinline, gnu::flatten]] void evaluate(Evaluation &e, const State &x, const plant::Inputs<L> &u) {
         there_.gear_direction = m_.gear_direction;
         there_.latched = m_.latched;
         plant::evaluate_into(e, x, u, there_, p_, d_);
     }
 
     // One step of the classic Runge-Kutta method from x, where the rate is `rate`, to `next`.
-    void move(State& next, const State& x, const State& rate, L step_s, const plant::Inputs<L>& u) {
+    void move(State &next, const State &x, const State &rate, L step_s, const plant::Inputs<L> &u) {
         const L sixth = L(1.0 / 6.0) * step_s;
         const L third = L(1.0 / 3.0) * step_s;
         const L half = L(0.5) * step_s;
         State reached;
         const L reaches[] = {half, half, step_s};
-        const State* from = &rate;
+        const State *from = &rate;
         for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
             for (std::size_t i = 0; i < x.size(); ++i) {
                 reached[i] = x[i] + reaches[stage] * (*from)[i];
@@ -135,12 +142,14 @@ private:
             from = &stages_[stage].rate;
         }
         for (std::size_t i = 0; i < x.size(); ++i) {
-            next[i] = (((x[i] + sixth * rate[i]) + third * stages_[0].rate[i]) + third * stages_[1].rate[i]) + sixth * stages_[2].rate[i];
+            next[i] = (((x[i] + sixth * rate[i]) + third * stages_[0].rate[i]) + third * stages_[1].rate[i]) +
+                      sixth * stages_[2].rate[i];
         }
     }
 
-    // Everything at the present state and inputs, after the mode changes that are due. A lane in which none is due keeps its bits.
-    const Evaluation& settled() {
+    // Everything at the present state and inputs, after the mode changes that are due. A lane in which none is due
+    // keeps its bits.
+    const Evaluation &settled() {
         if (!evaluated_) {
             evaluate(present_, x_, u_);
             evaluated_ = true;
@@ -169,9 +178,10 @@ private:
         return present_;
     }
 
-    // What the last step has led to. True if that changed the state or what decides, so that present_ has to be found again.
+    // What the last step has led to. True if that changed the state or what decides, so that present_ has to be found
+    // again.
     bool change_modes() {
-        Evaluation& end = present_;
+        Evaluation &end = present_;
         const L zero(0.0);
         const L one(1.0);
         // The gears with the torques that acted during the step.
@@ -183,7 +193,9 @@ private:
 
         // What only reports.
         Events reported{};
-        const auto follow = [&](int event, L mode) { reported[event] = math::select(math::less(zero, g[event]), one, zero) - mode; };
+        const auto follow = [&](int event, L mode) {
+            reported[event] = math::select(math::less(zero, g[event]), one, zero) - mode;
+        };
         follow(plant::event_contact, m_.contact);
         follow(plant::event_rope, m_.rope_taut);
         follow(plant::event_bottom_stop, m_.bottom_stop);
@@ -193,7 +205,8 @@ private:
             follow(plant::event_end_stop, one - m_.end_stop);
         }
         // What decides.
-        constexpr int deciding[] = {plant::event_gear, plant::event_gear + 1, plant::event_gear + 2, plant::event_end_stop};
+        constexpr int deciding[] = {plant::event_gear, plant::event_gear + 1, plant::event_gear + 2,
+                                    plant::event_end_stop};
         const int deciding_count = plant::bumper_holds(p_) ? 4 : 3;
         L lowest = zero;
         for (int k = 0; k < deciding_count; ++k) {
@@ -201,7 +214,7 @@ private:
         }
         const auto decided = math::less(lowest, zero);
         L changes = math::select(decided, one, zero);
-        for (const L& change : reported) {
+        for (const L &change : reported) {
             changes = changes + math::abs(change);
         }
         const auto changed = math::less(zero, changes);
@@ -226,7 +239,8 @@ private:
         const L met = math::select(math::less(zero, reported[plant::event_contact]), touched, first_contact_);
         first_contact_ = math::select(math::less(first_contact_, zero), met, first_contact_);
         events_ = events_ + math::select(changed, one, zero);
-        last_event_ = math::select(changed, math::select(decided, L(before_s) + L(last_step_s_) * first, L(now_s_)), last_event_);
+        last_event_ =
+            math::select(changed, math::select(decided, L(before_s) + L(last_step_s_) * first, L(now_s_)), last_event_);
         State as_it_is = x_; // nothing jumps where modes only report
         plant::planar_transition(end, as_it_is, m_, reported, p_, d_);
         if (!any(decided)) {
@@ -242,7 +256,7 @@ private:
     }
 
     // Takes the lanes in which something was decided back to `share` of the last step and forth again with new modes.
-    template <class Mask> void redo(L share, Mask decided, const Events& fired) {
+    template <class Mask> void redo(L share, Mask decided, const Events &fired) {
         const L step(last_step_s_);
         const L part = math::select(decided, share, L(0.0));
         State x;
@@ -271,8 +285,8 @@ private:
     L first_contact_, events_, last_event_;
     double now_s_ = 0.0;
     std::array<Evaluation, 3> stages_{}; // on the way to the end of a step
-    Evaluation restart_{}; // where a step is taken up again
-    Evaluation present_{}; // at x_, u_ and m_, if
+    Evaluation restart_{};               // where a step is taken up again
+    Evaluation present_{};               // at x_, u_ and m_, if
     bool evaluated_ = false;
     bool torques_are_new_ = false;
     // The last step: its length (0 once its mode changes were made), its beginning, and the inputs during it.

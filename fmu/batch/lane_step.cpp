@@ -9,8 +9,9 @@ namespace giveway::batch {
 
 namespace {
 
-// Of a step: a vibration turns by at most this angle, and what decays on its own does so by at most this exponent. The classic Runge-Kutta method is
-// stable up to 2.8; these are its accuracy's bounds, from the comparison with the event-exact method (README.md).
+// Of a step: a vibration turns by at most this angle, and what decays on its own does so by at most this exponent. The
+// classic Runge-Kutta method is stable up to 2.8; these are its accuracy's bounds, from the comparison with the
+// event-exact method (README.md).
 constexpr double greatest_angle = 0.2;
 constexpr double greatest_decay = 0.6;
 
@@ -29,7 +30,7 @@ private:
 double together(double a, double b) { return 1.0 / (1.0 / a + 1.0 / b); }
 
 // Slider, bumper, contact, rope and wall.
-void slider(Stiffest& s, const plant::Parameters<double>& p, double v) {
+void slider(Stiffest &s, const plant::Parameters<double> &p, double v) {
     const bool plate = p.has_plate();
     const double carriage = plate && !p.plate_on_robot() ? p.slider_mass - p.bumper_plate_mass : p.slider_mass;
     const double nose = plate && !p.plate_on_robot() ? p.bumper_plate_mass : p.slider_mass; // what meets the robot
@@ -45,14 +46,17 @@ void slider(Stiffest& s, const plant::Parameters<double>& p, double v) {
         s.vibration(plant::with_bumper_law(p, [&](auto law) { return law.greatest_stiffness(p); }), guided);
         s.vibration(p.bumper_stop_stiffness, guided);
         s.decay(p.bumper_damping + p.bumper_guide_friction / p.bumper_guide_friction_speed, guided);
-        s.decay(p.bumper_stop_stiffness * p.bumper_stop_damping * v * std::sqrt(guided / p.bumper_stop_stiffness), guided);
+        s.decay(p.bumper_stop_stiffness * p.bumper_stop_damping * v * std::sqrt(guided / p.bumper_stop_stiffness),
+                guided);
     }
     if (p.rope_attached != 0) {
         const double pulled = together(carriage, p.rope_hanging_mass);
         s.vibration(p.rope_stiffness, pulled);
         s.decay(p.rope_damping, pulled);
         s.vibration(p.rope_floor_stiffness, p.rope_hanging_mass);
-        s.decay(p.rope_floor_stiffness * p.rope_floor_damping * v * std::sqrt(p.rope_hanging_mass / p.rope_floor_stiffness), p.rope_hanging_mass);
+        s.decay(p.rope_floor_stiffness * p.rope_floor_damping * v *
+                    std::sqrt(p.rope_hanging_mass / p.rope_floor_stiffness),
+                p.rope_hanging_mass);
     }
     if (p.wall_present != 0) {
         s.vibration(p.wall_stiffness, carriage);
@@ -62,7 +66,7 @@ void slider(Stiffest& s, const plant::Parameters<double>& p, double v) {
 
 } // namespace
 
-double greatest_impact_speed(const plant::Parameters<double>& p, double slider_speed_mps, double base_speed_mps) {
+double greatest_impact_speed(const plant::Parameters<double> &p, double slider_speed_mps, double base_speed_mps) {
     double square = slider_speed_mps * slider_speed_mps;
     if (p.rope_attached != 0) {
         const double fall = std::clamp(p.slider_run_up, 0.0, p.rope_drop_height);
@@ -71,7 +75,7 @@ double greatest_impact_speed(const plant::Parameters<double>& p, double slider_s
     return std::sqrt(square) + base_speed_mps;
 }
 
-int lane_steps_per_tick(const plant::Parameters<double>& p, double impact_speed_mps) {
+int lane_steps_per_tick(const plant::Parameters<double> &p, double impact_speed_mps) {
     Stiffest s;
     const double v = impact_speed_mps;
     // Wheels: drivetrain between motor and base, rollers under the base. A wheel's share of the base is a third.

@@ -9,9 +9,9 @@ namespace giveway::batch {
 inline constexpr int lane_steps[] = {1, 2, 4, 8, 16, 32};
 
 // 0 if even the shortest step is too long. `impact_speed_mps`: at which the slider may hit.
-int lane_steps_per_tick(const plant::Parameters<double>& p, double impact_speed_mps);
+int lane_steps_per_tick(const plant::Parameters<double> &p, double impact_speed_mps);
 
 // The fastest that the slider can get before it hits: by its own speed and the hanging weight.
-double greatest_impact_speed(const plant::Parameters<double>& p, double slider_speed_mps, double base_speed_mps);
+double greatest_impact_speed(const plant::Parameters<double> &p, double slider_speed_mps, double base_speed_mps);
 
 } // namespace giveway::batch

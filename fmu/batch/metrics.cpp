@@ -15,7 +15,7 @@ namespace {
 constexpr double peak_window_s = 0.35;
 constexpr double loaded_share = 0.5;
 constexpr double cause_window_s = 0.25;
-constexpr double transient_s = 0.5; // of a contact; what lasts longer is quasi-static
+constexpr double transient_s = 0.5;   // of a contact; what lasts longer is quasi-static
 constexpr double contact_gap_s = 0.1; // touches less than this apart are one contact
 constexpr int mode_tracking = 1;
 constexpr int mode_fault = 6;
@@ -43,8 +43,8 @@ double wrapped(double deg) { return deg + 180.0 - 360.0 * std::floor((deg + 180.
 
 class Collision {
 public:
-    Collision(const Sample* samples, std::size_t count, const MetricParameters& parameters, double* value,
-              double* truth)
+    Collision(const Sample *samples, std::size_t count, const MetricParameters &parameters, double *value,
+              double *truth)
         : s_(samples), count_(count), parameters_(parameters), value_(value), truth_(truth) {
         std::fill_n(value_, GWB_METRIC_COUNT, std::numeric_limits<double>::quiet_NaN());
         std::fill_n(truth_, GWB_METRIC_COUNT, std::numeric_limits<double>::quiet_NaN());
@@ -77,7 +77,7 @@ public:
     }
 
 private:
-    [[nodiscard]] const Sample& last() const { return s_[count_ - 1]; }
+    [[nodiscard]] const Sample &last() const { return s_[count_ - 1]; }
     // One past the last row from contact to detection.
     [[nodiscard]] std::size_t detection_end() const { return detected_ == none ? count_ : detected_ + 1; }
 
@@ -110,7 +110,7 @@ private:
         int detections = 0;
         double touched_s = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < count_; ++i) {
-            const Sample& s = s_[i];
+            const Sample &s = s_[i];
             peak_force = std::max(peak_force, s.contact_force);
             travel = std::max(travel, s.bumper_compression);
             least_stored = std::min(least_stored, s.energy_stored);
@@ -151,7 +151,7 @@ private:
         double began_s = -std::numeric_limits<double>::infinity();
         double touched_s = began_s;
         for (std::size_t i = 0; i < count_; ++i) {
-            const Sample& s = s_[i];
+            const Sample &s = s_[i];
             if (!(s.contact_force > 0.0)) {
                 continue;
             }
@@ -161,7 +161,7 @@ private:
             touched_s = s.time_s;
             const double since_s = s.time_s - began_s;
             longest = std::max(longest, since_s);
-            double& largest = since_s <= transient_s ? transient : lasting;
+            double &largest = since_s <= transient_s ? transient : lasting;
             largest = std::max(largest, s.contact_force);
         }
         const bool known = !hit_ || last().time_s - s_[std::min(start_, count_ - 1)].time_s > transient_s;
@@ -178,8 +178,8 @@ private:
         }
     }
 
-    // On a plane: how far the centre of pressure of the wheels' loads is from the nearest line between two of them. It follows from the base's
-    // acceleration, the horizontal forces and their heights.
+    // On a plane: how far the centre of pressure of the wheels' loads is from the nearest line between two of them. It
+    // follows from the base's acceleration, the horizontal forces and their heights.
     void tip_margin() {
         double least = 1.0;
         for (std::size_t i = parameters_.tipping ? 0 : 1; i < count_; ++i) {
@@ -189,11 +189,12 @@ private:
     }
 
     // Over a row: mean acceleration, mean contact force, the push that acted.
-    [[nodiscard]] double standing_margin(const Sample& a, const Sample& b) const {
-        const MetricParameters& p = parameters_;
+    [[nodiscard]] double standing_margin(const Sample &a, const Sample &b) const {
+        const MetricParameters &p = parameters_;
         const double step_s = b.time_s - a.time_s;
         const auto reach = [&](double push, double force_a, double force_b, double va, double vb) {
-            const double moment = p.contact_height_m * 0.5 * (force_a + force_b) + p.push_height_m * push - p.com_height_m * p.mass_kg * (vb - va) / step_s;
+            const double moment = p.contact_height_m * 0.5 * (force_a + force_b) + p.push_height_m * push -
+                                  p.com_height_m * p.mass_kg * (vb - va) / step_s;
             return moment / (p.mass_kg * gravity_mps2);
         };
         const Vector pressure = to_base({reach(a.push_force_x, a.contact_force_x, b.contact_force_x, a.vx, b.vx),
@@ -251,7 +252,7 @@ private:
         int faulty = 0;
         bool reacted = false;
         for (std::size_t i = 0; i < count_; ++i) {
-            const Sample& s = s_[i];
+            const Sample &s = s_[i];
             for (int wheel = 0; wheel < 3; ++wheel) {
                 sensed = std::max(sensed, std::fabs(s.sensed_torque[wheel]));
                 motor = std::max(motor, std::fabs(s.motor_torque[wheel]));
@@ -290,8 +291,8 @@ private:
 
     // Of the nose relative to the base, from this row to the next.
     [[nodiscard]] double nose_speed(std::size_t row) const {
-        const Sample& a = s_[row];
-        const Sample& b = s_[row + 1];
+        const Sample &a = s_[row];
+        const Sample &b = s_[row + 1];
         const double step_s = b.time_s - a.time_s;
         return Vector{(b.nose_x - a.nose_x) / step_s - b.vx, (b.nose_y - a.nose_y) / step_s - b.vy}.length();
     }
@@ -305,16 +306,16 @@ private:
 
     // Impulse of the contact up to detection, base frame at detection.
     [[nodiscard]] Vector true_impulse() const {
-        const Sample& s = detected_ == none ? last() : s_[detected_];
+        const Sample &s = detected_ == none ? last() : s_[detected_];
         return to_base({s.contact_impulse_x, s.contact_impulse_y}, s.theta);
     }
 
     // Where it was hit, base frame: mean up to detection, weighted by the force. False if there was no force.
-    bool true_point(Vector& point) const {
+    bool true_point(Vector &point) const {
         double weight = 0.0;
         point = {0.0, 0.0};
         for (std::size_t i = start_; i < detection_end(); ++i) {
-            const Sample& s = s_[i];
+            const Sample &s = s_[i];
             weight += s.contact_force;
             point.x += s.contact_force * s.contact_base_x;
             point.y += s.contact_force * s.contact_base_y;
@@ -366,7 +367,7 @@ private:
     }
 
     void at_detection() {
-        const Sample& s = s_[detected_];
+        const Sample &s = s_[detected_];
         set(GWB_DETECTION_TIME, 1e3 * (s.time_s - contact_s_));
 
         const Vector impulse = true_impulse();
@@ -387,8 +388,7 @@ private:
         const double step_s = s_[1].time_s - s_[0].time_s;
         const double rows = std::max(1.0, math::round(parameters_.estimate_window_s / step_s));
         const std::size_t available = detected_ + 1;
-        const std::size_t window =
-            rows < static_cast<double>(available) ? static_cast<std::size_t>(rows) : available;
+        const std::size_t window = rows < static_cast<double>(available) ? static_cast<std::size_t>(rows) : available;
         Vector mean{0.0, 0.0};
         for (std::size_t i = available - window; i < available; ++i) {
             const Vector force = to_base({s_[i].contact_force_x, s_[i].contact_force_y}, s_[i].theta);
@@ -411,16 +411,16 @@ private:
         while (row > 0 && s_[row].detection_count <= s_[row - 1].detection_count) {
             --row;
         }
-        const Sample& s = s_[row];
+        const Sample &s = s_[row];
         set(GWB_ESCAPE, Vector{last().reference_x - s.reference_x, last().reference_y - s.reference_y}.length(),
             Vector{last().x - s.x, last().y - s.y}.length());
     }
 
-    const Sample* s_;
+    const Sample *s_;
     std::size_t count_;
-    const MetricParameters& parameters_;
-    double* value_;
-    double* truth_;
+    const MetricParameters &parameters_;
+    double *value_;
+    double *truth_;
     double contact_s_ = -1.0;
     bool hit_ = false;
     std::size_t start_ = 0; // first row at or after contact
@@ -429,8 +429,8 @@ private:
 
 } // namespace
 
-void evaluate(const Sample* samples, std::size_t count, const MetricParameters& parameters, double* value,
-              double* truth) {
+void evaluate(const Sample *samples, std::size_t count, const MetricParameters &parameters, double *value,
+              double *truth) {
     Collision(samples, count, parameters, value, truth).all();
 }
 

@@ -45,7 +45,7 @@ struct MetricParameters {
 };
 
 // Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least two samples.
-void evaluate(const Sample* samples, std::size_t count, const MetricParameters& parameters, double* value,
-              double* truth);
+void evaluate(const Sample *samples, std::size_t count, const MetricParameters &parameters, double *value,
+              double *truth);
 
 } // namespace giveway::batch

@@ -2,8 +2,8 @@
 
 namespace giveway::batch {
 
-void store(const VariableInfo& variable, unsigned char* variables, double value) {
-    unsigned char* place = variables + variable.offset;
+void store(const VariableInfo &variable, unsigned char *variables, double value) {
+    unsigned char *place = variables + variable.offset;
     if (variable.type == VariableType::real) {
         std::memcpy(place, &value, sizeof value);
     } else if (variable.type == VariableType::integer) {

@@ -13,12 +13,12 @@
 
 namespace giveway::batch {
 
-inline const ModelInfo& info_of(std::uint32_t model) {
+inline const ModelInfo &info_of(std::uint32_t model) {
     return model == GWB_CONTROLLER ? controller::model_info() : testbed::model_info();
 }
 
 // Null if the model has no such variable.
-inline const VariableInfo* find(const ModelInfo& info, std::uint32_t reference) {
+inline const VariableInfo *find(const ModelInfo &info, std::uint32_t reference) {
     std::size_t first = 0;
     std::size_t last = info.variable_count;
     while (first < last) {
@@ -33,7 +33,7 @@ inline const VariableInfo* find(const ModelInfo& info, std::uint32_t reference) 
     return found ? &info.variables[first] : nullptr;
 }
 
-inline const VariableInfo* find(const ModelInfo& info, const char* name) {
+inline const VariableInfo *find(const ModelInfo &info, const char *name) {
     for (std::size_t i = 0; i < info.variable_count; ++i) {
         if (std::strcmp(info.variables[i].name, name) == 0) {
             return &info.variables[i];
@@ -55,7 +55,7 @@ inline std::size_t size_of(VariableType type) {
 }
 
 // True if an importer of the FMU could set this value: of the type, in range, and finite unless the table allows else.
-inline bool allowed(const VariableInfo& variable, double value) {
+inline bool allowed(const VariableInfo &variable, double value) {
     if (!std::isfinite(value)) {
         return variable.type == VariableType::real && variable.allow_nonfinite;
     }
@@ -77,7 +77,7 @@ inline bool allowed(const VariableInfo& variable, double value) {
 }
 
 // The variable of this type that lies at `place`.
-inline double load(VariableType type, const unsigned char* place) {
+inline double load(VariableType type, const unsigned char *place) {
     if (type == VariableType::real) {
         double value = 0.0;
         std::memcpy(&value, place, sizeof value);
@@ -94,6 +94,6 @@ inline double load(VariableType type, const unsigned char* place) {
 }
 
 // `value` is allowed.
-void store(const VariableInfo& variable, unsigned char* variables, double value);
+void store(const VariableInfo &variable, unsigned char *variables, double value);
 
 } // namespace giveway::batch

@@ -18,7 +18,7 @@ constexpr double limit_max_n = 1e9;
 
 } // namespace
 
-void clear(gwb_result_t& result) {
+void clear(gwb_result_t &result) {
     result = {};
     result.model = GWB_NONE;
     result.reference = GWB_NONE;
@@ -29,18 +29,19 @@ void clear(gwb_result_t& result) {
     std::fill_n(result.truth, GWB_METRIC_COUNT, nan);
 }
 
-RecordedRun::RecordedRun(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) : spec_(spec), monitor_(monitor), result_(result) {
+RecordedRun::RecordedRun(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result)
+    : spec_(spec), monitor_(monitor), result_(result) {
     clear(result);
 }
 
 RecordedRun::~RecordedRun() { monitor_.steps_done.fetch_add(spec_.step_count - reported_, std::memory_order_relaxed); }
 
-bool RecordedRun::prepare(testbed::Variables& testbed) {
-    variables_[GWB_TESTBED] = reinterpret_cast<unsigned char*>(&testbed);
+bool RecordedRun::prepare(testbed::Variables &testbed) {
+    variables_[GWB_TESTBED] = reinterpret_cast<unsigned char *>(&testbed);
     return check_spec() && create() && apply_settings();
 }
 
-bool RecordedRun::end(std::uint32_t status, const char* format, ...) {
+bool RecordedRun::end(std::uint32_t status, const char *format, ...) {
     result_.status = status;
     std::va_list arguments;
     va_start(arguments, format);
@@ -49,23 +50,22 @@ bool RecordedRun::end(std::uint32_t status, const char* format, ...) {
     return false;
 }
 
-bool RecordedRun::model_failed(std::uint32_t status, std::uint32_t model, Message& message) {
+bool RecordedRun::model_failed(std::uint32_t status, std::uint32_t model, Message &message) {
     message.text[sizeof message.text - 1] = '\0';
     result_.model = model;
     const bool silent = message.text[0] == '\0';
-    return end(status, "%s: %s", info_of(model).name,
-               silent ? "the model failed without a message" : message.text);
+    return end(status, "%s: %s", info_of(model).name, silent ? "the model failed without a message" : message.text);
 }
 
 // `where` comes before the variable's name, e.g. "plan, row 3: ".
-bool RecordedRun::refuse_value(std::uint32_t status, const char* where, std::uint32_t model, const VariableInfo& variable,
-                  double value) {
+bool RecordedRun::refuse_value(std::uint32_t status, const char *where, std::uint32_t model,
+                               const VariableInfo &variable, double value) {
     result_.model = model;
     result_.reference = variable.reference;
     result_.value = value;
     result_.minimum = variable.type == VariableType::boolean ? 0.0 : variable.minimum;
     result_.maximum = variable.type == VariableType::boolean ? 1.0 : variable.maximum;
-    const char* kind = variable.type == VariableType::real ? "finite" : "a whole number";
+    const char *kind = variable.type == VariableType::real ? "finite" : "a whole number";
     return end(status, "%s%s.%s = %.17g is not allowed: %s and in [%.17g, %.17g]", where, info_of(model).name,
                variable.name, value, kind, result_.minimum, result_.maximum);
 }
@@ -76,8 +76,8 @@ bool RecordedRun::check_spec() {
                    GWB_STEP_MAX_S);
     }
     if (spec_.step_count < 1 || spec_.step_count > GWB_STEP_COUNT_MAX) {
-        return end(GWB_WRONG_SPEC, "step_count = %u is not allowed: [1, %d]",
-                   static_cast<unsigned>(spec_.step_count), GWB_STEP_COUNT_MAX);
+        return end(GWB_WRONG_SPEC, "step_count = %u is not allowed: [1, %d]", static_cast<unsigned>(spec_.step_count),
+                   GWB_STEP_COUNT_MAX);
     }
     if (spec_.push_rows > 0 && spec_.push_rows <= spec_.step_count) {
         return end(GWB_WRONG_SPEC, "push_rows = %u is not allowed: 0, or at least step_count + 1 = %u",
@@ -86,18 +86,19 @@ bool RecordedRun::check_spec() {
     const double limits[] = {spec_.transient_limit_n, spec_.lasting_limit_n};
     for (std::size_t i = 0; i < std::size(limits); ++i) {
         if (!(limits[i] >= 0.0 && limits[i] <= limit_max_n)) {
-            return end(GWB_WRONG_SPEC, "%s = %.17g is not allowed: [0, %g] N", i == 0 ? "transient_limit_n" : "lasting_limit_n", limits[i], limit_max_n);
+            return end(GWB_WRONG_SPEC, "%s = %.17g is not allowed: [0, %g] N",
+                       i == 0 ? "transient_limit_n" : "lasting_limit_n", limits[i], limit_max_n);
         }
     }
     const struct {
-        const char* name;
+        const char *name;
         std::uint32_t count;
         bool missing;
     } arrays[] = {{"settings", spec_.setting_count, spec_.settings == nullptr},
                   {"plan", spec_.plan_rows, spec_.plan == nullptr},
                   {"push", spec_.push_rows, spec_.push == nullptr},
                   {"columns", spec_.column_count, spec_.columns == nullptr}};
-    for (const auto& array : arrays) {
+    for (const auto &array : arrays) {
         if (array.missing && array.count > 0) {
             return end(GWB_WRONG_SPEC, "%s is a null pointer, but its count is %u", array.name,
                        static_cast<unsigned>(array.count));
@@ -107,7 +108,8 @@ bool RecordedRun::check_spec() {
            check_table("push", push_inputs(), spec_.push, spec_.push_rows);
 }
 
-template <class Inputs> bool RecordedRun::check_table(const char* name, const Inputs& inputs, const double* table, std::uint32_t rows) {
+template <class Inputs>
+bool RecordedRun::check_table(const char *name, const Inputs &inputs, const double *table, std::uint32_t rows) {
     constexpr std::size_t N = std::tuple_size_v<decltype(inputs.column)>;
     for (std::size_t row = 0; row < rows; ++row) {
         for (std::size_t column = 0; column < N; ++column) {
@@ -123,13 +125,14 @@ template <class Inputs> bool RecordedRun::check_table(const char* name, const In
 }
 
 // The variable of entry `index` of an array of the spec; null, with the run ended, if there is none.
-const VariableInfo* RecordedRun::lookup(const char* array, std::uint32_t index, std::uint32_t model, std::uint32_t reference) {
+const VariableInfo *RecordedRun::lookup(const char *array, std::uint32_t index, std::uint32_t model,
+                                        std::uint32_t reference) {
     if (model >= GWB_MODEL_COUNT) {
         end(GWB_WRONG_SPEC, "%s[%u].model = %u is not allowed: %d (controller) or %d (testbed)", array,
             static_cast<unsigned>(index), static_cast<unsigned>(model), GWB_CONTROLLER, GWB_TESTBED);
         return nullptr;
     }
-    const VariableInfo* variable = find(info_of(model), reference);
+    const VariableInfo *variable = find(info_of(model), reference);
     if (variable == nullptr) {
         result_.model = model;
         end(GWB_WRONG_SPEC, "%s[%u].reference = %u is not allowed: the %s has no such variable", array,
@@ -140,15 +143,15 @@ const VariableInfo* RecordedRun::lookup(const char* array, std::uint32_t index, 
 
 bool RecordedRun::check_columns() {
     for (std::uint32_t i = 0; i < spec_.column_count; ++i) {
-        const gwb_column_t& column = spec_.columns[i];
-        const VariableInfo* variable = lookup("columns", i, column.model, column.reference);
+        const gwb_column_t &column = spec_.columns[i];
+        const VariableInfo *variable = lookup("columns", i, column.model, column.reference);
         if (variable == nullptr) {
             return false;
         }
         if (variable->causality != Causality::input && variable->causality != Causality::output) {
             result_.model = column.model;
-            return end(GWB_WRONG_SPEC, "columns[%u]: %s.%s is neither an input nor an output",
-                       static_cast<unsigned>(i), info_of(column.model).name, variable->name);
+            return end(GWB_WRONG_SPEC, "columns[%u]: %s.%s is neither an input nor an output", static_cast<unsigned>(i),
+                       info_of(column.model).name, variable->name);
         }
         if (column.values == nullptr) {
             return end(GWB_WRONG_SPEC, "columns[%u].values is a null pointer", static_cast<unsigned>(i));
@@ -163,19 +166,20 @@ bool RecordedRun::create() {
     if (controller_ == nullptr || recorders_ == nullptr) {
         return end(GWB_NO_MEMORY, "no memory for a run of %u steps", static_cast<unsigned>(spec_.step_count));
     }
-    variables_[GWB_CONTROLLER] = static_cast<unsigned char*>(controller_->variables());
+    variables_[GWB_CONTROLLER] = static_cast<unsigned char *>(controller_->variables());
     for (std::uint32_t i = 0; i < spec_.column_count; ++i) {
-        const gwb_column_t& column = spec_.columns[i];
-        const VariableInfo& variable = *find(info_of(column.model), column.reference);
-        recorders_[i] = {variables_[column.model] + variable.offset, static_cast<unsigned char*>(column.values), size_of(variable.type)};
+        const gwb_column_t &column = spec_.columns[i];
+        const VariableInfo &variable = *find(info_of(column.model), column.reference);
+        recorders_[i] = {variables_[column.model] + variable.offset, static_cast<unsigned char *>(column.values),
+                         size_of(variable.type)};
     }
     return true;
 }
 
 bool RecordedRun::apply_settings() {
     for (std::uint32_t i = 0; i < spec_.setting_count; ++i) {
-        const gwb_setting_t& setting = spec_.settings[i];
-        const VariableInfo* variable = lookup("settings", i, setting.model, setting.reference);
+        const gwb_setting_t &setting = spec_.settings[i];
+        const VariableInfo *variable = lookup("settings", i, setting.model, setting.reference);
         if (variable == nullptr) {
             return false;
         }
@@ -198,20 +202,21 @@ bool RecordedRun::start_controller() {
     return controller_->initialise(0.0, message) == Status::ok || model_failed(GWB_REFUSED, GWB_CONTROLLER, message);
 }
 
-bool RecordedRun::begin(SampleRoom& room) {
+bool RecordedRun::begin(SampleRoom &room) {
     samples_ = room.of(std::size_t{spec_.step_count} + 1);
-    return samples_ != nullptr || end(GWB_NO_MEMORY, "no memory for a run of %u steps", static_cast<unsigned>(spec_.step_count));
+    return samples_ != nullptr ||
+           end(GWB_NO_MEMORY, "no memory for a run of %u steps", static_cast<unsigned>(spec_.step_count));
 }
 
-bool RecordedRun::pass(const Links& links, std::uint32_t receiver) {
+bool RecordedRun::pass(const Links &links, std::uint32_t receiver) {
     double value = nan;
-    const VariableInfo* refused = links.pass(variables_.data(), value);
+    const VariableInfo *refused = links.pass(variables_.data(), value);
     return refused == nullptr || refuse_value(GWB_FAILED, "", receiver, *refused, value);
 }
 
 // The exchange order is part of the definition of a run: see fmu/README.md and cosim/giveway/master.py.
 bool RecordedRun::exchange(std::uint32_t step) {
-    const auto& decided = *reinterpret_cast<const controller::Variables*>(variables_[GWB_CONTROLLER]);
+    const auto &decided = *reinterpret_cast<const controller::Variables *>(variables_[GWB_CONTROLLER]);
     const double now_s = time_s(step);
     result_.time_s = now_s;
     if (monitor_.cancelled.load(std::memory_order_relaxed)) {
@@ -236,19 +241,20 @@ bool RecordedRun::exchange(std::uint32_t step) {
     }
     record(step, now_s);
     if (spec_.plan_rows > 0) {
-        path_row_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(decided.path_ticks, 0, std::int64_t{spec_.plan_rows} - 1));
+        path_row_ = static_cast<std::uint32_t>(
+            std::clamp<std::int64_t>(decided.path_ticks, 0, std::int64_t{spec_.plan_rows} - 1));
     }
     return true;
 }
 
 void RecordedRun::record(std::uint32_t k, double now_s) {
     for (std::uint32_t i = 0; i < spec_.column_count; ++i) {
-        const Recorder& r = recorders_[i];
+        const Recorder &r = recorders_[i];
         std::memcpy(r.to + k * r.size, r.from, r.size);
     }
-    const auto& t = *reinterpret_cast<const testbed::Variables*>(variables_[GWB_TESTBED]);
-    const auto& c = *reinterpret_cast<const controller::Variables*>(variables_[GWB_CONTROLLER]);
-    Sample& s = samples_[k];
+    const auto &t = *reinterpret_cast<const testbed::Variables *>(variables_[GWB_TESTBED]);
+    const auto &c = *reinterpret_cast<const controller::Variables *>(variables_[GWB_CONTROLLER]);
+    Sample &s = samples_[k];
     s.time_s = now_s;
     s.x = t.truth_x;
     s.y = t.truth_y;
@@ -299,13 +305,22 @@ void RecordedRun::record(std::uint32_t k, double now_s) {
 }
 
 void RecordedRun::judge() {
-    const auto& t = *reinterpret_cast<const testbed::Variables*>(variables_[GWB_TESTBED]);
-    const auto& c = *reinterpret_cast<const controller::Variables*>(variables_[GWB_CONTROLLER]);
-    const MetricParameters parameters{t.wheel_radius, t.wheel_distance,
-                                          static_cast<double>(c.estimator_average_window) * c.controller_period,
-                                          t.bumper_kind != 0, t.bumper_travel, t.base_tipping, t.base_mass, t.base_com_height, t.contact_height,
-                                          t.push_height, spec_.transient_limit_n, spec_.lasting_limit_n,
-                                          std::min(t.electronics_torque_range, c.sensor_check_torque_limit), t.drivetrain_torque_limit};
+    const auto &t = *reinterpret_cast<const testbed::Variables *>(variables_[GWB_TESTBED]);
+    const auto &c = *reinterpret_cast<const controller::Variables *>(variables_[GWB_CONTROLLER]);
+    const MetricParameters parameters{t.wheel_radius,
+                                      t.wheel_distance,
+                                      static_cast<double>(c.estimator_average_window) * c.controller_period,
+                                      t.bumper_kind != 0,
+                                      t.bumper_travel,
+                                      t.base_tipping,
+                                      t.base_mass,
+                                      t.base_com_height,
+                                      t.contact_height,
+                                      t.push_height,
+                                      spec_.transient_limit_n,
+                                      spec_.lasting_limit_n,
+                                      std::min(t.electronics_torque_range, c.sensor_check_torque_limit),
+                                      t.drivetrain_torque_limit};
     evaluate(samples_, result_.rows, parameters, result_.metric, result_.truth);
 }
 

@@ -1,4 +1,5 @@
-// One run around its plant: checks and settings, the controller, the exchange with the plant's variables, traces and metrics.
+// One run around its plant: checks and settings, the controller, the exchange with the plant's variables, traces and
+// metrics.
 #pragma once
 
 #include <array>
@@ -12,13 +13,14 @@
 namespace giveway::batch {
 
 // Writes all of `result`, as of a run that has not started.
-void clear(gwb_result_t& result);
+void clear(gwb_result_t &result);
 
-// Memory for the samples of one run after the other: fresh pages for each would cost a twentieth of a run over fixed steps.
+// Memory for the samples of one run after the other: fresh pages for each would cost a twentieth of a run over fixed
+// steps.
 class SampleRoom {
 public:
     // Null when memory is short.
-    Sample* of(std::size_t count) {
+    Sample *of(std::size_t count) {
         if (count > count_) {
             samples_.reset(new (std::nothrow) Sample[count]);
             count_ = samples_ != nullptr ? count : 0;
@@ -33,17 +35,17 @@ private:
 
 class RecordedRun {
 public:
-    RecordedRun(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result);
+    RecordedRun(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result);
     ~RecordedRun(); // counts all steps as done
-    RecordedRun(const RecordedRun&) = delete;
-    RecordedRun& operator=(const RecordedRun&) = delete;
+    RecordedRun(const RecordedRun &) = delete;
+    RecordedRun &operator=(const RecordedRun &) = delete;
 
     // In this order. Each is false if the run ended with a message.
     // Checks the spec, makes the controller and applies the settings to it and to the testbed's variables.
-    bool prepare(testbed::Variables& testbed);
+    bool prepare(testbed::Variables &testbed);
     bool start_controller();
     // What is recorded lies in `room`, which is this run's alone until judge().
-    bool begin(SampleRoom& room);
+    bool begin(SampleRoom &room);
     // At every step 0 .. step_count: sensors, plan, controller, commands, push, record.
     bool exchange(std::uint32_t step);
     // After a step of the plant to `step`.
@@ -54,36 +56,38 @@ public:
     // Another goes on with this run and counts its steps.
     void hand_over() { reported_ = spec_.step_count; }
     // Ends the run with a message; always false.
-    [[gnu::format(printf, 3, 4)]] bool end(std::uint32_t status, const char* format, ...);
-    bool model_failed(std::uint32_t status, std::uint32_t model, Message& message);
+    [[gnu::format(printf, 3, 4)]] bool end(std::uint32_t status, const char *format, ...);
+    bool model_failed(std::uint32_t status, std::uint32_t model, Message &message);
 
-    [[nodiscard]] const gwb_spec_t& spec() const { return spec_; }
-    [[nodiscard]] gwb_result_t& result() { return result_; }
+    [[nodiscard]] const gwb_spec_t &spec() const { return spec_; }
+    [[nodiscard]] gwb_result_t &result() { return result_; }
     [[nodiscard]] double time_s(std::uint32_t step) const { return static_cast<double>(step) * spec_.step_s; }
 
 private:
     struct Recorder {
-        const unsigned char* from;
-        unsigned char* to;
+        const unsigned char *from;
+        unsigned char *to;
         std::size_t size;
     };
 
-    bool refuse_value(std::uint32_t status, const char* where, std::uint32_t model, const VariableInfo& variable, double value);
+    bool refuse_value(std::uint32_t status, const char *where, std::uint32_t model, const VariableInfo &variable,
+                      double value);
     bool check_spec();
-    template <class Inputs> bool check_table(const char* name, const Inputs& inputs, const double* table, std::uint32_t rows);
-    const VariableInfo* lookup(const char* array, std::uint32_t index, std::uint32_t model, std::uint32_t reference);
+    template <class Inputs>
+    bool check_table(const char *name, const Inputs &inputs, const double *table, std::uint32_t rows);
+    const VariableInfo *lookup(const char *array, std::uint32_t index, std::uint32_t model, std::uint32_t reference);
     bool check_columns();
     bool create();
     bool apply_settings();
-    bool pass(const class Links& links, std::uint32_t receiver);
+    bool pass(const class Links &links, std::uint32_t receiver);
     void record(std::uint32_t k, double now_s);
 
-    const gwb_spec_t& spec_;
-    Monitor& monitor_;
-    gwb_result_t& result_;
+    const gwb_spec_t &spec_;
+    Monitor &monitor_;
+    gwb_result_t &result_;
     std::unique_ptr<Model> controller_;
-    std::array<unsigned char*, GWB_MODEL_COUNT> variables_{};
-    Sample* samples_ = nullptr;
+    std::array<unsigned char *, GWB_MODEL_COUNT> variables_{};
+    Sample *samples_ = nullptr;
     std::unique_ptr<Recorder[]> recorders_;
     std::uint32_t path_row_ = 0;
     std::uint32_t reported_ = 0; // steps counted as done

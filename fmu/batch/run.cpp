@@ -7,7 +7,7 @@
 
 namespace giveway::batch {
 
-void run(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) {
+void run(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result) {
     RecordedRun recorded(spec, monitor, result);
     const std::unique_ptr<Model> plant(testbed::create_model());
     if (plant == nullptr) {
@@ -15,7 +15,7 @@ void run(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) {
         return;
     }
     Message message{};
-    if (!recorded.prepare(*static_cast<testbed::Variables*>(plant->variables())) || !recorded.start_controller()) {
+    if (!recorded.prepare(*static_cast<testbed::Variables *>(plant->variables())) || !recorded.start_controller()) {
         return;
     }
     if (plant->initialise(0.0, message) != Status::ok) {
@@ -39,7 +39,7 @@ void run(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result) {
     }
 }
 
-void never_started(gwb_result_t& result) {
+void never_started(gwb_result_t &result) {
     clear(result);
     result.status = GWB_CANCELLED;
     std::snprintf(result.message, sizeof result.message, "cancelled before the start");

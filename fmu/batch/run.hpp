@@ -15,9 +15,9 @@ struct Monitor {
 };
 
 // Writes all of `result`. A run that ends early counts all of its steps as done.
-void run(const gwb_spec_t& spec, Monitor& monitor, gwb_result_t& result);
+void run(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result);
 
 // Marks a run that never started.
-void never_started(gwb_result_t& result);
+void never_started(gwb_result_t &result);
 
 } // namespace giveway::batch

@@ -14,7 +14,7 @@ template <int N> struct Dual {
 
     Dual() : value(0.0), derivative{} {}
     explicit Dual(double constant) : value(constant), derivative{} {}
-    Dual(double v, const std::array<double, N>& d) : value(v), derivative(d) {}
+    Dual(double v, const std::array<double, N> &d) : value(v), derivative(d) {}
     // The variable that direction `index` differentiates by.
     static Dual variable(double v, int index) {
         Dual a(v);
@@ -22,7 +22,7 @@ template <int N> struct Dual {
         return a;
     }
 
-    friend Dual operator+(const Dual& a, const Dual& b) {
+    friend Dual operator+(const Dual &a, const Dual &b) {
         Dual c;
         c.value = a.value + b.value;
         for (std::size_t i = 0; i < N; ++i) {
@@ -30,7 +30,7 @@ template <int N> struct Dual {
         }
         return c;
     }
-    friend Dual operator-(const Dual& a, const Dual& b) {
+    friend Dual operator-(const Dual &a, const Dual &b) {
         Dual c;
         c.value = a.value - b.value;
         for (std::size_t i = 0; i < N; ++i) {
@@ -38,7 +38,7 @@ template <int N> struct Dual {
         }
         return c;
     }
-    friend Dual operator*(const Dual& a, const Dual& b) {
+    friend Dual operator*(const Dual &a, const Dual &b) {
         Dual c;
         c.value = a.value * b.value;
         for (std::size_t i = 0; i < N; ++i) {
@@ -46,7 +46,7 @@ template <int N> struct Dual {
         }
         return c;
     }
-    friend Dual operator/(const Dual& a, const Dual& b) {
+    friend Dual operator/(const Dual &a, const Dual &b) {
         Dual c;
         c.value = a.value / b.value;
         const double inverse = 1.0 / b.value;
@@ -60,7 +60,7 @@ template <int N> struct Dual {
 namespace detail {
 
 // f(a), given f and f' at a's value.
-template <int N> Dual<N> chain(double value, double slope, const Dual<N>& a) {
+template <int N> Dual<N> chain(double value, double slope, const Dual<N> &a) {
     Dual<N> c;
     c.value = value;
     for (std::size_t i = 0; i < N; ++i) {
@@ -71,34 +71,37 @@ template <int N> Dual<N> chain(double value, double slope, const Dual<N>& a) {
 
 } // namespace detail
 
-template <int N> Mask less(const Dual<N>& a, const Dual<N>& b) { return a.value < b.value; }
-template <int N> Dual<N> select(Mask mask, const Dual<N>& if_true, const Dual<N>& if_false) { return mask ? if_true : if_false; }
+template <int N> Mask less(const Dual<N> &a, const Dual<N> &b) { return a.value < b.value; }
+template <int N> Dual<N> select(Mask mask, const Dual<N> &if_true, const Dual<N> &if_false) {
+    return mask ? if_true : if_false;
+}
 // At a tie the second argument's derivative, as the value's.
-template <int N> Dual<N> min(const Dual<N>& a, const Dual<N>& b) { return a.value < b.value ? a : b; }
-template <int N> Dual<N> max(const Dual<N>& a, const Dual<N>& b) { return a.value > b.value ? a : b; }
+template <int N> Dual<N> min(const Dual<N> &a, const Dual<N> &b) { return a.value < b.value ? a : b; }
+template <int N> Dual<N> max(const Dual<N> &a, const Dual<N> &b) { return a.value > b.value ? a : b; }
 // 0 has the derivative from the right.
-template <int N> Dual<N> abs(const Dual<N>& a) { return detail::chain(abs(a.value), a.value < 0.0 ? -1.0 : 1.0, a); }
-// At 0 the derivative is infinite. It is given as 0: a distance that vanishes stays usable, and infinity would turn into NaN with the next product.
-template <int N> Dual<N> sqrt(const Dual<N>& a) {
+template <int N> Dual<N> abs(const Dual<N> &a) { return detail::chain(abs(a.value), a.value < 0.0 ? -1.0 : 1.0, a); }
+// At 0 the derivative is infinite. It is given as 0: a distance that vanishes stays usable, and infinity would turn
+// into NaN with the next product.
+template <int N> Dual<N> sqrt(const Dual<N> &a) {
     const double root = sqrt(a.value);
     return detail::chain(root, root > 0.0 ? 0.5 / root : 0.0, a);
 }
-template <int N> Dual<N> round(const Dual<N>& a) { return Dual<N>(round(a.value)); }
+template <int N> Dual<N> round(const Dual<N> &a) { return Dual<N>(round(a.value)); }
 
 // Where exp and expm1 clamp their argument, they are constant.
-template <int N> Dual<N> exp(const Dual<N>& a) {
+template <int N> Dual<N> exp(const Dual<N> &a) {
     const double e = exp(a.value);
     return detail::chain(e, detail::exp_minimum < a.value && a.value < detail::exp_maximum ? e : 0.0, a);
 }
-template <int N> Dual<N> expm1(const Dual<N>& a) {
+template <int N> Dual<N> expm1(const Dual<N> &a) {
     const double e = expm1(a.value);
     return detail::chain(e, detail::exp_minimum < a.value && a.value < detail::exp_maximum ? e + 1.0 : 0.0, a);
 }
-template <int N> Dual<N> tanh(const Dual<N>& a) {
+template <int N> Dual<N> tanh(const Dual<N> &a) {
     const double t = tanh(a.value);
     return detail::chain(t, (1.0 - t) * (1.0 + t), a);
 }
-template <int N> SinCos<Dual<N>> sincos(const Dual<N>& a) {
+template <int N> SinCos<Dual<N>> sincos(const Dual<N> &a) {
     const auto [sin, cos] = sincos(a.value);
     return {detail::chain(sin, cos, a), detail::chain(cos, -sin, a)};
 }

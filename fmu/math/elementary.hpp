@@ -100,6 +100,6 @@ template <class T> SinCos<T> sincos(T a) {
 }
 
 // Of the base's heading, which lanes have their own for.
-template <class T> SinCos<T> heading(const T& a) { return sincos(a); }
+template <class T> SinCos<T> heading(const T &a) { return sincos(a); }
 
 } // namespace giveway::math

@@ -1,6 +1,6 @@
 // N designs side by side: a scalar type of the plant that computes N of them at once, with gcc's vector types.
-// Every operation is exact or correctly rounded in each lane, so a design gets the same bits in every lane and in every width.
-// 4 lanes need a file compiled for AVX2, 8 lanes one for AVX-512; 1 lane is for any processor.
+// Every operation is exact or correctly rounded in each lane, so a design gets the same bits in every lane and in every
+// width. 4 lanes need a file compiled for AVX2, 8 lanes one for AVX-512; 1 lane is for any processor.
 #pragma once
 
 #include <bit>
@@ -26,7 +26,8 @@ template <> struct LaneRegister<1> {
     static bool any(Bits a) { return a != 0; }
     // Of the low halves; so for the others.
     static Bits multiply_words(Bits a, Bits b) {
-        return static_cast<Bits>((static_cast<std::uint64_t>(a) & 0xFFFFFFFFU) * (static_cast<std::uint64_t>(b) & 0xFFFFFFFFU));
+        return static_cast<Bits>((static_cast<std::uint64_t>(a) & 0xFFFFFFFFU) *
+                                 (static_cast<std::uint64_t>(b) & 0xFFFFFFFFU));
     }
 };
 #if defined(__AVX2__)
@@ -37,7 +38,9 @@ template <> struct LaneRegister<4> {
     static Numbers max(Numbers a, Numbers b) { return _mm256_max_pd(a, b); }
     static Numbers sqrt(Numbers a) { return _mm256_sqrt_pd(a); }
     static bool any(Bits a) { return _mm256_movemask_pd(_mm256_castsi256_pd(std::bit_cast<__m256i>(a))) != 0; }
-    static Bits multiply_words(Bits a, Bits b) { return std::bit_cast<Bits>(_mm256_mul_epu32(std::bit_cast<__m256i>(a), std::bit_cast<__m256i>(b))); }
+    static Bits multiply_words(Bits a, Bits b) {
+        return std::bit_cast<Bits>(_mm256_mul_epu32(std::bit_cast<__m256i>(a), std::bit_cast<__m256i>(b)));
+    }
 };
 #endif
 #if defined(__AVX512F__)
@@ -75,12 +78,12 @@ template <int N> struct Lanes {
         return a;
     }
     // From and to N numbers of any alignment.
-    static Lanes load(const double* from) {
+    static Lanes load(const double *from) {
         Lanes a;
         __builtin_memcpy(&a.value, from, sizeof a.value);
         return a;
     }
-    void store(double* to) const { __builtin_memcpy(to, &value, sizeof value); }
+    void store(double *to) const { __builtin_memcpy(to, &value, sizeof value); }
 
     friend Lanes operator+(Lanes a, Lanes b) { return of(a.value + b.value); }
     friend Lanes operator-(Lanes a, Lanes b) { return of(a.value - b.value); }
@@ -94,7 +97,7 @@ template <int N> struct LaneDivisor {
     LaneDivisor() : LaneDivisor(Lanes<N>(1.0)) {}
     LaneDivisor(Lanes<N> a) : value(a), inverse(Lanes<N>(1.0) / a) {}
     operator Lanes<N>() const { return value; }
-    friend Lanes<N> operator/(Lanes<N> a, const LaneDivisor& b) { return a * b.inverse; }
+    friend Lanes<N> operator/(Lanes<N> a, const LaneDivisor &b) { return a * b.inverse; }
 };
 template <int N> struct DivisorOf<Lanes<N>> {
     using Type = LaneDivisor<N>;
@@ -104,8 +107,12 @@ template <int N> LaneMask<N> less(Lanes<N> a, Lanes<N> b) { return {a.value < b.
 template <int N> Lanes<N> select(LaneMask<N> mask, Lanes<N> if_true, Lanes<N> if_false) {
     return Lanes<N>::of(mask.bits ? if_true.value : if_false.value);
 }
-template <int N> Lanes<N> min(Lanes<N> a, Lanes<N> b) { return Lanes<N>::of(Lanes<N>::Register::min(a.value, b.value)); }
-template <int N> Lanes<N> max(Lanes<N> a, Lanes<N> b) { return Lanes<N>::of(Lanes<N>::Register::max(a.value, b.value)); }
+template <int N> Lanes<N> min(Lanes<N> a, Lanes<N> b) {
+    return Lanes<N>::of(Lanes<N>::Register::min(a.value, b.value));
+}
+template <int N> Lanes<N> max(Lanes<N> a, Lanes<N> b) {
+    return Lanes<N>::of(Lanes<N>::Register::max(a.value, b.value));
+}
 template <int N> Lanes<N> sqrt(Lanes<N> a) { return Lanes<N>::of(Lanes<N>::Register::sqrt(a.value)); }
 template <int N> Lanes<N> abs(Lanes<N> a) {
     using L = Lanes<N>;
@@ -117,7 +124,9 @@ template <int N, class Of> Lanes<N> where(LaneMask<N> needed, Of of) {
     return any(needed) ? select(needed, of(), Lanes<N>(0.0)) : Lanes<N>(0.0);
 }
 
-template <int N> Lanes<N> acting(Lanes<N> mode, Lanes<N> depth) { return select(less(Lanes<N>(0.0), depth), mode, Lanes<N>(0.0)); }
+template <int N> Lanes<N> acting(Lanes<N> mode, Lanes<N> depth) {
+    return select(less(Lanes<N>(0.0), depth), mode, Lanes<N>(0.0));
+}
 
 // Nearest integer (ties to even) for |a| < 2^51, as for double.
 template <int N> Lanes<N> round(Lanes<N> a) {
@@ -136,7 +145,8 @@ template <int N> Lanes<N> exp2_integer(Lanes<N> k) {
 template <int N> Split<Lanes<N>> split(Lanes<N> a) {
     using L = Lanes<N>;
     const auto bits = std::bit_cast<typename L::Bits>(a.value);
-    const L exponent = L::of(std::bit_cast<typename L::Numbers>((bits >> 52) | 0x4330000000000000LL)) - L(0x1p52 + 1023.0);
+    const L exponent =
+        L::of(std::bit_cast<typename L::Numbers>((bits >> 52) | 0x4330000000000000LL)) - L(0x1p52 + 1023.0);
     return {exponent, L::of(std::bit_cast<typename L::Numbers>((bits & 0x000FFFFFFFFFFFFFLL) | 0x3FF0000000000000LL))};
 }
 

@@ -1,5 +1,6 @@
-// exp and tanh of lanes, which the plant asks for nine times in every stage of a step: to 1e-11 in place of the last place, a thousandth of
-// what the steps themselves are off by, at half the operations and a quarter of the latency of those in elementary.hpp.
+// exp and tanh of lanes, which the plant asks for nine times in every stage of a step: to 1e-11 in place of the last
+// place, a thousandth of what the steps themselves are off by, at half the operations and a quarter of the latency of
+// those in elementary.hpp.
 #pragma once
 
 #include "elementary.hpp"
@@ -9,16 +10,19 @@ namespace giveway::math {
 
 namespace detail {
 
-// 2^a for |a| <= 1022: a whole number for the exponent, and a polynomial for what is left in [-1/2, 1/2], summed in pairs because a long chain of
-// operations is what such a function costs. (2^f - 1) / f through eight Chebyshev points: exact at 0, elsewhere off by less than 3e-12.
+// 2^a for |a| <= 1022: a whole number for the exponent, and a polynomial for what is left in [-1/2, 1/2], summed in
+// pairs because a long chain of operations is what such a function costs. (2^f - 1) / f through eight Chebyshev points:
+// exact at 0, elsewhere off by less than 3e-12.
 template <int N> Lanes<N> exp2(Lanes<N> a) {
     using L = Lanes<N>;
     const L shift(6755399441055744.0); // 1.5 * 2^52: the sum carries the whole number in its lowest bits
     const L sum = a + shift;
     const L f = a - (sum - shift);
     const L f2 = f * f;
-    const L low = (L(0.6931471805568324) + L(0.24022650695888503) * f) + (L(0.055504109063258665) + L(0.00961812913523617) * f) * f2;
-    const L high = (L(0.0013333478473685394) + L(0.0001540347518650017) * f) + (L(1.5303700711372768e-05) + L(1.3250805525666974e-06) * f) * f2;
+    const L low = (L(0.6931471805568324) + L(0.24022650695888503) * f) +
+                  (L(0.055504109063258665) + L(0.00961812913523617) * f) * f2;
+    const L high = (L(0.0013333478473685394) + L(0.0001540347518650017) * f) +
+                   (L(1.5303700711372768e-05) + L(1.3250805525666974e-06) * f) * f2;
     const L power = L(1.0) + f * (low + high * (f2 * f2));
     const auto exponent = std::bit_cast<typename L::Bits>(sum.value) << 52;
     return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<typename L::Bits>(power.value) + exponent));
@@ -41,22 +45,28 @@ template <int N> Lanes<N> tanh(Lanes<N> a) {
 }
 
 // To 4e-13, for |a| < 1e5 rad; sincos() itself has to give noise the bits that it has for double.
-template <int N> SinCos<Lanes<N>> heading(const Lanes<N>& a) {
+template <int N> SinCos<Lanes<N>> heading(const Lanes<N> &a) {
     using L = Lanes<N>;
     using Bits = typename L::Bits;
     const L shift(6755399441055744.0);
     const L sum = a * L(0.63661977236758134) + shift; // the quadrant in its lowest bits
     const L n = sum - shift;
-    const L r = (a - n * L(0x1.921fb54400000p+0)) - n * L(0x1.0b4611a626331p-34); // pi/2 in two parts, the first with trailing zero bits
+    const L r = (a - n * L(0x1.921fb54400000p+0)) -
+                n * L(0x1.0b4611a626331p-34); // pi/2 in two parts, the first with trailing zero bits
     const L r2 = r * r;
     const L r4 = r2 * r2;
-    const L s = (L(-1.0 / 6.0) + L(1.0 / 120.0) * r2) + ((L(-1.0 / 5040.0) + L(1.0 / 362880.0) * r2) + (L(-1.0 / 39916800.0) + L(1.0 / 6227020800.0) * r2) * r4) * r4;
-    const L c = (L(1.0 / 24.0) - L(1.0 / 720.0) * r2) + ((L(1.0 / 40320.0) - L(1.0 / 3628800.0) * r2) + L(1.0 / 479001600.0) * r4) * r4;
+    const L s =
+        (L(-1.0 / 6.0) + L(1.0 / 120.0) * r2) +
+        ((L(-1.0 / 5040.0) + L(1.0 / 362880.0) * r2) + (L(-1.0 / 39916800.0) + L(1.0 / 6227020800.0) * r2) * r4) * r4;
+    const L c = (L(1.0 / 24.0) - L(1.0 / 720.0) * r2) +
+                ((L(1.0 / 40320.0) - L(1.0 / 3628800.0) * r2) + L(1.0 / 479001600.0) * r4) * r4;
     const L sin = r + (r * r2) * s;
     const L cos = (L(1.0) - L(0.5) * r2) + r4 * c;
     const auto quadrant = std::bit_cast<Bits>(sum.value);
     const LaneMask<N> odd{quadrant & 1};
-    const auto negated = [](L b, Bits twos) { return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<Bits>(b.value) ^ ((twos & 2) << 62))); };
+    const auto negated = [](L b, Bits twos) {
+        return L::of(std::bit_cast<typename L::Numbers>(std::bit_cast<Bits>(b.value) ^ ((twos & 2) << 62)));
+    };
     return {negated(select(odd, cos, sin), quadrant), negated(select(odd, sin, cos), quadrant + 1)};
 }
 

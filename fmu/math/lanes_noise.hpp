@@ -9,7 +9,9 @@ namespace giveway::math {
 namespace detail {
 
 // A word is the low half of its lane; what the high half holds is never looked at.
-template <int N> std::array<typename Lanes<N>::Bits, 4> philox4x32_words(std::array<typename Lanes<N>::Bits, 4> counter, std::array<typename Lanes<N>::Bits, 2> key) {
+template <int N>
+std::array<typename Lanes<N>::Bits, 4> philox4x32_words(std::array<typename Lanes<N>::Bits, 4> counter,
+                                                        std::array<typename Lanes<N>::Bits, 2> key) {
     using Register = typename Lanes<N>::Register;
     using Bits = typename Lanes<N>::Bits;
     const Bits none{};
@@ -35,9 +37,10 @@ template <int N> Lanes<N> open_unit(typename Lanes<N>::Bits word) {
 template <int N> Lanes<N> normal(typename Lanes<N>::Bits seeds, std::uint32_t channel, std::uint64_t tick) {
     using Bits = typename Lanes<N>::Bits;
     const Bits none{};
-    const auto words = detail::philox4x32_words<N>({none + static_cast<std::int64_t>(tick & 0xFFFFFFFFU), none + static_cast<std::int64_t>(tick >> 32U),
-                                                     none + static_cast<std::int64_t>(channel), none},
-                                                    {seeds, none + std::int64_t{detail::noise_key}});
+    const auto words = detail::philox4x32_words<N>({none + static_cast<std::int64_t>(tick & 0xFFFFFFFFU),
+                                                    none + static_cast<std::int64_t>(tick >> 32U),
+                                                    none + static_cast<std::int64_t>(channel), none},
+                                                   {seeds, none + std::int64_t{detail::noise_key}});
     return detail::box_muller(detail::open_unit<N>(words[0]), detail::open_unit<N>(words[1]));
 }
 

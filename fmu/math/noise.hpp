@@ -13,8 +13,9 @@ inline std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> coun
     for (int round = 0; round < 10; ++round) {
         const std::uint64_t product0 = 0xD2511F53ULL * counter[0];
         const std::uint64_t product1 = 0xCD9E8D57ULL * counter[2];
-        counter = {static_cast<std::uint32_t>(product1 >> 32U) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(product1),
-                   static_cast<std::uint32_t>(product0 >> 32U) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(product0)};
+        counter = {
+            static_cast<std::uint32_t>(product1 >> 32U) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(product1),
+            static_cast<std::uint32_t>(product0 >> 32U) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(product0)};
         key[0] += 0x9E3779B9U;
         key[1] += 0xBB67AE85U;
     }
@@ -30,7 +31,8 @@ template <class T> T log(T a) {
     const T s = (m - T(1.0)) / (m + T(1.0)); // |s| < 0.1716
     const T s2 = s * s;
     // 1/n as constants: the loop would divide.
-    constexpr double inverse[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0};
+    constexpr double inverse[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0,
+                                  1.0 / 9.0,  1.0 / 7.0,  1.0 / 5.0,  1.0 / 3.0,  1.0};
     T p(1.0 / 21.0);
     for (const double coefficient : inverse) {
         p = p * s2 + T(coefficient);
@@ -49,7 +51,9 @@ template <class T> T box_muller(T u1, T u2) { return sqrt(T(-2.0) * log(u1)) * s
 
 // Standard normal deviate.
 inline double normal(std::uint32_t seed, std::uint32_t channel, std::uint64_t tick) {
-    const auto words = philox4x32({static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32U), channel, 0U}, {seed, detail::noise_key});
+    const auto words =
+        philox4x32({static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32U), channel, 0U},
+                   {seed, detail::noise_key});
     const double u1 = (static_cast<double>(words[0]) + 0.5) * 0x1p-32; // in (0, 1)
     const double u2 = (static_cast<double>(words[1]) + 0.5) * 0x1p-32;
     return detail::box_muller(u1, u2);

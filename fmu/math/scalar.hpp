@@ -36,7 +36,8 @@ template <class T> struct Split {
 };
 inline Split<double> split(double a) {
     const auto bits = std::bit_cast<std::uint64_t>(a);
-    return {static_cast<double>(static_cast<std::int64_t>(bits >> 52U) - 1023), std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL)};
+    return {static_cast<double>(static_cast<std::int64_t>(bits >> 52U) - 1023),
+            std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL)};
 }
 
 // What a constant that others are divided by is kept as: lanes keep its inverse, which costs a fraction.
@@ -48,14 +49,12 @@ template <class T> using Divisor = typename DivisorOf<T>::Type;
 template <class T> T clamp(T a, T low, T high) { return max(low, min(a, high)); }
 
 // -1, 0 or +1.
-template <class T> T sign(T a) {
-    return select(less(T(0.0), a), T(1.0), select(less(a, T(0.0)), T(-1.0), T(0.0)));
-}
+template <class T> T sign(T a) { return select(less(T(0.0), a), T(1.0), select(less(a, T(0.0)), T(-1.0), T(0.0))); }
 
 template <class T> T square(T a) { return a * a; }
 
-// Whether a one-sided element (contact, stop, rope) acts, 1 or 0: by its mode, which an integrator with root finding keeps on the right side
-// of depth = 0. Lanes, which have no root finding, also ask the depth.
+// Whether a one-sided element (contact, stop, rope) acts, 1 or 0: by its mode, which an integrator with root finding
+// keeps on the right side of depth = 0. Lanes, which have no root finding, also ask the depth.
 template <class T> T acting(T mode, T) { return mode; }
 
 // of(), which counts only where `needed`. Lanes leave it out where no design needs it, and have 0 where one does not.

@@ -17,7 +17,7 @@ struct ExchangedEvents {
 };
 
 template <class Variables>
-[[nodiscard]] solver::IntegratorOptions solver_options(const Variables& v, double start_time_s) {
+[[nodiscard]] solver::IntegratorOptions solver_options(const Variables &v, double start_time_s) {
     solver::IntegratorOptions options{
         .relative_tolerance = v.solver_relative_tolerance,
         .absolute_tolerance_scale = v.solver_absolute_scale,
@@ -31,17 +31,18 @@ template <class Variables>
 }
 
 // The integrator's error as the model's.
-[[nodiscard]] inline Status failure(const solver::HybridIntegrator& integrator, Message& message) {
+[[nodiscard]] inline Status failure(const solver::HybridIntegrator &integrator, Message &message) {
     std::snprintf(message.text, sizeof message.text, "%s", integrator.error());
     return Status::error;
 }
 
 // Makes every transition that is due now_s after the start. False if they follow each other without end.
-[[nodiscard]] inline bool settle_events(ExchangeableSystem& system, double now_s, double* states, double start_time_s, ExchangedEvents& events,
-                                        EventUpdate& update, Message& message) {
+[[nodiscard]] inline bool settle_events(ExchangeableSystem &system, double now_s, double *states, double start_time_s,
+                                        ExchangedEvents &events, EventUpdate &update, Message &message) {
     const int count = settle(system, now_s, states);
     if (count == too_many_events) {
-        std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s", start_time_s + now_s);
+        std::snprintf(message.text, sizeof message.text, "events follow each other without end at t = %.9g s",
+                      start_time_s + now_s);
         return false;
     }
     if (count > 0) {
@@ -53,7 +54,8 @@ template <class Variables>
 }
 
 template <class Variables>
-void write_statistics(Variables& v, const solver::HybridIntegrator& integrator, const ExchangedEvents& events, double start_time_s) {
+void write_statistics(Variables &v, const solver::HybridIntegrator &integrator, const ExchangedEvents &events,
+                      double start_time_s) {
     const auto statistics = integrator.statistics(); // nothing in Model Exchange
     const double last_event_s = events.count > 0 ? events.last_s : integrator.last_event_time();
     v.events = static_cast<std::int32_t>(statistics.events) + events.count;

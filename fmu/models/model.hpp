@@ -19,9 +19,9 @@ struct VariableInfo {
     const char *name;
     VariableType type;
     Causality causality;
-    double minimum; // inclusive, -infinity if none; also used for integers
-    double maximum; // inclusive, +infinity if none; also used for integers
-    std::size_t offset; // byte offset of the double, int32_t or bool inside the Variables struct
+    double minimum;       // inclusive, -infinity if none; also used for integers
+    double maximum;       // inclusive, +infinity if none; also used for integers
+    std::size_t offset;   // byte offset of the double, int32_t or bool inside the Variables struct
     bool allow_nonfinite; // an input that must survive bad sensors: NaN and infinity are let through
 };
 
@@ -30,7 +30,8 @@ struct ModelInfo {
     const char *token;             // instantiation token: hash of the variable table
     const VariableInfo *variables; // sorted by reference
     std::size_t variable_count;
-    // For models with equations to integrate; 0 and null otherwise. The last state is the shell's own, which counts discontinuities.
+    // For models with equations to integrate; 0 and null otherwise. The last state is the shell's own, which counts
+    // discontinuities.
     const double *state_nominals;
     std::size_t state_count;
     std::size_t indicator_count;
@@ -95,8 +96,8 @@ public:
     // Back to the start values, as if newly created.
     virtual void reset() = 0;
 
-    // The whole state between two calls, as bytes without pointers (state_archive.hpp): a model that loads them goes on bit for bit as
-    // the one that saved them, in another process too. save_state(nullptr) only counts.
+    // The whole state between two calls, as bytes without pointers (state_archive.hpp): a model that loads them goes on
+    // bit for bit as the one that saved them, in another process too. save_state(nullptr) only counts.
     virtual std::size_t save_state(void *bytes) = 0;
     virtual Status load_state(const void *bytes, std::size_t size, Message &message) = 0;
 

@@ -22,12 +22,15 @@ template <class T> StopForce<T> stop_force(T engaged, T stiffness, T damping, T 
     return {force, (force - spring) * rate, T(0.5) * spring * depth};
 }
 
-template <class T> BumperForce<T> bumper_force(const Parameters<T>& p, const Modes<T>& m, T c, T rate) {
+template <class T> BumperForce<T> bumper_force(const Parameters<T> &p, const Modes<T> &m, T c, T rate) {
     return with_bumper_law(p, [&](auto law) {
         const LawForce<T> spring = law.spring(p, c, rate);
-        const T loss = p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
-        const auto end = stop_force(m.end_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, T(-1.0) * c, T(-1.0) * rate);
-        const auto bottom = stop_force(m.bottom_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, c - p.bumper_travel, rate);
+        const T loss =
+            p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
+        const auto end =
+            stop_force(m.end_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, T(-1.0) * c, T(-1.0) * rate);
+        const auto bottom =
+            stop_force(m.bottom_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, c - p.bumper_travel, rate);
         T force = spring.force + loss - end.force + bottom.force;
         T stored = spring.stored + end.stored + bottom.stored;
         if constexpr (decltype(law)::has_latch) {
@@ -40,8 +43,10 @@ template <class T> BumperForce<T> bumper_force(const Parameters<T>& p, const Mod
 }
 
 // Where the plate of a bumper that nothing holds rests against its end stop.
-template <class T> T resting_compression(const Parameters<T>& p) {
-    return with_bumper_law(p, [&](auto law) -> T { return T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness); });
+template <class T> T resting_compression(const Parameters<T> &p) {
+    return with_bumper_law(p, [&](auto law) -> T {
+        return T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness);
+    });
 }
 
 } // namespace giveway::plant

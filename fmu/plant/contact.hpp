@@ -27,8 +27,8 @@ template <class T> struct Nose {
 
 // velocity: of the base, in its axes; compression of a plate on the robot, else 0.
 template <class T>
-Contact<T> locate_disc(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T compression,
-                       T compression_rate) {
+Contact<T> locate_disc(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
+                       T compression, T compression_rate) {
     ClosestPoint<T> closest;
     Vector2<T> plate_velocity{T(0.0), T(0.0)};
     if (p.plate_on_robot()) {
@@ -46,13 +46,15 @@ Contact<T> locate_disc(const Parameters<T>& p, const Derived<T>& d, const Nose<T
 }
 
 // Hunt and Crossley (1975), exponent 1; tangential Coulomb friction, smooth over contact_friction_speed.
-template <class T> ContactForce<T> disc_force(const Parameters<T>& p, const Contact<T>& c, T engaged) {
+template <class T> ContactForce<T> disc_force(const Parameters<T> &p, const Contact<T> &c, T engaged) {
     const T spring = math::acting(engaged, c.depth) * p.contact_stiffness * c.depth;
     const T normal_force = math::max(T(0.0), spring * (T(1.0) + p.contact_damping * c.depth_rate));
-    const T friction = math::where(math::less(T(0.0), normal_force),
-                                   [&] { return p.contact_friction * normal_force * math::tanh(c.slip / p.contact_friction_speed); });
+    const T friction = math::where(math::less(T(0.0), normal_force), [&] {
+        return p.contact_friction * normal_force * math::tanh(c.slip / p.contact_friction_speed);
+    });
     const Vector2<T> force = T(-1.0) * normal_force * c.normal - friction * turned(c.normal);
-    return {normal_force, force, cross(c.point, force), (normal_force - spring) * c.depth_rate + friction * c.slip, T(0.5) * spring * c.depth};
+    return {normal_force, force, cross(c.point, force), (normal_force - spring) * c.depth_rate + friction * c.slip,
+            T(0.5) * spring * c.depth};
 }
 
 template <class T> struct Touch {
@@ -60,9 +62,12 @@ template <class T> struct Touch {
     ContactForce<T> force;
 };
 
-// A long straight edge across the rail. Every corner that reaches beyond it is pressed by itself, so a side that lies flat is held at both ends.
-// The contact's depth is that of the farthest corner; its point the centre of pressure, or that corner.
-template <class T> Touch<T> touch_edge(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T engaged) {
+// A long straight edge across the rail. Every corner that reaches beyond it is pressed by itself, so a side that lies
+// flat is held at both ends. The contact's depth is that of the farthest corner; its point the centre of pressure, or
+// that corner.
+template <class T>
+Touch<T> touch_edge(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
+                    T engaged) {
     const Vector2<T> normal = T(-1.0) * nose.travel;
     const Vector2<T> along = turned(normal);
     const Vector2<T> tip = nose.centre + p.contact_nose_radius * nose.travel;
@@ -76,7 +81,7 @@ template <class T> Touch<T> touch_edge(const Parameters<T>& p, const Derived<T>&
         const Contact<T> one{depth, dot(relative, normal), normal, corner, dot(relative, along)};
         const auto farther = math::less(sum.contact.depth, depth);
         const auto pick = [farther](T a, T b) { return math::select(farther, a, b); };
-        Contact<T>& far = sum.contact;
+        Contact<T> &far = sum.contact;
         far.depth = pick(depth, far.depth);
         far.depth_rate = pick(one.depth_rate, far.depth_rate);
         far.point = {pick(corner.x, far.point.x), pick(corner.y, far.point.y)};
@@ -91,20 +96,22 @@ template <class T> Touch<T> touch_edge(const Parameters<T>& p, const Derived<T>&
     });
     const auto pressed = math::less(T(0.0), sum.force.normal_force);
     const T divisor = math::max(sum.force.normal_force, T(1e-300));
-    sum.contact.point = {math::select(pressed, pressure.x / divisor, sum.contact.point.x), math::select(pressed, pressure.y / divisor, sum.contact.point.y)};
+    sum.contact.point = {math::select(pressed, pressure.x / divisor, sum.contact.point.x),
+                         math::select(pressed, pressure.y / divisor, sum.contact.point.y)};
     return sum;
 }
 
 template <class T>
-Contact<T> locate_contact(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T compression,
-                          T compression_rate) {
-    return p.contact_nose_shape == NoseShape::edge ? touch_edge(p, d, nose, velocity, omega, T(0.0)).contact
-                                           : locate_disc(p, d, nose, velocity, omega, compression, compression_rate);
+Contact<T> locate_contact(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity,
+                          T omega, T compression, T compression_rate) {
+    return p.contact_nose_shape == NoseShape::edge
+               ? touch_edge(p, d, nose, velocity, omega, T(0.0)).contact
+               : locate_disc(p, d, nose, velocity, omega, compression, compression_rate);
 }
 
 template <class T>
-Touch<T> touch(const Parameters<T>& p, const Derived<T>& d, const Nose<T>& nose, Vector2<T> velocity, T omega, T compression, T compression_rate,
-               T engaged) {
+Touch<T> touch(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
+               T compression, T compression_rate, T engaged) {
     if (p.contact_nose_shape == NoseShape::edge) {
         return touch_edge(p, d, nose, velocity, omega, engaged);
     }

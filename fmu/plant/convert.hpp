@@ -10,7 +10,7 @@ namespace giveway::plant {
 
 namespace detail {
 
-template <class To, class From, std::size_t N> std::array<To, N> converted(const std::array<From, N>& from) {
+template <class To, class From, std::size_t N> std::array<To, N> converted(const std::array<From, N> &from) {
     std::array<To, N> to{};
     for (std::size_t i = 0; i < N; ++i) {
         to[i] = To(from[i]);
@@ -20,9 +20,9 @@ template <class To, class From, std::size_t N> std::array<To, N> converted(const
 
 } // namespace detail
 
-template <class To, class From> Parameters<To> convert(const Parameters<From>& p) {
+template <class To, class From> Parameters<To> convert(const Parameters<From> &p) {
     Parameters<To> to{};
-    const auto number = [](const char*, auto& into, const auto& from) {
+    const auto number = [](const char *, auto &into, const auto &from) {
         using Into = std::remove_reference_t<decltype(into)>;
         if constexpr (std::is_integral_v<Into> || std::is_enum_v<Into>) {
             into = from;
@@ -40,7 +40,7 @@ template <class To, class From> Parameters<To> convert(const Parameters<From>& p
     return to;
 }
 
-template <class To, class From> Derived<To> convert(const Derived<From>& d) {
+template <class To, class From> Derived<To> convert(const Derived<From> &d) {
     return {
         .rail_x = To(d.rail_x),
         .rail_y = To(d.rail_y),
@@ -65,7 +65,7 @@ template <class To, class From> Derived<To> convert(const Derived<From>& d) {
     };
 }
 
-template <class To, class From> Inputs<To> convert(const Inputs<From>& u) {
+template <class To, class From> Inputs<To> convert(const Inputs<From> &u) {
     return {
         .motor_torque = detail::converted<To>(u.motor_torque),
         .push_force_x = To(u.push_force_x),
@@ -75,7 +75,7 @@ template <class To, class From> Inputs<To> convert(const Inputs<From>& u) {
     };
 }
 
-template <class To, class From> Modes<To> convert(const Modes<From>& m) {
+template <class To, class From> Modes<To> convert(const Modes<From> &m) {
     return {
         .gear_direction = detail::converted<To>(m.gear_direction),
         .contact = To(m.contact),

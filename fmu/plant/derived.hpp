@@ -6,19 +6,19 @@
 namespace giveway::plant {
 
 template <class T> struct Derived {
-    T rail_x, rail_y;     // unit vector of travel, world frame
-    T origin_x, origin_y; // nose centre at s = 0, c = 0, world frame
-    T plate_x, plate_y;   // unit outward vector of a robot-mounted plate, base frame
-    math::Divisor<T> carriage_mass; // slider without a plate that moves on its own
+    T rail_x, rail_y;                         // unit vector of travel, world frame
+    T origin_x, origin_y;                     // nose centre at s = 0, c = 0, world frame
+    T plate_x, plate_y;                       // unit outward vector of a robot-mounted plate, base frame
+    math::Divisor<T> carriage_mass;           // slider without a plate that moves on its own
     math::Divisor<T> roller_plastic_fraction; // of a bristle's force, in which it slips more and more
-    T rope_pretension_length; // ext0
-    T tip_rate;               // of tipping over the line between two wheels, 1/s
+    T rope_pretension_length;                 // ext0
+    T tip_rate;                               // of tipping over the line between two wheels, 1/s
     T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
     Factors3<T> base_inertia; // without a bumper plate
     std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
 };
 
-template <class T> Derived<T> derive(const Parameters<T>& p) {
+template <class T> Derived<T> derive(const Parameters<T> &p) {
     Derived<T> d{};
     const auto rail = math::sincos(p.slider_direction);
     d.rail_x = rail.cos;
@@ -32,9 +32,11 @@ template <class T> Derived<T> derive(const Parameters<T>& p) {
     d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.bumper_plate_mass : slider_mass;
     d.roller_plastic_fraction = T(1.0) - p.roller_elastic_fraction;
     d.rope_pretension_length = T(p.rope_hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
-    const T tipping_inertia = p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) + math::square(T(0.5) * p.wheel_distance));
+    const T tipping_inertia =
+        p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) + math::square(T(0.5) * p.wheel_distance));
     d.tip_rate = math::sqrt(p.base_mass * T(gravity_mps2) * p.base_com_height / tipping_inertia);
-    d.wheel_half_length = math::sqrt(math::max(T(0.0), math::square(T(p.wheel_radius)) - math::square(p.contact_height - p.wheel_radius)));
+    d.wheel_half_length = math::sqrt(
+        math::max(T(0.0), math::square(T(p.wheel_radius)) - math::square(p.contact_height - p.wheel_radius)));
     d.base_inertia = base_inertia(p).factors();
     for (int i = 0; i < p.outline_count; ++i) {
         const int next = (i + 1 == p.outline_count) ? 0 : i + 1;

@@ -6,14 +6,16 @@
 namespace giveway::plant {
 
 template <class T> struct InitialMotion {
-    T x, y, theta;    // world frame
+    T x, y, theta; // world frame
     T vx, vy, omega;
     T slider_speed;
-    std::array<T, wheel_count> bristle_offset; // beyond that of the motion, m: what earlier motion left in stuck rollers
+    std::array<T, wheel_count>
+        bristle_offset; // beyond that of the motion, m: what earlier motion left in stuck rollers
 };
 
 template <class T>
-void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Parameters<T>& p, const Derived<T>& d, StateVector<T>& x, Modes<T>& m) {
+void initial_state(const InitialMotion<T> &start, const Inputs<T> &u, const Parameters<T> &p, const Derived<T> &d,
+                   StateVector<T> &x, Modes<T> &m) {
     x = {};
     m = {};
     x[base_x] = start.x;
@@ -61,7 +63,8 @@ void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Para
 }
 
 template <class T>
-void initial_state(const InitialMotion<T>& start, const Inputs<T>& u, const Parameters<T>& p, const Derived<T>& d, TippingVector<T>& x, Modes<T>& m) {
+void initial_state(const InitialMotion<T> &start, const Inputs<T> &u, const Parameters<T> &p, const Derived<T> &d,
+                   TippingVector<T> &x, Modes<T> &m) {
     StateVector<T> planar;
     initial_state(start, u, p, d, planar, m);
     x = {};

@@ -16,13 +16,15 @@ public:
     using Scalar = math::Dual<jacobian_chunk>;
 
     // Constant during a run; what changes between calls is handed to evaluate().
-    void set_parameters(const Parameters<double>& p, const Derived<double>& d) {
+    void set_parameters(const Parameters<double> &p, const Derived<double> &d) {
         parameters_ = convert<Scalar>(p);
         derived_ = convert<Scalar>(d);
     }
 
     // matrix[column * N + row] = d rate[row] / d x[column], N the number of states.
-    template <std::size_t N> void evaluate(const std::array<double, N>& x, const Inputs<double>& u, const Modes<double>& m, double* matrix) const {
+    template <std::size_t N>
+    void evaluate(const std::array<double, N> &x, const Inputs<double> &u, const Modes<double> &m,
+                  double *matrix) const {
         const auto inputs = convert<Scalar>(u);
         const auto modes = convert<Scalar>(m);
         auto state = detail::converted<Scalar>(x);

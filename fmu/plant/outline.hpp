@@ -7,12 +7,12 @@
 namespace giveway::plant {
 
 template <class T> struct ClosestPoint {
-    T distance;         // signed: negative inside
-    Vector2<T> normal;  // outward
-    Vector2<T> point;   // on the outline
+    T distance;        // signed: negative inside
+    Vector2<T> normal; // outward
+    Vector2<T> point;  // on the outline
 };
 
-template <class T> ClosestPoint<T> closest_on_body(const Parameters<T>& p, const Derived<T>& d, Vector2<T> q) {
+template <class T> ClosestPoint<T> closest_on_body(const Parameters<T> &p, const Derived<T> &d, Vector2<T> q) {
     // Inside, the nearest edge line decides; outside, the nearest point of any edge.
     T line_distance = T(-1e300);
     Vector2<T> line_normal{T(0.0), T(0.0)};
@@ -42,7 +42,8 @@ template <class T> ClosestPoint<T> closest_on_body(const Parameters<T>& p, const
 }
 
 // A wheel's section at the contact's height: a rectangle, its width along the axle.
-template <class T> ClosestPoint<T> closest_on_wheel(const Parameters<T>& p, const Derived<T>& d, int wheel, Vector2<T> q) {
+template <class T>
+ClosestPoint<T> closest_on_wheel(const Parameters<T> &p, const Derived<T> &d, int wheel, Vector2<T> q) {
     const Vector2<T> radial{T(wheel_cos[wheel]), T(wheel_sin[wheel])};
     const T axial = dot(q, radial) - p.wheel_distance;
     const T rolling = dot(q, turned(radial));
@@ -65,7 +66,7 @@ template <class T> ClosestPoint<T> closest_on_wheel(const Parameters<T>& p, cons
 }
 
 // Of several parts the nearest: unique but where two are equally near.
-template <class T> ClosestPoint<T> closest_point(const Parameters<T>& p, const Derived<T>& d, Vector2<T> q) {
+template <class T> ClosestPoint<T> closest_point(const Parameters<T> &p, const Derived<T> &d, Vector2<T> q) {
     if (p.outline_wheels == 0) {
         return closest_on_body(p, d, q);
     }
@@ -73,14 +74,17 @@ template <class T> ClosestPoint<T> closest_point(const Parameters<T>& p, const D
     for (int wheel = p.outline_body != 0 ? 0 : 1; wheel < wheel_count; ++wheel) {
         const ClosestPoint<T> other = closest_on_wheel(p, d, wheel, q);
         const auto nearer = math::less(other.distance, nearest.distance);
-        const auto pick = [nearer](Vector2<T> a, Vector2<T> b) { return Vector2<T>{math::select(nearer, a.x, b.x), math::select(nearer, a.y, b.y)}; };
-        nearest = {math::select(nearer, other.distance, nearest.distance), pick(other.normal, nearest.normal), pick(other.point, nearest.point)};
+        const auto pick = [nearer](Vector2<T> a, Vector2<T> b) {
+            return Vector2<T>{math::select(nearer, a.x, b.x), math::select(nearer, a.y, b.y)};
+        };
+        nearest = {math::select(nearer, other.distance, nearest.distance), pick(other.normal, nearest.normal),
+                   pick(other.point, nearest.point)};
     }
     return nearest;
 }
 
 // Calls visit(corner) for every corner of every part.
-template <class T, class Visit> void for_each_corner(const Parameters<T>& p, const Derived<T>& d, Visit visit) {
+template <class T, class Visit> void for_each_corner(const Parameters<T> &p, const Derived<T> &d, Visit visit) {
     for (int i = 0; p.outline_body != 0 && i < p.outline_count; ++i) {
         visit(Vector2<T>{p.outline_x[i], p.outline_y[i]});
     }
@@ -88,7 +92,8 @@ template <class T, class Visit> void for_each_corner(const Parameters<T>& p, con
         const Vector2<T> radial{T(wheel_cos[wheel]), T(wheel_sin[wheel])};
         for (const double side : {-0.5, 0.5}) {
             for (const double end : {-1.0, 1.0}) {
-                visit((p.wheel_distance + T(side) * p.wheel_width) * radial + (T(end) * d.wheel_half_length) * turned(radial));
+                visit((p.wheel_distance + T(side) * p.wheel_width) * radial +
+                      (T(end) * d.wheel_half_length) * turned(radial));
             }
         }
     }

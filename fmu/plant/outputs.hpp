@@ -7,12 +7,12 @@ namespace giveway::plant {
 
 template <class T> struct Outputs {
     std::array<T, wheel_count> wheel_speed, wheel_torque, roller_force;
-    T contact_depth;                        // negative: clear of the robot
-    T contact_force;                        // magnitude, N
-    T contact_force_x, contact_force_y;     // on the robot, world frame
-    T contact_point_x, contact_point_y;     // world frame
-    T contact_base_x, contact_base_y;       // base frame
-    T nose_x, nose_y;                       // tip of the nose, world frame
+    T contact_depth;                    // negative: clear of the robot
+    T contact_force;                    // magnitude, N
+    T contact_force_x, contact_force_y; // on the robot, world frame
+    T contact_point_x, contact_point_y; // world frame
+    T contact_base_x, contact_base_y;   // base frame
+    T nose_x, nose_y;                   // tip of the nose, world frame
     T bumper_force, rope_tension, wall_force;
     T stored_energy;
     T roll, pitch;
@@ -22,7 +22,8 @@ template <class T> struct Outputs {
 
 // Of slider, weight, bumper and contact; a plate on the robot included.
 template <class T, std::size_t N>
-T slider_energy(T energy, const std::array<T, N>& x, const Evaluation<T, N>& e, const Parameters<T>& p, const Derived<T>& d) {
+T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, N> &e, const Parameters<T> &p,
+                const Derived<T> &d) {
     const T half = T(0.5);
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
@@ -46,14 +47,19 @@ T slider_energy(T energy, const std::array<T, N>& x, const Evaluation<T, N>& e, 
     return energy;
 }
 
-template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
+template <class T>
+T stored_energy(const StateVector<T> &x, const Evaluation<T> &e, const Parameters<T> &p, const Derived<T> &d) {
     const T half = T(0.5);
-    T energy = half * p.base_mass * dot(e.velocity, e.velocity) + half * p.base_yaw_inertia * math::square(x[base_omega]);
+    T energy =
+        half * p.base_mass * dot(e.velocity, e.velocity) + half * p.base_yaw_inertia * math::square(x[base_omega]);
     for (int i = 0; i < wheel_count; ++i) {
         const T roller_speed = (T(wheel_cos[i]) * e.velocity.x + T(wheel_sin[i]) * e.velocity.y) / p.roller_radius;
-        energy = energy + half * p.wheel_traction[i] * (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
-                 half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
-                 half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
+        energy =
+            energy +
+            half * p.wheel_traction[i] *
+                (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
+            half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
+            half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
         if (p.roller_model == RollerModel::bristle) {
             energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[bristle + i]);
         }
@@ -61,23 +67,28 @@ template <class T> T stored_energy(const StateVector<T>& x, const Evaluation<T>&
     return slider_energy(energy, x, e, p, d);
 }
 
-template <class T> T stored_energy(const TippingVector<T>& x, const TippingEvaluation<T>& e, const Parameters<T>& p, const Derived<T>& d) {
+template <class T>
+T stored_energy(const TippingVector<T> &x, const TippingEvaluation<T> &e, const Parameters<T> &p, const Derived<T> &d) {
     const T half = T(0.5);
-    const Stance<T>& s = e.stance;
+    const Stance<T> &s = e.stance;
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector3<T> velocity = s.velocity_of(mass_centre);
     const T tilting = p.base_tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
-    T energy = half * p.base_mass * dot(velocity, velocity) + p.base_mass * T(gravity_mps2) * (x[base_heave] + mass_centre.z) + e.floor_stored +
-               half * tilting * (math::square(x[body_roll_rate]) + math::square(x[body_pitch_rate])) + half * p.base_yaw_inertia * math::square(s.yaw_rate);
+    T energy = half * p.base_mass * dot(velocity, velocity) +
+               p.base_mass * T(gravity_mps2) * (x[base_heave] + mass_centre.z) + e.floor_stored +
+               half * tilting * (math::square(x[body_roll_rate]) + math::square(x[body_pitch_rate])) +
+               half * p.base_yaw_inertia * math::square(s.yaw_rate);
     for (int i = 0; i < wheel_count; ++i) {
-        energy = energy + half * p.wheel_inertia * math::square(x[wheel_spin + i]) + half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
+        energy = energy + half * p.wheel_inertia * math::square(x[wheel_spin + i]) +
+                 half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
                  half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
     }
     return slider_energy(energy, x, e, p, d);
 }
 
 // `e`: everything evaluated at x.
-template <class E, class T, std::size_t N> Outputs<T> outputs(const E& e, const std::array<T, N>& x, const Parameters<T>& p, const Derived<T>& d) {
+template <class E, class T, std::size_t N>
+Outputs<T> outputs(const E &e, const std::array<T, N> &x, const Parameters<T> &p, const Derived<T> &d) {
     Outputs<T> o{};
     o.wheel_speed = e.wheel_speed;
     o.wheel_torque = e.sensed_torque;
@@ -103,7 +114,8 @@ template <class E, class T, std::size_t N> Outputs<T> outputs(const E& e, const 
     const Vector2<T> point = to_world(e.heading, reach);
     o.contact_point_x = x[base_x] + point.x;
     o.contact_point_y = x[base_y] + point.y;
-    const T travel = x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.contact_nose_radius;
+    const T travel =
+        x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.contact_nose_radius;
     o.nose_x = d.origin_x + travel * d.rail_x;
     o.nose_y = d.origin_y + travel * d.rail_y;
     o.bumper_force = e.internal_force;
@@ -114,7 +126,8 @@ template <class E, class T, std::size_t N> Outputs<T> outputs(const E& e, const 
 }
 
 template <class T, std::size_t N>
-Outputs<T> outputs(const std::array<T, N>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+Outputs<T> outputs(const std::array<T, N> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
+                   const Derived<T> &d) {
     return outputs(evaluate(x, u, m, p, d), x, p, d);
 }
 

@@ -4,7 +4,8 @@
 #include <array>
 #include <cstdint>
 
-// Before any equation: `math::` names are looked up where a template is written, so every scalar type has to be known here.
+// Before any equation: `math::` names are looked up where a template is written, so every scalar type has to be known
+// here.
 #include "../math/dual.hpp"
 #include "../math/lanes_elementary.hpp"
 
@@ -22,7 +23,8 @@ inline constexpr std::array<double, wheel_count> wheel_sin = {0.0, half_sqrt3, -
 
 inline constexpr double gravity_mps2 = 9.81;
 
-// Those of the testbed's variable table (models/testbed/variables.toml says what each is), and what follows from several of them.
+// Those of the testbed's variable table (models/testbed/variables.toml says what each is), and what follows from
+// several of them.
 template <class T> struct Parameters : TableParameters<T> {
     std::array<T, wheel_count> wheel_load;     // normal load over its nominal value; on a plane 1
     std::array<T, wheel_count> wheel_traction; // 1 on the floor, 0 lifted; on a plane 1

@@ -25,15 +25,15 @@ template <class T, std::size_t N = state_count> struct Evaluation {
     T internal_force; // between plate and carrier, compressing; of a locked bumper the force that locks it
 };
 
-template <class T> Vector2<T> to_base(const math::SinCos<T>& heading, Vector2<T> world) {
+template <class T> Vector2<T> to_base(const math::SinCos<T> &heading, Vector2<T> world) {
     return {heading.cos * world.x + heading.sin * world.y, heading.cos * world.y - heading.sin * world.x};
 }
-template <class T> Vector2<T> to_world(const math::SinCos<T>& heading, Vector2<T> base) {
+template <class T> Vector2<T> to_world(const math::SinCos<T> &heading, Vector2<T> base) {
     return {heading.cos * base.x - heading.sin * base.y, heading.sin * base.x + heading.cos * base.y};
 }
 
 // 1 where the plate moves as one with its carrier.
-template <class T> T locked(const Parameters<T>& p, const Modes<T>& m) {
+template <class T> T locked(const Parameters<T> &p, const Modes<T> &m) {
     if (!p.has_plate() || p.slider_present == 0) {
         return T(1.0);
     }
@@ -42,7 +42,9 @@ template <class T> T locked(const Parameters<T>& p, const Modes<T>& m) {
 
 namespace detail {
 
-template <class T, std::size_t N> Nose<T> find_nose(const std::array<T, N>& x, const Parameters<T>& p, const Derived<T>& d, const math::SinCos<T>& heading) {
+template <class T, std::size_t N>
+Nose<T> find_nose(const std::array<T, N> &x, const Parameters<T> &p, const Derived<T> &d,
+                  const math::SinCos<T> &heading) {
     const bool plate_on_slider = p.has_plate() && !p.plate_on_robot();
     const T nose_travel = plate_on_slider ? x[slider_position] - x[compression] : x[slider_position];
     const T nose_speed = plate_on_slider ? x[slider_speed] - x[compression_rate] : x[slider_speed];
@@ -53,9 +55,11 @@ template <class T, std::size_t N> Nose<T> find_nose(const std::array<T, N>& x, c
 
 } // namespace detail
 
-// Slider, weight and bumper; `decelerating`: what the contact takes from the slider along its rail. Adds their losses to `loss`.
+// Slider, weight and bumper; `decelerating`: what the contact takes from the slider along its rail. Adds their losses
+// to `loss`.
 template <class T, std::size_t N>
-void slider_rates(Evaluation<T, N>& e, const std::array<T, N>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d, T decelerating, T& loss) {
+void slider_rates(Evaluation<T, N> &e, const std::array<T, N> &x, const Modes<T> &m, const Parameters<T> &p,
+                  const Derived<T> &d, T decelerating, T &loss) {
     const T lock = locked(p, m);
     const T free = T(1.0) - lock;
     if (p.slider_present != 0) {
@@ -68,7 +72,8 @@ void slider_rates(Evaluation<T, N>& e, const std::array<T, N>& x, const Modes<T>
         }
         T drive = e.rope.tension - rail;
         if (p.wall_present != 0) {
-            e.wall = stop_force(m.walled, p.wall_stiffness, p.wall_damping, T(-1.0) * (x[slider_position] + p.wall_distance), T(-1.0) * x[slider_speed]);
+            e.wall = stop_force(m.walled, p.wall_stiffness, p.wall_damping,
+                                T(-1.0) * (x[slider_position] + p.wall_distance), T(-1.0) * x[slider_speed]);
             drive = drive + e.wall.force;
             loss = loss + e.wall.dissipation;
         }
@@ -91,7 +96,8 @@ void slider_rates(Evaluation<T, N>& e, const std::array<T, N>& x, const Modes<T>
 
 // What the motors' torques act on: all of it, so new torques at the same state need no more than this.
 template <class T>
-void drive_motors(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p) {
+void drive_motors(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m,
+                  const Parameters<T> &p) {
     T work = e.push_power;
     for (int i = 0; i < wheel_count; ++i) {
         e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
@@ -103,7 +109,8 @@ void drive_motors(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u,
 
 // `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
 template <class T>
-void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m,
+                   const Parameters<T> &p, const Derived<T> &d) {
     e.heading = math::heading(x[base_theta]);
     e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
     const T omega = x[base_omega];
@@ -125,7 +132,8 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
         const T rolling_speed = dot(turned(radial), e.velocity);
         const Planar3<T> row = wheel_row(p, i);
         e.wheel_speed[i] = dot(row, twist);
-        e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
+        e.sensed_torque[i] =
+            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
         const auto roller = roller_force(p, d.roller_plastic_fraction, i, axial_speed, x[bristle + i], steady[i]);
         e.roller_force[i] = p.wheel_traction[i] * roller.force;
 
@@ -141,12 +149,13 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
         e.rate[wheel_angle + i] = e.wheel_speed[i];
         e.rate[bristle + i] = roller.deflection_rate;
         loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
-               p.drivetrain_damping * math::square(x[motor_speed + i] - e.wheel_speed[i]) + p.wheel_traction[i] * roller.dissipation;
+               p.drivetrain_damping * math::square(x[motor_speed + i] - e.wheel_speed[i]) +
+               p.wheel_traction[i] * roller.dissipation;
     }
     drive_motors(e, x, u, m, p);
 
-    const auto touching = touch(p, d, detail::find_nose(x, p, d, e.heading), e.velocity, omega, x[compression], x[compression_rate],
-                                p.slider_present != 0 ? m.contact : T(0.0));
+    const auto touching = touch(p, d, detail::find_nose(x, p, d, e.heading), e.velocity, omega, x[compression],
+                                x[compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
     e.contact = touching.contact;
     e.contact_force = touching.force;
     const Vector2<T> force = e.contact_force.on_robot;
@@ -161,7 +170,8 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
 
     Planar3<T> acceleration;
     if (p.plate_on_robot()) {
-        // Point mass on a guide along `outward`: across the guide, and along it while locked, it adds to the base's inertia.
+        // Point mass on a guide along `outward`: across the guide, and along it while locked, it adds to the base's
+        // inertia.
         const Vector2<T> outward{d.plate_x, d.plate_y};
         const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
         const Planar3<T> along = wrench_direction(outward, plate);
@@ -170,11 +180,13 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
         Inertia3<T> inertia = base_inertia(p);
         inertia.add(p.bumper_plate_mass, across);
         inertia.add(lock * p.bumper_plate_mass, along);
-        const T across_turning = T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[compression_rate];
+        const T across_turning =
+            T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[compression_rate];
         const T along_turning = T(-1.0) * centripetal * dot(plate, outward);
         const T pull = dot(force, outward);
         wrench = wrench + (T(-1.0) * p.bumper_plate_mass * across_turning) * across;
-        wrench = wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.bumper_plate_mass * along_turning)) * along;
+        wrench =
+            wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.bumper_plate_mass * along_turning)) * along;
         acceleration = inertia.solve(wrench);
         const T guide = dot(along, acceleration) + along_turning;
         e.rate[compression_rate] = free * (guide - (pull + e.bumper.force) / p.bumper_plate_mass);
@@ -196,24 +208,28 @@ void evaluate_into(Evaluation<T>& e, const StateVector<T>& x, const Inputs<T>& u
 }
 
 template <class T>
-Evaluation<T> evaluate(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+Evaluation<T> evaluate(const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
+                       const Derived<T> &d) {
     Evaluation<T> e{};
     evaluate_into(e, x, u, m, p, d);
     return e;
 }
 
 template <class T>
-StateVector<T> rhs(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+StateVector<T> rhs(const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
+                   const Derived<T> &d) {
     return evaluate(x, u, m, p, d).rate;
 }
 
-// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for a bumper that holds only.
+// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for a bumper that
+// holds only.
 template <class T, std::size_t N, std::size_t E, class InternalForce>
-void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d, T depth,
-                       InternalForce internal_force) {
+void slider_indicators(std::array<T, E> &g, const std::array<T, N> &x, const Modes<T> &m, const Parameters<T> &p,
+                       const Derived<T> &d, T depth, InternalForce internal_force) {
     const bool slider = p.slider_present != 0;
     g[event_contact] = depth;
-    g[event_rope] = slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
+    g[event_rope] =
+        slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
     g[event_end_stop] = T(1.0);
     if (slider && bumper_holds(p)) {
         const T holding = bumper_release_force(p) - internal_force();
@@ -228,17 +244,20 @@ void slider_indicators(std::array<T, E>& g, const std::array<T, N>& x, const Mod
 
 // Zero at an event; see the table in README.md for the meaning of the signs.
 template <class T>
-EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+EventVector<T> event_indicators(const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
+                                const Derived<T> &d) {
     EventVector<T> g{};
     const auto heading = math::heading(x[base_theta]);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
     const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
     for (int i = 0; i < wheel_count; ++i) {
-        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
-        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
+        const T sensed =
+            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
+        g[event_gear + i] =
+            gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
     }
-    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity, x[base_omega], x[compression],
-                                                           x[compression_rate])
+    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity,
+                                                           x[base_omega], x[compression], x[compression_rate])
                                                 .depth
                                           : T(-1.0);
     slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
@@ -247,30 +266,34 @@ EventVector<T> event_indicators(const StateVector<T>& x, const Inputs<T>& u, con
 
 // The same where everything has been evaluated already.
 template <class T>
-EventVector<T> event_indicators(const Evaluation<T>& e, const StateVector<T>& x, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+EventVector<T> event_indicators(const Evaluation<T> &e, const StateVector<T> &x, const Modes<T> &m,
+                                const Parameters<T> &p, const Derived<T> &d) {
     EventVector<T> g{};
     for (int i = 0; i < wheel_count; ++i) {
         g[event_gear + i] = gear_indicator(p, m.gear_direction[i], e.net_torque[i], x[motor_speed + i]);
     }
-    slider_indicators(g, x, m, p, d, p.slider_present != 0 ? e.contact.depth : T(-1.0), [&] { return e.internal_force; });
+    slider_indicators(g, x, m, p, d, p.slider_present != 0 ? e.contact.depth : T(-1.0),
+                      [&] { return e.internal_force; });
     return g;
 }
 
 // The events that the planar plant has; `e` is the evaluation before them.
 template <class T, std::size_t N, std::size_t E>
-void planar_transition(const Evaluation<T, N>& e, std::array<T, N>& x, Modes<T>& m, const std::array<T, E>& fired, const Parameters<T>& p,
-                       const Derived<T>& d) {
+void planar_transition(const Evaluation<T, N> &e, std::array<T, N> &x, Modes<T> &m, const std::array<T, E> &fired,
+                       const Parameters<T> &p, const Derived<T> &d) {
     for (int i = 0; i < wheel_count; ++i) {
         const auto now = math::less(fired[event_gear + i], T(0.0));
         const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
-        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the torque.
+        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the
+        // torque.
         const T from_stuck = math::sign(e.net_torque[i]);
         const T from_sliding = gear_direction_from_rest(p, e.net_torque[i]);
         x[motor_speed + i] = math::select(now, T(0.0), x[motor_speed + i]);
         m.gear_direction[i] = math::select(now, math::select(was_stuck, from_stuck, from_sliding), m.gear_direction[i]);
     }
     const auto follow = [&](int event, T mode) {
-        return math::select(math::less(T(0.0), fired[event]), T(1.0), math::select(math::less(fired[event], T(0.0)), T(0.0), mode));
+        return math::select(math::less(T(0.0), fired[event]), T(1.0),
+                            math::select(math::less(fired[event], T(0.0)), T(0.0), mode));
     };
     m.contact = follow(event_contact, m.contact);
     m.rope_taut = follow(event_rope, m.rope_taut);
@@ -309,25 +332,30 @@ void planar_transition(const Evaluation<T, N>& e, std::array<T, N>& x, Modes<T>&
     m.latched = math::select(now, T(1.0) - m.latched, m.latched);
 }
 
-// `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where it jumps.
+// `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where
+// it jumps.
 template <class T>
-void transition(StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const EventVector<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
+void transition(StateVector<T> &x, const Inputs<T> &u, Modes<T> &m, const EventVector<T> &fired, const Parameters<T> &p,
+                const Derived<T> &d) {
     planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
 }
 
-template <class T> void break_away(const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, int wheel, T sensed) {
+template <class T> void break_away(const Inputs<T> &u, Modes<T> &m, const Parameters<T> &p, int wheel, T sensed) {
     const T direction = gear_direction_from_rest(p, net_motor_torque(p, u.motor_torque[wheel], sensed));
-    m.gear_direction[wheel] = math::select(math::less(math::abs(m.gear_direction[wheel]), T(0.5)), direction, m.gear_direction[wheel]);
+    m.gear_direction[wheel] =
+        math::select(math::less(math::abs(m.gear_direction[wheel]), T(0.5)), direction, m.gear_direction[wheel]);
 }
 
 // After the inputs changed: a stuck gear whose motor now pulls more than its stiction breaks away.
 template <class T>
-void accept_inputs(const StateVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {
+void accept_inputs(const StateVector<T> &x, const Inputs<T> &u, Modes<T> &m, const Parameters<T> &p,
+                   const Derived<T> &) {
     const auto heading = math::heading(x[base_theta]);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
     const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
     for (int i = 0; i < wheel_count; ++i) {
-        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
+        const T sensed =
+            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
         break_away(u, m, p, i, sensed);
     }
 }

@@ -11,16 +11,19 @@ template <class T> struct RollerForce {
     T dissipation;     // W
 };
 
-// z' of an elasto-plastic bristle that slides past the floor at v and slips at `limit` (N); plastic_fraction: 1 - elastic_fraction.
-template <class T> T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction, const math::Divisor<T>& plastic_fraction) {
+// z' of an elasto-plastic bristle that slides past the floor at v and slips at `limit` (N); plastic_fraction: 1 -
+// elastic_fraction.
+template <class T>
+T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction, const math::Divisor<T> &plastic_fraction) {
     const T rho = stiffness * math::abs(z) / limit;
     const T y = math::clamp((rho - elastic_fraction) / plastic_fraction, T(0.0), T(1.0));
     const T sliding = math::select(math::less(T(0.0), z * v), y * y * (T(3.0) - T(2.0) * y), T(0.0));
     return v * (T(1.0) - sliding * rho);
 }
 
-// What a roller's friction comes to in steady motion at speed v (28); a bristle sticks to as much as Coulomb friction near rest.
-template <class T> T steady_friction(const Parameters<T>& p, int wheel, T v) {
+// What a roller's friction comes to in steady motion at speed v (28); a bristle sticks to as much as Coulomb friction
+// near rest.
+template <class T> T steady_friction(const Parameters<T> &p, int wheel, T v) {
     const T coulomb = p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
     const T steady = math::tanh(p.roller_tanh_slope * math::abs(v) / p.roller_radius);
     if (p.roller_model == RollerModel::tanh) {
@@ -31,7 +34,9 @@ template <class T> T steady_friction(const Parameters<T>& p, int wheel, T v) {
 }
 
 // v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m; steady: steady_friction() at v, N.
-template <class T> RollerForce<T> roller_force(const Parameters<T>& p, const math::Divisor<T>& plastic_fraction, int wheel, T v, T z, T steady) {
+template <class T>
+RollerForce<T> roller_force(const Parameters<T> &p, const math::Divisor<T> &plastic_fraction, int wheel, T v, T z,
+                            T steady) {
     if (p.roller_model == RollerModel::tanh) {
         const T force = math::select(math::less(v, T(0.0)), T(-1.0) * steady, steady);
         return {force, T(0.0), force * v};
@@ -43,12 +48,13 @@ template <class T> RollerForce<T> roller_force(const Parameters<T>& p, const mat
     const T force = sigma0 * z + p.roller_presliding_damping * rate;
     return {force, rate, force * v - sigma0 * z * rate};
 }
-template <class T> RollerForce<T> roller_force(const Parameters<T>& p, int wheel, T v, T z) {
-    return roller_force(p, math::Divisor<T>(T(1.0) - p.roller_elastic_fraction), wheel, v, z, steady_friction(p, wheel, v));
+template <class T> RollerForce<T> roller_force(const Parameters<T> &p, int wheel, T v, T z) {
+    return roller_force(p, math::Divisor<T>(T(1.0) - p.roller_elastic_fraction), wheel, v, z,
+                        steady_friction(p, wheel, v));
 }
 
 // Deflection in steady motion at speed v, where z' = 0 and the friction is that of (28).
-template <class T> T steady_deflection(const Parameters<T>& p, int wheel, T v) {
+template <class T> T steady_deflection(const Parameters<T> &p, int wheel, T v) {
     if (p.roller_model == RollerModel::tanh) {
         return T(0.0);
     }

@@ -52,7 +52,7 @@ template <class T> struct Inputs {
 
 // Constant between events. Numbers, not booleans: lanes differ.
 template <class T> struct Modes {
-    std::array<T, wheel_count> gear_direction; // -1, 0 (stuck), +1
+    std::array<T, wheel_count> gear_direction;                            // -1, 0 (stuck), +1
     T contact, rope_taut, end_stop, bottom_stop, latched, landed, walled; // 0 or 1
     // Only with tipping.
     std::array<T, wheel_count> on_floor = {};

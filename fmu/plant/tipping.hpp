@@ -7,7 +7,8 @@
 
 namespace giveway::plant {
 
-// Beyond this tilt the model ends: 15 deg, a little short of where Trikey's centre of mass stands over the line between two wheels.
+// Beyond this tilt the model ends: 15 deg, a little short of where Trikey's centre of mass stands over the line between
+// two wheels.
 inline constexpr double cos_greatest_tilt = 0.9659258262890683;
 
 // Attitude and motion of the tilted base. Axes: those of the base turned by its heading alone, "base axes".
@@ -22,7 +23,7 @@ template <class T> struct Stance {
     [[nodiscard]] Vector3<T> velocity_of(Vector3<T> point) const { return velocity + cross(turning, point); }
 };
 
-template <class T> Stance<T> stance(const TippingVector<T>& x, Vector2<T> velocity) {
+template <class T> Stance<T> stance(const TippingVector<T> &x, Vector2<T> velocity) {
     const auto roll = math::sincos(x[base_roll]);
     const auto pitch = math::sincos(x[base_pitch]);
     Stance<T> s;
@@ -44,16 +45,18 @@ template <class T> struct Footing {
     Vector3<T> point;           // its lowest
     Vector3<T> velocity;        // of the body at that point
     T depth, depth_rate;
-    T wheel_speed;              // against the body
+    T wheel_speed; // against the body
 };
 
-template <class T> Footing<T> footing(const TippingVector<T>& x, const Parameters<T>& p, const Stance<T>& s, int wheel) {
+template <class T>
+Footing<T> footing(const TippingVector<T> &x, const Parameters<T> &p, const Stance<T> &s, int wheel) {
     Footing<T> f;
     f.axle = T(wheel_cos[wheel]) * s.forward + T(wheel_sin[wheel]) * s.left;
     const T level = math::sqrt(f.axle.x * f.axle.x + f.axle.y * f.axle.y);
     f.radial = {f.axle.x / level, f.axle.y / level, T(0.0)};
     f.rolling = {T(-1.0) * f.radial.y, f.radial.x, T(0.0)};
-    const Vector3<T> rim = (T(-1.0) / level) * (Vector3<T>{T(0.0), T(0.0), T(1.0)} - f.axle.z * f.axle); // from the hub straight down in the wheel's plane
+    const Vector3<T> rim = (T(-1.0) / level) * (Vector3<T>{T(0.0), T(0.0), T(1.0)} -
+                                                f.axle.z * f.axle); // from the hub straight down in the wheel's plane
     f.point = p.wheel_distance * f.axle + p.wheel_radius * (s.up + rim);
     f.velocity = s.velocity_of(f.point);
     f.depth = T(-1.0) * (x[base_heave] + f.point.z);
@@ -72,8 +75,9 @@ template <class T> struct TippingEvaluation : Evaluation<T, tipping_state_count>
 // The base's centre as a contact at the contact's height sees it, and the nose relative to that.
 namespace detail {
 
-template <class T> Nose<T> nose_at_height(const TippingVector<T>& x, const Parameters<T>& p, const Derived<T>& d, const math::SinCos<T>& heading,
-                                          const Stance<T>& s) {
+template <class T>
+Nose<T> nose_at_height(const TippingVector<T> &x, const Parameters<T> &p, const Derived<T> &d,
+                       const math::SinCos<T> &heading, const Stance<T> &s) {
     Nose<T> nose = find_nose(x, p, d, heading);
     nose.centre = nose.centre - (p.contact_height * s.up).plan();
     return nose;
@@ -82,12 +86,13 @@ template <class T> Nose<T> nose_at_height(const TippingVector<T>& x, const Param
 } // namespace detail
 
 template <class T>
-TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
+                              const Derived<T> &d) {
     TippingEvaluation<T> e{};
     e.heading = math::sincos(x[base_theta]);
     e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
     e.stance = stance(x, e.velocity);
-    const Stance<T>& s = e.stance;
+    const Stance<T> &s = e.stance;
     const Vector2<T> push_plan = to_base(e.heading, Vector2<T>{u.push_force_x, u.push_force_y});
     const Vector3<T> push{push_plan.x, push_plan.y, T(0.0)};
     const Vector3<T> push_point = s.at(u.push_point_x, u.push_point_y, p.push_height);
@@ -100,9 +105,11 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
     for (int i = 0; i < wheel_count; ++i) {
         const Footing<T> f = footing(x, p, s, i);
         e.wheel_speed[i] = f.wheel_speed;
-        e.sensed_torque[i] = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
+        e.sensed_torque[i] =
+            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
         e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
-        const auto floor = stop_force(m.on_floor[i], p.wheel_floor_stiffness, p.wheel_floor_damping, f.depth, f.depth_rate);
+        const auto floor =
+            stop_force(m.on_floor[i], p.wheel_floor_stiffness, p.wheel_floor_damping, f.depth, f.depth_rate);
         e.depth[i] = f.depth;
         e.load[i] = floor.force;
         e.floor_stored = e.floor_stored + floor.stored;
@@ -112,14 +119,19 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
         const T axial_speed = dot(f.radial, f.velocity);
         const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
         const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
-        const T grip_rate = bristle_rate(slip, x[grip + i], p.wheel_grip_stiffness, p.wheel_grip_friction * nominal_load, p.roller_elastic_fraction, d.roller_plastic_fraction);
+        const T grip_rate =
+            bristle_rate(slip, x[grip + i], p.wheel_grip_stiffness, p.wheel_grip_friction * nominal_load,
+                         p.roller_elastic_fraction, d.roller_plastic_fraction);
         const T traction = T(-1.0) * share * (p.wheel_grip_stiffness * x[grip + i] + p.wheel_grip_damping * grip_rate);
         e.roller_force[i] = share * roller.force;
-        const Vector3<T> at_floor = traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
-        // About its axle the wheel takes the floor's moment, and the body the drive's; and the body carries the spin around with it.
+        const Vector3<T> at_floor =
+            traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
+        // About its axle the wheel takes the floor's moment, and the body the drive's; and the body carries the spin
+        // around with it.
         const T spinning_up = e.sensed_torque[i] - p.wheel_radius * traction;
         force = force + at_floor;
-        moment = moment + cross(f.point, at_floor) + spinning_up * f.axle + (p.wheel_inertia * x[wheel_spin + i]) * cross(s.turning, f.axle);
+        moment = moment + cross(f.point, at_floor) + spinning_up * f.axle +
+                 (p.wheel_inertia * x[wheel_spin + i]) * cross(s.turning, f.axle);
 
         const T direction = m.gear_direction[i];
         e.rate[motor_angle + i] = x[motor_speed + i];
@@ -130,21 +142,22 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
         e.rate[grip + i] = m.on_floor[i] * grip_rate;
         work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
         loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
-               p.drivetrain_damping * math::square(x[motor_speed + i] - f.wheel_speed) + floor.dissipation - traction * slip +
-               e.roller_force[i] * axial_speed;
+               p.drivetrain_damping * math::square(x[motor_speed + i] - f.wheel_speed) + floor.dissipation -
+               traction * slip + e.roller_force[i] * axial_speed;
     }
 
     const Vector3<T> axis_point = p.contact_height * s.up;
     const T omega = x[base_omega];
-    const auto touching = touch(p, d, detail::nose_at_height(x, p, d, e.heading, s), s.velocity_of(axis_point).plan(), omega, x[compression],
-                                x[compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
+    const auto touching = touch(p, d, detail::nose_at_height(x, p, d, e.heading, s), s.velocity_of(axis_point).plan(),
+                                omega, x[compression], x[compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
     e.contact = touching.contact;
     e.contact_force = touching.force;
     e.contact_offset = axis_point.plan();
     const Vector3<T> hit{e.contact_force.on_robot.x, e.contact_force.on_robot.y, T(0.0)};
     force = force + hit;
     // The outline turns with the heading alone; so its moment has to work on the heading's rate alone.
-    moment = moment + cross(axis_point, hit) + e.contact_force.moment * Vector3<T>{T(-1.0) * s.forward.z / s.forward.x, T(0.0), T(1.0)};
+    moment = moment + cross(axis_point, hit) +
+             e.contact_force.moment * Vector3<T>{T(-1.0) * s.forward.z / s.forward.x, T(0.0), T(1.0)};
     const Vector2<T> force_world = to_world(e.heading, e.contact_force.on_robot);
     slider_rates(e, x, m, p, d, force_world.x * d.rail_x + force_world.y * d.rail_y, loss);
 
@@ -154,13 +167,16 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
     const T tilting = p.base_tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
     const T roll_rate = x[body_roll_rate];
     const T pitch_rate = x[body_pitch_rate];
-    const T roll_acceleration = (dot(torque, s.forward) + (tilting - p.base_yaw_inertia) * pitch_rate * s.yaw_rate) / tilting;
-    const T pitch_acceleration = (dot(torque, s.left) + (p.base_yaw_inertia - tilting) * roll_rate * s.yaw_rate) / tilting;
+    const T roll_acceleration =
+        (dot(torque, s.forward) + (tilting - p.base_yaw_inertia) * pitch_rate * s.yaw_rate) / tilting;
+    const T pitch_acceleration =
+        (dot(torque, s.left) + (p.base_yaw_inertia - tilting) * roll_rate * s.yaw_rate) / tilting;
     const T yaw_acceleration = dot(torque, s.up) / p.base_yaw_inertia;
-    const Vector3<T> turning_rate = roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
+    const Vector3<T> turning_rate =
+        roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
     const Vector3<T> weight{T(0.0), T(0.0), T(-gravity_mps2)};
-    const Vector3<T> acceleration =
-        (T(1.0) / p.base_mass) * force + weight - cross(turning_rate, mass_centre) - cross(s.turning, cross(s.turning, mass_centre));
+    const Vector3<T> acceleration = (T(1.0) / p.base_mass) * force + weight - cross(turning_rate, mass_centre) -
+                                    cross(s.turning, cross(s.turning, mass_centre));
 
     const Vector2<T> acceleration_world = to_world(e.heading, acceleration.plan());
     e.rate[base_x] = x[base_vx];
@@ -173,7 +189,8 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
     const T pitch_sin = T(-1.0) * s.forward.z;
     const T roll_sin = s.left.z / pitch_cos;
     const T roll_cos = s.left.y;
-    e.rate[base_omega] = (pitch_acceleration * roll_sin + yaw_acceleration * roll_cos + s.roll_rate * s.pitch_rate + omega * pitch_sin * s.pitch_rate) /
+    e.rate[base_omega] = (pitch_acceleration * roll_sin + yaw_acceleration * roll_cos + s.roll_rate * s.pitch_rate +
+                          omega * pitch_sin * s.pitch_rate) /
                          pitch_cos;
     e.rate[base_heave] = x[heave_rate];
     e.rate[base_roll] = s.roll_rate;
@@ -189,24 +206,28 @@ TippingEvaluation<T> evaluate(const TippingVector<T>& x, const Inputs<T>& u, con
 }
 
 template <class T>
-TippingVector<T> rhs(const TippingVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+TippingVector<T> rhs(const TippingVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
+                     const Derived<T> &d) {
     return evaluate(x, u, m, p, d).rate;
 }
 
 template <class T>
-TippingEvents<T> event_indicators(const TippingVector<T>& x, const Inputs<T>& u, const Modes<T>& m, const Parameters<T>& p, const Derived<T>& d) {
+TippingEvents<T> event_indicators(const TippingVector<T> &x, const Inputs<T> &u, const Modes<T> &m,
+                                  const Parameters<T> &p, const Derived<T> &d) {
     TippingEvents<T> g{};
     const auto heading = math::sincos(x[base_theta]);
     const Stance<T> s = stance(x, to_base(heading, Vector2<T>{x[base_vx], x[base_vy]}));
     for (int i = 0; i < wheel_count; ++i) {
         const Footing<T> f = footing(x, p, s, i);
         const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
-        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
+        g[event_gear + i] =
+            gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
         g[event_floor + i] = f.depth;
     }
     g[event_tilt] = s.up.z - T(cos_greatest_tilt);
-    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::nose_at_height(x, p, d, heading, s), s.velocity_of(p.contact_height * s.up).plan(),
-                                                           x[base_omega], x[compression], x[compression_rate])
+    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::nose_at_height(x, p, d, heading, s),
+                                                           s.velocity_of(p.contact_height * s.up).plan(), x[base_omega],
+                                                           x[compression], x[compression_rate])
                                                 .depth
                                           : T(-1.0);
     slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
@@ -214,7 +235,8 @@ TippingEvents<T> event_indicators(const TippingVector<T>& x, const Inputs<T>& u,
 }
 
 template <class T>
-void transition(TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const TippingEvents<T>& fired, const Parameters<T>& p, const Derived<T>& d) {
+void transition(TippingVector<T> &x, const Inputs<T> &u, Modes<T> &m, const TippingEvents<T> &fired,
+                const Parameters<T> &p, const Derived<T> &d) {
     for (int i = 0; i < wheel_count; ++i) {
         const auto landed = math::less(T(0.0), fired[event_floor + i]);
         const auto lifted = math::less(fired[event_floor + i], T(0.0));
@@ -227,7 +249,9 @@ void transition(TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Tipp
     planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
 }
 
-template <class T> void accept_inputs(const TippingVector<T>& x, const Inputs<T>& u, Modes<T>& m, const Parameters<T>& p, const Derived<T>&) {
+template <class T>
+void accept_inputs(const TippingVector<T> &x, const Inputs<T> &u, Modes<T> &m, const Parameters<T> &p,
+                   const Derived<T> &) {
     const auto heading = math::sincos(x[base_theta]);
     const Stance<T> s = stance(x, to_base(heading, Vector2<T>{x[base_vx], x[base_vy]}));
     for (int i = 0; i < wheel_count; ++i) {
@@ -236,9 +260,10 @@ template <class T> void accept_inputs(const TippingVector<T>& x, const Inputs<T>
     }
 }
 
-// What is left, of all of it, before the base goes over if nothing but its weight acts from now on: 1 level and at rest, 0 at the point of no return.
-// Over the line between two wheels the base is an inverted pendulum; of its motion the part that grows, tilt + rate / d.tip_rate, decides.
-template <class T> T tip_margin(const Stance<T>& s, const Parameters<T>& p, const Derived<T>& d) {
+// What is left, of all of it, before the base goes over if nothing but its weight acts from now on: 1 level and at
+// rest, 0 at the point of no return. Over the line between two wheels the base is an inverted pendulum; of its motion
+// the part that grows, tilt + rate / d.tip_rate, decides.
+template <class T> T tip_margin(const Stance<T> &s, const Parameters<T> &p, const Derived<T> &d) {
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector2<T> bound = mass_centre.plan() + (T(1.0) / d.tip_rate) * cross(s.turning, mass_centre).plan();
     T farthest = T(-1e300);

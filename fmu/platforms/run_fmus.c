@@ -3,18 +3,16 @@
  *
  *     run_fmus PLAN > OUTPUTS
  *
- * Twice in one process the libraries are loaded, run, freed and unloaded, so the outputs come twice. Then the process ends
- * as any does: exit code 0 says that nothing of the libraries is needed once they are gone.
+ * Twice in one process the libraries are loaded, run, freed and unloaded, so the outputs come twice. Then the process
+ * ends as any does: exit code 0 says that nothing of the libraries is needed once they are gone.
  *
- * PLAN, one item a line, I, J: instances in the order of their lines; K: r, i or b; VALUE: a real's bits in 16 hexadecimal
- * digits, else a number:
- *     library LIBRARY            is loaded and unloaded with the others, and nothing else
- *     fmu LIBRARY TOKEN          LIBRARY is ignored by a program that holds its one FMU inside (-DGIVEWAY_LINKED)
- *     set I K REFERENCE VALUE    before the initialisation
- *     connect I REFERENCE J REFERENCE K    from an output of I to an input of J, just before each step of J
- *     drive I K REFERENCE        an input with one VALUE for each step, in the lines after `run`, in this order
- *     read I K REFERENCE         an output, printed after every step, in this order
- *     run STEPS SIZE             SIZE in the bits of a real, s
+ * PLAN, one item a line, I, J: instances in the order of their lines; K: r, i or b; VALUE: a real's bits in 16
+ * hexadecimal digits, else a number: library LIBRARY            is loaded and unloaded with the others, and nothing
+ * else fmu LIBRARY TOKEN          LIBRARY is ignored by a program that holds its one FMU inside (-DGIVEWAY_LINKED) set
+ * I K REFERENCE VALUE    before the initialisation connect I REFERENCE J REFERENCE K    from an output of I to an input
+ * of J, just before each step of J drive I K REFERENCE        an input with one VALUE for each step, in the lines after
+ * `run`, in this order read I K REFERENCE         an output, printed after every step, in this order run STEPS SIZE
+ * SIZE in the bits of a real, s
  */
 #ifdef GIVEWAY_LINKED
 #define FMI3_FUNCTION_PREFIX giveway_controller_
@@ -75,22 +73,20 @@ static unsigned fmu_count;
 static port_t from[max_items], to[max_items], driven[max_items], shown[max_items];
 static unsigned connection_count, driven_count, shown_count;
 
-static void fail(const char *what, const char *detail)
-{
+static void fail(const char *what, const char *detail) {
     fprintf(stderr, "error: %s: %s\n", what, detail);
     exit(1);
 }
 
-static void log_message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message)
-{
+static void log_message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category,
+                        fmi3String message) {
     (void)environment;
     (void)status;
     (void)category;
     fprintf(stderr, "FMU: %s\n", message);
 }
 
-static void check(fmi3Status status, const char *what)
-{
+static void check(fmi3Status status, const char *what) {
     if (status != fmi3OK) {
         fail(what, "the FMU refused (its message is above)");
     }
@@ -98,18 +94,13 @@ static void check(fmi3Status status, const char *what)
 
 #ifdef GIVEWAY_LINKED
 #define LOAD(library, function) function
-static void *open_library(const char *path)
-{
+static void *open_library(const char *path) {
     (void)path;
     return NULL;
 }
-static void close_library(const library_t *library)
-{
-    (void)library;
-}
+static void close_library(const library_t *library) { (void)library; }
 #else
-static void *symbol(void *library, const char *name)
-{
+static void *symbol(void *library, const char *name) {
 #ifdef _WIN32
     void *address = (void *)(uintptr_t)GetProcAddress((HMODULE)library, name);
 #else
@@ -122,8 +113,7 @@ static void *symbol(void *library, const char *name)
 }
 #define LOAD(library, function) ((function##TYPE *)(uintptr_t)symbol(library, #function))
 
-static void *open_library(const char *path)
-{
+static void *open_library(const char *path) {
 #ifdef _WIN32
     void *library = (void *)LoadLibraryA(path);
     const char *why = "LoadLibrary failed";
@@ -137,8 +127,7 @@ static void *open_library(const char *path)
     return library;
 }
 
-static void close_library(const library_t *library)
-{
+static void close_library(const library_t *library) {
 #ifdef _WIN32
     const bool closed = FreeLibrary((HMODULE)library->handle) && GetModuleHandleA(library->path) == NULL;
 #else
@@ -150,8 +139,7 @@ static void close_library(const library_t *library)
 }
 #endif
 
-static void *load_library(const char *path)
-{
+static void *load_library(const char *path) {
     if (library_count == max_instances) {
         fail(path, "too many libraries");
     }
@@ -161,16 +149,14 @@ static void *load_library(const char *path)
     return library->handle;
 }
 
-static void unload_libraries(void)
-{
+static void unload_libraries(void) {
     while (library_count > 0) {
         close_library(&libraries[--library_count]);
     }
     fmu_count = connection_count = driven_count = shown_count = 0;
 }
 
-static void load(const char *path, const char *token)
-{
+static void load(const char *path, const char *token) {
     if (fmu_count == max_instances) {
         fail(path, "too many FMUs");
     }
@@ -195,8 +181,7 @@ static void load(const char *path, const char *token)
     }
 }
 
-static value_t get(port_t port)
-{
+static value_t get(port_t port) {
     const fmu_t *fmu = &fmus[port.instance];
     value_t value;
     memset(&value, 0, sizeof value);
@@ -214,8 +199,7 @@ static value_t get(port_t port)
     return value;
 }
 
-static void set(port_t port, value_t value)
-{
+static void set(port_t port, value_t value) {
     const fmu_t *fmu = &fmus[port.instance];
     switch (port.kind) {
     case 'r':
@@ -230,16 +214,14 @@ static void set(port_t port, value_t value)
     }
 }
 
-static double real_of(const char *text)
-{
+static double real_of(const char *text) {
     const uint64_t bits = strtoull(text, NULL, 16);
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
 }
 
-static value_t value_of(char kind, const char *text)
-{
+static value_t value_of(char kind, const char *text) {
     value_t value;
     memset(&value, 0, sizeof value);
     if (kind == 'r') {
@@ -252,8 +234,7 @@ static value_t value_of(char kind, const char *text)
     return value;
 }
 
-static void show(port_t port)
-{
+static void show(port_t port) {
     const value_t value = get(port);
     uint64_t bits;
     memcpy(&bits, &value.real, sizeof bits);
@@ -264,8 +245,7 @@ static void show(port_t port)
     }
 }
 
-static port_t port_of(unsigned instance, char kind, unsigned reference)
-{
+static port_t port_of(unsigned instance, char kind, unsigned reference) {
     const port_t port = {instance, kind, reference};
     if (instance >= fmu_count || (kind != 'r' && kind != 'i' && kind != 'b')) {
         fail("plan", "an instance or a kind that there is not");
@@ -273,8 +253,7 @@ static port_t port_of(unsigned instance, char kind, unsigned reference)
     return port;
 }
 
-static void step(unsigned instance, double time, double size)
-{
+static void step(unsigned instance, double time, double size) {
     const fmu_t *fmu = &fmus[instance];
     bool event, terminate, early;
     double reached;
@@ -286,8 +265,7 @@ static void step(unsigned instance, double time, double size)
     check(fmu->step(fmu->instance, time, size, true, &event, &terminate, &early, &reached), "fmi3DoStep");
 }
 
-static void run(FILE *plan, unsigned steps, double size)
-{
+static void run(FILE *plan, unsigned steps, double size) {
     for (unsigned i = 0; i < fmu_count; ++i) {
         check(fmus[i].enter(fmus[i].instance, false, 0.0, 0.0, false, 0.0), "fmi3EnterInitializationMode");
         check(fmus[i].exit(fmus[i].instance), "fmi3ExitInitializationMode");
@@ -315,8 +293,7 @@ static void run(FILE *plan, unsigned steps, double size)
 }
 
 /* Runs the plan once, from its first line to its last. */
-static void run_plan(FILE *plan)
-{
+static void run_plan(FILE *plan) {
     char word[max_text], text[max_text];
     unsigned i, j, a, b;
     char kind;
@@ -347,8 +324,7 @@ static void run_plan(FILE *plan)
     fail("plan", "it does not end in run");
 }
 
-int main(int count, char **arguments)
-{
+int main(int count, char **arguments) {
     FILE *plan = count == 2 ? fopen(arguments[1], "r") : NULL;
     if (plan == NULL) {
         fail("usage", "run_fmus PLAN, and PLAN can be read");

@@ -53,9 +53,7 @@ struct Fmi2Instance {
 giveway::Handles instances;
 
 // Null if there is no such instance (any more): then nobody is left to tell but the caller.
-Fmi2Instance *unwrap(fmi2Component component) {
-    return static_cast<Fmi2Instance *>(instances.find(component));
-}
+Fmi2Instance *unwrap(fmi2Component component) { return static_cast<Fmi2Instance *>(instances.find(component)); }
 
 fmi2Status status(bool ok) { return ok ? fmi2OK : fmi2Error; }
 
@@ -64,11 +62,10 @@ fmi2Status unsupported(fmi2Component component, const char *function, const char
     return status(self != nullptr && self->instance.unsupported(function, what));
 }
 
-fmi2Component refuse_instance(const fmi2CallbackFunctions *functions, const char *name,
-                              const char *text) {
+fmi2Component refuse_instance(const fmi2CallbackFunctions *functions, const char *name, const char *text) {
     if (functions->logger != nullptr) {
-        functions->logger(functions->componentEnvironment, name != nullptr ? name : "", fmi2Error,
-                          "logStatusError", text);
+        functions->logger(functions->componentEnvironment, name != nullptr ? name : "", fmi2Error, "logStatusError",
+                          text);
     }
     return nullptr;
 }
@@ -104,19 +101,16 @@ const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
-fmi2Status fmi2SetDebugLogging(fmi2Component component, fmi2Boolean, size_t count,
-                               const fmi2String categories[]) {
+fmi2Status fmi2SetDebugLogging(fmi2Component component, fmi2Boolean, size_t count, const fmi2String categories[]) {
     Fmi2Instance *self = unwrap(component);
     if (self == nullptr) {
         return fmi2Error;
     }
     for (size_t i = 0; i < count; ++i) {
-        if (categories == nullptr || categories[i] == nullptr ||
-            std::strcmp(categories[i], "logStatusError") != 0) {
-            return status(self->instance.refuse("fmi2SetDebugLogging", "unknown log category '%s'",
-                                                categories != nullptr && categories[i] != nullptr
-                                                    ? categories[i]
-                                                    : "(null)"));
+        if (categories == nullptr || categories[i] == nullptr || std::strcmp(categories[i], "logStatusError") != 0) {
+            return status(
+                self->instance.refuse("fmi2SetDebugLogging", "unknown log category '%s'",
+                                      categories != nullptr && categories[i] != nullptr ? categories[i] : "(null)"));
         }
     }
     return fmi2OK; // errors, the only category, are always logged
@@ -135,8 +129,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                                "fmi2Instantiate: the type is neither Model Exchange nor Co-Simulation");
     }
     if (type == fmi2ModelExchange && giveway::model_info().state_count == 0) {
-        return refuse_instance(functions, name,
-                               "fmi2Instantiate: this FMU does not support Model Exchange");
+        return refuse_instance(functions, name, "fmi2Instantiate: this FMU does not support Model Exchange");
     }
     if (guid == nullptr || std::strcmp(guid, giveway::model_info().token) != 0) {
         return refuse_instance(functions, name,
@@ -148,10 +141,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     giveway::Model *model = giveway::create_model();
     if (name_copy != nullptr && model != nullptr) {
         std::memcpy(name_copy, name, size);
-        Fmi2Instance *self = new (std::nothrow)
-            Fmi2Instance(*functions, name_copy, model,
-                         type == fmi2ModelExchange ? giveway::Interface::model_exchange
-                                                   : giveway::Interface::co_simulation);
+        Fmi2Instance *self = new (std::nothrow) Fmi2Instance(
+            *functions, name_copy, model,
+            type == fmi2ModelExchange ? giveway::Interface::model_exchange : giveway::Interface::co_simulation);
         if (self != nullptr) {
             fmi2Component handle = instances.add(self);
             if (handle == nullptr) {
@@ -166,21 +158,17 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return refuse_instance(functions, name, "fmi2Instantiate: out of memory");
 }
 
-void fmi2FreeInstance(fmi2Component component) {
-    delete static_cast<Fmi2Instance *>(instances.remove(component));
-}
+void fmi2FreeInstance(fmi2Component component) { delete static_cast<Fmi2Instance *>(instances.remove(component)); }
 
-fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined,
-                               fmi2Real tolerance, fmi2Real start_time, fmi2Boolean stop_time_defined,
-                               fmi2Real stop_time) {
+fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined, fmi2Real tolerance,
+                               fmi2Real start_time, fmi2Boolean stop_time_defined, fmi2Real stop_time) {
     Fmi2Instance *self = unwrap(component);
     if (self == nullptr || !self->instance.allow("fmi2SetupExperiment", only(State::instantiated))) {
         return fmi2Error;
     }
     // The tolerances of a model's solver are its parameters; a given one is checked, not used.
     if (tolerance_defined && !(tolerance > 0.0)) {
-        return status(self->instance.refuse("fmi2SetupExperiment",
-                                            "tolerance is %g, but must be positive", tolerance));
+        return status(self->instance.refuse("fmi2SetupExperiment", "tolerance is %g, but must be positive", tolerance));
     }
     self->experiment_set_up = true;
     self->start_time = start_time;
@@ -190,22 +178,19 @@ fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_de
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component component) {
     Fmi2Instance *self = unwrap(component);
-    if (self == nullptr ||
-        !self->instance.allow("fmi2EnterInitializationMode", only(State::instantiated))) {
+    if (self == nullptr || !self->instance.allow("fmi2EnterInitializationMode", only(State::instantiated))) {
         return fmi2Error;
     }
     if (!self->experiment_set_up) {
-        return status(self->instance.refuse("fmi2EnterInitializationMode",
-                                            "not allowed before fmi2SetupExperiment"));
+        return status(self->instance.refuse("fmi2EnterInitializationMode", "not allowed before fmi2SetupExperiment"));
     }
-    return status(self->instance.enter_initialisation("fmi2EnterInitializationMode",
-                                                      self->start_time, self->stop_time));
+    return status(
+        self->instance.enter_initialisation("fmi2EnterInitializationMode", self->start_time, self->stop_time));
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component component) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.exit_initialisation("fmi2ExitInitializationMode"));
+    return status(self != nullptr && self->instance.exit_initialisation("fmi2ExitInitializationMode"));
 }
 
 fmi2Status fmi2Terminate(fmi2Component component) {
@@ -230,52 +215,44 @@ fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real step_size
 fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
                        fmi2Real values[]) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.get_real("fmi2GetReal", references, count, values));
+    return status(self != nullptr && self->instance.get_real("fmi2GetReal", references, count, values));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
                           fmi2Integer values[]) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.get_integer("fmi2GetInteger", references, count, values));
+    return status(self != nullptr && self->instance.get_integer("fmi2GetInteger", references, count, values));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
                           fmi2Boolean values[]) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.get_boolean("fmi2GetBoolean", references, count, values));
+    return status(self != nullptr && self->instance.get_boolean("fmi2GetBoolean", references, count, values));
 }
 
 fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
                        const fmi2Real values[]) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.set_real("fmi2SetReal", references, count, values));
+    return status(self != nullptr && self->instance.set_real("fmi2SetReal", references, count, values));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
                           const fmi2Integer values[]) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.set_integer("fmi2SetInteger", references, count, values));
+    return status(self != nullptr && self->instance.set_integer("fmi2SetInteger", references, count, values));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference references[], size_t count,
                           const fmi2Boolean values[]) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.set_boolean("fmi2SetBoolean", references, count, values));
+    return status(self != nullptr && self->instance.set_boolean("fmi2SetBoolean", references, count, values));
 }
 
-fmi2Status fmi2GetString(fmi2Component component, const fmi2ValueReference[], size_t count,
-                         fmi2String[]) {
+fmi2Status fmi2GetString(fmi2Component component, const fmi2ValueReference[], size_t count, fmi2String[]) {
     return no_strings(component, "fmi2GetString", giveway::readable, count);
 }
 
-fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference[], size_t count,
-                         const fmi2String[]) {
+fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference[], size_t count, const fmi2String[]) {
     return no_strings(component, "fmi2SetString", giveway::writable, count);
 }
 
@@ -295,8 +272,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component component, const fmi2StatusKind kind,
     return fmi2OK;
 }
 
-fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind kind,
-                                fmi2Boolean *value) {
+fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind kind, fmi2Boolean *value) {
     Fmi2Instance *self = unwrap(component);
     if (self == nullptr || !allow_status(*self, "fmi2GetBooleanStatus")) {
         return fmi2Error;
@@ -350,28 +326,26 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate stat
     return status(self != nullptr && self->instance.serialised_size("fmi2SerializedFMUstateSize", state, size));
 }
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate state, fmi2Byte bytes[],
-                                 size_t size) {
+fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.serialise("fmi2SerializeFMUstate", state, reinterpret_cast<unsigned char *>(bytes), size));
+    return status(self != nullptr && self->instance.serialise("fmi2SerializeFMUstate", state,
+                                                              reinterpret_cast<unsigned char *>(bytes), size));
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte bytes[], size_t size,
-                                   fmi2FMUstate *state) {
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     Fmi2Instance *self = unwrap(component);
     return status(self != nullptr &&
-                  self->instance.deserialise("fmi2DeSerializeFMUstate", reinterpret_cast<const unsigned char *>(bytes), size, state));
+                  self->instance.deserialise("fmi2DeSerializeFMUstate", reinterpret_cast<const unsigned char *>(bytes),
+                                             size, state));
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2ValueReference[], size_t,
-                                        const fmi2ValueReference[], size_t, const fmi2Real[],
-                                        fmi2Real[]) {
+                                        const fmi2ValueReference[], size_t, const fmi2Real[], fmi2Real[]) {
     return unsupported(component, "fmi2GetDirectionalDerivative", "directional derivatives");
 }
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component component, const fmi2ValueReference[], size_t,
-                                       const fmi2Integer[], const fmi2Real[]) {
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component component, const fmi2ValueReference[], size_t, const fmi2Integer[],
+                                       const fmi2Real[]) {
     return unsupported(component, "fmi2SetRealInputDerivatives", "input derivatives");
 }
 
@@ -390,8 +364,7 @@ fmi2Status fmi2EnterEventMode(fmi2Component component) {
 fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
     Fmi2Instance *self = unwrap(component);
     giveway::EventUpdate update{};
-    if (self == nullptr ||
-        !self->instance.allow_exchange("fmi2NewDiscreteStates", only(State::event_mode))) {
+    if (self == nullptr || !self->instance.allow_exchange("fmi2NewDiscreteStates", only(State::event_mode))) {
         return fmi2Error;
     }
     if (info == nullptr) { // without it the importer could not know that another update is needed
@@ -411,17 +384,14 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component component) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.enter_continuous_time_mode("fmi2EnterContinuousTimeMode"));
+    return status(self != nullptr && self->instance.enter_continuous_time_mode("fmi2EnterContinuousTimeMode"));
 }
 
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean,
-                                       fmi2Boolean *enter_event_mode,
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean, fmi2Boolean *enter_event_mode,
                                        fmi2Boolean *terminate_simulation) {
     Fmi2Instance *self = unwrap(component);
     bool needed = false;
-    if (self == nullptr ||
-        !self->instance.completed_step("fmi2CompletedIntegratorStep", needed)) {
+    if (self == nullptr || !self->instance.completed_step("fmi2CompletedIntegratorStep", needed)) {
         return fmi2Error;
     }
     if (enter_event_mode != nullptr) {
@@ -440,30 +410,25 @@ fmi2Status fmi2SetTime(fmi2Component component, fmi2Real time) {
 
 fmi2Status fmi2SetContinuousStates(fmi2Component component, const fmi2Real states[], size_t count) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.set_states("fmi2SetContinuousStates", states, count));
+    return status(self != nullptr && self->instance.set_states("fmi2SetContinuousStates", states, count));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real derivatives[], size_t count) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.get_derivatives("fmi2GetDerivatives", derivatives, count));
+    return status(self != nullptr && self->instance.get_derivatives("fmi2GetDerivatives", derivatives, count));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component component, fmi2Real indicators[], size_t count) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.get_indicators("fmi2GetEventIndicators", indicators, count));
+    return status(self != nullptr && self->instance.get_indicators("fmi2GetEventIndicators", indicators, count));
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component component, fmi2Real states[], size_t count) {
     Fmi2Instance *self = unwrap(component);
-    return status(self != nullptr &&
-                  self->instance.get_states("fmi2GetContinuousStates", states, count));
+    return status(self != nullptr && self->instance.get_states("fmi2GetContinuousStates", states, count));
 }
 
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real nominals[],
-                                             size_t count) {
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real nominals[], size_t count) {
     Fmi2Instance *self = unwrap(component);
     return status(self != nullptr &&
                   self->instance.get_nominals("fmi2GetNominalsOfContinuousStates",

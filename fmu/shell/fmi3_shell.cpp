@@ -27,10 +27,9 @@ struct Fmi3Instance {
         }
     }
 
-    Fmi3Instance(fmi3InstanceEnvironment environment_, fmi3LogMessageCallback log_message_,
-                 giveway::Model *model, giveway::Interface interface)
-        : environment(environment_), log_message(log_message_),
-          instance(model, interface, true, log, this) {}
+    Fmi3Instance(fmi3InstanceEnvironment environment_, fmi3LogMessageCallback log_message_, giveway::Model *model,
+                 giveway::Interface interface)
+        : environment(environment_), log_message(log_message_), instance(model, interface, true, log, this) {}
 };
 
 giveway::Handles instances;
@@ -63,9 +62,8 @@ fmi3Instance refuse_instance(fmi3InstanceEnvironment environment, fmi3LogMessage
     return refuse_instance(environment, log_message, text);
 }
 
-fmi3Instance make_instance(const char *function, fmi3String name, fmi3String token,
-                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message,
-                           giveway::Interface interface) {
+fmi3Instance make_instance(const char *function, fmi3String name, fmi3String token, fmi3InstanceEnvironment environment,
+                           fmi3LogMessageCallback log_message, giveway::Interface interface) {
     if (name == nullptr || name[0] == '\0') {
         return refuse_instance(environment, log_message, function, "the instance name is missing");
     }
@@ -76,8 +74,7 @@ fmi3Instance make_instance(const char *function, fmi3String name, fmi3String tok
     }
     giveway::Model *model = giveway::create_model();
     if (model != nullptr) {
-        Fmi3Instance *self =
-            new (std::nothrow) Fmi3Instance(environment, log_message, model, interface);
+        Fmi3Instance *self = new (std::nothrow) Fmi3Instance(environment, log_message, model, interface);
         if (self != nullptr) {
             fmi3Instance handle = instances.add(self);
             if (handle == nullptr) {
@@ -93,8 +90,7 @@ fmi3Instance make_instance(const char *function, fmi3String name, fmi3String tok
 
 // Scalars only: every value reference stands for one value.
 bool check_count(Instance &self, const char *function, size_t references, size_t values) {
-    return references == values ||
-           self.refuse(function, "%zu value references but %zu values", references, values);
+    return references == values || self.refuse(function, "%zu value references but %zu values", references, values);
 }
 
 fmi3Status no_such_type(fmi3Instance instance, const char *function, giveway::States states, size_t count,
@@ -124,27 +120,22 @@ extern "C" {
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
-fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean, size_t count,
-                               const fmi3String categories[]) {
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean, size_t count, const fmi3String categories[]) {
     Instance *self = unwrap(instance);
     if (self == nullptr) {
         return fmi3Error;
     }
     for (size_t i = 0; i < count; ++i) {
-        if (categories == nullptr || categories[i] == nullptr ||
-            std::strcmp(categories[i], "logStatusError") != 0) {
+        if (categories == nullptr || categories[i] == nullptr || std::strcmp(categories[i], "logStatusError") != 0) {
             return status(self->refuse("fmi3SetDebugLogging", "unknown log category '%s'",
-                                       categories != nullptr && categories[i] != nullptr
-                                           ? categories[i]
-                                           : "(null)"));
+                                       categories != nullptr && categories[i] != nullptr ? categories[i] : "(null)"));
         }
     }
     return fmi3OK; // errors, the only category, are always logged
 }
 
-fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String, fmi3Boolean,
-                                          fmi3Boolean, fmi3InstanceEnvironment environment,
-                                          fmi3LogMessageCallback log_message) {
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String, fmi3Boolean, fmi3Boolean,
+                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message) {
     if (giveway::model_info().state_count == 0) {
         return refuse_instance(environment, log_message,
                                "fmi3InstantiateModelExchange: this FMU does not support Model Exchange");
@@ -153,25 +144,20 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                          giveway::Interface::model_exchange);
 }
 
-fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean,
-                                               fmi3Boolean, fmi3InstanceEnvironment environment,
-                                               fmi3LogMessageCallback log_message,
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
+                                               fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message,
                                                fmi3ClockUpdateCallback, fmi3LockPreemptionCallback,
                                                fmi3UnlockPreemptionCallback) {
-    return refuse_instance(
-        environment, log_message,
-        "fmi3InstantiateScheduledExecution: this FMU does not support Scheduled Execution");
+    return refuse_instance(environment, log_message,
+                           "fmi3InstantiateScheduledExecution: this FMU does not support Scheduled Execution");
 }
 
-fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String, fmi3Boolean,
-                                         fmi3Boolean, fmi3Boolean event_mode_used, fmi3Boolean,
-                                         const fmi3ValueReference[], size_t intermediate_count,
-                                         fmi3InstanceEnvironment environment,
-                                         fmi3LogMessageCallback log_message,
-                                         fmi3IntermediateUpdateCallback) {
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String, fmi3Boolean, fmi3Boolean,
+                                         fmi3Boolean event_mode_used, fmi3Boolean, const fmi3ValueReference[],
+                                         size_t intermediate_count, fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log_message, fmi3IntermediateUpdateCallback) {
     if (event_mode_used) {
-        return refuse_instance(environment, log_message,
-                               "fmi3InstantiateCoSimulation: this FMU has no event mode");
+        return refuse_instance(environment, log_message, "fmi3InstantiateCoSimulation: this FMU has no event mode");
     }
     if (intermediate_count != 0) {
         return refuse_instance(environment, log_message,
@@ -181,21 +167,17 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                          giveway::Interface::co_simulation);
 }
 
-void fmi3FreeInstance(fmi3Instance instance) {
-    delete static_cast<Fmi3Instance *>(instances.remove(instance));
-}
+void fmi3FreeInstance(fmi3Instance instance) { delete static_cast<Fmi3Instance *>(instances.remove(instance)); }
 
-fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined,
-                                       fmi3Float64 tolerance, fmi3Float64 start_time,
-                                       fmi3Boolean stop_time_defined, fmi3Float64 stop_time) {
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined, fmi3Float64 tolerance,
+                                       fmi3Float64 start_time, fmi3Boolean stop_time_defined, fmi3Float64 stop_time) {
     Instance *self = unwrap(instance);
     if (self == nullptr) {
         return fmi3Error;
     }
     // The tolerances of a model's solver are its parameters; a given one is checked, not used.
     if (tolerance_defined && !(tolerance > 0.0)) {
-        return status(self->refuse("fmi3EnterInitializationMode",
-                                   "tolerance is %g, but must be positive", tolerance));
+        return status(self->refuse("fmi3EnterInitializationMode", "tolerance is %g, but must be positive", tolerance));
     }
     const double stop = stop_time_defined ? stop_time : std::numeric_limits<double>::infinity();
     return status(self->enter_initialisation("fmi3EnterInitializationMode", start_time, stop));
@@ -217,8 +199,8 @@ fmi3Status fmi3Reset(fmi3Instance instance) {
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 step_size, fmi3Boolean,
-                      fmi3Boolean *event_handling_needed, fmi3Boolean *terminate_simulation,
-                      fmi3Boolean *early_return, fmi3Float64 *last_successful_time) {
+                      fmi3Boolean *event_handling_needed, fmi3Boolean *terminate_simulation, fmi3Boolean *early_return,
+                      fmi3Float64 *last_successful_time) {
     Instance *self = unwrap(instance);
     if (self == nullptr) {
         return fmi3Error;
@@ -246,8 +228,8 @@ fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference refere
                   self->get_real("fmi3GetFloat64", references, count, values));
 }
 
-fmi3Status fmi3GetInt32(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
-                        fmi3Int32 values[], size_t value_count) {
+fmi3Status fmi3GetInt32(fmi3Instance instance, const fmi3ValueReference references[], size_t count, fmi3Int32 values[],
+                        size_t value_count) {
     Instance *self = unwrap(instance);
     return status(self != nullptr && check_count(*self, "fmi3GetInt32", count, value_count) &&
                   self->get_integer("fmi3GetInt32", references, count, values));
@@ -282,14 +264,13 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference refere
 }
 
 // Types that no giveway FMU has a variable of.
-#define GIVEWAY_NO_TYPE(Type)                                                                          \
-    fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count,          \
-                             fmi3##Type[], size_t) {                                                   \
-        return no_such_type(instance, "fmi3Get" #Type, giveway::readable, count, #Type);               \
-    }                                                                                                  \
-    fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count,          \
-                             const fmi3##Type[], size_t) {                                             \
-        return no_such_type(instance, "fmi3Set" #Type, giveway::writable, count, #Type);               \
+#define GIVEWAY_NO_TYPE(Type) \
+    fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count, fmi3##Type[], size_t) { \
+        return no_such_type(instance, "fmi3Get" #Type, giveway::readable, count, #Type); \
+    } \
+    fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference[], size_t count, const fmi3##Type[], \
+                             size_t) { \
+        return no_such_type(instance, "fmi3Set" #Type, giveway::writable, count, #Type); \
     }
 GIVEWAY_NO_TYPE(Float32)
 GIVEWAY_NO_TYPE(Int8)
@@ -302,13 +283,13 @@ GIVEWAY_NO_TYPE(UInt64)
 GIVEWAY_NO_TYPE(String)
 #undef GIVEWAY_NO_TYPE
 
-fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count, size_t[],
-                         fmi3Binary[], size_t) {
+fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count, size_t[], fmi3Binary[],
+                         size_t) {
     return no_such_type(instance, "fmi3GetBinary", giveway::readable, count, "Binary");
 }
 
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count,
-                         const size_t[], const fmi3Binary[], size_t) {
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference[], size_t count, const size_t[],
+                         const fmi3Binary[], size_t) {
     return no_such_type(instance, "fmi3SetBinary", giveway::writable, count, "Binary");
 }
 
@@ -316,8 +297,7 @@ fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference[], size_
     return no_such_type(instance, "fmi3GetClock", giveway::readable, count, "Clock");
 }
 
-fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference[], size_t count,
-                        const fmi3Clock[]) {
+fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference[], size_t count, const fmi3Clock[]) {
     return no_such_type(instance, "fmi3SetClock", giveway::writable, count, "Clock");
 }
 
@@ -359,83 +339,77 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state,
     return status(self != nullptr && self->serialised_size("fmi3SerializedFMUStateSize", state, size));
 }
 
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[],
-                                 size_t size) {
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
     Instance *self = unwrap(instance);
     return status(self != nullptr &&
                   self->serialise("fmi3SerializeFMUState", state, reinterpret_cast<unsigned char *>(bytes), size));
 }
 
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
-                                   fmi3FMUState *state) {
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
     Instance *self = unwrap(instance);
-    return status(self != nullptr &&
-                  self->deserialise("fmi3DeserializeFMUState", reinterpret_cast<const unsigned char *>(bytes), size, state));
+    return status(self != nullptr && self->deserialise("fmi3DeserializeFMUState",
+                                                       reinterpret_cast<const unsigned char *>(bytes), size, state));
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference, size_t *) {
     return unsupported(instance, "fmi3GetNumberOfVariableDependencies", "variable dependencies");
 }
 
-fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference, size_t[],
-                                       fmi3ValueReference[], size_t[], fmi3DependencyKind[], size_t) {
+fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference, size_t[], fmi3ValueReference[],
+                                       size_t[], fmi3DependencyKind[], size_t) {
     return unsupported(instance, "fmi3GetVariableDependencies", "variable dependencies");
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                        const fmi3ValueReference[], size_t, const fmi3Float64[],
-                                        size_t, fmi3Float64[], size_t) {
+                                        const fmi3ValueReference[], size_t, const fmi3Float64[], size_t, fmi3Float64[],
+                                        size_t) {
     return unsupported(instance, "fmi3GetDirectionalDerivative", "directional derivatives");
 }
 
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                    const fmi3ValueReference[], size_t, const fmi3Float64[], size_t,
-                                    fmi3Float64[], size_t) {
+                                    const fmi3ValueReference[], size_t, const fmi3Float64[], size_t, fmi3Float64[],
+                                    size_t) {
     return unsupported(instance, "fmi3GetAdjointDerivative", "adjoint derivatives");
 }
 
-fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                    const fmi3Int32[], fmi3Float64[], size_t) {
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference[], size_t, const fmi3Int32[],
+                                    fmi3Float64[], size_t) {
     return unsupported(instance, "fmi3GetOutputDerivatives", "output derivatives");
 }
 
-fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                  fmi3Float64[], fmi3IntervalQualifier[]) {
+fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t, fmi3Float64[],
+                                  fmi3IntervalQualifier[]) {
     return unsupported(instance, "fmi3GetIntervalDecimal", "clocks");
 }
 
-fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                   fmi3UInt64[], fmi3UInt64[], fmi3IntervalQualifier[]) {
+fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference[], size_t, fmi3UInt64[],
+                                   fmi3UInt64[], fmi3IntervalQualifier[]) {
     return unsupported(instance, "fmi3GetIntervalFraction", "clocks");
 }
 
-fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                               fmi3Float64[]) {
+fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t, fmi3Float64[]) {
     return unsupported(instance, "fmi3GetShiftDecimal", "clocks");
 }
 
-fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                fmi3UInt64[], fmi3UInt64[]) {
+fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference[], size_t, fmi3UInt64[], fmi3UInt64[]) {
     return unsupported(instance, "fmi3GetShiftFraction", "clocks");
 }
 
-fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                  const fmi3Float64[]) {
+fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t, const fmi3Float64[]) {
     return unsupported(instance, "fmi3SetIntervalDecimal", "clocks");
 }
 
-fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                   const fmi3UInt64[], const fmi3UInt64[]) {
+fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference[], size_t, const fmi3UInt64[],
+                                   const fmi3UInt64[]) {
     return unsupported(instance, "fmi3SetIntervalFraction", "clocks");
 }
 
-fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                               const fmi3Float64[]) {
+fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference[], size_t, const fmi3Float64[]) {
     return unsupported(instance, "fmi3SetShiftDecimal", "clocks");
 }
 
-fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference[], size_t,
-                                const fmi3UInt64[], const fmi3UInt64[]) {
+fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference[], size_t, const fmi3UInt64[],
+                                const fmi3UInt64[]) {
     return unsupported(instance, "fmi3SetShiftFraction", "clocks");
 }
 
@@ -477,12 +451,10 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *update_n
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
     Instance *self = unwrap(instance);
-    return status(self != nullptr &&
-                  self->enter_continuous_time_mode("fmi3EnterContinuousTimeMode"));
+    return status(self != nullptr && self->enter_continuous_time_mode("fmi3EnterContinuousTimeMode"));
 }
 
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean,
-                                       fmi3Boolean *enter_event_mode,
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean, fmi3Boolean *enter_event_mode,
                                        fmi3Boolean *terminate_simulation) {
     Instance *self = unwrap(instance);
     bool needed = false;
@@ -525,17 +497,16 @@ fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 values[], 
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 values[], size_t count) {
     Instance *self = unwrap(instance);
-    return status(self != nullptr && self->get_nominals("fmi3GetNominalsOfContinuousStates", giveway::evaluable, values, count));
+    return status(self != nullptr &&
+                  self->get_nominals("fmi3GetNominalsOfContinuousStates", giveway::evaluable, values, count));
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *count) {
-    return get_count(instance, "fmi3GetNumberOfEventIndicators", giveway::model_info().indicator_count,
-                     count);
+    return get_count(instance, "fmi3GetNumberOfEventIndicators", giveway::model_info().indicator_count, count);
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *count) {
-    return get_count(instance, "fmi3GetNumberOfContinuousStates", giveway::model_info().state_count,
-                     count);
+    return get_count(instance, "fmi3GetNumberOfContinuousStates", giveway::model_info().state_count, count);
 }
 
 } // extern "C"

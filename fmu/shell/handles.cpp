@@ -15,8 +15,8 @@ Handles::Slot *Handles::slot(std::size_t index) {
     return chunk == nullptr ? nullptr : &chunk[index & (chunk_size - 1)];
 }
 
-// A handle is generation, index and a bit that is set, from high to low. The generation is at least 1, and that of every handle
-// that is given out is the next one.
+// A handle is generation, index and a bit that is set, from high to low. The generation is at least 1, and that of
+// every handle that is given out is the next one.
 void *Handles::object_of(std::uintptr_t handle) {
     const Slot *found = slot(index_of(handle));
     if (found == nullptr || found->handle.load(std::memory_order_acquire) != handle) {

@@ -19,8 +19,9 @@ namespace {
 // Of the saved states; one for all instances, which may take over each other's states.
 Handles saved_states;
 
-// Communication points are sums of step sizes; how far they may be off what we expect, as a share of the step (an importer's sum
-// over a million steps is off by less than 1e-9 of a step), or by the rounding of two times that were added up differently.
+// Communication points are sums of step sizes; how far they may be off what we expect, as a share of the step (an
+// importer's sum over a million steps is off by less than 1e-9 of a step), or by the rounding of two times that were
+// added up differently.
 constexpr double share_of_step = 1e-6;
 
 double time_tolerance(double time, double expected, double step_size) {
@@ -77,8 +78,7 @@ bool in(State state, States states) { return (static_cast<States>(state) & state
 
 } // namespace
 
-Instance::Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log,
-                   void *log_context)
+Instance::Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log, void *log_context)
     : model_(model), equations_(interface == Interface::model_exchange ? model->equations() : nullptr),
       interface_(interface), has_time_variable_(has_time_variable),
       end_(model_info().variables + model_info().variable_count), log_(log), log_context_(log_context) {}
@@ -104,15 +104,13 @@ bool Instance::allow(const char *function, States states) {
 }
 
 bool Instance::unsupported(const char *function, const char *what) {
-    return refuse(function, "this FMU does not support %s (in state '%s', as in any)", what,
-                  state_name(state_));
+    return refuse(function, "this FMU does not support %s (in state '%s', as in any)", what, state_name(state_));
 }
 
 bool Instance::fail(const char *function, Message &message) {
     message.text[sizeof message.text - 1] = '\0';
     state_ = State::failed;
-    return refuse(function, "%s",
-                  message.text[0] != '\0' ? message.text : "the model failed without a message");
+    return refuse(function, "%s", message.text[0] != '\0' ? message.text : "the model failed without a message");
 }
 
 bool Instance::ensure_initialised(const char *function) {
@@ -139,12 +137,14 @@ bool Instance::enter_initialisation(const char *function, double start_time, dou
         return refuse(function, "start time is %g, but must be finite", start_time);
     }
     if (std::fabs(start_time) > greatest_start_time_s) {
-        return refuse(function, "start time is %.9g s, but must be in [%.9g, %.9g]: later times are too coarse for a servo tick",
+        return refuse(function,
+                      "start time is %.9g s, but must be in [%.9g, %.9g]: later times are too coarse for a servo tick",
                       start_time, -greatest_start_time_s, greatest_start_time_s);
     }
     if (!(stop_time >= start_time)) {
         const TwoTimes times(stop_time, start_time);
-        return refuse(function, "stop time is %s s, but must not be before the start time, %s s", times.first, times.second);
+        return refuse(function, "stop time is %s s, but must not be before the start time, %s s", times.first,
+                      times.second);
     }
     time_ = start_time;
     stop_time_ = stop_time;
@@ -172,7 +172,8 @@ bool Instance::step(const char *function, double time, double step_size) {
     const double tolerance = time_tolerance(time, time_, step_size);
     if (!(std::fabs(time - time_) <= tolerance)) {
         const TwoTimes times(time, time_);
-        return refuse(function, "communication point is %s s, but the last step ended at %s s", times.first, times.second);
+        return refuse(function, "communication point is %s s, but the last step ended at %s s", times.first,
+                      times.second);
     }
     if (!(time + step_size > time)) {
         return refuse(function, "communication step size is %.9g s, too small to be added to %.9g s", step_size, time);
@@ -203,8 +204,7 @@ bool Instance::allow_exchange(const char *function, States states) {
         return unsupported(function, "Model Exchange");
     }
     if (equations_ == nullptr) {
-        return refuse(function,
-                      "this instance, in state '%s', was made for Co-Simulation, not for Model Exchange",
+        return refuse(function, "this instance, in state '%s', was made for Co-Simulation, not for Model Exchange",
                       state_name(state_));
     }
     return allow(function, states);
@@ -212,8 +212,7 @@ bool Instance::allow_exchange(const char *function, States states) {
 
 bool Instance::allow_stepping(const char *function, States states) {
     if (interface_ != Interface::co_simulation) {
-        return refuse(function,
-                      "this instance, in state '%s', was made for Model Exchange, not for Co-Simulation",
+        return refuse(function, "this instance, in state '%s', was made for Model Exchange, not for Co-Simulation",
                       state_name(state_));
     }
     return allow(function, states);
@@ -233,7 +232,8 @@ bool Instance::update_events(const char *function, EventUpdate &update) {
     }
     Message message{};
     update = EventUpdate{};
-    double *before = reinterpret_cast<double *>(static_cast<unsigned char *>(model_->variables()) + model_info().states_offset);
+    double *before =
+        reinterpret_cast<double *>(static_cast<unsigned char *>(model_->variables()) + model_info().states_offset);
     write_states(before);
     if (equations_->update_events(update, message) != Status::ok) {
         return fail(function, message);
@@ -256,8 +256,7 @@ bool Instance::enter_continuous_time_mode(const char *function) {
         return false;
     }
     if (update_pending_) {
-        return refuse(function,
-                      "not allowed in state '%s': the last update of discrete states asked for another one",
+        return refuse(function, "not allowed in state '%s': the last update of discrete states asked for another one",
                       state_name(state_));
     }
     state_ = State::continuous_time_mode;
@@ -292,8 +291,8 @@ bool Instance::set_time(const char *function, double time) {
     return true;
 }
 
-bool Instance::check_array(const char *function, const void *values, std::size_t count,
-                           std::size_t expected, const char *what) {
+bool Instance::check_array(const char *function, const void *values, std::size_t count, std::size_t expected,
+                           const char *what) {
     if (count != expected) {
         return refuse(function, "%zu values, but this FMU has %zu %s", count, expected, what);
     }
@@ -318,8 +317,7 @@ bool Instance::set_states(const char *function, const double *values, std::size_
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (!std::isfinite(values[i])) {
-            return refuse(function, "state %s is %g, but must be finite", state_variable_name(i),
-                          values[i]);
+            return refuse(function, "state %s is %g, but must be finite", state_variable_name(i), values[i]);
         }
     }
     std::memcpy(equations_->states(), values, integrated_count() * sizeof(double));
@@ -423,8 +421,7 @@ bool Instance::get_state(const char *function, void **saved) {
     archive(counter);
     const std::size_t own = counter.size();
     const std::size_t size = own + model_->save_state(nullptr);
-    std::unique_ptr<unsigned char[]> bytes(new (std::nothrow)
-                                               unsigned char[sizeof(StateHeader) + size]);
+    std::unique_ptr<unsigned char[]> bytes(new (std::nothrow) unsigned char[sizeof(StateHeader) + size]);
     if (bytes == nullptr) {
         return refuse(function, "out of memory");
     }
@@ -435,10 +432,10 @@ bool Instance::get_state(const char *function, void **saved) {
     return keep_state(function, std::move(bytes), sizeof(StateHeader) + size, saved);
 }
 
-// Fills the state that *saved stands for, or a new one if that is null or was never one: some importers leave the pointer
-// uninitialised.
-bool Instance::keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes,
-                          std::size_t size, void **saved) {
+// Fills the state that *saved stands for, or a new one if that is null or was never one: some importers leave the
+// pointer uninitialised.
+bool Instance::keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes, std::size_t size,
+                          void **saved) {
     if (saved_states.was_given_out(*saved)) {
         auto *old = static_cast<SavedState *>(saved_states.find(*saved));
         if (old == nullptr) {
@@ -479,8 +476,7 @@ bool Instance::set_state(const char *function, const void *saved) {
     }
     Message message{};
     const std::size_t before = sizeof(StateHeader) + own;
-    if (model_->load_state(state->bytes.get() + before, state->size - before, message) !=
-        Status::ok) {
+    if (model_->load_state(state->bytes.get() + before, state->size - before, message) != Status::ok) {
         return fail(function, message);
     }
     return true;
@@ -514,8 +510,7 @@ bool Instance::serialised_size(const char *function, const void *saved, std::siz
     return true;
 }
 
-bool Instance::serialise(const char *function, const void *saved, unsigned char *bytes,
-                         std::size_t size) {
+bool Instance::serialise(const char *function, const void *saved, unsigned char *bytes, std::size_t size) {
     const SavedState *state = find_state(function, saved);
     if (state == nullptr) {
         return false;
@@ -530,8 +525,7 @@ bool Instance::serialise(const char *function, const void *saved, unsigned char 
     return true;
 }
 
-bool Instance::deserialise(const char *function, const unsigned char *bytes, std::size_t size,
-                           void **saved) {
+bool Instance::deserialise(const char *function, const unsigned char *bytes, std::size_t size, void **saved) {
     if (saved == nullptr) {
         return refuse(function, "the state's address is a null pointer");
     }
@@ -548,18 +542,16 @@ bool Instance::deserialise(const char *function, const unsigned char *bytes, std
     return keep_state(function, std::move(copy), size, saved);
 }
 
-inline const VariableInfo *Instance::find(const char *function, std::uint32_t reference,
-                                          VariableType type, const VariableInfo *previous) {
+inline const VariableInfo *Instance::find(const char *function, std::uint32_t reference, VariableType type,
+                                          const VariableInfo *previous) {
     // Importers ask for variables in the order of the table more often than not.
-    if (previous != nullptr && previous + 1 < end_ && previous[1].reference == reference &&
-        previous[1].type == type) {
+    if (previous != nullptr && previous + 1 < end_ && previous[1].reference == reference && previous[1].type == type) {
         return previous + 1;
     }
     return search(function, reference, type);
 }
 
-const VariableInfo *Instance::search(const char *function, std::uint32_t reference,
-                                     VariableType type) {
+const VariableInfo *Instance::search(const char *function, std::uint32_t reference, VariableType type) {
     const VariableInfo *first = model_info().variables;
     std::size_t count = model_info().variable_count;
     while (count > 0) {
@@ -569,13 +561,11 @@ const VariableInfo *Instance::search(const char *function, std::uint32_t referen
         count = above ? count - half - 1 : half;
     }
     if (first == end_ || first->reference != reference) {
-        refuse(function, "there is no variable with value reference %u",
-               static_cast<unsigned>(reference));
+        refuse(function, "there is no variable with value reference %u", static_cast<unsigned>(reference));
         return nullptr;
     }
     if (first->type != type) {
-        refuse(function, "variable %s is %s, not %s", first->name, type_name(first->type),
-               type_name(type));
+        refuse(function, "variable %s is %s, not %s", first->name, type_name(first->type), type_name(type));
         return nullptr;
     }
     return first;
@@ -586,19 +576,18 @@ bool Instance::check_settable(const char *function, const VariableInfo &variable
         return refuse(function, "variable %s is %s and cannot be set", variable.name,
                       variable.causality == Causality::output ? "an output" : "local");
     }
-    if (variable.causality == Causality::parameter &&
-        !in(state_, State::instantiated | State::initialisation_mode)) {
-        return refuse(function, "variable %s is a fixed parameter and cannot be set in state '%s'",
-                      variable.name, state_name(state_));
+    if (variable.causality == Causality::parameter && !in(state_, State::instantiated | State::initialisation_mode)) {
+        return refuse(function, "variable %s is a fixed parameter and cannot be set in state '%s'", variable.name,
+                      state_name(state_));
     }
-    // In continuous time the standards allow continuous inputs only. FMPy 0.3.32 hands over all of them there, so a discrete one
-    // is taken, and waits for the next event.
+    // In continuous time the standards allow continuous inputs only. FMPy 0.3.32 hands over all of them there, so a
+    // discrete one is taken, and waits for the next event.
     return true;
 }
 
 // An importer that gives a wrong count would have us read what is not its own.
-bool Instance::check_references(const char *function, const std::uint32_t *references,
-                                std::size_t count, const void *values) {
+bool Instance::check_references(const char *function, const std::uint32_t *references, std::size_t count,
+                                const void *values) {
     const std::size_t all = model_info().variable_count + (has_time_variable_ ? 1 : 0);
     if (count > all) {
         return refuse(function, "%zu value references, but this FMU has %zu variables", count, all);
@@ -615,14 +604,14 @@ bool Instance::check_value(const char *function, const VariableInfo &variable, d
     } else if (value >= variable.minimum && value <= variable.maximum) {
         return true;
     }
-    return refuse(function, "variable %s is %.17g, but must be finite and in [%.17g, %.17g]",
-                  variable.name, value, variable.minimum, variable.maximum);
+    return refuse(function, "variable %s is %.17g, but must be finite and in [%.17g, %.17g]", variable.name, value,
+                  variable.minimum, variable.maximum);
 }
 
 // T is the variables' type, Theirs the importer's: FMI 2 has booleans as int.
 template <typename T, typename Theirs>
-bool Instance::get(const char *function, VariableType type, const std::uint32_t *references,
-                   std::size_t count, Theirs *values) {
+bool Instance::get(const char *function, VariableType type, const std::uint32_t *references, std::size_t count,
+                   Theirs *values) {
     if (!allow(function, readable) || !check_references(function, references, count, values)) {
         return false;
     }
@@ -660,8 +649,8 @@ bool Instance::get(const char *function, VariableType type, const std::uint32_t 
 }
 
 template <typename T, typename Theirs>
-bool Instance::set(const char *function, VariableType type, const std::uint32_t *references,
-                   std::size_t count, const Theirs *values) {
+bool Instance::set(const char *function, VariableType type, const std::uint32_t *references, std::size_t count,
+                   const Theirs *values) {
     if (!allow(function, writable) || !check_references(function, references, count, values)) {
         return false;
     }
@@ -696,43 +685,40 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
     return true;
 }
 
-bool Instance::get_real(const char *function, const std::uint32_t *references, std::size_t count,
-                double *values) {
+bool Instance::get_real(const char *function, const std::uint32_t *references, std::size_t count, double *values) {
     return get<double>(function, VariableType::real, references, count, values);
 }
 
 bool Instance::get_integer(const char *function, const std::uint32_t *references, std::size_t count,
-                std::int32_t *values) {
+                           std::int32_t *values) {
     return get<std::int32_t>(function, VariableType::integer, references, count, values);
 }
 
-bool Instance::get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                bool *values) {
+bool Instance::get_boolean(const char *function, const std::uint32_t *references, std::size_t count, bool *values) {
     return get<bool>(function, VariableType::boolean, references, count, values);
 }
 
-bool Instance::get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                int *values) {
+bool Instance::get_boolean(const char *function, const std::uint32_t *references, std::size_t count, int *values) {
     return get<bool>(function, VariableType::boolean, references, count, values);
 }
 
 bool Instance::set_real(const char *function, const std::uint32_t *references, std::size_t count,
-                const double *values) {
+                        const double *values) {
     return set<double>(function, VariableType::real, references, count, values);
 }
 
 bool Instance::set_integer(const char *function, const std::uint32_t *references, std::size_t count,
-                const std::int32_t *values) {
+                           const std::int32_t *values) {
     return set<std::int32_t>(function, VariableType::integer, references, count, values);
 }
 
 bool Instance::set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                const bool *values) {
+                           const bool *values) {
     return set<bool>(function, VariableType::boolean, references, count, values);
 }
 
 bool Instance::set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                const int *values) {
+                           const int *values) {
     return set<bool>(function, VariableType::boolean, references, count, values);
 }
 

@@ -20,29 +20,27 @@ enum class State : unsigned {
     initialisation_mode = 1u << 1,
     step_mode = 1u << 2,
     terminated = 1u << 3,
-    failed = 1u << 4, // the model reported an error: only reading, reset and freeing are left
+    failed = 1u << 4,               // the model reported an error: only reading, reset and freeing are left
     event_mode = 1u << 5,           // Model Exchange
     continuous_time_mode = 1u << 6, // Model Exchange
 };
 
 // A set of states in which a call is legal.
 using States = unsigned;
-constexpr States operator|(State a, State b) {
-    return static_cast<States>(a) | static_cast<States>(b);
-}
+constexpr States operator|(State a, State b) { return static_cast<States>(a) | static_cast<States>(b); }
 constexpr States operator|(States a, State b) { return a | static_cast<States>(b); }
 constexpr States any_state = ~0u;
 constexpr States only(State state) { return static_cast<States>(state); }
 
 // What the standards allow where; both versions alike but where an entry point says otherwise.
 constexpr States exchange_modes = State::event_mode | State::continuous_time_mode;
-constexpr States readable = State::initialisation_mode | State::step_mode | State::terminated |
-                            State::failed | State::event_mode | State::continuous_time_mode;
+constexpr States readable = State::initialisation_mode | State::step_mode | State::terminated | State::failed |
+                            State::event_mode | State::continuous_time_mode;
 // Where equations can be evaluated: a model that failed may not have come that far.
 constexpr States evaluable =
     State::initialisation_mode | State::terminated | State::event_mode | State::continuous_time_mode;
-constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode |
-                            State::event_mode | State::continuous_time_mode;
+constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode | State::event_mode |
+                            State::continuous_time_mode;
 
 // Where messages go; `context` is the entry points' own object.
 using LogFunction = void (*)(void *context, const char *text);
@@ -52,8 +50,7 @@ enum class Interface : std::uint8_t { co_simulation, model_exchange };
 class Instance {
 public:
     // `has_time_variable`: reference 0 can be read as the current time (FMI 3).
-    Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log,
-             void *log_context);
+    Instance(Model *model, Interface interface, bool has_time_variable, LogFunction log, void *log_context);
     ~Instance();
     Instance(const Instance &) = delete;
     Instance &operator=(const Instance &) = delete;
@@ -74,14 +71,14 @@ public:
     bool terminate(const char *function);
     bool reset(const char *function);
 
-    // The whole state. `saved` is a handle: one that was freed, or never given out, is refused. A state that *saved stands for before is replaced.
+    // The whole state. `saved` is a handle: one that was freed, or never given out, is refused. A state that *saved
+    // stands for before is replaced.
     bool get_state(const char *function, void **saved);
     bool set_state(const char *function, const void *saved);
     bool free_state(const char *function, void **saved);
     bool serialised_size(const char *function, const void *saved, std::size_t *size);
     bool serialise(const char *function, const void *saved, unsigned char *bytes, std::size_t size);
-    bool deserialise(const char *function, const unsigned char *bytes, std::size_t size,
-                     void **saved);
+    bool deserialise(const char *function, const unsigned char *bytes, std::size_t size, void **saved);
 
     // As allow, for what only Co-Simulation has.
     bool allow_stepping(const char *function, States states);
@@ -100,23 +97,16 @@ public:
     bool get_indicators(const char *function, double *values, std::size_t count);
     bool get_nominals(const char *function, States states, double *values, std::size_t count);
 
-    bool get_real(const char *function, const std::uint32_t *references, std::size_t count,
-                  double *values);
-    bool get_integer(const char *function, const std::uint32_t *references, std::size_t count,
-                     std::int32_t *values);
-    bool get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                     bool *values);
-    bool get_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                     int *values);
+    bool get_real(const char *function, const std::uint32_t *references, std::size_t count, double *values);
+    bool get_integer(const char *function, const std::uint32_t *references, std::size_t count, std::int32_t *values);
+    bool get_boolean(const char *function, const std::uint32_t *references, std::size_t count, bool *values);
+    bool get_boolean(const char *function, const std::uint32_t *references, std::size_t count, int *values);
     // All of them are set or, if one is refused, none.
-    bool set_real(const char *function, const std::uint32_t *references, std::size_t count,
-                  const double *values);
+    bool set_real(const char *function, const std::uint32_t *references, std::size_t count, const double *values);
     bool set_integer(const char *function, const std::uint32_t *references, std::size_t count,
                      const std::int32_t *values);
-    bool set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                     const bool *values);
-    bool set_boolean(const char *function, const std::uint32_t *references, std::size_t count,
-                     const int *values);
+    bool set_boolean(const char *function, const std::uint32_t *references, std::size_t count, const bool *values);
+    bool set_boolean(const char *function, const std::uint32_t *references, std::size_t count, const int *values);
 
     double time() const { return time_; }
     State state() const { return state_; }
@@ -134,24 +124,22 @@ private:
         a(discontinuity_seen_);
     }
     template <typename T, typename Theirs>
-    bool get(const char *function, VariableType type, const std::uint32_t *references,
-             std::size_t count, Theirs *values);
+    bool get(const char *function, VariableType type, const std::uint32_t *references, std::size_t count,
+             Theirs *values);
     template <typename T, typename Theirs>
-    bool set(const char *function, VariableType type, const std::uint32_t *references,
-             std::size_t count, const Theirs *values);
+    bool set(const char *function, VariableType type, const std::uint32_t *references, std::size_t count,
+             const Theirs *values);
     // `previous`: what the last call gave, null if there was none.
     const VariableInfo *find(const char *function, std::uint32_t reference, VariableType type,
                              const VariableInfo *previous);
     const VariableInfo *search(const char *function, std::uint32_t reference, VariableType type);
-    bool check_references(const char *function, const std::uint32_t *references, std::size_t count,
-                          const void *values);
+    bool check_references(const char *function, const std::uint32_t *references, std::size_t count, const void *values);
     const SavedState *find_state(const char *function, const void *saved);
-    bool keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes, std::size_t size,
-                    void **saved);
+    bool keep_state(const char *function, std::unique_ptr<unsigned char[]> bytes, std::size_t size, void **saved);
     bool check_settable(const char *function, const VariableInfo &variable);
     bool check_value(const char *function, const VariableInfo &variable, double value);
-    bool check_array(const char *function, const void *values, std::size_t count,
-                     std::size_t expected, const char *what);
+    bool check_array(const char *function, const void *values, std::size_t count, std::size_t expected,
+                     const char *what);
     // States that the model integrates.
     static std::size_t integrated_count() { return model_info().state_count == 0 ? 0 : model_info().state_count - 1; }
     void write_states(double *values);
@@ -173,11 +161,12 @@ private:
     State state_ = State::instantiated;
     double time_ = 0.0;
     double stop_time_ = 0.0;
-    bool initialised_ = false; // the outputs in the initialisation mode belong to the values set
-    bool outputs_fresh_ = true; // Model Exchange: the outputs belong to time, states and inputs
+    bool initialised_ = false;    // the outputs in the initialisation mode belong to the values set
+    bool outputs_fresh_ = true;   // Model Exchange: the outputs belong to time, states and inputs
     bool update_pending_ = false; // the last event update asked for another
-    // The last of the states that an importer sees. It grows by one in every event at which inputs or equations jump: then a state has
-    // changed, to the letter, and an importer that starts its solver anew only when it hears that does so.
+    // The last of the states that an importer sees. It grows by one in every event at which inputs or equations jump:
+    // then a state has changed, to the letter, and an importer that starts its solver anew only when it hears that does
+    // so.
     double discontinuities_ = 0.0;
     bool discontinuity_seen_ = false; // it grows in the last update of this event
 };

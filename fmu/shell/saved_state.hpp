@@ -1,4 +1,5 @@
-// A saved FMU state: a header that says what it belongs to and whether it is whole, then the bytes of instance and model.
+// A saved FMU state: a header that says what it belongs to and whether it is whole, then the bytes of instance and
+// model.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,12 @@
 namespace giveway {
 
 struct StateHeader {
-    char magic[8];          // "GWSTATE"
-    std::uint32_t version;  // of this header and what follows
+    char magic[8];            // "GWSTATE"
+    std::uint32_t version;    // of this header and what follows
     std::uint32_t byte_order; // 1, as this machine writes it
-    std::uint64_t token;    // hash of the instantiation token: the variable table
-    std::uint64_t size;     // of what follows the header
-    std::uint64_t checksum; // of what follows the header
+    std::uint64_t token;      // hash of the instantiation token: the variable table
+    std::uint64_t size;       // of what follows the header
+    std::uint64_t checksum;   // of what follows the header
 };
 
 struct SavedState {

@@ -30,7 +30,7 @@ public:
         }
     }
 
-    int create(Problem& problem, double time_s, const IntegratorOptions& options) override {
+    int create(Problem &problem, double time_s, const IntegratorOptions &options) override {
         problem_ = &problem;
         cvode_ = CVodeCreate(method_ == Method::adams ? CV_ADAMS : CV_BDF, problem.context());
         if (cvode_ == nullptr) {
@@ -59,7 +59,7 @@ public:
         return code != 0 ? code : CVodeSetInitStep(cvode_, first_step_s);
     }
 
-    Outcome evolve(double end_s, double& time_s) override {
+    Outcome evolve(double end_s, double &time_s) override {
         (void)CVodeSetStopTime(cvode_, end_s);
         long before = 0;
         long after = 0;
@@ -86,9 +86,10 @@ public:
         return Outcome::reached;
     }
 
-    void fired(int* direction) const override { (void)CVodeGetRootInfo(cvode_, direction); }
-    // A fresh start is of first order, so the proposal that followed the last first step is the guess, less a margin: a first step that
-    // fails its error test costs more than it could have gained. CVODE's own estimate would cost two evaluations at every start.
+    void fired(int *direction) const override { (void)CVodeGetRootInfo(cvode_, direction); }
+    // A fresh start is of first order, so the proposal that followed the last first step is the guess, less a margin: a
+    // first step that fails its error test costs more than it could have gained. CVODE's own estimate would cost two
+    // evaluations at every start.
     double first_step() const override { return 0.7 * step_after_first_s_; }
 
     double last_step() const override {
@@ -99,10 +100,11 @@ public:
     std::int64_t steps() const override { return steps_; }
     int code() const override { return code_; }
 
-    char* code_name(int code) const override { return CVodeGetReturnFlagName(code); }
+    char *code_name(int code) const override { return CVodeGetReturnFlagName(code); }
 
 private:
-    // Contact is not stiff enough for a Newton iteration to pay in an Adams method: it made the testbed three to four times slower.
+    // Contact is not stiff enough for a Newton iteration to pay in an Adams method: it made the testbed three to four
+    // times slower.
     int attach_fixed_point() {
         corrector_ = SUNNonlinSol_FixedPoint(problem_->state(), 0, problem_->context());
         return corrector_ == nullptr ? CV_MEM_FAIL : CVodeSetNonlinearSolver(cvode_, corrector_);
@@ -121,8 +123,8 @@ private:
     }
 
     Method method_;
-    Problem* problem_ = nullptr;
-    void* cvode_ = nullptr;
+    Problem *problem_ = nullptr;
+    void *cvode_ = nullptr;
     SUNNonlinearSolver corrector_ = nullptr;
     SUNLinearSolver linear_ = nullptr;
     SUNMatrix matrix_ = nullptr;
@@ -133,6 +135,6 @@ private:
 
 } // namespace
 
-Stepper* new_cvode_stepper(Method method) { return new (std::nothrow) CvodeStepper(method); }
+Stepper *new_cvode_stepper(Method method) { return new (std::nothrow) CvodeStepper(method); }
 
 } // namespace giveway::solver

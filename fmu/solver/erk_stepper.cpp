@@ -17,7 +17,7 @@ public:
         }
     }
 
-    int create(Problem& problem, double time_s, const IntegratorOptions& options) override {
+    int create(Problem &problem, double time_s, const IntegratorOptions &options) override {
         problem_ = &problem;
         problem.set_accepted_time(time_s);
         arkode_ = ERKStepCreate(Problem::rhs, time_s, problem.state(), problem.context());
@@ -48,7 +48,7 @@ public:
         return code != 0 ? code : ARKodeSetInitStep(arkode_, first_step_s);
     }
 
-    Outcome evolve(double end_s, double& time_s) override {
+    Outcome evolve(double end_s, double &time_s) override {
         long before = 0;
         long after = 0;
         (void)ARKodeGetNumSteps(arkode_, &before);
@@ -67,9 +67,10 @@ public:
         return Outcome::reached;
     }
 
-    void fired(int* direction) const override { (void)ARKodeGetRootInfo(arkode_, direction); }
+    void fired(int *direction) const override { (void)ARKodeGetRootInfo(arkode_, direction); }
 
-    // A stop time cuts the last step short and hides ARKODE's own proposal: try twice as much; its error test corrects that.
+    // A stop time cuts the last step short and hides ARKODE's own proposal: try twice as much; its error test corrects
+    // that.
     double first_step() const override { return 2.0 * last_step(); }
 
     double last_step() const override {
@@ -81,17 +82,17 @@ public:
     std::int64_t steps() const override { return steps_; }
     int code() const override { return code_; }
 
-    char* code_name(int code) const override { return ARKodeGetReturnFlagName(code); }
+    char *code_name(int code) const override { return ARKodeGetReturnFlagName(code); }
 
 private:
-    Problem* problem_ = nullptr;
-    void* arkode_ = nullptr;
+    Problem *problem_ = nullptr;
+    void *arkode_ = nullptr;
     std::int64_t steps_ = 0;
     int code_ = 0;
 };
 
 } // namespace
 
-Stepper* new_erk_stepper() { return new (std::nothrow) ErkStepper; }
+Stepper *new_erk_stepper() { return new (std::nothrow) ErkStepper; }
 
 } // namespace giveway::solver

@@ -27,24 +27,26 @@ struct HybridIntegrator::Memory {
 HybridIntegrator::~HybridIntegrator() { delete memory_; }
 
 // `code` 0: `what` is the reason.
-bool HybridIntegrator::fail(const char* what, int code) {
+bool HybridIntegrator::fail(const char *what, int code) {
     char why[200] = "";
     if (code != 0) {
-        const Stepper& stepper = *memory_->stepper;
+        const Stepper &stepper = *memory_->stepper;
         const int bad = memory_->problem.bad_rate();
         char bad_rate[64] = "";
         std::snprintf(bad_rate, sizeof bad_rate, "the rate of state %d is not a finite number", bad);
-        char* code_name = stepper.code_name(code);
+        char *code_name = stepper.code_name(code);
         // A last step of no length means that the state came up against a singularity.
-        std::snprintf(why, sizeof why, ": %s (%s, last step %.3g s)", bad >= 0 ? bad_rate : reason(code), code_name != nullptr ? code_name : "no code",
-                      stepper.last_step());
+        std::snprintf(why, sizeof why, ": %s (%s, last step %.3g s)", bad >= 0 ? bad_rate : reason(code),
+                      code_name != nullptr ? code_name : "no code", stepper.last_step());
         std::free(code_name); // allocated by SUNDIALS
     }
-    std::snprintf(error_, sizeof error_, "%s %s at t = %.9g s%s", name(options_.method), what, options_.clock_start_s + time_s_, why);
+    std::snprintf(error_, sizeof error_, "%s %s at t = %.9g s%s", name(options_.method), what,
+                  options_.clock_start_s + time_s_, why);
     return false;
 }
 
-bool HybridIntegrator::create(HybridSystem& system, double time_s, const double* state, const IntegratorOptions& options) {
+bool HybridIntegrator::create(HybridSystem &system, double time_s, const double *state,
+                              const IntegratorOptions &options) {
     delete memory_;
     options_ = options;
     time_s_ = time_s;
@@ -65,9 +67,10 @@ bool HybridIntegrator::create(HybridSystem& system, double time_s, const double*
     return code == 0 || fail("refuses its options", code);
 }
 
-double* HybridIntegrator::state() { return NV_DATA_S(memory_->problem.state()); }
+double *HybridIntegrator::state() { return NV_DATA_S(memory_->problem.state()); }
 
-bool HybridIntegrator::resume(HybridSystem& system, const Checkpoint& checkpoint, const double* state, const IntegratorOptions& options) {
+bool HybridIntegrator::resume(HybridSystem &system, const Checkpoint &checkpoint, const double *state,
+                              const IntegratorOptions &options) {
     if (!create(system, checkpoint.time_s, state, options)) {
         return false;
     }
@@ -79,14 +82,14 @@ bool HybridIntegrator::resume(HybridSystem& system, const Checkpoint& checkpoint
 }
 
 IntegratorStatistics HybridIntegrator::statistics() const {
-    const Stepper& stepper = *memory_->stepper;
-    const Problem& problem = memory_->problem;
-    return {before_.steps + stepper.steps(), before_.rhs_calls + problem.rhs_calls(), before_.jacobian_calls + problem.jacobian_calls(),
-            before_.events + events_};
+    const Stepper &stepper = *memory_->stepper;
+    const Problem &problem = memory_->problem;
+    return {before_.steps + stepper.steps(), before_.rhs_calls + problem.rhs_calls(),
+            before_.jacobian_calls + problem.jacobian_calls(), before_.events + events_};
 }
 
 bool HybridIntegrator::advance(double end_s) {
-    Stepper& stepper = *memory_->stepper;
+    Stepper &stepper = *memory_->stepper;
     for (int event = 0; event <= max_events_per_advance; ++event) {
         if (time_s_ >= end_s) {
             return true;

@@ -16,31 +16,34 @@ class HybridIntegrator {
 public:
     HybridIntegrator() = default;
     ~HybridIntegrator();
-    HybridIntegrator(const HybridIntegrator&) = delete;
-    HybridIntegrator& operator=(const HybridIntegrator&) = delete;
+    HybridIntegrator(const HybridIntegrator &) = delete;
+    HybridIntegrator &operator=(const HybridIntegrator &) = delete;
 
     // False when SUNDIALS refuses or memory is short; error() says why. `system` must outlive the integrator.
-    [[nodiscard]] bool create(HybridSystem& system, double time_s, const double* state, const IntegratorOptions& options);
+    [[nodiscard]] bool create(HybridSystem &system, double time_s, const double *state,
+                              const IntegratorOptions &options);
     // Goes on where another integrator of the same system and options stood when its checkpoint was taken.
-    [[nodiscard]] bool resume(HybridSystem& system, const Checkpoint& checkpoint, const double* state, const IntegratorOptions& options);
-    // Complete, together with the state, if restart() is called before the next advance(): a fresh start needs no history.
+    [[nodiscard]] bool resume(HybridSystem &system, const Checkpoint &checkpoint, const double *state,
+                              const IntegratorOptions &options);
+    // Complete, together with the state, if restart() is called before the next advance(): a fresh start needs no
+    // history.
     [[nodiscard]] Checkpoint checkpoint() const { return {time_s_, step_hint_s_, last_event_time_s_, statistics()}; }
     // The state, writable between advances; call restart() after writing or after an input changed.
-    [[nodiscard]] double* state();
+    [[nodiscard]] double *state();
     [[nodiscard]] double time() const { return time_s_; }
     void restart() { fresh_ = false; }
-    // Integrates to exactly end_s, through any number of events. False on failure: error() names time, method and reason, and
-    // time() and state() are those of the last good step.
+    // Integrates to exactly end_s, through any number of events. False on failure: error() names time, method and
+    // reason, and time() and state() are those of the last good step.
     [[nodiscard]] bool advance(double end_s);
-    [[nodiscard]] const char* error() const { return error_; }
+    [[nodiscard]] const char *error() const { return error_; }
     [[nodiscard]] IntegratorStatistics statistics() const;
     [[nodiscard]] double last_event_time() const { return last_event_time_s_; }
 
 private:
     struct Memory;
-    [[nodiscard]] bool fail(const char* what, int code);
+    [[nodiscard]] bool fail(const char *what, int code);
 
-    Memory* memory_ = nullptr;
+    Memory *memory_ = nullptr;
     IntegratorOptions options_ = {};
     double time_s_ = 0.0;
     double step_hint_s_ = 0.0;

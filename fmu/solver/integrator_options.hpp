@@ -11,14 +11,16 @@ enum class Method : std::uint8_t {
     bdf = 2,   // backward differentiation, orders 1 to 5, Newton corrector with the system's Jacobian, CVODE
 };
 
-constexpr const char* name(Method method) { return method == Method::erk ? "ERK" : method == Method::adams ? "Adams" : "BDF"; }
+constexpr const char *name(Method method) {
+    return method == Method::erk ? "ERK" : method == Method::adams ? "Adams" : "BDF";
+}
 
 struct IntegratorOptions {
     double relative_tolerance = 1e-6;
     double absolute_tolerance_scale = 1.0; // multiplies the system's absolute tolerances
     double maximum_step_s = 0.0;           // 0: no limit
     Method method = Method::erk;
-    double clock_start_s = 0.0;            // added to the integrator's time in messages: what the caller's clock shows at its zero
+    double clock_start_s = 0.0; // added to the integrator's time in messages: what the caller's clock shows at its zero
 };
 
 struct IntegratorStatistics {

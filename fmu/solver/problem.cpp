@@ -9,7 +9,7 @@ namespace giveway::solver {
 namespace {
 
 // SUNDIALS prints to stderr unless told otherwise; failures are reported through HybridIntegrator::error() instead.
-void silent(int, const char*, const char*, const char*, SUNErrCode, void*, SUNContext) {}
+void silent(int, const char *, const char *, const char *, SUNErrCode, void *, SUNContext) {}
 
 bool is_finite(double value) {
     constexpr std::uint64_t exponent = 0x7ffULL << 52U;
@@ -30,7 +30,7 @@ Problem::~Problem() {
     }
 }
 
-bool Problem::create(HybridSystem& system, const double* state, const IntegratorOptions& options) {
+bool Problem::create(HybridSystem &system, const double *state, const IntegratorOptions &options) {
     system_ = &system;
     if (SUNContext_Create(SUN_COMM_NULL, &context_) != 0) {
         return false;
@@ -60,32 +60,33 @@ int Problem::bad_rate() const {
     return -1;
 }
 
-int Problem::rhs(sunrealtype time, N_Vector y, N_Vector rate, void* user) {
-    auto* self = static_cast<Problem*>(user);
+int Problem::rhs(sunrealtype time, N_Vector y, N_Vector rate, void *user) {
+    auto *self = static_cast<Problem *>(user);
     ++self->rhs_calls_;
     self->latest_rate_ = rate;
     self->system_->rhs(time, NV_DATA_S(y), NV_DATA_S(rate));
     return 0;
 }
 
-int Problem::checked_rhs(sunrealtype time, N_Vector y, N_Vector rate, void* user) {
+int Problem::checked_rhs(sunrealtype time, N_Vector y, N_Vector rate, void *user) {
     (void)rhs(time, y, rate, user);
-    return static_cast<Problem*>(user)->bad_rate() < 0 ? 0 : 1;
+    return static_cast<Problem *>(user)->bad_rate() < 0 ? 0 : 1;
 }
 
-int Problem::roots(sunrealtype time, N_Vector y, sunrealtype* value, void* user) {
-    auto* self = static_cast<Problem*>(user);
+int Problem::roots(sunrealtype time, N_Vector y, sunrealtype *value, void *user) {
+    auto *self = static_cast<Problem *>(user);
     self->system_->indicators(time, NV_DATA_S(y), value);
     return 0;
 }
 
-int Problem::accepted(sunrealtype time, N_Vector, void* user) {
-    static_cast<Problem*>(user)->accepted_time_s_ = time;
+int Problem::accepted(sunrealtype time, N_Vector, void *user) {
+    static_cast<Problem *>(user)->accepted_time_s_ = time;
     return 0;
 }
 
-int Problem::jacobian(sunrealtype time, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector, N_Vector) {
-    auto* self = static_cast<Problem*>(user);
+int Problem::jacobian(sunrealtype time, N_Vector y, N_Vector, SUNMatrix matrix, void *user, N_Vector, N_Vector,
+                      N_Vector) {
+    auto *self = static_cast<Problem *>(user);
     ++self->jacobian_calls_;
     return self->system_->jacobian(time, NV_DATA_S(y), SUNDenseMatrix_Data(matrix)) ? 0 : -1;
 }

@@ -16,13 +16,13 @@ class Problem {
 public:
     Problem() = default;
     ~Problem();
-    Problem(const Problem&) = delete;
-    Problem& operator=(const Problem&) = delete;
+    Problem(const Problem &) = delete;
+    Problem &operator=(const Problem &) = delete;
 
     // False when memory is short.
-    [[nodiscard]] bool create(HybridSystem& system, const double* state, const IntegratorOptions& options);
+    [[nodiscard]] bool create(HybridSystem &system, const double *state, const IntegratorOptions &options);
 
-    [[nodiscard]] HybridSystem& system() const { return *system_; }
+    [[nodiscard]] HybridSystem &system() const { return *system_; }
     [[nodiscard]] SUNContext context() const { return context_; }
     [[nodiscard]] N_Vector state() const { return state_; }
     [[nodiscard]] N_Vector tolerance() const { return tolerance_; }
@@ -36,15 +36,16 @@ public:
     void set_accepted_time(double time_s) { accepted_time_s_ = time_s; }
 
     // Callbacks; `user` is the Problem.
-    static int rhs(sunrealtype time, N_Vector y, N_Vector rate, void* user);
+    static int rhs(sunrealtype time, N_Vector y, N_Vector rate, void *user);
     // Positive, that is "try a shorter step", where a rate is not finite.
-    static int checked_rhs(sunrealtype time, N_Vector y, N_Vector rate, void* user);
-    static int roots(sunrealtype time, N_Vector y, sunrealtype* value, void* user);
-    static int accepted(sunrealtype time, N_Vector y, void* user);
-    static int jacobian(sunrealtype time, N_Vector y, N_Vector rate, SUNMatrix matrix, void* user, N_Vector, N_Vector, N_Vector);
+    static int checked_rhs(sunrealtype time, N_Vector y, N_Vector rate, void *user);
+    static int roots(sunrealtype time, N_Vector y, sunrealtype *value, void *user);
+    static int accepted(sunrealtype time, N_Vector y, void *user);
+    static int jacobian(sunrealtype time, N_Vector y, N_Vector rate, SUNMatrix matrix, void *user, N_Vector, N_Vector,
+                        N_Vector);
 
 private:
-    HybridSystem* system_ = nullptr;
+    HybridSystem *system_ = nullptr;
     SUNContext context_ = nullptr;
     N_Vector state_ = nullptr;
     N_Vector tolerance_ = nullptr;

@@ -6,10 +6,10 @@
 namespace giveway::solver {
 
 // ARKODE and CVODE number their failures alike.
-static_assert(ARK_TOO_MUCH_WORK == CV_TOO_MUCH_WORK && ARK_TOO_MUCH_ACC == CV_TOO_MUCH_ACC && ARK_ERR_FAILURE == CV_ERR_FAILURE &&
-              ARK_CONV_FAILURE == CV_CONV_FAILURE && ARK_MEM_FAIL == CV_MEM_FAIL);
+static_assert(ARK_TOO_MUCH_WORK == CV_TOO_MUCH_WORK && ARK_TOO_MUCH_ACC == CV_TOO_MUCH_ACC &&
+              ARK_ERR_FAILURE == CV_ERR_FAILURE && ARK_CONV_FAILURE == CV_CONV_FAILURE && ARK_MEM_FAIL == CV_MEM_FAIL);
 
-const char* reason(int code) {
+const char *reason(int code) {
     switch (code) {
     case CV_TOO_MUCH_WORK:
         return "too many steps between two stops";

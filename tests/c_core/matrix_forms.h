@@ -115,8 +115,8 @@ static inline gw_wheels_t roller_accelerations(const gw_kinematics_t *kinematics
     for (uint32_t i = 0U; i < 3U; i++) {
         const gw_vector_t n = kinematics->radial[i];
         const gw_real_t turning = twist.omega_radps * gw_along_rolling(n, twist.vx_mps, twist.vy_mps);
-        result.wheel[i] = (gw_along_radial(n, acceleration.ax_mps2, acceleration.ay_mps2) + turning) *
-                          kinematics->per_roller_radius;
+        result.wheel[i] =
+            (gw_along_radial(n, acceleration.ax_mps2, acceleration.ay_mps2) + turning) * kinematics->per_roller_radius;
     }
     return result;
 }

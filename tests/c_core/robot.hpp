@@ -6,19 +6,21 @@
 
 #include "support.hpp"
 
-class Robot {
+class Robot
+{
 public:
     explicit Robot(const gw_controller_config_t &chosen, const Eigen::Vector3d &offset = Eigen::Vector3d::Zero())
-        : config(chosen), offset_(offset) {
+        : config(chosen), offset_(offset)
+    {
         gw_config_error_t error{};
-        EXPECT_EQ(gw_controller_init(controller.get(), &config, &error), GW_STATUS_OK)
-            << gw_config_name(error.field);
+        EXPECT_EQ(gw_controller_init(controller.get(), &config, &error), GW_STATUS_OK) << gw_config_name(error.field);
         input.sensor.present = true;
         gw_controller_safe_output(&output);
     }
 
     // One tick under a push in the base frame (force and torque about the centre).
-    gw_status_t step(const Eigen::Vector3d &push = Eigen::Vector3d::Zero()) {
+    gw_status_t step(const Eigen::Vector3d &push = Eigen::Vector3d::Zero())
+    {
         ++input.sensor.counter;
         const Eigen::Vector3d torque = exact_torques(push);
         for (int i = 0; i < 3; ++i) {
@@ -30,7 +32,8 @@ public:
     }
 
     // One tick with whatever is in `input`.
-    gw_status_t raw_step() {
+    gw_status_t raw_step()
+    {
         const gw_status_t status = gw_controller_step(controller.get(), &input, &output);
         const Eigen::Vector3d v = vector(output.reference_twist);
         if (output.mode != GW_MODE_FAULT) {
@@ -44,17 +47,22 @@ public:
         return status;
     }
 
-    void run(int ticks, const Eigen::Vector3d &push = Eigen::Vector3d::Zero()) {
+    void run(int ticks, const Eigen::Vector3d &push = Eigen::Vector3d::Zero())
+    {
         for (int i = 0; i < ticks; ++i) {
             ASSERT_EQ(step(push), GW_STATUS_OK);
         }
     }
 
     // The robot was moving like this before the controller started.
-    void already_moving(const Eigen::Vector3d &twist) { twist_ = twist; }
+    void already_moving(const Eigen::Vector3d &twist)
+    {
+        twist_ = twist;
+    }
 
     // Through the tare, until it tracks.
-    void start() {
+    void start()
+    {
         for (unsigned i = 0; i < config.estimator.tare_ticks; ++i) {
             ASSERT_EQ(output.command.speed_radps[0], real(0));
             ASSERT_EQ(step(), GW_STATUS_OK);
@@ -63,7 +71,8 @@ public:
     }
 
     // The commanded twist over the floor, in the base frame, from the commanded wheel speeds.
-    [[nodiscard]] Eigen::Vector3d commanded_twist() const {
+    [[nodiscard]] Eigen::Vector3d commanded_twist() const
+    {
         const Eigen::Vector3d rates(output.command.speed_radps[0], output.command.speed_radps[1],
                                     output.command.speed_radps[2]);
         return wheel_jacobian(config.geometry, 0.0).inverse() * rates;
@@ -77,7 +86,8 @@ public:
 
 private:
     // T_s = J_w^-T (M_t a + c + J_r^T B_r - F) + offset.
-    [[nodiscard]] Eigen::Vector3d exact_torques(const Eigen::Vector3d &push) const {
+    [[nodiscard]] Eigen::Vector3d exact_torques(const Eigen::Vector3d &push) const
+    {
         const double r_w = config.geometry.wheel_radius_m;
         const double r_r = config.geometry.roller_radius_m;
         const double distance = config.geometry.wheel_distance_m;
@@ -92,8 +102,8 @@ private:
         const Eigen::Vector3d friction = config.friction.coulomb_torque_nm *
                                          (config.friction.tanh_slope_s_per_rad * (jr * v).array()).tanh().matrix();
         const Eigen::Vector3d velocity_term = 1.5 * (wheel + roller) * v(2) * Eigen::Vector3d(v(1), -v(0), 0.0);
-        const Eigen::Vector3d force = Eigen::Vector3d(mass, mass, yaw_inertia).cwiseProduct(a) + velocity_term +
-                                      jr.transpose() * friction - push;
+        const Eigen::Vector3d force =
+            Eigen::Vector3d(mass, mass, yaw_inertia).cwiseProduct(a) + velocity_term + jr.transpose() * friction - push;
         return wheel_jacobian(config.geometry, 0.0).transpose().inverse() * force + offset_;
     }
 
@@ -103,14 +113,16 @@ private:
     Eigen::Vector3d angle_ = Eigen::Vector3d::Zero();
 };
 
-inline gw_controller_config_t trikey_config() {
+inline gw_controller_config_t trikey_config()
+{
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);
     return config;
 }
 
 // The wrench about the centre of a force at a point, in the base frame.
-inline Eigen::Vector3d push_at(double x, double y, double force, double direction) {
+inline Eigen::Vector3d push_at(double x, double y, double force, double direction)
+{
     const double fx = force * std::cos(direction);
     const double fy = force * std::sin(direction);
     return {fx, fy, x * fy - y * fx};

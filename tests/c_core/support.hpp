@@ -25,15 +25,33 @@ inline constexpr double pi = std::numbers::pi;
 // (84 ulp). To be multiplied by the size of the largest term.
 inline constexpr double tolerance = is_double ? 1e-12 : 1e-5;
 
-inline Real real(double value) { return static_cast<Real>(value); }
+inline Real real(double value)
+{
+    return static_cast<Real>(value);
+}
 
-class Random {
+class Random
+{
 public:
-    explicit Random(unsigned seed) : engine_(seed) {}
-    double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-    double normal(double sigma) { return std::normal_distribution<double>(0.0, sigma)(engine_); }
-    int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
-    std::uint64_t bits() { return engine_(); }
+    explicit Random(unsigned seed) : engine_(seed)
+    {
+    }
+    double uniform(double low, double high)
+    {
+        return std::uniform_real_distribution<double>(low, high)(engine_);
+    }
+    double normal(double sigma)
+    {
+        return std::normal_distribution<double>(0.0, sigma)(engine_);
+    }
+    int integer(int low, int high)
+    {
+        return std::uniform_int_distribution<int>(low, high)(engine_);
+    }
+    std::uint64_t bits()
+    {
+        return engine_();
+    }
 
 private:
     std::mt19937_64 engine_;
@@ -43,7 +61,8 @@ inline constexpr std::array<std::array<std::uint32_t, 3>, 6> wheel_orders = {
     {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 // Any robot that the configuration allows, wheel order included.
-inline gw_geometry_config_t random_geometry(Random &random, int trial) {
+inline gw_geometry_config_t random_geometry(Random &random, int trial)
+{
     gw_geometry_config_t g{};
     g.wheel_radius_m = real(random.uniform(0.02, 0.3));
     g.roller_radius_m = real(random.uniform(0.003, 0.05));
@@ -56,12 +75,14 @@ inline gw_geometry_config_t random_geometry(Random &random, int trial) {
     return g;
 }
 
-inline double azimuth(const gw_geometry_config_t &g, std::size_t wheel) {
+inline double azimuth(const gw_geometry_config_t &g, std::size_t wheel)
+{
     return g.wheel_slot[wheel] * 2.0 * pi / 3.0 + static_cast<double>(g.azimuth_rad);
 }
 
 // (15) and (16) as they are printed, at yaw theta.
-inline Eigen::Matrix3d wheel_jacobian(const gw_geometry_config_t &g, double theta) {
+inline Eigen::Matrix3d wheel_jacobian(const gw_geometry_config_t &g, double theta)
+{
     Eigen::Matrix3d jacobian;
     for (std::size_t i = 0; i < 3; ++i) {
         const double angle = theta + azimuth(g, i);
@@ -70,7 +91,8 @@ inline Eigen::Matrix3d wheel_jacobian(const gw_geometry_config_t &g, double thet
     return jacobian / static_cast<double>(g.wheel_radius_m);
 }
 
-inline Eigen::Matrix3d roller_jacobian(const gw_geometry_config_t &g, double theta) {
+inline Eigen::Matrix3d roller_jacobian(const gw_geometry_config_t &g, double theta)
+{
     Eigen::Matrix3d jacobian;
     for (std::size_t i = 0; i < 3; ++i) {
         const double angle = theta + azimuth(g, i);
@@ -80,27 +102,54 @@ inline Eigen::Matrix3d roller_jacobian(const gw_geometry_config_t &g, double the
 }
 
 // Derivatives of the two with respect to theta.
-inline Eigen::Matrix3d wheel_jacobian_slope(const gw_geometry_config_t &g, double theta) {
+inline Eigen::Matrix3d wheel_jacobian_slope(const gw_geometry_config_t &g, double theta)
+{
     Eigen::Matrix3d slope = -static_cast<double>(g.roller_radius_m) * roller_jacobian(g, theta);
     return slope / static_cast<double>(g.wheel_radius_m);
 }
 
-inline Eigen::Matrix3d roller_jacobian_slope(const gw_geometry_config_t &g, double theta) {
+inline Eigen::Matrix3d roller_jacobian_slope(const gw_geometry_config_t &g, double theta)
+{
     Eigen::Matrix3d slope = static_cast<double>(g.wheel_radius_m) * wheel_jacobian(g, theta);
     slope.col(2).setZero();
     return slope / static_cast<double>(g.roller_radius_m);
 }
 
-inline Eigen::Vector3d vector(const gw_wheels_t &w) { return {w.wheel[0], w.wheel[1], w.wheel[2]}; }
-inline Eigen::Vector3d vector(const gw_wrench_t &w) { return {w.force_x_n, w.force_y_n, w.torque_nm}; }
-inline Eigen::Vector3d vector(const gw_twist_t &t) { return {t.vx_mps, t.vy_mps, t.omega_radps}; }
-inline Eigen::Vector3d vector(const gw_acceleration_t &a) { return {a.ax_mps2, a.ay_mps2, a.alpha_radps2}; }
-inline gw_wheels_t wheels(const Eigen::Vector3d &v) { return {{real(v(0)), real(v(1)), real(v(2))}}; }
-inline gw_wrench_t wrench(const Eigen::Vector3d &v) { return {real(v(0)), real(v(1)), real(v(2))}; }
-inline gw_twist_t twist(const Eigen::Vector3d &v) { return {real(v(0)), real(v(1)), real(v(2))}; }
-inline gw_acceleration_t acceleration(const Eigen::Vector3d &v) { return {real(v(0)), real(v(1)), real(v(2))}; }
+inline Eigen::Vector3d vector(const gw_wheels_t &w)
+{
+    return {w.wheel[0], w.wheel[1], w.wheel[2]};
+}
+inline Eigen::Vector3d vector(const gw_wrench_t &w)
+{
+    return {w.force_x_n, w.force_y_n, w.torque_nm};
+}
+inline Eigen::Vector3d vector(const gw_twist_t &t)
+{
+    return {t.vx_mps, t.vy_mps, t.omega_radps};
+}
+inline Eigen::Vector3d vector(const gw_acceleration_t &a)
+{
+    return {a.ax_mps2, a.ay_mps2, a.alpha_radps2};
+}
+inline gw_wheels_t wheels(const Eigen::Vector3d &v)
+{
+    return {{real(v(0)), real(v(1)), real(v(2))}};
+}
+inline gw_wrench_t wrench(const Eigen::Vector3d &v)
+{
+    return {real(v(0)), real(v(1)), real(v(2))};
+}
+inline gw_twist_t twist(const Eigen::Vector3d &v)
+{
+    return {real(v(0)), real(v(1)), real(v(2))};
+}
+inline gw_acceleration_t acceleration(const Eigen::Vector3d &v)
+{
+    return {real(v(0)), real(v(1)), real(v(2))};
+}
 
-inline Eigen::Matrix3d matrix(const matrix_t &m) {
+inline Eigen::Matrix3d matrix(const matrix_t &m)
+{
     Eigen::Matrix3d result;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
@@ -111,19 +160,22 @@ inline Eigen::Matrix3d matrix(const matrix_t &m) {
 }
 
 // The vector as the real type rounds it: what the library really got.
-inline Eigen::Vector3d rounded(const Eigen::Vector3d &v) {
+inline Eigen::Vector3d rounded(const Eigen::Vector3d &v)
+{
     return {static_cast<double>(real(v(0))), static_cast<double>(real(v(1))), static_cast<double>(real(v(2)))};
 }
 
-inline Eigen::Vector3d random_vector(Random &random, double size) {
+inline Eigen::Vector3d random_vector(Random &random, double size)
+{
     return rounded({random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)});
 }
 
 // From the world to the base frame at yaw theta.
-inline Eigen::Matrix3d to_base(double theta) {
+inline Eigen::Matrix3d to_base(double theta)
+{
     return Eigen::AngleAxisd(-theta, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
-#define EXPECT_VECTOR_NEAR(actual, expected, absolute)                                                                 \
-    EXPECT_LE(((actual) - (expected)).cwiseAbs().maxCoeff(), (absolute))                                               \
+#define EXPECT_VECTOR_NEAR(actual, expected, absolute) \
+    EXPECT_LE(((actual) - (expected)).cwiseAbs().maxCoeff(), (absolute)) \
         << "actual " << (actual).transpose() << "\nexpected " << (expected).transpose()

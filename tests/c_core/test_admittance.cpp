@@ -1,11 +1,13 @@
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 constexpr double period = 0.001;
 
 // Limits so wide that they never act, and no finish: the pure equations.
-gw_admittance_config_t free_config(std::uint32_t kind) {
+gw_admittance_config_t free_config(std::uint32_t kind)
+{
     gw_admittance_config_t c{};
     c.kind = kind;
     c.mass_kg = real(2.0);
@@ -17,19 +19,22 @@ gw_admittance_config_t free_config(std::uint32_t kind) {
     return c;
 }
 
-gw_admittance_t admittance_of(const gw_admittance_config_t &config) {
+gw_admittance_t admittance_of(const gw_admittance_config_t &config)
+{
     gw_admittance_t a{};
     EXPECT_EQ(gw_admittance_init(&a, &config, real(period)), GW_STATUS_OK);
     return a;
 }
 
-gw_admittance_output_t step(gw_admittance_t &a, gw_vector_t force = {real(0), real(0)}) {
+gw_admittance_output_t step(gw_admittance_t &a, gw_vector_t force = {real(0), real(0)})
+{
     gw_admittance_output_t out{};
     EXPECT_EQ(gw_admittance_step(&a, force, &out), GW_STATUS_OK);
     return out;
 }
 
-TEST(Admittance, FrozenImpulseIsTheClosedForm) {
+TEST(Admittance, FrozenImpulseIsTheClosedForm)
+{
     // (2): x = p/B (1 - exp(-B t/M)), v(0+) = p/M = 0.4 m/s, time constant 1.25 s.
     auto config = free_config(GW_ADMITTANCE_FROZEN_IMPULSE);
     auto a = admittance_of(config);
@@ -49,7 +54,8 @@ TEST(Admittance, FrozenImpulseIsTheClosedForm) {
     }
 }
 
-TEST(Admittance, LiveForceIsTheDifferentialEquation) {
+TEST(Admittance, LiveForceIsTheDifferentialEquation)
+{
     // (1) with a force held over each tick, by Runge-Kutta in small steps.
     Random random(72);
     auto a = admittance_of(free_config(GW_ADMITTANCE_LIVE_FORCE));

@@ -3,12 +3,14 @@
 
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 using Point = Eigen::Vector2d;
 
 // Random strictly convex polygon: points on an ellipse, well apart.
-gw_contact_config_t random_outline(Random &random) {
+gw_contact_config_t random_outline(Random &random)
+{
     gw_contact_config_t config{};
     config.minimum_force_n = real(0.5);
     config.vertex_count = static_cast<std::uint32_t>(random.integer(3, 16));
@@ -23,7 +25,8 @@ gw_contact_config_t random_outline(Random &random) {
     return config;
 }
 
-std::vector<Point> vertices(const gw_contact_config_t &config) {
+std::vector<Point> vertices(const gw_contact_config_t &config)
+{
     std::vector<Point> result;
     for (std::uint32_t i = 0; i < config.vertex_count; ++i) {
         result.emplace_back(config.vertex_m[i].x, config.vertex_m[i].y);
@@ -37,7 +40,8 @@ struct Hit {
 };
 
 // Brute force: walk finely along the outline, keep points near the line where the force enters; else the nearest.
-Hit brute_force(const std::vector<Point> &outline, const Point &u, double arm) {
+Hit brute_force(const std::vector<Point> &outline, const Point &u, double arm)
+{
     constexpr int steps = 4000;
     Hit hit{false, Point::Zero()};
     double nearest = 1e9;
@@ -62,7 +66,8 @@ Hit brute_force(const std::vector<Point> &outline, const Point &u, double arm) {
     return hit;
 }
 
-TEST(Contact, LocationAgreesWithBruteForce) {
+TEST(Contact, LocationAgreesWithBruteForce)
+{
     Random random(31);
     int misses = 0;
     for (int trial = 0; trial < 600; ++trial) {
@@ -94,7 +99,8 @@ TEST(Contact, LocationAgreesWithBruteForce) {
     EXPECT_LT(misses, 550);
 }
 
-TEST(Contact, APushOnTheOutlineIsFoundWhereItIs) {
+TEST(Contact, APushOnTheOutlineIsFoundWhereItIs)
+{
     Random random(32);
     for (int trial = 0; trial < 5000; ++trial) {
         const gw_contact_config_t config = random_outline(random);
@@ -119,7 +125,8 @@ TEST(Contact, APushOnTheOutlineIsFoundWhereItIs) {
     }
 }
 
-TEST(Contact, UncertaintyOfPhysics5) {
+TEST(Contact, UncertaintyOfPhysics5)
+{
     // 0.05 N m of torque noise: 2 cm at 10 N, 26 cm at 0.8 N, for a push through the centre of Trikey.
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);

@@ -2,14 +2,16 @@
 
 #include "robot.hpp"
 
-namespace {
+namespace
+{
 
 // A point on Trikey's outline and the directions that push into it.
 struct Push {
     double x, y, direction;
 };
 
-std::vector<Push> pushes_from_all_sides(const gw_contact_config_t &outline, int per_edge) {
+std::vector<Push> pushes_from_all_sides(const gw_contact_config_t &outline, int per_edge)
+{
     std::vector<Push> pushes;
     for (std::uint32_t i = 0; i < outline.vertex_count; ++i) {
         const auto &a = outline.vertex_m[i];
@@ -25,7 +27,8 @@ std::vector<Push> pushes_from_all_sides(const gw_contact_config_t &outline, int 
     return pushes;
 }
 
-TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere) {
+TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere)
+{
     Random random(131);
     const double threshold = GW_TRIKEY_DETECTOR_IMPULSE_THRESHOLD_NEWTON_S;
     int trial = 0;
@@ -83,7 +86,8 @@ TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere) {
     EXPECT_EQ(trial, 6 * 60);
 }
 
-TEST(Controller, TheEscapeIsHalfAMetreAndThePathIsRejoined) {
+TEST(Controller, TheEscapeIsHalfAMetreAndThePathIsRejoined)
+{
     Robot robot(trikey_config());
     robot.start();
     robot.run(300);
@@ -115,7 +119,8 @@ TEST(Controller, TheEscapeIsHalfAMetreAndThePathIsRejoined) {
     EXPECT_EQ(robot.output.detection_count, 1U);
 }
 
-TEST(Controller, APushInMotionTurnsTheRobotRound) {
+TEST(Controller, APushInMotionTurnsTheRobotRound)
+{
     // 5.3: 0.22 m/s into an obstacle; and with the robot already moving when the controller starts.
     auto config = trikey_config();
     config.estimator.tare_ticks = 0;
@@ -155,7 +160,8 @@ TEST(Controller, APushInMotionTurnsTheRobotRound) {
     EXPECT_NEAR(robot.output.reference_pose.x_m, hit_at - 0.5, 2e-3); // the first tick of braking is before hit_at
 }
 
-TEST(Controller, LiveForceFollowsThePushAndStopsWithIt) {
+TEST(Controller, LiveForceFollowsThePushAndStopsWithIt)
+{
     auto config = trikey_config();
     config.admittance.kind = GW_ADMITTANCE_LIVE_FORCE;
     Robot robot(config);
@@ -170,7 +176,8 @@ TEST(Controller, LiveForceFollowsThePushAndStopsWithIt) {
     EXPECT_EQ(robot.output.mode, GW_MODE_TRACKING);
 }
 
-TEST(Controller, APushThatStaysIsAnsweredAgainAfterTheEscape) {
+TEST(Controller, APushThatStaysIsAnsweredAgainAfterTheEscape)
+{
     Robot robot(trikey_config());
     robot.start();
     const Eigen::Vector3d wrench = push_at(-0.176, 0.0, 100.0, 0.0);
@@ -181,7 +188,8 @@ TEST(Controller, APushThatStaysIsAnsweredAgainAfterTheEscape) {
     EXPECT_GE(robot.output.detection_count, 2U);
 }
 
-TEST(Controller, TheCommandedSpeedBelongsToTheCommandedAngle) {
+TEST(Controller, TheCommandedSpeedBelongsToTheCommandedAngle)
+{
     // On a circle, turning: the drives' feed-forward is the derivative of their reference.
     Robot robot(trikey_config());
     robot.start();

@@ -2,20 +2,24 @@
 
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 struct Estimated {
-    explicit Estimated(gw_controller_config_t chosen) : config(chosen) {
+    explicit Estimated(gw_controller_config_t chosen) : config(chosen)
+    {
         EXPECT_EQ(gw_estimator_init(state.get(), &config.estimator, &config.geometry, &config.base, &config.friction,
                                     config.period_s),
                   GW_STATUS_OK);
     }
-    gw_estimator_output_t step(const gw_estimator_input_t &input) {
+    gw_estimator_output_t step(const gw_estimator_input_t &input)
+    {
         gw_estimator_output_t out{};
         EXPECT_EQ(gw_estimator_step(state.get(), &input, &out), GW_STATUS_OK);
         return out;
     }
-    void tare(const Eigen::Vector3d &zero) {
+    void tare(const Eigen::Vector3d &zero)
+    {
         const gw_wheels_t torque = wheels(zero);
         for (unsigned i = 1; i <= config.estimator.tare_ticks; ++i) {
             ASSERT_EQ(gw_estimator_tare(state.get(), &torque),
@@ -26,13 +30,15 @@ struct Estimated {
     std::unique_ptr<gw_estimator_t> state = std::make_unique<gw_estimator_t>();
 };
 
-gw_controller_config_t trikey() {
+gw_controller_config_t trikey()
+{
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);
     return config;
 }
 
-gw_estimator_input_t moving_at(double speed, const Eigen::Vector3d &torque) {
+gw_estimator_input_t moving_at(double speed, const Eigen::Vector3d &torque)
+{
     gw_estimator_input_t in{};
     in.torque_nm = wheels(torque);
     in.planned_twist.vx_mps = real(speed);
@@ -40,7 +46,8 @@ gw_estimator_input_t moving_at(double speed, const Eigen::Vector3d &torque) {
 }
 
 // A push on a standing robot whose sensors have offsets: recovered to 1e-9.
-TEST(Estimator, PushAtRestWithSensorOffsets) {
+TEST(Estimator, PushAtRestWithSensorOffsets)
+{
     Random random(121);
     for (int trial = 0; trial < 300; ++trial) {
         auto config = trikey();
@@ -58,7 +65,8 @@ TEST(Estimator, PushAtRestWithSensorOffsets) {
     }
 }
 
-TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait) {
+TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait)
+{
     Estimated e(trikey());
     e.tare({0.1, 0.2, 0.3});
     const Eigen::Vector3d run_zero(0.1, 0.2, 0.3);
@@ -83,13 +91,14 @@ TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait) {
     // In motion again, the zero is that of the run.
     const auto again = e.step(moving_at(0.2, run_zero));
     EXPECT_EQ(again.regime, GW_REGIME_MOTION);
-    EXPECT_VECTOR_NEAR(vector(again.nominal_nm) - run_zero, vector(nominal_torques(&e.state->nominal,
-                                                                  &e.state->kinematics, {real(0.2), real(0), real(0)},
-                                                                  {real(0), real(0), real(0)})),
+    EXPECT_VECTOR_NEAR(vector(again.nominal_nm) - run_zero,
+                       vector(nominal_torques(&e.state->nominal, &e.state->kinematics, {real(0.2), real(0), real(0)},
+                                              {real(0), real(0), real(0)})),
                        10.0 * tolerance);
 }
 
-TEST(Estimator, MeasuredSourcesSeeARobotThatIsPushedAway) {
+TEST(Estimator, MeasuredSourcesSeeARobotThatIsPushedAway)
+{
     // Motors hold, the base accelerates by a push: the planned form sees only what the wheels carry, the measured one
     // all of it.
     auto config = trikey();
@@ -123,7 +132,8 @@ TEST(Estimator, MeasuredSourcesSeeARobotThatIsPushedAway) {
     EXPECT_NEAR(m.measured_twist.vx_mps, a * 0.39, 0.01);
 }
 
-TEST(Estimator, CountersMayWrap) {
+TEST(Estimator, CountersMayWrap)
+{
     auto config = trikey();
     config.estimator.velocity_source = GW_SOURCE_MEASURED;
     config.estimator.acceleration_source = GW_SOURCE_MEASURED;
@@ -148,7 +158,8 @@ TEST(Estimator, CountersMayWrap) {
     }
 }
 
-gw_controller_config_t with_bristles() {
+gw_controller_config_t with_bristles()
+{
     auto config = trikey();
     config.estimator.friction_model = GW_FRICTION_BRISTLE;
     return config;
@@ -158,7 +169,8 @@ gw_controller_config_t with_bristles() {
 struct Static {
     Eigen::Vector3d torque, shift;
 };
-Static static_push(const gw_controller_config_t &c, const Eigen::Vector3d &push) {
+Static static_push(const gw_controller_config_t &c, const Eigen::Vector3d &push)
+{
     const Eigen::Matrix3d wheel = wheel_jacobian(c.geometry, 0.0);
     const Eigen::Matrix3d axles = static_cast<double>(c.geometry.roller_radius_m) * roller_jacobian(c.geometry, 0.0);
     Eigen::Vector3d sigma;
@@ -166,13 +178,13 @@ Static static_push(const gw_controller_config_t &c, const Eigen::Vector3d &push)
         sigma(i) = c.estimator.presliding.stiffness_n_per_m[i];
     }
     const double k = c.estimator.drivetrain_stiffness_nm_per_rad;
-    const Eigen::Matrix3d stiffness =
-        k * wheel.transpose() * wheel + axles.transpose() * sigma.asDiagonal() * axles;
+    const Eigen::Matrix3d stiffness = k * wheel.transpose() * wheel + axles.transpose() * sigma.asDiagonal() * axles;
     const Eigen::Vector3d shift = stiffness.fullPivLu().solve(push);
     return {-k * wheel * shift, shift};
 }
 
-TEST(Estimator, WhatRollersCarryPastTheWheelsIsSeenWithBristles) {
+TEST(Estimator, WhatRollersCarryPastTheWheelsIsSeenWithBristles)
+{
     // 5.1: a push on the unpowered robot, all sticks. Wheels alone see k_w/(k_w + sigma0) of the force and all of the
     // moment (uniform bristles); with bristles, scattered ones too, all of both.
     Random random(123);
@@ -216,7 +228,8 @@ TEST(Estimator, WhatRollersCarryPastTheWheelsIsSeenWithBristles) {
     }
 }
 
-TEST(Estimator, MotorsThatTurnMoveTheBristlesToo) {
+TEST(Estimator, MotorsThatTurnMoveTheBristlesToo)
+{
     // The same push with motors that give way by whole counts: what counts is where the wheels are.
     auto config = with_bristles();
     config.estimator.presliding.stribeck_speed_mps = real(1); // so that this jerk by some mm/s does not make them slide
@@ -243,7 +256,8 @@ TEST(Estimator, MotorsThatTurnMoveTheBristlesToo) {
     EXPECT_VECTOR_NEAR(vector(out.wrench), axles.transpose() * along, 100.0 * tolerance * along.norm());
 }
 
-TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold) {
+TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold)
+{
     // A stop leaves the rollers wound up. The tare of the stop takes that as zero; when the robot is planned to move
     // again nothing has happened yet, and the estimate must not jump. The tanh law forgets the wind-up: it jumps.
     for (const std::uint32_t model : {GW_FRICTION_BRISTLE, GW_FRICTION_TANH}) {
@@ -279,7 +293,8 @@ TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold) {
     }
 }
 
-TEST(Estimator, ANoisyEndOfATareIsNoPush) {
+TEST(Estimator, ANoisyEndOfATareIsNoPush)
+{
     // The last sample of the tare is off by a tenth of a newton metre: 1.5 N at the rim. Without more ado the bristles
     // would keep that for ever.
     Random random(124);
@@ -298,7 +313,8 @@ TEST(Estimator, ANoisyEndOfATareIsNoPush) {
     EXPECT_VECTOR_NEAR(vector(out.wrench), Eigen::Vector3d(0, 0, 0), 1000.0 * tolerance);
 }
 
-TEST(Estimator, ARobotThatAlreadyMovesIsNotThrownIntoMotion) {
+TEST(Estimator, ARobotThatAlreadyMovesIsNotThrownIntoMotion)
+{
     // No tare, 0.2 m/s from the first sample on: the measured acceleration starts at zero.
     auto config = with_bristles();
     config.estimator.acceleration_source = GW_SOURCE_MEASURED;
@@ -324,8 +340,8 @@ TEST(Estimator, ARobotThatAlreadyMovesIsNotThrownIntoMotion) {
         impulse += out.wrench.force_x_n * 1e-3;
         worst = std::max(worst, std::fabs(impulse));
     }
-    // The bristles reach their limit after some 2 mm, 10 ms, and carry less than 42 N until then; thrown into motion the
-    // robot would seem to be hit by 34.7 kg x 0.2 m/s = 7 N s.
+    // The bristles reach their limit after some 2 mm, 10 ms, and carry less than 42 N until then; thrown into motion
+    // the robot would seem to be hit by 34.7 kg x 0.2 m/s = 7 N s.
     EXPECT_LT(worst, 0.42);
     EXPECT_GT(worst, 0.01); // the bristles did start from zero
 }

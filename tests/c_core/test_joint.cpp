@@ -1,8 +1,10 @@
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
-TEST(Joint, WheelsFollowTheConstrainedJacobian) {
+TEST(Joint, WheelsFollowTheConstrainedJacobian)
+{
     // (5) and (6) along random motions, against Eigen's integral of the same trapezoids.
     Random random(91);
     for (int trial = 0; trial < 60; ++trial) {
@@ -25,8 +27,8 @@ TEST(Joint, WheelsFollowTheConstrainedJacobian) {
             moved += wheel_jacobian(geometry, end - d(2) / 2.0) * d;
             const Eigen::Vector3d speed = wheel_jacobian(geometry, end) * v;
             gw_joint_command_t command{};
-            gw_joint_step(&joint, &kinematics, {real(d(0)), real(d(1)), real(d(2))}, real(end),
-                          gw_sincos(real(end)), twist(v), &command);
+            gw_joint_step(&joint, &kinematics, {real(d(0)), real(d(1)), real(d(2))}, real(end), gw_sincos(real(end)),
+                          twist(v), &command);
             const double size = wheel_jacobian(geometry, end).cwiseAbs().maxCoeff();
             for (int w = 0; w < 3; ++w) {
                 const double error = std::remainder(command.angle_rad[w] - angle(w) - moved(w), 2.0 * pi);

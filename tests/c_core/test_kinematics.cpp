@@ -2,7 +2,8 @@
 
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 constexpr int trials = 3000;
 
@@ -11,7 +12,8 @@ struct Robot {
     gw_kinematics_t kinematics;
 };
 
-Robot random_robot(Random &random, int trial) {
+Robot random_robot(Random &random, int trial)
+{
     Robot robot{random_geometry(random, trial), {}};
     EXPECT_EQ(gw_kinematics_init(&robot.kinematics, &robot.geometry), GW_STATUS_OK);
     EXPECT_TRUE(gw_kinematics_invariant_holds(&robot.kinematics));
@@ -19,11 +21,13 @@ Robot random_robot(Random &random, int trial) {
 }
 
 // Entries of a matrix are compared relative to its largest one.
-void expect_close(const Eigen::MatrixXd &actual, const Eigen::MatrixXd &expected) {
+void expect_close(const Eigen::MatrixXd &actual, const Eigen::MatrixXd &expected)
+{
     ASSERT_LE((actual - expected).cwiseAbs().maxCoeff(), tolerance * expected.cwiseAbs().maxCoeff());
 }
 
-TEST(Kinematics, JacobiansAndInverseAreEigens) {
+TEST(Kinematics, JacobiansAndInverseAreEigens)
+{
     Random random(11);
     for (int trial = 0; trial < trials; ++trial) {
         const Robot robot = random_robot(random, trial);
@@ -54,7 +58,8 @@ TEST(Kinematics, JacobiansAndInverseAreEigens) {
     }
 }
 
-TEST(Kinematics, MappingsAreEigensMatrixProducts) {
+TEST(Kinematics, MappingsAreEigensMatrixProducts)
+{
     Random random(12);
     for (int trial = 0; trial < trials; ++trial) {
         const Robot robot = random_robot(random, trial);
@@ -83,7 +88,8 @@ TEST(Kinematics, MappingsAreEigensMatrixProducts) {
 }
 
 // (29) and (30), corrected, on a spinning base: in the world frame xdd = J^-1 (qdd - Jdot xd).
-TEST(Kinematics, AccelerationsOfASpinningBase) {
+TEST(Kinematics, AccelerationsOfASpinningBase)
+{
     Random random(13);
     for (int trial = 0; trial < trials; ++trial) {
         const Robot robot = random_robot(random, trial);
@@ -94,8 +100,8 @@ TEST(Kinematics, AccelerationsOfASpinningBase) {
         const Eigen::Vector3d v = wheel.inverse() * rate;
         const Eigen::Matrix3d wheel_change = wheel_jacobian_slope(robot.geometry, theta) * v(2);
         const Eigen::Vector3d a = wheel.inverse() * (rate_change - wheel_change * v);
-        const Eigen::Vector3d roller_change = roller_jacobian(robot.geometry, theta) * a +
-                                              roller_jacobian_slope(robot.geometry, theta) * v(2) * v;
+        const Eigen::Vector3d roller_change =
+            roller_jacobian(robot.geometry, theta) * a + roller_jacobian_slope(robot.geometry, theta) * v(2) * v;
         const gw_wheels_t rates = wheels(rate);
         const gw_wheels_t changes = wheels(rate_change);
         const gw_acceleration_t found = gw_kinematics_acceleration(&robot.kinematics, &rates, &changes);
@@ -111,7 +117,8 @@ TEST(Kinematics, AccelerationsOfASpinningBase) {
     }
 }
 
-TEST(Kinematics, ExternalJacobian) {
+TEST(Kinematics, ExternalJacobian)
+{
     Random random(14);
     for (int trial = 0; trial < 300; ++trial) {
         const Eigen::Vector3d p = random_vector(random, 1.0);
@@ -126,7 +133,8 @@ TEST(Kinematics, ExternalJacobian) {
 }
 
 // At rest T = -J^-T F: 100 N along 240 degrees gives wheel 0 two thirds of sin(60 deg) x 100 N x r_w.
-TEST(Kinematics, SignOfTheTorqueOfAPush) {
+TEST(Kinematics, SignOfTheTorqueOfAPush)
+{
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);
     gw_kinematics_t k;

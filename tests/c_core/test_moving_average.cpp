@@ -4,11 +4,15 @@
 
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
-class MovingAverage : public testing::TestWithParam<unsigned> {};
+class MovingAverage : public testing::TestWithParam<unsigned>
+{
+};
 
-TEST_P(MovingAverage, IsEigensMeanOverAMillionSamples) {
+TEST_P(MovingAverage, IsEigensMeanOverAMillionSamples)
+{
     const unsigned window = GetParam();
     auto average = std::make_unique<gw_moving_average_t>();
     ASSERT_EQ(gw_moving_average_init(average.get(), window), GW_STATUS_OK);
@@ -26,7 +30,8 @@ TEST_P(MovingAverage, IsEigensMeanOverAMillionSamples) {
         if (looked_at) {
             const auto held = std::min<int>(i + 1, static_cast<int>(window));
             const Eigen::Vector3d truth = history.rowwise().sum() / held;
-            const bool burst_is_near = ((i / 1000) % 50) >= 7 && ((i / 1000) % 50) <= 9 + static_cast<int>(window) / 500;
+            const bool burst_is_near =
+                ((i / 1000) % 50) >= 7 && ((i / 1000) % 50) <= 9 + static_cast<int>(window) / 500;
             // Rounding errors of `window` additions, as a random walk with a margin of ten.
             const double allowed = 10.0 * epsilon * std::sqrt(window) * (burst_is_near ? 1e6 : 10.0);
             EXPECT_VECTOR_NEAR(vector(gw_moving_average_mean(average.get())), truth, allowed) << i;

@@ -2,7 +2,8 @@
 // mended sign: A qdd + B + J_c^T lambda = U^T T + J_ext^T F, J_c qdd = -Jdot_c qd.
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 struct Case {
     gw_geometry_config_t geometry;
@@ -11,11 +12,12 @@ struct Case {
     double theta;
     Eigen::Vector3d twist; // world
     Eigen::Vector3d torque;
-    Eigen::Vector3d push; // world, about the centre
+    Eigen::Vector3d push;         // world, about the centre
     Eigen::Vector3d acceleration; // world: the solution
 };
 
-Case random_case(Random &random, int trial) {
+Case random_case(Random &random, int trial)
+{
     Case c{};
     c.geometry = random_geometry(random, trial);
     c.inertia = {real(random.uniform(5.0, 100.0)), real(random.uniform(0.1, 10.0)), real(random.uniform(0.0, 0.02)),
@@ -55,7 +57,8 @@ Case random_case(Random &random, int trial) {
     return c;
 }
 
-TEST(Nominal, WrenchOfTheMultiplierSystemIsRecovered) {
+TEST(Nominal, WrenchOfTheMultiplierSystemIsRecovered)
+{
     Random random(21);
     for (int trial = 0; trial < 5000; ++trial) {
         const Case c = random_case(random, trial);
@@ -65,8 +68,8 @@ TEST(Nominal, WrenchOfTheMultiplierSystemIsRecovered) {
         ASSERT_EQ(gw_nominal_init(&nominal, &c.inertia, &c.friction, &kinematics), GW_STATUS_OK);
         ASSERT_TRUE(gw_nominal_invariant_holds(&nominal));
         const Eigen::Matrix3d turn = to_base(c.theta);
-        const gw_wheels_t expected = nominal_torques(&nominal, &kinematics, twist(turn * c.twist),
-                                                        acceleration(turn * c.acceleration));
+        const gw_wheels_t expected =
+            nominal_torques(&nominal, &kinematics, twist(turn * c.twist), acceleration(turn * c.acceleration));
         const gw_wheels_t sensed = wheels(c.torque);
         const gw_wrench_t found = gw_wrench_external(&kinematics, &expected, &sensed);
         // Sizes of the terms that nearly cancel: traction, inertia and friction forces.
@@ -79,7 +82,8 @@ TEST(Nominal, WrenchOfTheMultiplierSystemIsRecovered) {
     }
 }
 
-TEST(Nominal, NeglectedInertiasLeaveTheEquation38) {
+TEST(Nominal, NeglectedInertiasLeaveTheEquation38)
+{
     Random random(22);
     for (int trial = 0; trial < 1000; ++trial) {
         Case c = random_case(random, trial);
@@ -101,7 +105,8 @@ TEST(Nominal, NeglectedInertiasLeaveTheEquation38) {
     }
 }
 
-TEST(Nominal, NoisePropagation) {
+TEST(Nominal, NoisePropagation)
+{
     Random random(23);
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);
@@ -123,14 +128,16 @@ TEST(Nominal, NoisePropagation) {
     EXPECT_NEAR(seen(2) / sigma.torque_nm, 1.0, 0.01);
 }
 
-TEST(Nominal, ValidWrenches) {
+TEST(Nominal, ValidWrenches)
+{
     EXPECT_TRUE(gw_wrench_is_valid({real(1e9), real(-1e9), real(0)}));
     EXPECT_FALSE(gw_wrench_is_valid({real(1.1e9), real(0), real(0)}));
     EXPECT_FALSE(gw_wrench_is_valid({real(0), not_a_number, real(0)}));
     EXPECT_FALSE(gw_wrench_is_valid({real(0), real(0), -infinite}));
 }
 
-TEST(Nominal, RefusesNullAndBadNumbers) {
+TEST(Nominal, RefusesNullAndBadNumbers)
+{
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);
     gw_kinematics_t k;

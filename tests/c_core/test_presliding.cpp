@@ -4,7 +4,8 @@
 
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 using Long = long double;
 
@@ -12,33 +13,42 @@ struct Bristles {
     explicit Bristles(const gw_geometry_config_t &chosen = trikey().geometry,
                       const gw_presliding_config_t &presliding = trikey().estimator.presliding,
                       const gw_friction_config_t &rollers = trikey().friction, Real stiffness = real(668))
-        : geometry(chosen), config(presliding), friction(rollers) {
+        : geometry(chosen), config(presliding), friction(rollers)
+    {
         EXPECT_EQ(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
         EXPECT_EQ(gw_presliding_init(&state, &config, &friction, &kinematics), GW_STATUS_OK);
         EXPECT_EQ(gw_rate_filter_constants(&rate, real(0.001), real(200), 8500, stiffness), GW_STATUS_OK);
     }
-    static gw_controller_config_t trikey() {
+    static gw_controller_config_t trikey()
+    {
         gw_controller_config_t config;
         gw_controller_config_trikey(&config);
         return config;
     }
     // One tick in which the sensed torques change the drivetrains' twist so that the base moves by `way` (m, m, rad).
-    Eigen::Vector3d move(const Eigen::Vector3d &way, const Eigen::Vector3d &velocity) {
+    Eigen::Vector3d move(const Eigen::Vector3d &way, const Eigen::Vector3d &velocity)
+    {
         torque -= 668.0 * wheel_jacobian(geometry, 0.0) * way;
         return at(torque, velocity);
     }
-    Eigen::Vector3d at(const Eigen::Vector3d &sensed, const Eigen::Vector3d &velocity) {
+    Eigen::Vector3d at(const Eigen::Vector3d &sensed, const Eigen::Vector3d &velocity)
+    {
         const gw_wheels_t t = wheels(sensed);
         return vector(gw_presliding_step(&state, &kinematics, &rate, count.data(), &t, twist(velocity))) /
                static_cast<double>(geometry.roller_radius_m);
     }
     // Direction of the axle of wheel i.
-    [[nodiscard]] Eigen::Vector3d axle(int i) const {
+    [[nodiscard]] Eigen::Vector3d axle(int i) const
+    {
         const double angle = azimuth(geometry, static_cast<std::size_t>(i));
         return {std::cos(angle), std::sin(angle), 0.0};
     }
-    [[nodiscard]] double sigma0(int i = 0) const { return config.stiffness_n_per_m[i]; }
-    [[nodiscard]] double most() const {
+    [[nodiscard]] double sigma0(int i = 0) const
+    {
+        return config.stiffness_n_per_m[i];
+    }
+    [[nodiscard]] double most() const
+    {
         return static_cast<double>(friction.coulomb_torque_nm) / static_cast<double>(geometry.roller_radius_m);
     }
 
@@ -58,12 +68,14 @@ struct Equation {
     Long sigma0, sigma1, stribeck, elastic, most, alpha_per_radius;
     Long z = 0;
 
-    [[nodiscard]] Long bears(Long speed) const {
+    [[nodiscard]] Long bears(Long speed) const
+    {
         const Long w = std::exp(-(speed / stribeck) * (speed / stribeck));
         return most * (w + (1 - w) * std::tanh(alpha_per_radius * std::fabs(speed)));
     }
     // dz per way.
-    [[nodiscard]] Long slope(Long deflection, Long direction, Long g) const {
+    [[nodiscard]] Long slope(Long deflection, Long direction, Long g) const
+    {
         if (deflection * direction <= 0) {
             return 1;
         }
@@ -71,7 +83,8 @@ struct Equation {
         const Long y = std::min(std::max((rho - elastic) / (1 - elastic), Long(0)), Long(1));
         return 1 - y * y * (3 - 2 * y) * rho;
     }
-    Long step(Long way, Long speed) {
+    Long step(Long way, Long speed)
+    {
         const Long g = bears(speed);
         const Long rate = speed * slope(z, speed, g);
         constexpr int parts = 50;
@@ -84,7 +97,8 @@ struct Equation {
     }
 };
 
-Equation equation_of(const Bristles &b, int wheel) {
+Equation equation_of(const Bristles &b, int wheel)
+{
     return {static_cast<Long>(b.config.stiffness_n_per_m[wheel]),
             static_cast<Long>(b.config.damping_newton_s_per_m),
             static_cast<Long>(b.config.stribeck_speed_mps),
@@ -95,7 +109,8 @@ Equation equation_of(const Bristles &b, int wheel) {
 
 // A walk of the base to and fro through sticking and sliding, the same for every number of ticks that the sliding
 // deflection takes. Returns the largest deviation of a force from the equation, relative to B_r/r_r.
-double worst_deviation(int ticks_per_deflection) {
+double worst_deviation(int ticks_per_deflection)
+{
     Random random(1);
     double worst = 0.0;
     for (int trial = 0; trial < 12; ++trial) {
@@ -119,8 +134,8 @@ double worst_deviation(int ticks_per_deflection) {
                 const gw_wheels_t before = wheels(b.torque);
                 const Eigen::Vector3d force = b.move(way, velocity);
                 // What the sensors told after rounding.
-                const Eigen::Vector3d told = wheel_jacobian(b.geometry, 0.0).inverse() *
-                                             (vector(before) - vector(wheels(b.torque))) / 668.0;
+                const Eigen::Vector3d told =
+                    wheel_jacobian(b.geometry, 0.0).inverse() * (vector(before) - vector(wheels(b.torque))) / 668.0;
                 for (int i = 0; i < 3; ++i) {
                     const Long expected = truth[static_cast<std::size_t>(i)].step(
                         static_cast<Long>(b.axle(i).dot(told)), static_cast<Long>(b.axle(i).dot(rounded(velocity))));
@@ -133,7 +148,8 @@ double worst_deviation(int ticks_per_deflection) {
     return worst;
 }
 
-TEST(Presliding, FollowsItsEquation) {
+TEST(Presliding, FollowsItsEquation)
+{
     // One step of Euler per tick: wrong by what 1 - A rho changes within a tick, so ten times less at a tenth of the
     // way per tick. A collision takes some 20 ticks to the sliding deflection, a push by hand hundreds.
     const double fast = worst_deviation(20);
@@ -142,7 +158,8 @@ TEST(Presliding, FollowsItsEquation) {
     EXPECT_LT(slow, 0.15 * fast);
 }
 
-TEST(Presliding, WithinTheElasticPartItIsASpring) {
+TEST(Presliding, WithinTheElasticPartItIsASpring)
+{
     // To 0.7 of the sliding deflection and back, any path: f = sigma0 z, z the displacement along the axle.
     Random random(2);
     for (int trial = 0; trial < 30; ++trial) {
@@ -164,7 +181,8 @@ TEST(Presliding, WithinTheElasticPartItIsASpring) {
     }
 }
 
-TEST(Presliding, SteadySlidingIsTheTanhLaw) {
+TEST(Presliding, SteadySlidingIsTheTanhLaw)
+{
     Random random(3);
     for (int trial = 0; trial < 200; ++trial) {
         Bristles b(random_geometry(random, trial));
@@ -183,7 +201,8 @@ TEST(Presliding, SteadySlidingIsTheTanhLaw) {
     }
 }
 
-TEST(Presliding, AStrideLongerThanTheBristleEndsAtItsLimit) {
+TEST(Presliding, AStrideLongerThanTheBristleEndsAtItsLimit)
+{
     auto stiff = Bristles::trikey().estimator.presliding;
     for (auto &stiffness : stiff.stiffness_n_per_m) {
         stiffness = real(1e7); // slides after 2 um
@@ -207,7 +226,8 @@ TEST(Presliding, AStrideLongerThanTheBristleEndsAtItsLimit) {
     }
 }
 
-TEST(Presliding, AHeldPushDoesNotCreepUnderNoise) {
+TEST(Presliding, AHeldPushDoesNotCreepUnderNoise)
+{
     // An hour at 1 kHz, at 0.6 of what the rollers bear, with the torque sensor's noise in its resolution of 14.3 mN m.
     Bristles b;
     (void)b.move(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());

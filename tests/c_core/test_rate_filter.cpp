@@ -1,15 +1,18 @@
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
-gw_rate_filter_constants_t constants(double period, double cutoff, std::uint32_t counts, double stiffness) {
+gw_rate_filter_constants_t constants(double period, double cutoff, std::uint32_t counts, double stiffness)
+{
     gw_rate_filter_constants_t c{};
     EXPECT_EQ(gw_rate_filter_constants(&c, real(period), real(cutoff), counts, real(stiffness)), GW_STATUS_OK);
     return c;
 }
 
 // y'' = w^2 (u - y) - 2 w y' by classical Runge-Kutta in small steps, u held over each sample.
-TEST(RateFilter, StepIsThatOfTheDifferentialEquation) {
+TEST(RateFilter, StepIsThatOfTheDifferentialEquation)
+{
     Random random(51);
     const double period = 0.001;
     const double cutoff = 200.0;
@@ -43,7 +46,8 @@ TEST(RateFilter, StepIsThatOfTheDifferentialEquation) {
     EXPECT_TRUE(gw_rate_filter_invariant_holds(&filter));
 }
 
-TEST(RateFilter, ConstantAccelerationIsMeasured) {
+TEST(RateFilter, ConstantAccelerationIsMeasured)
+{
     const double period = 0.001;
     const auto c = constants(period, 200.0, 1'000'000, 0.0);
     gw_rate_filter_t filter{};

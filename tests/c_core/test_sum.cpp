@@ -1,11 +1,13 @@
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
 // A day at 1 kHz.
 constexpr int ticks_of_a_day = 86'400'000;
 
-TEST(Sum, APositionAfterADayIsAsFineAsInTheFirstSecond) {
+TEST(Sum, APositionAfterADayIsAsFineAsInTheFirstSecond)
+{
     // 0.16 m/s back and forth: the plain float sum would be off by millimetres.
     const Real step = real(0.16e-3);
     gw_sum_t sum = gw_sum_of(real(0));
@@ -21,7 +23,8 @@ TEST(Sum, APositionAfterADayIsAsFineAsInTheFirstSecond) {
     EXPECT_NEAR(sum.value / (static_cast<double>(step) * ticks_of_a_day), 1.0, epsilon);
 }
 
-TEST(Sum, AnAngleAfterADayIsAsFineAsInTheFirstSecond) {
+TEST(Sum, AnAngleAfterADayIsAsFineAsInTheFirstSecond)
+{
     for (const double speed : {2.0, -2.0, 0.7}) {
         const Real step = real(speed * 1e-3);
         gw_sum_t sum = gw_sum_of(real(0));

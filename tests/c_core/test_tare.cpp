@@ -1,8 +1,10 @@
 #include "support.hpp"
 
-namespace {
+namespace
+{
 
-TEST(Tare, IsTheMeanOfItsSamples) {
+TEST(Tare, IsTheMeanOfItsSamples)
+{
     Random random(111);
     for (const unsigned samples : {1U, 2U, 100U, 100'000U}) {
         gw_tare_t tare{};

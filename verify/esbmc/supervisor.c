@@ -1,4 +1,5 @@
-/* Any configuration, any state within the invariant, any events: the invariant is kept, and bad sensors lead to FAULT. */
+/* Any configuration, any state within the invariant, any events: the invariant is kept, and bad sensors lead to FAULT.
+ */
 #include "nondet.h"
 
 int main(void)

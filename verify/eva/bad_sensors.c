@@ -12,7 +12,9 @@ static void part_step(void)
     gw_controller_output_t output;
     const gw_controller_input_t input = {
         {{any_real(), any_real(), any_real()}, {any_int, any_int, any_int}, any_count, any_flag()},
-        {{any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}},
+        {{any_real(), any_real(), any_real()},
+         {any_real(), any_real(), any_real()},
+         {any_real(), any_real(), any_real()}},
         any_flag(),
         any_flag()};
     draw_controller(&controller);

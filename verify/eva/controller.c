@@ -7,7 +7,9 @@ static gw_controller_input_t any_input(void)
 {
     const gw_controller_input_t input = {
         {{any_real(), any_real(), any_real()}, {any_int, any_int, any_int}, any_count, any_flag()},
-        {{any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}},
+        {{any_real(), any_real(), any_real()},
+         {any_real(), any_real(), any_real()},
+         {any_real(), any_real(), any_real()}},
         any_flag(),
         any_flag()};
     return input;
@@ -59,7 +61,7 @@ static void hold_output(gw_controller_output_t *output)
 static void part_step(void)
 {
     static const gw_moving_average_t empty;
-    gw_controller_t controller; /* no value at first: what no tick may read of the one before keeps none */
+    gw_controller_t controller;           /* no value at first: what no tick may read of the one before keeps none */
     controller.estimator.average = empty; /* as in part_init */
     gw_controller_output_t output;
     const gw_controller_input_t input = any_input();

@@ -11,8 +11,9 @@ static gw_wrench_t any_wrench(void)
 
 static gw_detector_input_t any_input(void)
 {
-    const gw_detector_input_t input = {any_wrench(), any_wrench(), any_wrench(), any_count,
-                                       (gw_regime_t)draw_count(0U, (uint32_t)GW_REGIME_MOTION), any_flag(), any_flag()};
+    const gw_detector_input_t input = {
+        any_wrench(), any_wrench(), any_wrench(), any_count, (gw_regime_t)draw_count(0U, (uint32_t)GW_REGIME_MOTION),
+        any_flag(),   any_flag()};
     return input;
 }
 

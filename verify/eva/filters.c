@@ -66,8 +66,8 @@ static void part_step(void)
     (void)gw_presliding_step(&presliding, &kinematics, &constants, counts, &torque_nm, twist);
     (void)gw_presliding_elastic_torques(&presliding, &kinematics);
     (void)gw_moving_average_add(&average, wrench);
-    (void)gw_tare_add(&tare, &any_torque_nm, draw_count(1U, 100000U),
-                      draw_setting(GW_FIELD_ESTIMATOR_TARE_VARIATION), &mean_nm);
+    (void)gw_tare_add(&tare, &any_torque_nm, draw_count(1U, 100000U), draw_setting(GW_FIELD_ESTIMATOR_TARE_VARIATION),
+                      &mean_nm);
     hold_wheels(&mean_nm, GW_TORQUE_MAX);
     gw_presliding_settle(&presliding, &mean_nm);
     hold_rate_filter(&rate);
@@ -87,8 +87,8 @@ static void part_refusals(void)
     draw_friction_config(&friction);
     draw_kinematics(&kinematics);
     friction.coulomb_torque_nm = draw_refused(GW_FIELD_FRICTION_COULOMB_TORQUE);
-    (void)gw_rate_filter_constants(any_flag() ? &constants : NULL, draw_refused(GW_FIELD_CONTROLLER_PERIOD), GW_ONE, 100U,
-                                   GW_ONE);
+    (void)gw_rate_filter_constants(any_flag() ? &constants : NULL, draw_refused(GW_FIELD_CONTROLLER_PERIOD), GW_ONE,
+                                   100U, GW_ONE);
     (void)gw_presliding_init(any_flag() ? &presliding : NULL, any_flag() ? &presliding_config : NULL,
                              any_flag() ? &friction : NULL, any_flag() ? &kinematics : NULL);
     (void)gw_moving_average_init(any_flag() ? &average : NULL, any_flag() ? 0U : (GW_MOVING_AVERAGE_CAPACITY + 1U));

@@ -1,5 +1,5 @@
-/* What the proofs use of gw_math: bounds of its results. Each is checked on its own: contracts.c over every float, math.c
- * against the code. */
+/* What the proofs use of gw_math: bounds of its results. Each is checked on its own: contracts.c over every float,
+ * math.c against the code. */
 #ifndef EVA_MATH_CONTRACTS_H
 #define EVA_MATH_CONTRACTS_H
 

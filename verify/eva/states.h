@@ -1,5 +1,5 @@
-/* draw_X(&state): any state of module X that its invariant allows. hold_X(&state): it must be one. disturb_X(&state): any
- * that may break it. */
+/* draw_X(&state): any state of module X that its invariant allows. hold_X(&state): it must be one. disturb_X(&state):
+ * any that may break it. */
 #ifndef EVA_STATES_H
 #define EVA_STATES_H
 
@@ -59,14 +59,15 @@ static uint32_t highest_count(gw_config_field_t field)
 #ifdef NONFINITE_INPUTS
 #define REAL(place, low, high) ((place) = any_float)
 #else
-#define REAL(place, low, high) ((place) = draw_real((gw_real_t)-1.0e18, (gw_real_t)1.0e18))
+#define REAL(place, low, high) ((place) = draw_real((gw_real_t) - 1.0e18, (gw_real_t)1.0e18))
 #endif
 #define COUNT(place, low, high) ((place) = any_count)
 #define INTEGER(place, low, high) ((place) = any_int)
 #define CHOICE(place, type, last) ((place) = (type)draw_count(0U, (last) + 1U))
 #define FLAG(place) ((place) = any_flag())
 #define TRUE(place) ((place) = any_flag())
-#define SETTING(place, field) ((place) = draw_real(gw_config_limit(field).minimum, gw_config_limit(field).maximum + (gw_real_t)1000.0))
+#define SETTING(place, field) \
+    ((place) = draw_real(gw_config_limit(field).minimum, gw_config_limit(field).maximum + (gw_real_t)1000.0))
 #define COUNT_SETTING(place, field) ((place) = draw_count(lowest_count(field), highest_count(field) + 1U))
 #include "states.inc"
 

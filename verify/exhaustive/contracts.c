@@ -1,5 +1,6 @@
-/* The bounds of eva/math_contracts.h on every float there is. Prints "N arguments, 0 broken"; exit code 1 if one is broken
- * or a finite argument raised a floating-point exception (overflow, division by zero, invalid: a cast out of range, too). */
+/* The bounds of eva/math_contracts.h on every float there is. Prints "N arguments, 0 broken"; exit code 1 if one is
+ * broken or a finite argument raised a floating-point exception (overflow, division by zero, invalid: a cast out of
+ * range, too). */
 #include "giveway/gw_math.h"
 
 #include <fenv.h>
@@ -42,9 +43,9 @@ static bool good_tanh(gw_real_t x)
     return unit(gw_tanh(x));
 }
 
-/* gw_atan2 is made of the angle of the smaller argument over the larger, a float in [0, 1]: this less from a quarter turn, that
- * from half a turn, and a sign. Differences are rounded monotonically, so they stay within [0, pi] if the angle does within
- * [0, pi/2]. */
+/* gw_atan2 is made of the angle of the smaller argument over the larger, a float in [0, 1]: this less from a quarter
+ * turn, that from half a turn, and a sign. Differences are rounded monotonically, so they stay within [0, pi] if the
+ * angle does within [0, pi/2]. */
 static bool good_atan2(gw_real_t x)
 {
     const gw_real_t angle = gw_atan2(x, 1.0F);
@@ -60,7 +61,7 @@ typedef struct {
 static const contract_t contracts[] = {
     {"sqrt", good_sqrt, UINT32_MAX},     {"exp", good_exp, UINT32_MAX},
     {"circle", good_circle, UINT32_MAX}, {"tanh", good_tanh, 0x7FFFFFFFU}, /* odd, as rung elementary shows */
-    {"atan2", good_atan2, 0x3F800000U}, /* 1.0 */
+    {"atan2", good_atan2, 0x3F800000U},                                    /* 1.0 */
 };
 
 /* 0, or 1 at the first float that breaks it. */

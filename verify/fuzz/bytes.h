@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEMAND(condition)                                                                                              \
-    do {                                                                                                               \
-        if (!(condition)) {                                                                                            \
-            (void)fprintf(stderr, "broken: %s (%s:%d)\n", #condition, __FILE__, __LINE__);                             \
-            abort();                                                                                                   \
-        }                                                                                                              \
+#define DEMAND(condition) \
+    do { \
+        if (!(condition)) { \
+            (void)fprintf(stderr, "broken: %s (%s:%d)\n", #condition, __FILE__, __LINE__); \
+            abort(); \
+        } \
     } while (0)
 
 typedef struct {
@@ -66,7 +66,8 @@ static inline gw_real_t take_setting(bytes_t *bytes, gw_config_field_t field)
 {
     const gw_config_limit_t limit = gw_config_limit(field);
     const uint32_t bits = take_count(bytes);
-    gw_real_t value = limit.minimum + ((limit.maximum - limit.minimum) * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF));
+    gw_real_t value =
+        limit.minimum + ((limit.maximum - limit.minimum) * ((gw_real_t)(bits >> 8U) / (gw_real_t)0xFFFFFF));
     if ((bits & 0xFFU) == 0xFFU) {
         value = take_real(bytes);
     }

@@ -91,7 +91,8 @@ static void check_located(const gw_contact_config_t *config, gw_wrench_t wrench)
         high.y = gw_max(high.y, config->vertex_m[i].y);
     }
     /* Between two corners at most 20 m apart: four roundings of numbers up to 20. */
-    const gw_real_t rounding = (gw_real_t)80.0 * ((sizeof(gw_real_t) == 4U) ? (gw_real_t)FLT_EPSILON : (gw_real_t)DBL_EPSILON);
+    const gw_real_t rounding =
+        (gw_real_t)80.0 * ((sizeof(gw_real_t) == 4U) ? (gw_real_t)FLT_EPSILON : (gw_real_t)DBL_EPSILON);
     DEMAND(gw_contact_init(&contact, config) == GW_STATUS_OK);
     if (gw_contact_locate(&contact, wrench, sigma, &estimate) == GW_STATUS_OK) {
         DEMAND(gw_is_finite(estimate.force_n) && gw_is_finite(estimate.lever_arm_m));

@@ -29,11 +29,9 @@ typedef union {
 } vector_t;
 
 __attribute__((section(".vectors"), used)) static const vector_t vectors[16] = {
-    {.stack = stack_top},
-    {.handler = reset},
-    {.handler = fault}, /* NMI */
-    {.handler = fault}, /* hard fault */
-    {.handler = fault}, /* memory management */
-    {.handler = fault}, /* bus */
-    {.handler = fault}, /* usage */
+    {.stack = stack_top}, {.handler = reset}, {.handler = fault}, /* NMI */
+    {.handler = fault},                                           /* hard fault */
+    {.handler = fault},                                           /* memory management */
+    {.handler = fault},                                           /* bus */
+    {.handler = fault},                                           /* usage */
 };

@@ -42,11 +42,11 @@ typedef struct {
 typedef struct {
     gw_admittance_config_t config;
     gw_real_t period_s;
-    gw_real_t decay;     /* e^(-B T/M) */
-    gw_real_t approach;  /* 1 - decay, without cancellation */
+    gw_real_t decay;      /* e^(-B T/M) */
+    gw_real_t approach;   /* 1 - decay, without cancellation */
     gw_real_t rate_per_s; /* B/M */
-    gw_vector_t goal_m; /* displacement aimed at since the start */
-    gw_sum_t moved_x_m; /* displacement made since the start */
+    gw_vector_t goal_m;   /* displacement aimed at since the start */
+    gw_sum_t moved_x_m;   /* displacement made since the start */
     gw_sum_t moved_y_m;
     gw_vector_t velocity_mps;
     bool initialised;

@@ -10,8 +10,9 @@
 extern "C" {
 #endif
 
-/* Field, name, minimum, maximum; the units are in the headers of the modules. The names are those of the FMU's parameters,
- * whose ranges a test compares with these. No maximum of a count exceeds 2^24, so that float holds every count exactly.
+/* Field, name, minimum, maximum; the units are in the headers of the modules. The names are those of the FMU's
+ * parameters, whose ranges a test compares with these. No maximum of a count exceeds 2^24, so that float holds every
+ * count exactly.
  *
  * A field stands here, in the configuration of its module, and in that module's source: Trikey's value, the check, the
  * use. */

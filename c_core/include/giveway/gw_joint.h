@@ -21,7 +21,7 @@ typedef struct {
 } gw_joint_t;
 
 typedef struct {
-    gw_real_t angle_rad[GW_WHEEL_COUNT];   /* [-pi, pi) */
+    gw_real_t angle_rad[GW_WHEEL_COUNT]; /* [-pi, pi) */
     gw_real_t speed_radps[GW_WHEEL_COUNT];
 } gw_joint_command_t;
 

@@ -140,8 +140,7 @@ static inline gw_acceleration_t gw_kinematics_acceleration(const gw_kinematics_t
     const gw_twist_t relative = gw_kinematics_twist(kinematics, wheel_accelerations);
     /* The base's axes turn: the second term is what the derivative of J_w^-1 adds in (29). */
     const gw_acceleration_t acceleration = {relative.vx_mps - (twist.omega_radps * twist.vy_mps),
-                                            relative.vy_mps + (twist.omega_radps * twist.vx_mps),
-                                            relative.omega_radps};
+                                            relative.vy_mps + (twist.omega_radps * twist.vx_mps), relative.omega_radps};
     return acceleration;
 }
 

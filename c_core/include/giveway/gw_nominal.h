@@ -45,10 +45,9 @@ gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *in
 bool gw_nominal_invariant_holds(const gw_nominal_t *nominal);
 /* T|0, N m, at a twist and an acceleration over the floor, both along the base's axes and finite, and with this
  * friction of the rollers, N m per roller. Pointers not NULL. */
-static inline gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal,
-                                                           const gw_kinematics_t *kinematics, gw_twist_t twist,
-                                                           gw_acceleration_t acceleration,
-                                                           const gw_wheels_t *friction_nm)
+static inline gw_wheels_t gw_nominal_torques(const gw_nominal_t *nominal, const gw_kinematics_t *kinematics,
+                                             gw_twist_t twist, gw_acceleration_t acceleration,
+                                             const gw_wheels_t *friction_nm)
 {
     gw_wrench_t wrench = gw_kinematics_wrench_of_rollers(kinematics, friction_nm);
     const gw_real_t turning = nominal->rolling_mass_kg * twist.omega_radps;

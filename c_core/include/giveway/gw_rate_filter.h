@@ -24,7 +24,7 @@ extern "C" {
 typedef struct {
     gw_real_t period_s;
     gw_real_t cutoff_radps;
-    gw_real_t decay;             /* e^(-w T) */
+    gw_real_t decay; /* e^(-w T) */
     gw_real_t rad_per_count;
     gw_real_t compliance_rad_per_nm; /* 1/k, or 0 for a rigid drivetrain */
 } gw_rate_filter_constants_t;
@@ -70,8 +70,7 @@ static inline void gw_rate_filter_step(gw_rate_filter_t *filter, const gw_rate_f
         const gw_real_t error = filter->rate_radps - input;
         const gw_real_t mixed = filter->derivative_radps2 + (constants->cutoff_radps * error);
         const gw_real_t derivative =
-            constants->decay *
-            (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
+            constants->decay * (filter->derivative_radps2 - ((constants->cutoff_radps * constants->period_s) * mixed));
         filter->rate_radps =
             gw_limited(input + (constants->decay * (error + (constants->period_s * mixed))), GW_RATE_MAX);
         filter->derivative_radps2 = gw_limited(derivative, GW_RATE_DERIVATIVE_MAX);

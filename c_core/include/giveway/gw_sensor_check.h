@@ -41,7 +41,7 @@ typedef struct {
     gw_sensor_check_config_t config;
     int32_t last_count[GW_WHEEL_COUNT];
     uint32_t last_counter;
-    uint32_t age_ticks;       /* ticks since the counter advanced */
+    uint32_t age_ticks; /* ticks since the counter advanced */
     uint32_t recover_remaining;
     bool counter_known;
     bool encoder_known;

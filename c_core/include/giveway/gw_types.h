@@ -18,7 +18,7 @@
 #if !defined(FLT_EVAL_METHOD) || (FLT_EVAL_METHOD != 0)
 #error "giveway needs arithmetic in the declared type (FLT_EVAL_METHOD 0); on 32-bit x86 use -msse2 -mfpmath=sse"
 #endif
-#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) ||                        \
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ != 0))
 #error "giveway needs IEEE arithmetic: build without -ffast-math and the options that it stands for"
 #endif

@@ -61,7 +61,7 @@ static inline gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm)
 
 /* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
 static inline gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, const gw_wheels_t *nominal_nm,
-                               const gw_wheels_t *sensed_nm)
+                                             const gw_wheels_t *sensed_nm)
 {
     gw_wheels_t missing;
     GW_UNROLLED

@@ -1,7 +1,7 @@
 // The bumper behind the model interface: motion of its two faces in, forces on them out.
 //
-// Co-Simulation moves the faces on with their velocities over a step, so that stops and latch are met inside a step and the force at its end is
-// that of the predicted position.
+// Co-Simulation moves the faces on with their velocities over a step, so that stops and latch are met inside a step and
+// the force at its end is that of the predicted position.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,8 +24,8 @@ class Bumper final : public Model, public Equations {
 public:
     Bumper() { set_start_values(v_); }
 
-    void* variables() override { return &v_; }
-    Equations* equations() override { return this; }
+    void *variables() override { return &v_; }
+    Equations *equations() override { return this; }
 
     void reset() override {
         v_ = {};
@@ -34,7 +34,7 @@ public:
     }
 
     // Everything but what resume() makes of it.
-    template <class Archive> void archive(Archive& a) {
+    template <class Archive> void archive(Archive &a) {
         a(v_);
         a(running_);
         if (!running_) {
@@ -55,14 +55,14 @@ public:
         a(exchanging_);
     }
 
-    std::size_t save_state(void* bytes) override { return save_archive(*this, bytes); }
+    std::size_t save_state(void *bytes) override { return save_archive(*this, bytes); }
 
-    Status load_state(const void* bytes, std::size_t size, Message& message) override {
+    Status load_state(const void *bytes, std::size_t size, Message &message) override {
         const Status status = load_archive(*this, bytes, size, message);
         return status == Status::ok ? resume(message) : status;
     }
 
-    Status initialise(double start_time_s, Message& message) override {
+    Status initialise(double start_time_s, Message &message) override {
         start_time_s_ = start_time_s;
         now_s_ = 0.0;
         events_ = {};
@@ -79,7 +79,7 @@ public:
         return Status::ok;
     }
 
-    Status step(double time_s, double step_size_s, Message& message) override {
+    Status step(double time_s, double step_size_s, Message &message) override {
         system_.set_faces(faces(), integrator_.time());
         integrator_.restart();
         const bool advanced = integrator_.advance(time_s + step_size_s - start_time_s_);
@@ -95,14 +95,14 @@ public:
         now_s_ = time_s - start_time_s_;
         exchanging_ = true;
     }
-    double* states() override { return integrator_.state(); }
+    double *states() override { return integrator_.state(); }
 
-    void derivatives(double* values) override {
+    void derivatives(double *values) override {
         follow_faces();
         system_.rhs(now_s_, states(), values);
     }
 
-    void indicators(double* values) override {
+    void indicators(double *values) override {
         follow_faces();
         margins(system_, now_s_, states(), values);
     }
@@ -112,7 +112,7 @@ public:
         write_outputs_now();
     }
 
-    Status update_events(EventUpdate& update, Message& message) override {
+    Status update_events(EventUpdate &update, Message &message) override {
         // What the motion of before this instant has led to, then the new one.
         if (!settle_events(system_, now_s_, states(), start_time_s_, events_, update, message)) {
             return Status::error;
@@ -122,8 +122,9 @@ public:
     }
 
 private:
-    Status resume(Message& message) {
-        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
+    Status resume(Message &message) {
+        if (running_ &&
+            !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
             return failure(integrator_, message);
         }
         return Status::ok;
@@ -136,7 +137,9 @@ private:
         }
     }
 
-    [[nodiscard]] Faces faces() const { return {v_.carrier_position, v_.carrier_velocity, v_.plate_position, v_.plate_velocity}; }
+    [[nodiscard]] Faces faces() const {
+        return {v_.carrier_position, v_.carrier_velocity, v_.plate_position, v_.plate_velocity};
+    }
 
     [[nodiscard]] plant::Parameters<double> parameters() const {
         plant::Parameters<double> p{};
@@ -145,7 +148,7 @@ private:
     }
 
     void write_outputs_now() {
-        const double* x = integrator_.state();
+        const double *x = integrator_.state();
         const auto bumper = system_.force(now_s_);
         v_.carrier_force = -bumper.force;
         v_.plate_force = bumper.force;
@@ -180,4 +183,4 @@ private:
 
 } // namespace giveway::bumper
 
-giveway::Model* giveway::bumper::create_model() { return new (std::nothrow) Bumper; }
+giveway::Model *giveway::bumper::create_model() { return new (std::nothrow) Bumper; }

@@ -1,4 +1,5 @@
-// The bumper between two faces that others move, as the solver sees it: its force is algebraic, its states are the accounts of energy.
+// The bumper between two faces that others move, as the solver sees it: its force is algebraic, its states are the
+// accounts of energy.
 #pragma once
 
 #include "bumper.hpp"
@@ -16,12 +17,12 @@ struct Faces {
 
 class BumperSystem final : public ExchangeableSystem {
 public:
-    void start(const plant::Parameters<double>& parameters) {
+    void start(const plant::Parameters<double> &parameters) {
         parameters_ = parameters;
         modes_ = {};
     }
 
-    template <class Archive> void archive(Archive& a) {
+    template <class Archive> void archive(Archive &a) {
         a(parameters_);
         a(modes_);
         a(faces_);
@@ -29,7 +30,7 @@ public:
     }
 
     // From `time_s` on the faces move on with these velocities. Where they are decides which stops they touch.
-    void set_faces(const Faces& faces, double time_s) {
+    void set_faces(const Faces &faces, double time_s) {
         follow_faces(faces, time_s);
         const double c = compression(time_s);
         const double beyond = c - parameters_.bumper_travel;
@@ -38,7 +39,7 @@ public:
     }
 
     // In continuous time: stops that are met are left to the event that follows.
-    void follow_faces(const Faces& faces, double time_s) {
+    void follow_faces(const Faces &faces, double time_s) {
         faces_ = faces;
         faces_time_s_ = time_s;
     }
@@ -53,8 +54,9 @@ public:
         return plant::is_latched(parameters_, compression(time_s), end_stop());
     }
 
-    // The ideal latch is the continuous one with no reach: all of its force while the plate is at its end stop, none beyond. It lets go where
-    // the faces pull at it with its force and the preload, and takes hold again at full extension.
+    // The ideal latch is the continuous one with no reach: all of its force while the plate is at its end stop, none
+    // beyond. It lets go where the faces pull at it with its force and the preload, and takes hold again at full
+    // extension.
     [[nodiscard]] plant::BumperForce<double> force(double time_s) const {
         const double c = compression(time_s);
         auto bumper = plant::bumper_force(parameters_, modes_, c, compression_rate());
@@ -69,18 +71,18 @@ public:
     [[nodiscard]] int state_count() const override { return bumper::state_count; }
     [[nodiscard]] int event_count() const override { return bumper::event_count; }
 
-    void rhs(double time_s, const double*, double* rate) override {
+    void rhs(double time_s, const double *, double *rate) override {
         const auto bumper = force(time_s);
         rate[work_in] = bumper.force * compression_rate();
         rate[dissipated] = bumper.dissipation;
     }
 
-    void indicators(double time_s, const double*, double* value) override {
+    void indicators(double time_s, const double *, double *value) override {
         value[event_end_stop] = compression(time_s);
         value[event_bottom_stop] = compression(time_s) - parameters_.bumper_travel;
     }
 
-    void transition(double, double*, const int* fired) override {
+    void transition(double, double *, const int *fired) override {
         if (fired[event_end_stop] != 0) {
             modes_.end_stop = fired[event_end_stop] < 0 ? 1.0 : 0.0;
         }
@@ -89,7 +91,9 @@ public:
         }
     }
 
-    [[nodiscard]] int side(int event) const override { return event == event_end_stop ? (end_stop() ? -1 : 1) : (bottom_stop() ? 1 : -1); }
+    [[nodiscard]] int side(int event) const override {
+        return event == event_end_stop ? (end_stop() ? -1 : 1) : (bottom_stop() ? 1 : -1);
+    }
     [[nodiscard]] double hysteresis(int) const override { return 1e-9; } // m
 
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-7; } // J

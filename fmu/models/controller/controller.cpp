@@ -61,8 +61,8 @@ public:
 
     Status step(double time_s, double step_size_s, Message &) override {
         const double latest_s = std::max(std::fabs(time_s + step_size_s), std::fabs(start_time_s_));
-        const double end_ticks =
-            (time_s + step_size_s - start_time_s_) / v_.controller_period - tick_tolerance(latest_s, 1.0 / v_.controller_period);
+        const double end_ticks = (time_s + step_size_s - start_time_s_) / v_.controller_period -
+                                 tick_tolerance(latest_s, 1.0 / v_.controller_period);
         const gw_controller_input_t in = inputs(v_);
         while (static_cast<double>(ticks_) < end_ticks) {
             gw_controller_output_t output{};

@@ -24,8 +24,8 @@ class Drivetrain final : public Model, public Equations {
 public:
     Drivetrain() { set_start_values(v_); }
 
-    void* variables() override { return &v_; }
-    Equations* equations() override { return this; }
+    void *variables() override { return &v_; }
+    Equations *equations() override { return this; }
 
     void reset() override {
         v_ = {};
@@ -34,7 +34,7 @@ public:
     }
 
     // Everything but what resume() makes of it.
-    template <class Archive> void archive(Archive& a) {
+    template <class Archive> void archive(Archive &a) {
         a(v_);
         a(running_);
         if (!running_) {
@@ -59,18 +59,19 @@ public:
         a(exchanging_);
     }
 
-    std::size_t save_state(void* bytes) override { return save_archive(*this, bytes); }
+    std::size_t save_state(void *bytes) override { return save_archive(*this, bytes); }
 
-    Status load_state(const void* bytes, std::size_t size, Message& message) override {
+    Status load_state(const void *bytes, std::size_t size, Message &message) override {
         const Status status = load_archive(*this, bytes, size, message);
         return status == Status::ok ? resume(message) : status;
     }
 
-    Status initialise(double start_time_s, Message& message) override {
+    Status initialise(double start_time_s, Message &message) override {
         if (v_.drivetrain_gear_stiction < v_.drivetrain_gear_coulomb) {
-            std::snprintf(message.text, sizeof message.text,
-                          "drivetrain.gear_stiction = %.9g is not allowed: it must be at least drivetrain.gear_coulomb = %.9g",
-                          v_.drivetrain_gear_stiction, v_.drivetrain_gear_coulomb);
+            std::snprintf(
+                message.text, sizeof message.text,
+                "drivetrain.gear_stiction = %.9g is not allowed: it must be at least drivetrain.gear_coulomb = %.9g",
+                v_.drivetrain_gear_stiction, v_.drivetrain_gear_coulomb);
             return Status::error;
         }
         start_time_s_ = start_time_s;
@@ -80,14 +81,16 @@ public:
         now_s_ = 0.0;
         events_ = {};
         exchanging_ = false;
-        const auto refused = servo_.start({v_.servo_kp, v_.servo_kd, v_.drivetrain_torque_limit, v_.servo_derivative_cutoff,
-                                           v_.servo_encoder_counts, v_.servo_delay});
+        const auto refused = servo_.start({v_.servo_kp, v_.servo_kd, v_.drivetrain_torque_limit,
+                                           v_.servo_derivative_cutoff, v_.servo_encoder_counts, v_.servo_delay});
         if (refused.field != GW_FIELD_NONE) {
-            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_name(refused.field),
-                          static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
+            std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]",
+                          gw_config_name(refused.field), static_cast<double>(refused.value),
+                          static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
             return Status::error;
         }
-        const double state[state_count] = {v_.start_motor_angle, v_.start_motor_speed, v_.start_load_angle, v_.start_load_speed, 0.0, 0.0};
+        const double state[state_count] = {
+            v_.start_motor_angle, v_.start_motor_speed, v_.start_load_angle, v_.start_load_speed, 0.0, 0.0};
         system_.start(parameters(), {v_.load_inertia, v_.load_viscous}, state);
         stored_at_start_j_ = system_.evaluate(state).stored;
         if (!integrator_.create(system_, 0.0, state, solver_options(v_, start_time_s_))) {
@@ -98,7 +101,7 @@ public:
         return Status::ok;
     }
 
-    Status step(double time_s, double step_size_s, Message& message) override {
+    Status step(double time_s, double step_size_s, Message &message) override {
         const double end_s = time_s + step_size_s - start_time_s_;
         change_torques();
         integrator_.restart(); // so that the state of a step needs no history of the integration
@@ -108,7 +111,8 @@ public:
         }
         write_outputs();
         if (!std::isfinite(v_.energy_stored)) {
-            std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s", time_s + step_size_s);
+            std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s",
+                          time_s + step_size_s);
             return Status::error;
         }
         return Status::ok;
@@ -118,19 +122,19 @@ public:
         now_s_ = time_s - start_time_s_;
         exchanging_ = true;
     }
-    double* states() override { return integrator_.state(); }
+    double *states() override { return integrator_.state(); }
 
-    void derivatives(double* values) override {
+    void derivatives(double *values) override {
         follow_torques();
         system_.rhs(now_s_, states(), values);
     }
 
-    void indicators(double* values) override {
+    void indicators(double *values) override {
         follow_torques();
         margins(system_, now_s_, states(), values);
     }
 
-    Status update_events(EventUpdate& update, Message& message) override {
+    Status update_events(EventUpdate &update, Message &message) override {
         // What the torques of before this instant have led to, then the new ones.
         if (!settle_now(update, message)) {
             return Status::error;
@@ -150,7 +154,7 @@ public:
     }
 
     void write_outputs() override {
-        const double* x = integrator_.state();
+        const double *x = integrator_.state();
         const Evaluation e = system_.evaluate(x);
         v_.sensor_torque = e.sensed;
         v_.motor_angle = x[motor_angle];
@@ -170,11 +174,13 @@ public:
 private:
     // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
     [[nodiscard]] double rounding_at(double since_start_s) const {
-        return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
+        return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)),
+                              static_cast<double>(servo_rate_hz));
     }
 
-    Status resume(Message& message) {
-        if (running_ && !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
+    Status resume(Message &message) {
+        if (running_ &&
+            !integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
             return failure(integrator_, message);
         }
         return Status::ok;
@@ -187,12 +193,12 @@ private:
         }
     }
 
-    bool settle_now(EventUpdate& update, Message& message) {
+    bool settle_now(EventUpdate &update, Message &message) {
         return settle_events(system_, now_s_, states(), start_time_s_, events_, update, message);
     }
 
     // Acts on the tick of now, if it is one. The importer has to stop at each.
-    bool reach_tick(Message& message) {
+    bool reach_tick(Message &message) {
         const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
         const double rounding_ticks = rounding_at(now_s_);
         if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
@@ -200,8 +206,10 @@ private:
             due_ = true;
         }
         if (now_ticks > static_cast<double>(tick_) + 1.0 - rounding_ticks) {
-            std::snprintf(message.text, sizeof message.text, "the event at t = %.9g s was passed over; it is now t = %.9g s",
-                          start_time_s_ + static_cast<double>(tick_) / static_cast<double>(servo_rate_hz), start_time_s_ + now_s_);
+            std::snprintf(message.text, sizeof message.text,
+                          "the event at t = %.9g s was passed over; it is now t = %.9g s",
+                          start_time_s_ + static_cast<double>(tick_) / static_cast<double>(servo_rate_hz),
+                          start_time_s_ + now_s_);
             return false;
         }
         if (due_) {
@@ -222,7 +230,7 @@ private:
 
     void change_torques() {
         const Torques wanted = wanted_torques();
-        const Torques& now = system_.torques();
+        const Torques &now = system_.torques();
         if (wanted.motor != now.motor || wanted.environment != now.environment) {
             system_.set_torques(wanted, integrator_.state());
             integrator_.restart();
@@ -231,8 +239,8 @@ private:
 
     void leave_tick() {
         due_ = false;
-        servo_torque_nm_ = servo_.regulate(integrator_.state()[motor_angle], v_.servo_reference_angle, v_.servo_reference_speed,
-                                           tick_ % servo_ticks_per_cycle == 0);
+        servo_torque_nm_ = servo_.regulate(integrator_.state()[motor_angle], v_.servo_reference_angle,
+                                           v_.servo_reference_speed, tick_ % servo_ticks_per_cycle == 0);
         change_torques();
     }
 
@@ -245,7 +253,8 @@ private:
             }
             const auto next = tick_ + 1;
             const bool reaches = static_cast<double>(next) <= end_ticks + rounding_ticks;
-            if (!integrator_.advance(reaches ? static_cast<double>(next) / static_cast<double>(servo_rate_hz) : end_s)) {
+            if (!integrator_.advance(reaches ? static_cast<double>(next) / static_cast<double>(servo_rate_hz)
+                                             : end_s)) {
                 return false;
             }
             if (!reaches) {
@@ -280,4 +289,4 @@ private:
 
 } // namespace giveway::drivetrain
 
-giveway::Model* giveway::drivetrain::create_model() { return new (std::nothrow) Drivetrain; }
+giveway::Model *giveway::drivetrain::create_model() { return new (std::nothrow) Drivetrain; }

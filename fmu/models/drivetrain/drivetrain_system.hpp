@@ -1,4 +1,5 @@
-// One actuator of Fig. 6 as the solver sees it. The element laws are the plant's; only the load is different: an inertia of its own.
+// One actuator of Fig. 6 as the solver sees it. The element laws are the plant's; only the load is different: an
+// inertia of its own.
 #pragma once
 
 #include <cmath>
@@ -26,8 +27,9 @@ struct Evaluation {
 
 class DrivetrainSystem final : public ExchangeableSystem {
 public:
-    // `parameters`: the fields of drivetrain and roller friction. A roller of radius 1 m that turns the friction force of (28) into B2.
-    void start(const plant::Parameters<double>& parameters, const Load& load, const double* state) {
+    // `parameters`: the fields of drivetrain and roller friction. A roller of radius 1 m that turns the friction force
+    // of (28) into B2.
+    void start(const plant::Parameters<double> &parameters, const Load &load, const double *state) {
         parameters_ = parameters;
         parameters_.roller_model = plant::RollerModel::tanh;
         parameters_.roller_radius = 1.0;
@@ -38,26 +40,26 @@ public:
         release(state);
     }
 
-    template <class Archive> void archive(Archive& a) {
+    template <class Archive> void archive(Archive &a) {
         a(parameters_);
         a(load_);
         a(torques_);
         a(direction_);
     }
 
-    void set_torques(const Torques& torques, const double* state) {
+    void set_torques(const Torques &torques, const double *state) {
         torques_ = torques;
         release(state);
     }
 
     // In continuous time: a gear that breaks away is left to the event that follows.
-    void follow_torques(const Torques& torques) { torques_ = torques; }
+    void follow_torques(const Torques &torques) { torques_ = torques; }
 
-    [[nodiscard]] const Torques& torques() const { return torques_; }
+    [[nodiscard]] const Torques &torques() const { return torques_; }
     [[nodiscard]] bool stuck() const { return std::fabs(direction_) < 0.5; }
 
-    [[nodiscard]] Evaluation evaluate(const double* x) const {
-        const auto& p = parameters_;
+    [[nodiscard]] Evaluation evaluate(const double *x) const {
+        const auto &p = parameters_;
         Evaluation e{};
         e.sensed = plant::sensed_torque(p, x[motor_angle], x[motor_speed], x[load_angle], x[load_speed]);
         e.net = plant::net_motor_torque(p, torques_.motor, e.sensed);
@@ -70,40 +72,42 @@ public:
         e.rate[load_angle] = x[load_speed];
         e.rate[load_speed] = (e.sensed - e.friction + torques_.environment) / load_.inertia;
         e.rate[work_in] = (e.net + e.sensed) * x[motor_speed] + torques_.environment * x[load_speed];
-        e.rate[dissipated] = plant::gear_dissipation(p, direction_, x[motor_speed]) + p.drivetrain_damping * slip * slip + e.friction * x[load_speed];
-        e.stored = 0.5 * (p.drivetrain_motor_inertia * x[motor_speed] * x[motor_speed] + load_.inertia * x[load_speed] * x[load_speed] +
-                          p.drivetrain_stiffness * wind_up * wind_up);
+        e.rate[dissipated] = plant::gear_dissipation(p, direction_, x[motor_speed]) +
+                             p.drivetrain_damping * slip * slip + e.friction * x[load_speed];
+        e.stored = 0.5 * (p.drivetrain_motor_inertia * x[motor_speed] * x[motor_speed] +
+                          load_.inertia * x[load_speed] * x[load_speed] + p.drivetrain_stiffness * wind_up * wind_up);
         return e;
     }
 
     [[nodiscard]] int state_count() const override { return drivetrain::state_count; }
     [[nodiscard]] int event_count() const override { return 1; }
 
-    void rhs(double, const double* state, double* rate) override {
+    void rhs(double, const double *state, double *rate) override {
         const Evaluation e = evaluate(state);
         for (int i = 0; i < drivetrain::state_count; ++i) {
             rate[i] = e.rate[i];
         }
     }
 
-    void indicators(double, const double* state, double* value) override {
+    void indicators(double, const double *state, double *value) override {
         value[0] = plant::gear_indicator(parameters_, direction_, evaluate(state).net, state[motor_speed]);
     }
 
-    void transition(double, double* state, const int* fired) override {
+    void transition(double, double *state, const int *fired) override {
         if (fired[0] >= 0) {
             return;
         }
         const double net = evaluate(state).net;
-        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the torque.
+        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the
+        // torque.
         direction_ = stuck() ? math::sign(net) : plant::gear_direction_from_rest(parameters_, net);
         state[motor_speed] = 0.0;
     }
 
     [[nodiscard]] int side(int) const override { return 1; }
     [[nodiscard]] double hysteresis(int) const override {
-        return stuck() ? 1e-8   // N m
-                       : 1e-7;  // rad/s
+        return stuck() ? 1e-8  // N m
+                       : 1e-7; // rad/s
     }
 
     [[nodiscard]] double absolute_tolerance(int state) const override {
@@ -121,7 +125,7 @@ public:
 
 private:
     // A stuck gear whose motor pulls more than its stiction breaks away at once.
-    void release(const double* state) {
+    void release(const double *state) {
         if (stuck()) {
             direction_ = plant::gear_direction_from_rest(parameters_, evaluate(state).net);
         }

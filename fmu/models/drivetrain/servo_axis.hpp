@@ -21,7 +21,7 @@ struct ServoOptions {
 class ServoAxis {
 public:
     // Returns what the servo refuses, empty if nothing.
-    gw_config_error_t start(const ServoOptions& options) {
+    gw_config_error_t start(const ServoOptions &options) {
         sensors_.encoder_counts = options.encoder_counts;
         gw_servo_config_t config{};
         config.period_s = 1.0F / static_cast<gw_real_t>(servo_rate_hz);
@@ -41,7 +41,8 @@ public:
     }
 
     // Every tick; the torque that acts from now on.
-    double regulate(double motor_angle_rad, double reference_angle_rad, double reference_speed_radps, bool reference_is_new) {
+    double regulate(double motor_angle_rad, double reference_angle_rad, double reference_speed_radps,
+                    bool reference_is_new) {
         gw_servo_input_t input{};
         input.angle_rad = static_cast<gw_real_t>(reference_angle_rad);
         input.speed_radps = static_cast<gw_real_t>(reference_speed_radps);

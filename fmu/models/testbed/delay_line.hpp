@@ -20,7 +20,7 @@ public:
     }
 
     // Puts this cycle's entry in and returns the one of `delay_cycles` ago.
-    Entry exchange(const Entry& entry) {
+    Entry exchange(const Entry &entry) {
         entries_[static_cast<std::size_t>(next_)] = entry;
         next_ = next_ == delay_ ? 0 : next_ + 1; // no more places than are needed, which stay in the processor's cache
         return entries_[static_cast<std::size_t>(next_)];

@@ -27,10 +27,11 @@ struct DriveOptions {
 
 class Drives {
 public:
-    // The drives have been holding their reference: earlier cycles moved at the start's wheel speeds. Returns what the servo
-    // refuses, empty if nothing.
-    gw_config_error_t start(const DriveOptions& options, const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& wheel_speed_radps,
-                            const std::array<double, 3>& torque_nm, bool enable) {
+    // The drives have been holding their reference: earlier cycles moved at the start's wheel speeds. Returns what the
+    // servo refuses, empty if nothing.
+    gw_config_error_t start(const DriveOptions &options, const std::array<double, 3> &motor_angle_rad,
+                            const std::array<double, 3> &wheel_speed_radps, const std::array<double, 3> &torque_nm,
+                            bool enable) {
         options_ = options;
         cycle_ = 0;
         gw_servo_config_t config{};
@@ -47,7 +48,7 @@ public:
         if (error.field != GW_FIELD_NONE) {
             return error;
         }
-        for (auto& servo : servos_) {
+        for (auto &servo : servos_) {
             (void)gw_servo_init(&servo, &config);
         }
         commands_.start(options.command_delay_cycles, [&](int cycles_ago) {
@@ -68,24 +69,25 @@ public:
     }
 
     // Once per bus cycle, when its time is reached: samples the sensors and returns what the controller gets now.
-    SensorSample sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm) {
+    SensorSample sample(const std::array<double, 3> &motor_angle_rad, const std::array<double, 3> &torque_nm) {
         return sample(motor_angle_rad, torque_nm, deviates(options_.sensors, cycle_));
     }
     // With deviates() of the coming cycle that were drawn elsewhere.
-    SensorSample sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm, const Deviates& drawn) {
+    SensorSample sample(const std::array<double, 3> &motor_angle_rad, const std::array<double, 3> &torque_nm,
+                        const Deviates &drawn) {
         const SensorSample now = take_sample(motor_angle_rad, torque_nm, cycle_, drawn);
         ++cycle_;
         return samples_.exchange(now);
     }
 
     // Once per bus cycle, after the controller's command arrived.
-    void receive(const Command& command) {
+    void receive(const Command &command) {
         active_ = commands_.exchange(command);
         reference_is_new_ = true;
     }
 
     // Every servo tick: motor torques, from the drives' own undelayed encoders.
-    std::array<double, 3> regulate(const std::array<double, 3>& motor_angle_rad) {
+    std::array<double, 3> regulate(const std::array<double, 3> &motor_angle_rad) {
         std::array<double, 3> torque{};
         for (std::size_t i = 0; i < 3; ++i) {
             gw_servo_input_t input{};
@@ -102,13 +104,14 @@ public:
         return torque;
     }
 
-    [[nodiscard]] const SensorOptions& sensors() const { return options_.sensors; }
+    [[nodiscard]] const SensorOptions &sensors() const { return options_.sensors; }
 
 private:
     static constexpr std::uint32_t stale_ticks = 20; // 10 ms without a command: hold
 
-    [[nodiscard]] SensorSample take_sample(const std::array<double, 3>& motor_angle_rad, const std::array<double, 3>& torque_nm, std::int64_t cycle,
-                                           const Deviates& drawn) const {
+    [[nodiscard]] SensorSample take_sample(const std::array<double, 3> &motor_angle_rad,
+                                           const std::array<double, 3> &torque_nm, std::int64_t cycle,
+                                           const Deviates &drawn) const {
         SensorSample sample{};
         for (std::size_t i = 0; i < 3; ++i) {
             sample.torque_nm[i] = measured_torque(options_.sensors, i, torque_nm[i], drawn[i]);

@@ -12,7 +12,7 @@
 
 namespace giveway::testbed {
 
-inline plant::Parameters<double> plant_parameters(const Variables& v) {
+inline plant::Parameters<double> plant_parameters(const Variables &v) {
     plant::Parameters<double> p{};
     read_plant_parameters(v, p);
     p.wheel_load = {1.0, 1.0, 1.0};
@@ -23,7 +23,7 @@ inline plant::Parameters<double> plant_parameters(const Variables& v) {
     return p;
 }
 
-inline DriveOptions drive_options(const Variables& v) {
+inline DriveOptions drive_options(const Variables &v) {
     DriveOptions o{};
     o.sensors.encoder_counts = v.electronics_encoder_counts;
     o.sensors.seed = static_cast<std::uint32_t>(v.electronics_seed);
@@ -41,29 +41,34 @@ inline DriveOptions drive_options(const Variables& v) {
 }
 
 // The shell has checked every single range; these rules relate several variables.
-inline bool check_relations(const Variables& v, Message& message) {
-    const auto refuse = [&](const char* name, double value, const char* rule, double bound) {
-        std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: it must be %s %.9g", name, value, rule, bound);
+inline bool check_relations(const Variables &v, Message &message) {
+    const auto refuse = [&](const char *name, double value, const char *rule, double bound) {
+        std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: it must be %s %.9g", name, value,
+                      rule, bound);
         return false;
     };
     if (v.drivetrain_gear_stiction < v.drivetrain_gear_coulomb) {
-        return refuse("drivetrain.gear_stiction", v.drivetrain_gear_stiction, "at least drivetrain.gear_coulomb =", v.drivetrain_gear_coulomb);
+        return refuse("drivetrain.gear_stiction", v.drivetrain_gear_stiction,
+                      "at least drivetrain.gear_coulomb =", v.drivetrain_gear_coulomb);
     }
     if (v.bumper_kind != 0 && v.bumper_mount == 0 && v.bumper_plate_mass > 0.95 * v.slider_mass) {
         return refuse("bumper.plate_mass", v.bumper_plate_mass, "at most 0.95 slider.mass =", 0.95 * v.slider_mass);
     }
     if (v.contact_nose_shape == static_cast<int>(plant::NoseShape::edge) && v.bumper_kind != 0 && v.bumper_mount != 0) {
-        return refuse("contact.nose_shape", v.contact_nose_shape, "0, a disc, with a bumper on the robot: bumper.mount =", v.bumper_mount);
+        return refuse("contact.nose_shape", v.contact_nose_shape,
+                      "0, a disc, with a bumper on the robot: bumper.mount =", v.bumper_mount);
     }
     if (v.base_tipping && v.bumper_kind != 0 && v.bumper_mount != 0) {
         return refuse("bumper.mount", v.bumper_mount, "0, on the slider, where the base can tip: base.tipping =", 1.0);
     }
     const double wheels_tilt_inertia = 1.5 * v.wheel_inertia;
     if (v.base_tilt_inertia <= wheels_tilt_inertia) {
-        return refuse("base.tilt_inertia", v.base_tilt_inertia, "greater than that of the wheels about their axles, 1.5 wheel.inertia =", wheels_tilt_inertia);
+        return refuse("base.tilt_inertia", v.base_tilt_inertia,
+                      "greater than that of the wheels about their axles, 1.5 wheel.inertia =", wheels_tilt_inertia);
     }
     if (v.outline_wheels && v.outline_clearance > 2.0 * v.wheel_radius) {
-        return refuse("outline.clearance", v.outline_clearance, "at most the wheels' height, 2 wheel.radius =", 2.0 * v.wheel_radius);
+        return refuse("outline.clearance", v.outline_clearance,
+                      "at most the wheels' height, 2 wheel.radius =", 2.0 * v.wheel_radius);
     }
     const int count = v.outline_count;
     for (int edge = 0; edge < count; ++edge) {
@@ -74,7 +79,8 @@ inline bool check_relations(const Variables& v, Message& message) {
             const double left = ex * (v.outline_y[i] - v.outline_y[edge]) - ey * (v.outline_x[i] - v.outline_x[edge]);
             if (i != edge && i != next && !(left > 0.0)) {
                 std::snprintf(message.text, sizeof message.text,
-                              "outline.x[%d] = %.9g, outline.y[%d] = %.9g is not allowed: it must lie to the left of the edge from vertex %d to %d "
+                              "outline.x[%d] = %.9g, outline.y[%d] = %.9g is not allowed: it must lie to the left of "
+                              "the edge from vertex %d to %d "
                               "(convex, counter-clockwise, no three in a line)",
                               i, v.outline_x[i], i, v.outline_y[i], edge, next);
                 return false;

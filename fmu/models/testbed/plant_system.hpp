@@ -13,8 +13,8 @@ namespace giveway::testbed {
 class PlantSystem final : public ExchangeableSystem {
 public:
     // `state` has room for the states of a base that tips; without tipping the rest of it is zero.
-    void start(const plant::Parameters<double>& parameters, const plant::InitialMotion<double>& motion, const plant::Inputs<double>& inputs,
-               plant::TippingVector<double>& state) {
+    void start(const plant::Parameters<double> &parameters, const plant::InitialMotion<double> &motion,
+               const plant::Inputs<double> &inputs, plant::TippingVector<double> &state) {
         parameters_ = parameters;
         derive();
         inputs_ = inputs;
@@ -29,7 +29,7 @@ public:
         first_contact_time_s_ = modes_.contact > 0.5 ? 0.0 : -1.0;
     }
 
-    template <class Archive> void archive(Archive& a) {
+    template <class Archive> void archive(Archive &a) {
         a(parameters_);
         a(inputs_);
         a(modes_);
@@ -41,51 +41,51 @@ public:
         jacobian_.set_parameters(parameters_, derived_);
     }
 
-    void set_inputs(const plant::Inputs<double>& inputs, const double* state) {
+    void set_inputs(const plant::Inputs<double> &inputs, const double *state) {
         inputs_ = inputs;
-        with_state(state, [&](const auto& x) { plant::accept_inputs(x, inputs_, modes_, parameters_, derived_); });
+        with_state(state, [&](const auto &x) { plant::accept_inputs(x, inputs_, modes_, parameters_, derived_); });
     }
 
     // In continuous time: a gear that breaks away is left to the event that follows.
-    void follow_inputs(const plant::Inputs<double>& inputs) { inputs_ = inputs; }
+    void follow_inputs(const plant::Inputs<double> &inputs) { inputs_ = inputs; }
 
     [[nodiscard]] bool tips() const { return parameters_.base_tipping != 0; }
     // The model does not go further: the base is about to lie down.
     [[nodiscard]] bool overturned() const { return modes_.overturned > 0.5; }
-    [[nodiscard]] const plant::Modes<double>& modes() const { return modes_; }
-    [[nodiscard]] const plant::Parameters<double>& parameters() const { return parameters_; }
-    [[nodiscard]] const plant::Inputs<double>& inputs() const { return inputs_; }
+    [[nodiscard]] const plant::Modes<double> &modes() const { return modes_; }
+    [[nodiscard]] const plant::Parameters<double> &parameters() const { return parameters_; }
+    [[nodiscard]] const plant::Inputs<double> &inputs() const { return inputs_; }
     [[nodiscard]] double first_contact_time() const { return first_contact_time_s_; }
-    [[nodiscard]] plant::Outputs<double> outputs(const double* state) const {
+    [[nodiscard]] plant::Outputs<double> outputs(const double *state) const {
         plant::Outputs<double> result{};
-        with_state(state, [&](const auto& x) { result = plant::outputs(x, inputs_, modes_, parameters_, derived_); });
+        with_state(state, [&](const auto &x) { result = plant::outputs(x, inputs_, modes_, parameters_, derived_); });
         return result;
     }
 
     [[nodiscard]] int state_count() const override { return tips() ? plant::tipping_state_count : plant::state_count; }
     [[nodiscard]] int event_count() const override { return tips() ? plant::tipping_event_count : plant::event_count; }
 
-    void rhs(double, const double* state, double* rate) override {
-        with_state(state, [&](const auto& x) {
+    void rhs(double, const double *state, double *rate) override {
+        with_state(state, [&](const auto &x) {
             const auto value = plant::rhs(x, inputs_, modes_, parameters_, derived_);
             std::copy(value.begin(), value.end(), rate);
         });
     }
 
-    bool jacobian(double, const double* state, double* matrix) override {
-        with_state(state, [&](const auto& x) { jacobian_.evaluate(x, inputs_, modes_, matrix); });
+    bool jacobian(double, const double *state, double *matrix) override {
+        with_state(state, [&](const auto &x) { jacobian_.evaluate(x, inputs_, modes_, matrix); });
         return true;
     }
 
-    void indicators(double, const double* state, double* value) override {
-        with_state(state, [&](const auto& x) {
+    void indicators(double, const double *state, double *value) override {
+        with_state(state, [&](const auto &x) {
             const auto indicator = plant::event_indicators(x, inputs_, modes_, parameters_, derived_);
             std::copy(indicator.begin(), indicator.end(), value);
         });
     }
 
-    void transition(double time_s, double* state, const int* fired) override {
-        with_state(state, [&](const auto& x) {
+    void transition(double time_s, double *state, const int *fired) override {
+        with_state(state, [&](const auto &x) {
             decltype(plant::event_indicators(x, inputs_, modes_, parameters_, derived_)) direction{};
             std::copy_n(fired, direction.size(), direction.begin());
             auto next = x;
@@ -125,8 +125,8 @@ public:
     [[nodiscard]] double hysteresis(int event) const override {
         if (event < plant::event_gear + plant::wheel_count) {
             const bool stuck = math::abs(modes_.gear_direction[static_cast<std::size_t>(event)]) < 0.5;
-            return stuck ? 1e-8   // N m
-                         : 1e-7;  // rad/s
+            return stuck ? 1e-8  // N m
+                         : 1e-7; // rad/s
         }
         if (event == plant::event_tilt) {
             return 1e-9; // of the cosine of the tilt
@@ -167,11 +167,11 @@ private:
     static int above(double mode) { return mode > 0.5 ? 1 : -1; }
 
     // `state`: state_count() doubles. Calls use(x) with the plant's own type of them.
-    template <class Use> void with_state(const double* state, Use use) const {
+    template <class Use> void with_state(const double *state, Use use) const {
         if (tips()) {
-            use(*reinterpret_cast<const plant::TippingVector<double>*>(state));
+            use(*reinterpret_cast<const plant::TippingVector<double> *>(state));
         } else {
-            use(*reinterpret_cast<const plant::StateVector<double>*>(state));
+            use(*reinterpret_cast<const plant::StateVector<double> *>(state));
         }
     }
 

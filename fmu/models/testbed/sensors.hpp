@@ -22,7 +22,7 @@ struct SensorSample {
 };
 
 // Counts of the motor encoder, wrapping like a 32-bit counter.
-inline std::int32_t encoder_count(const SensorOptions& options, double angle_rad) {
+inline std::int32_t encoder_count(const SensorOptions &options, double angle_rad) {
     const double turns = angle_rad / 6.283185307179586;
     const double counts = turns * static_cast<double>(options.encoder_counts);
     auto whole = static_cast<std::int64_t>(counts);
@@ -32,7 +32,7 @@ inline std::int32_t encoder_count(const SensorOptions& options, double angle_rad
 
 // What the noise of a sample is made of, one standard normal deviate per torque sensor.
 using Deviates = std::array<double, 3>;
-inline Deviates deviates(const SensorOptions& options, std::int64_t cycle) {
+inline Deviates deviates(const SensorOptions &options, std::int64_t cycle) {
     Deviates found{};
     for (std::uint32_t wheel = 0; options.torque_noise_nm > 0.0 && wheel < 3U; ++wheel) {
         found[wheel] = math::normal(options.seed, wheel, static_cast<std::uint64_t>(cycle));
@@ -40,7 +40,7 @@ inline Deviates deviates(const SensorOptions& options, std::int64_t cycle) {
     return found;
 }
 
-inline double measured_torque(const SensorOptions& options, std::size_t wheel, double torque_nm, double deviate) {
+inline double measured_torque(const SensorOptions &options, std::size_t wheel, double torque_nm, double deviate) {
     double value = torque_nm + options.torque_offset_nm[wheel];
     if (options.torque_noise_nm > 0.0) {
         value += options.torque_noise_nm * deviate;

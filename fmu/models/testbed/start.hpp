@@ -8,15 +8,15 @@
 
 namespace giveway::testbed {
 
-inline std::array<double, 3> motor_angles(const double* state) {
+inline std::array<double, 3> motor_angles(const double *state) {
     return {state[plant::motor_angle], state[plant::motor_angle + 1], state[plant::motor_angle + 2]};
 }
 
-inline plant::Inputs<double> plant_inputs(const Variables& v, const std::array<double, 3>& motor_torque_nm) {
+inline plant::Inputs<double> plant_inputs(const Variables &v, const std::array<double, 3> &motor_torque_nm) {
     return {motor_torque_nm, v.push_force_x, v.push_force_y, v.push_point_x, v.push_point_y};
 }
 
-inline Command bus_command(const Variables& v) {
+inline Command bus_command(const Variables &v) {
     Command command{};
     std::copy_n(v.command_wheel_angle, 3, command.wheel_angle_rad.begin());
     std::copy_n(v.command_wheel_speed, 3, command.wheel_speed_radps.begin());
@@ -24,7 +24,7 @@ inline Command bus_command(const Variables& v) {
     return command;
 }
 
-inline void write_sensors(Variables& v, const SensorSample& sample) {
+inline void write_sensors(Variables &v, const SensorSample &sample) {
     std::copy_n(sample.torque_nm.begin(), 3, v.sensor_torque);
     std::copy_n(sample.encoder_counts.begin(), 3, v.sensor_encoder);
     v.sensor_counter = sample.counter;
@@ -32,12 +32,14 @@ inline void write_sensors(Variables& v, const SensorSample& sample) {
 }
 
 // False, with a message, if the parameters do not go together.
-inline bool start_run(const Variables& v, PlantSystem& system, plant::TippingVector<double>& state, Drives& drives, double& stored_j, Message& message) {
+inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVector<double> &state, Drives &drives,
+                      double &stored_j, Message &message) {
     if (!check_relations(v, message)) {
         return false;
     }
-    const plant::InitialMotion<double> motion{v.start_x, v.start_y, v.start_theta, v.start_vx, v.start_vy, v.start_omega, v.slider_speed,
-                                               {v.start_bristle[0], v.start_bristle[1], v.start_bristle[2]}};
+    const plant::InitialMotion<double> motion{
+        v.start_x,  v.start_y,     v.start_theta,  v.start_vx,
+        v.start_vy, v.start_omega, v.slider_speed, {v.start_bristle[0], v.start_bristle[1], v.start_bristle[2]}};
     state = {};
     system.start(plant_parameters(v), motion, plant_inputs(v, {}), state);
     const auto truth = system.outputs(state.data());
@@ -45,15 +47,18 @@ inline bool start_run(const Variables& v, PlantSystem& system, plant::TippingVec
     constexpr double touching_m = 1e-6;
     if (v.slider_present && truth.contact_depth > touching_m) {
         std::snprintf(message.text, sizeof message.text,
-                      "slider.run_up = %.9g is not allowed: with this target, direction and start the nose starts %.9g m inside the robot", v.slider_run_up,
-                      truth.contact_depth);
+                      "slider.run_up = %.9g is not allowed: with this target, direction and start the nose starts %.9g "
+                      "m inside the robot",
+                      v.slider_run_up, truth.contact_depth);
         return false;
     }
     stored_j = truth.stored_energy;
-    const auto refused = drives.start(drive_options(v), motor_angles(state.data()), truth.wheel_speed, truth.wheel_torque, v.command_enable);
+    const auto refused = drives.start(drive_options(v), motor_angles(state.data()), truth.wheel_speed,
+                                      truth.wheel_torque, v.command_enable);
     if (refused.field != GW_FIELD_NONE) {
-        std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]", gw_config_name(refused.field),
-                      static_cast<double>(refused.value), static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
+        std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]",
+                      gw_config_name(refused.field), static_cast<double>(refused.value),
+                      static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
         return false;
     }
     return true;

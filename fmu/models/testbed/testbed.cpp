@@ -1,7 +1,8 @@
 // The testbed: plant, solver and drive electronics behind the model interface.
 //
-// Time runs in servo ticks of 0.5 ms. Reaching a bus tick samples the sensors; leaving it takes the command in. So sensor outputs at the end of a step
-// belong to that instant (less the bus delay), and the command set before the next step acts from there on.
+// Time runs in servo ticks of 0.5 ms. Reaching a bus tick samples the sensors; leaving it takes the command in. So
+// sensor outputs at the end of a step belong to that instant (less the bus delay), and the command set before the next
+// step acts from there on.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -25,8 +26,8 @@ class Testbed final : public Model, public Equations {
 public:
     Testbed() { set_start_values(v_); }
 
-    void* variables() override { return &v_; }
-    Equations* equations() override { return this; }
+    void *variables() override { return &v_; }
+    Equations *equations() override { return this; }
 
     void reset() override {
         v_ = {};
@@ -35,7 +36,7 @@ public:
     }
 
     // Everything but what resume() makes of it.
-    template <class Archive> void archive(Archive& a) {
+    template <class Archive> void archive(Archive &a) {
         a(v_);
         a(running_);
         if (!running_) {
@@ -59,14 +60,14 @@ public:
         a(exchanging_);
     }
 
-    std::size_t save_state(void* bytes) override { return save_archive(*this, bytes); }
+    std::size_t save_state(void *bytes) override { return save_archive(*this, bytes); }
 
-    Status load_state(const void* bytes, std::size_t size, Message& message) override {
+    Status load_state(const void *bytes, std::size_t size, Message &message) override {
         const Status status = load_archive(*this, bytes, size, message);
         return status == Status::ok ? resume(message) : status;
     }
 
-    Status initialise(double start_time_s, Message& message) override {
+    Status initialise(double start_time_s, Message &message) override {
         plant::TippingVector<double> state{};
         if (!start_run(v_, system_, state, drives_, stored_at_start_j_, message)) {
             return Status::error;
@@ -86,7 +87,7 @@ public:
         return Status::ok;
     }
 
-    Status step(double time_s, double step_size_s, Message& message) override {
+    Status step(double time_s, double step_size_s, Message &message) override {
         const double end_s = time_s + step_size_s - start_time_s_;
         const double end_ticks = end_s * static_cast<double>(servo_rate_hz);
         const double rounding_ticks = rounding_at(end_s);
@@ -118,7 +119,8 @@ public:
         }
         write_outputs();
         if (!std::isfinite(v_.energy_stored)) {
-            std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s", time_s + step_size_s);
+            std::snprintf(message.text, sizeof message.text, "the state is no longer finite at t = %.9g s",
+                          time_s + step_size_s);
             return Status::error;
         }
         return Status::ok;
@@ -130,24 +132,24 @@ public:
         exchanging_ = true;
     }
     // All that the model description lists; without tipping nothing reads or moves those after the planar ones.
-    double* states() override {
+    double *states() override {
         exchange_state_ = whole_state();
         return exchange_state_.data();
     }
 
-    void derivatives(double* values) override {
+    void derivatives(double *values) override {
         follow_push();
         std::fill_n(values, plant::tipping_state_count, 0.0);
         system_.rhs(now_s_, state(), values);
     }
 
-    void indicators(double* values) override {
+    void indicators(double *values) override {
         follow_push();
         std::fill_n(values, plant::tipping_event_count, 1.0);
         margins(system_, now_s_, state(), values);
     }
 
-    Status update_events(EventUpdate& update, Message& message) override {
+    Status update_events(EventUpdate &update, Message &message) override {
         // What the inputs of before this instant have led to, then the tick and the new ones.
         if (!settle_now(update, message) || !pass_tick(update, message)) {
             return Status::error;
@@ -160,13 +162,14 @@ public:
             return tell_overturned(start_time_s_ + now_s_, message);
         }
         update.has_next_time = true;
-        update.next_time_s = start_time_s_ + static_cast<double>(due_ ? tick_ : tick_ + 1) / static_cast<double>(servo_rate_hz);
+        update.next_time_s =
+            start_time_s_ + static_cast<double>(due_ ? tick_ : tick_ + 1) / static_cast<double>(servo_rate_hz);
         return Status::ok;
     }
 
     void write_outputs() override {
         follow_push();
-        const double* x = state();
+        const double *x = state();
         write_truth(v_, x, system_.outputs(x), system_.modes(), system_.parameters(), system_.inputs().motor_torque,
                     {start_time_s_, system_.first_contact_time()}, stored_at_start_j_);
         write_statistics(v_, integrator_, events_, start_time_s_);
@@ -175,28 +178,32 @@ public:
 private:
     // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
     [[nodiscard]] double rounding_at(double since_start_s) const {
-        return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)), static_cast<double>(servo_rate_hz));
+        return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)),
+                              static_cast<double>(servo_rate_hz));
     }
 
-    Status resume(Message& message) {
+    Status resume(Message &message) {
         if (running_) {
             system_.derive();
             exchange_state_ = checkpoint_state_;
-            if (!integrator_.resume(system_, checkpoint_, checkpoint_state_.data(), solver_options(v_, start_time_s_))) {
+            if (!integrator_.resume(system_, checkpoint_, checkpoint_state_.data(),
+                                    solver_options(v_, start_time_s_))) {
                 return failure(integrator_, message);
             }
         }
         return Status::ok;
     }
 
-    static Status tell_overturned(double time_s, Message& message) {
-        std::snprintf(message.text, sizeof message.text,
-                      "the robot tips over: at t = %.9g s it leans by more than 15 deg, beyond which base.tipping has no model", time_s);
+    static Status tell_overturned(double time_s, Message &message) {
+        std::snprintf(
+            message.text, sizeof message.text,
+            "the robot tips over: at t = %.9g s it leans by more than 15 deg, beyond which base.tipping has no model",
+            time_s);
         return Status::error;
     }
 
     // The states that are integrated, whoever does it.
-    double* state() { return exchanging_ ? exchange_state_.data() : integrator_.state(); }
+    double *state() { return exchanging_ ? exchange_state_.data() : integrator_.state(); }
 
     plant::TippingVector<double> whole_state() {
         plant::TippingVector<double> whole = exchange_state_;
@@ -214,12 +221,13 @@ private:
         }
     }
 
-    bool settle_now(EventUpdate& update, Message& message) {
+    bool settle_now(EventUpdate &update, Message &message) {
         return settle_events(system_, now_s_, state(), start_time_s_, events_, update, message);
     }
 
-    // The importer has to stop at each tick. At one of the bus first the sensors; in another update, when they have been passed on, the command.
-    bool pass_tick(EventUpdate& update, Message& message) {
+    // The importer has to stop at each tick. At one of the bus first the sensors; in another update, when they have
+    // been passed on, the command.
+    bool pass_tick(EventUpdate &update, Message &message) {
         const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
         const double rounding_ticks = rounding_at(now_s_);
         if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
@@ -236,8 +244,10 @@ private:
             update.discontinuity = update.discontinuity || system_.inputs().motor_torque != held;
         }
         if (now_ticks > static_cast<double>(tick_) + 1.0 - rounding_ticks) {
-            std::snprintf(message.text, sizeof message.text, "the event at t = %.9g s was passed over; it is now t = %.9g s",
-                          start_time_s_ + static_cast<double>(tick_) / static_cast<double>(servo_rate_hz), start_time_s_ + now_s_);
+            std::snprintf(message.text, sizeof message.text,
+                          "the event at t = %.9g s was passed over; it is now t = %.9g s",
+                          start_time_s_ + static_cast<double>(tick_) / static_cast<double>(servo_rate_hz),
+                          start_time_s_ + now_s_);
             return false;
         }
         return true;
@@ -245,9 +255,9 @@ private:
 
     // A step that does not start on a tick still has to see a new push from its start.
     void change_push() {
-        const auto& now = system_.inputs();
-        if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y || v_.push_point_x != now.push_point_x ||
-            v_.push_point_y != now.push_point_y) {
+        const auto &now = system_.inputs();
+        if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y ||
+            v_.push_point_x != now.push_point_x || v_.push_point_y != now.push_point_y) {
             system_.set_inputs(plant_inputs(v_, now.motor_torque), integrator_.state());
             integrator_.restart();
         }
@@ -289,4 +299,4 @@ private:
 
 } // namespace giveway::testbed
 
-giveway::Model* giveway::testbed::create_model() { return new (std::nothrow) Testbed; }
+giveway::Model *giveway::testbed::create_model() { return new (std::nothrow) Testbed; }

@@ -16,8 +16,9 @@ struct RunClock {
 };
 
 // `x`: state of a planar plant at least.
-inline void write_truth(Variables& v, const double* x, const plant::Outputs<double>& truth, const plant::Modes<double>& modes,
-                        const plant::Parameters<double>& p, const std::array<double, plant::wheel_count>& motor_torque_nm, const RunClock& clock,
+inline void write_truth(Variables &v, const double *x, const plant::Outputs<double> &truth,
+                        const plant::Modes<double> &modes, const plant::Parameters<double> &p,
+                        const std::array<double, plant::wheel_count> &motor_torque_nm, const RunClock &clock,
                         double stored_at_start_j) {
     v.truth_x = x[plant::base_x];
     v.truth_y = x[plant::base_y];

@@ -16,7 +16,8 @@ extern "C" {
 #include "recorded_collision.h"
 }
 
-namespace {
+namespace
+{
 
 using Inputs = std::vector<gw_controller_input_t>;
 volatile float sink;
@@ -25,7 +26,8 @@ volatile float sink;
 
 extern "C" {
 
-__attribute__((noinline)) void run_c_core(gw_controller_t *controller, const gw_controller_input_t *inputs) {
+__attribute__((noinline)) void run_c_core(gw_controller_t *controller, const gw_controller_input_t *inputs)
+{
     gw_controller_output_t output;
     for (uint32_t tick = 0; tick < RECORDED_TICKS; ++tick) {
         (void)gw_controller_step(controller, &inputs[tick], &output);
@@ -33,7 +35,8 @@ __attribute__((noinline)) void run_c_core(gw_controller_t *controller, const gw_
     sink = output.command.angle_rad[0];
 }
 
-__attribute__((noinline)) void run_eigen(eigen_step::Controller *controller, const gw_controller_input_t *inputs) {
+__attribute__((noinline)) void run_eigen(eigen_step::Controller *controller, const gw_controller_input_t *inputs)
+{
     eigen_step::Output output;
     for (uint32_t tick = 0; tick < RECORDED_TICKS; ++tick) {
         controller->step(inputs[tick], output);
@@ -42,9 +45,11 @@ __attribute__((noinline)) void run_eigen(eigen_step::Controller *controller, con
 }
 }
 
-namespace {
+namespace
+{
 
-template <class Run> double nanoseconds_per_step(const Run &run) {
+template <class Run> double nanoseconds_per_step(const Run &run)
+{
     const auto start = std::chrono::steady_clock::now();
     run();
     const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
@@ -53,7 +58,8 @@ template <class Run> double nanoseconds_per_step(const Run &run) {
 
 } // namespace
 
-int main(int count, char **arguments) {
+int main(int count, char **arguments)
+{
     const int collisions = count == 2 ? std::atoi(arguments[1]) : 0;
     if (collisions < 1) {
         std::fprintf(stderr, "usage: bench_step COLLISIONS\n");

@@ -4,19 +4,26 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace eigen_step {
-namespace {
+namespace eigen_step
+{
+namespace
+{
 
 constexpr Real pi = Real(3.141592653589793238462643);
 
-Vector2 limited(const Vector2 &vector, Real limit) {
+Vector2 limited(const Vector2 &vector, Real limit)
+{
     const Real length = vector.norm();
     return length > limit ? Vector2(vector * (limit / length)) : vector;
 }
 
-Rotation2 rotation(Real angle) { return Eigen::Rotation2D<Real>(angle).toRotationMatrix(); }
+Rotation2 rotation(Real angle)
+{
+    return Eigen::Rotation2D<Real>(angle).toRotationMatrix();
+}
 
-Real braking_speed(Real deceleration, Real period, Real distance) {
+Real braking_speed(Real deceleration, Real period, Real distance)
+{
     if (!(distance > 0)) {
         return 0;
     }
@@ -26,7 +33,8 @@ Real braking_speed(Real deceleration, Real period, Real distance) {
 
 // Adds one sample to a tare; true when it is done.
 bool add_to_tare(Sum &sum, Array3 &low, Array3 &high, uint32_t &count, const Array3 &torque, uint32_t samples,
-                 Real variation) {
+                 Real variation)
+{
     if (count == 0) {
         sum = Sum();
         low = high = torque;
@@ -43,14 +51,16 @@ bool add_to_tare(Sum &sum, Array3 &low, Array3 &high, uint32_t &count, const Arr
 
 } // namespace
 
-void Sum::add(const Array3 &increment) {
+void Sum::add(const Array3 &increment)
+{
     const Array3 corrected = increment - excess;
     const Array3 before = value;
     value += corrected;
     excess = (value - before) - corrected;
 }
 
-Controller::Controller(const gw_controller_config_t &config) : config_(config), period_(config.period_s) {
+Controller::Controller(const gw_controller_config_t &config) : config_(config), period_(config.period_s)
+{
     const auto &estimator = config.estimator;
     if (estimator.velocity_source != GW_SOURCE_PLANNED || estimator.acceleration_source != GW_SOURCE_PLANNED ||
         estimator.friction_model != GW_FRICTION_TANH || config.detector.kind != GW_DETECTOR_IMPULSE ||
@@ -87,7 +97,8 @@ Controller::Controller(const gw_controller_config_t &config) : config_(config), 
     }
 }
 
-gw_status_t Controller::check_sensors(const gw_sensor_sample_t &sample) {
+gw_status_t Controller::check_sensors(const gw_sensor_sample_t &sample)
+{
     const Eigen::Map<const Array3> torque(sample.torque_nm);
     if (!sample.present) {
         return GW_STATUS_SENSOR_MISSING;
@@ -114,7 +125,8 @@ gw_status_t Controller::check_sensors(const gw_sensor_sample_t &sample) {
 }
 
 // w^2/(s + w)^2 of the wheels' rates, stepped exactly.
-void Controller::filter_rates(const Array3 &torque, const Array3 &counts, const Vector3 &planned_twist) {
+void Controller::filter_rates(const Array3 &torque, const Array3 &counts, const Vector3 &planned_twist)
+{
     const Real w = config_.estimator.rate_cutoff_radps;
     if (filter_started_) {
         const Array3 input = (counts * rad_per_count_ - (torque - filter_torque_) * compliance_) / period_;
@@ -129,7 +141,8 @@ void Controller::filter_rates(const Array3 &torque, const Array3 &counts, const 
     filter_started_ = true;
 }
 
-void Controller::judge_rest(const Array3 &torque, Real speed) {
+void Controller::judge_rest(const Array3 &torque, Real speed)
+{
     const auto &config = config_.estimator;
     const bool before = rest_;
     if (speed > config.rest_speed_mps) {
@@ -150,7 +163,8 @@ void Controller::judge_rest(const Array3 &torque, Real speed) {
     regime_ = rest_ ? GW_REGIME_REST : (speed <= config.creep_speed_mps ? GW_REGIME_CREEPING : GW_REGIME_MOTION);
 }
 
-void Controller::average(const Vector3 &wrench) {
+void Controller::average(const Vector3 &wrench)
+{
     if (zero_changed_) {
         window_sum_.setZero();
         fresh_sum_.setZero();
@@ -173,7 +187,8 @@ void Controller::average(const Vector3 &wrench) {
 }
 
 // (38)-(40).
-void Controller::estimate(const Array3 &torque, const Array3 &counts, const Rotation2 &yaw) {
+void Controller::estimate(const Array3 &torque, const Array3 &counts, const Rotation2 &yaw)
+{
     Vector3 twist, acceleration;
     twist << yaw.transpose() * twist_.head<2>(), twist_.z();
     acceleration << yaw.transpose() * acceleration_.head<2>(), acceleration_.z();
@@ -183,8 +198,9 @@ void Controller::estimate(const Array3 &torque, const Array3 &counts, const Rota
         twist.setZero();
         acceleration.setZero();
     }
-    const Array3 friction = config_.friction.coulomb_torque_nm *
-                            (config_.friction.tanh_slope_s_per_rad * (rollers_of_velocity_ * twist.head<2>()).array()).tanh();
+    const Array3 friction =
+        config_.friction.coulomb_torque_nm *
+        (config_.friction.tanh_slope_s_per_rad * (rollers_of_velocity_ * twist.head<2>()).array()).tanh();
     Vector3 load = mass_ * acceleration;
     load.head<2>() += rollers_of_velocity_.transpose() * friction.matrix();
     load.head<2>() += rolling_mass_ * twist.z() * Vector2(twist.y(), -twist.x());
@@ -194,7 +210,8 @@ void Controller::estimate(const Array3 &torque, const Array3 &counts, const Rota
 }
 
 // The leaky vector integral; true if it trips.
-bool Controller::integrate() {
+bool Controller::integrate()
+{
     const auto &config = config_.detector;
     statistic_ = 0;
     if (zero_changed_) {
@@ -203,9 +220,11 @@ bool Controller::integrate() {
     }
     if (active_) {
         ticks_since_trip_ = std::min(ticks_since_trip_ + 1, config.blanking_ticks);
-        const bool over = twist_.head<2>().norm() < config_.supervisor.settled_speed_mps &&
-                          std::abs(twist_.z()) * config_.geometry.wheel_distance_m < config_.supervisor.settled_speed_mps;
-        active_ = !(ticks_since_trip_ >= config.blanking_ticks && (over || mean_.head<2>().norm() < config.release_force_n));
+        const bool over =
+            twist_.head<2>().norm() < config_.supervisor.settled_speed_mps &&
+            std::abs(twist_.z()) * config_.geometry.wheel_distance_m < config_.supervisor.settled_speed_mps;
+        active_ =
+            !(ticks_since_trip_ >= config.blanking_ticks && (over || mean_.head<2>().norm() < config.release_force_n));
     }
     if (active_ || mode_ == GW_MODE_TARING) {
         impulse_.setZero();
@@ -239,7 +258,8 @@ bool Controller::integrate() {
 }
 
 // (41)-(46).
-Contact Controller::locate(const Vector3 &wrench, Real samples) const {
+Contact Controller::locate(const Vector3 &wrench, Real samples) const
+{
     Contact contact;
     const Vector2 force = wrench.head<2>();
     const Real size = force.norm();
@@ -273,7 +293,8 @@ Contact Controller::locate(const Vector3 &wrench, Real samples) const {
     return contact;
 }
 
-bool Controller::tare(const Array3 &torque) {
+bool Controller::tare(const Array3 &torque)
+{
     if (!add_to_tare(tare_sum_, tare_low_, tare_high_, tare_count_, torque, config_.estimator.tare_ticks,
                      config_.estimator.tare_variation_nm)) {
         return false;
@@ -290,7 +311,8 @@ bool Controller::tare(const Array3 &torque) {
     return true;
 }
 
-void Controller::move(const Vector2 &velocity, const Vector2 &displacement) {
+void Controller::move(const Vector2 &velocity, const Vector2 &displacement)
+{
     const Real most = config_.reference.yaw_acceleration_limit_radps2 * period_;
     const Real omega = twist_.z() + std::clamp(-twist_.z(), -most, most);
     acceleration_ << (velocity - twist_.head<2>()) / period_, (omega - twist_.z()) / period_;
@@ -300,7 +322,8 @@ void Controller::move(const Vector2 &velocity, const Vector2 &displacement) {
 }
 
 // Only a plan that stands is compared: what is left is the correction towards its pose.
-void Controller::follow(const gw_plan_t &plan) {
+void Controller::follow(const gw_plan_t &plan)
+{
     const Vector3 target(plan.pose.x_m, plan.pose.y_m, plan.pose.theta_rad);
     const Vector3 planned(plan.twist.vx_mps, plan.twist.vy_mps, plan.twist.omega_radps);
     if (!on_plan_) {
@@ -309,14 +332,18 @@ void Controller::follow(const gw_plan_t &plan) {
         return;
     }
     const Real gain = config_.reference.follow_gain_per_s;
-    const Vector3 error = ((target.array() - pose_.value) + pose_.excess).matrix() - Real(0.5) * period_ * (twist_ + planned);
-    const Vector2 wanted = limited(Vector2(planned.head<2>() + gain * error.head<2>()), config_.reference.speed_limit_mps);
-    const Vector2 change = limited(Vector2(wanted - twist_.head<2>()), config_.reference.acceleration_limit_mps2 * period_);
+    const Vector3 error =
+        ((target.array() - pose_.value) + pose_.excess).matrix() - Real(0.5) * period_ * (twist_ + planned);
+    const Vector2 wanted =
+        limited(Vector2(planned.head<2>() + gain * error.head<2>()), config_.reference.speed_limit_mps);
+    const Vector2 change =
+        limited(Vector2(wanted - twist_.head<2>()), config_.reference.acceleration_limit_mps2 * period_);
     const Vector2 velocity = twist_.head<2>() + change;
     move(velocity, Real(0.5) * period_ * (twist_.head<2>() + velocity));
 }
 
-void Controller::start_escape(const Rotation2 &yaw) {
+void Controller::start_escape(const Rotation2 &yaw)
+{
     goal_ = (config_.admittance.escape_impulse_newton_s / config_.admittance.damping_newton_s_per_m) *
             (yaw * hit_wrench_.head<2>().normalized());
     moved_ = Sum();
@@ -324,7 +351,8 @@ void Controller::start_escape(const Rotation2 &yaw) {
 }
 
 // (2) as far as the limits allow.
-void Controller::escape() {
+void Controller::escape()
+{
     const auto &config = config_.admittance;
     const Real rate = config.damping_newton_s_per_m / config.mass_kg;
     static const Real decay = std::exp(-rate * period_), approach = -std::expm1(-rate * period_);
@@ -365,7 +393,8 @@ void Controller::escape() {
 }
 
 // (5) and (6).
-void Controller::command(Output &output) {
+void Controller::command(Output &output)
+{
     const Real theta = pose_.value.z();
     Vector3 turned, twist;
     turned << rotation(theta - Real(0.5) * displacement_.z()).transpose() * displacement_.head<2>(), displacement_.z();
@@ -377,7 +406,8 @@ void Controller::command(Output &output) {
     output.wheel_speed = (wheels_of_twist_ * twist).array();
 }
 
-void Controller::step(const gw_controller_input_t &input, Output &output) {
+void Controller::step(const gw_controller_input_t &input, Output &output)
+{
     output.status = check_sensors(input.sensor);
     if (output.status != GW_STATUS_OK || input.stop_request || input.tare_request || !gw_plan_is_valid(&input.plan)) {
         throw std::runtime_error("the comparison has no such input");

@@ -15,7 +15,8 @@ extern "C" {
 #include "giveway/gw_math.h"
 }
 
-namespace eigen_step {
+namespace eigen_step
+{
 
 using Real = gw_real_t;
 using Vector2 = Eigen::Matrix<Real, 2, 1>;
@@ -56,12 +57,13 @@ struct Output {
     gw_status_t status = GW_STATUS_OK;
 };
 
-class Controller {
-  public:
+class Controller
+{
+public:
     explicit Controller(const gw_controller_config_t &config);
     void step(const gw_controller_input_t &input, Output &output);
 
-  private:
+private:
     gw_status_t check_sensors(const gw_sensor_sample_t &sample);
     void estimate(const Array3 &torque, const Array3 &counts, const Rotation2 &yaw);
     void filter_rates(const Array3 &torque, const Array3 &counts, const Vector3 &planned_twist);

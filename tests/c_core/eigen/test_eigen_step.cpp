@@ -7,13 +7,15 @@ extern "C" {
 #include "recorded_collision.h"
 }
 
-namespace {
+namespace
+{
 
 // Both round differently: a few units in the last place of each quantity's size (measured: 6e-5 N of sums of 150 N,
 // 2e-7 rad, 8e-7 rad/s of up to 8, 1e-6 m).
 constexpr float wrench_n = 2e-4F, angle_rad = 1e-6F, speed_radps = 4e-6F, point_m = 5e-6F, direction_rad = 1e-5F;
 
-TEST(EigenStep, DoesWhatTheLibraryDoesOverTheRecordedCollision) {
+TEST(EigenStep, DoesWhatTheLibraryDoesOverTheRecordedCollision)
+{
     gw_controller_config_t config;
     recorded_collision_config(&config);
     static gw_controller_t library;
@@ -52,7 +54,8 @@ TEST(EigenStep, DoesWhatTheLibraryDoesOverTheRecordedCollision) {
     EXPECT_GT(located, 100);
 }
 
-TEST(EigenStep, RefusesWhatItDoesNotCompute) {
+TEST(EigenStep, RefusesWhatItDoesNotCompute)
+{
     gw_controller_config_t config;
     recorded_collision_config(&config);
     config.detector.kind = GW_DETECTOR_FORCE_AVERAGE;

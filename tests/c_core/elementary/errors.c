@@ -30,7 +30,8 @@ typedef double reference_t;
 
 enum { SQRT, EXP, EXPM1, TANH, SIN, COS, SIN_FAR, COS_FAR, ATAN2, FUNCTIONS };
 
-static const char *const names[FUNCTIONS] = {"sqrt", "exp", "expm1", "tanh", "sin", "cos", "sin_far", "cos_far", "atan2"};
+static const char *const names[FUNCTIONS] = {"sqrt", "exp",     "expm1",   "tanh", "sin",
+                                             "cos",  "sin_far", "cos_far", "atan2"};
 
 typedef struct {
     reference_t error;

@@ -15,9 +15,14 @@ static void print_reals(const gw_real_t *x, uint32_t count)
 static void print_input(const gw_controller_input_t *input)
 {
     const gw_plan_t *const plan = &input->plan;
-    const gw_real_t planned[9] = {plan->pose.x_m,         plan->pose.y_m,         plan->pose.theta_rad,
-                                  plan->twist.vx_mps,     plan->twist.vy_mps,     plan->twist.omega_radps,
-                                  plan->acceleration.ax_mps2, plan->acceleration.ay_mps2,
+    const gw_real_t planned[9] = {plan->pose.x_m,
+                                  plan->pose.y_m,
+                                  plan->pose.theta_rad,
+                                  plan->twist.vx_mps,
+                                  plan->twist.vy_mps,
+                                  plan->twist.omega_radps,
+                                  plan->acceleration.ax_mps2,
+                                  plan->acceleration.ay_mps2,
                                   plan->acceleration.alpha_radps2};
     print_reals(input->sensor.torque_nm, GW_WHEEL_COUNT);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {

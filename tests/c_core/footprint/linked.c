@@ -5,7 +5,6 @@
 static gw_controller_t controller;
 static gw_servo_t servo;
 
-
 const gw_controller_config_t controller_config = {0};
 const gw_servo_config_t servo_config = {0};
 gw_controller_input_t input;

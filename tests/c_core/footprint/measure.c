@@ -121,8 +121,10 @@ static uint32_t worst_found_by_search(uint32_t friction_model)
 
 static uint32_t worst_servo_step(void)
 {
-    static const gw_servo_config_t config = {(gw_real_t)0.0005, (gw_real_t)203.0, (gw_real_t)8.0, (gw_real_t)20.0,
-                                             (gw_real_t)1000.0, 8500U,            (gw_real_t)60.0, 10U};
+    static const gw_servo_config_t config = {(gw_real_t)0.0005, (gw_real_t)203.0,
+                                             (gw_real_t)8.0,    (gw_real_t)20.0,
+                                             (gw_real_t)1000.0, 8500U,
+                                             (gw_real_t)60.0,   10U};
     uint32_t most = 0U;
     generator_t generator = generator_begin(200U);
     gw_servo_t servo;

@@ -27,7 +27,8 @@ void firmware(void)
         status = gw_servo_step(&servo, &servo_input, &servo_output);
     }
 }
-#elif (PART == 2) || (PART == 4) /* estimate and detection, with or without escape: no modes, plan and wheel commands */
+#elif (PART == 2) || (PART == 4) /* estimate and detection, with or without escape: no modes, plan and wheel commands \
+                                  */
 static gw_estimator_t estimator;
 static gw_detector_t detector;
 /* The configurations that it has: not those of outline, reference, sensors and modes. */

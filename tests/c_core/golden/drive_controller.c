@@ -42,7 +42,8 @@ digest_t drive_controller_trikey(void)
     return play(&config, SCRIPT_TRIKEY_SEED, true);
 }
 
-/* All that the first one leaves: measured motion, live force, force average, odd geometry, plans that are not finite. */
+/* All that the first one leaves: measured motion, live force, force average, odd geometry, plans that are not finite.
+ */
 digest_t drive_controller_measuring(void)
 {
     gw_controller_config_t config;

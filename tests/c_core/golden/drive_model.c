@@ -103,8 +103,7 @@ digest_t drive_wrench(void)
         const gw_kinematics_t kinematics = random_kinematics(&generator);
         const gw_wheels_t nominal = generator_wheels(&generator, (gw_real_t)20.0);
         const gw_wheels_t sensed = generator_wheels(&generator, (gw_real_t)20.0);
-        const gw_wrench_sigma_t sigma =
-            gw_wrench_noise(&kinematics, generator_between(&generator, GW_ZERO, GW_ONE));
+        const gw_wrench_sigma_t sigma = gw_wrench_noise(&kinematics, generator_between(&generator, GW_ZERO, GW_ONE));
         digest_wrench(&digest, gw_wrench_external(&kinematics, &nominal, &sensed));
         digest_real(&digest, sigma.force_n);
         digest_real(&digest, sigma.torque_nm);

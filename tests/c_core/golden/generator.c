@@ -31,7 +31,8 @@ bool generator_one_in(generator_t *generator, uint32_t calls)
 
 gw_real_t generator_between(generator_t *generator, gw_real_t low, gw_real_t high)
 {
-    const gw_real_t fraction = (gw_real_t)(generator_u32(generator) >> 8U) * (gw_real_t)5.9604644775390625e-08; /* 2^-24 */
+    const gw_real_t fraction =
+        (gw_real_t)(generator_u32(generator) >> 8U) * (gw_real_t)5.9604644775390625e-08; /* 2^-24 */
     return low + ((high - low) * fraction);
 }
 

@@ -31,8 +31,7 @@ static gw_plan_t plan_at(uint32_t path_ticks, gw_real_t period_s)
     const gw_real_t sign = back ? -GW_ONE : GW_ONE;
     const gw_real_t rate_per_s = (sign * ((gw_real_t)6.0 * (s - (s * s)))) / span_s;
     const gw_real_t change_per_s2 =
-        (within < REST_TICKS) ? GW_ZERO
-                              : ((sign * ((gw_real_t)6.0 - ((gw_real_t)12.0 * s))) / (span_s * span_s));
+        (within < REST_TICKS) ? GW_ZERO : ((sign * ((gw_real_t)6.0 - ((gw_real_t)12.0 * s))) / (span_s * span_s));
     const gw_real_t length_m = (gw_real_t)0.12;
     const gw_real_t turn_rad = (gw_real_t)0.3;
     const gw_plan_t plan = {{length_m * at, -length_m * at, turn_rad * at},

@@ -64,11 +64,11 @@ static void the_frozen_impulse_ends_at_p_over_b(void)
         gw_real_t finish_speed;
         gw_vector_t velocity;
     } rows[] = {
-        {R(0.5), R(2.8), R(0.01), {R(0.0), R(0.0)}},   /* the paper's */
+        {R(0.5), R(2.8), R(0.01), {R(0.0), R(0.0)}},    /* the paper's */
         {R(0.5), R(1000.0), R(0.01), {R(0.0), R(0.0)}}, /* (2) without limits, but for its tail */
-        {R(0.1), R(0.5), R(0.05), {R(0.0), R(0.3)}},   /* slow, and moving sideways when it is hit */
-        {R(0.5), R(0.3), R(0.01), {R(-0.4), R(0.0)}},  /* moving against the push */
-        {R(0.5), R(0.05), R(0.01), {R(0.4), R(0.0)}},  /* brakes too weakly: overshoots and comes back */
+        {R(0.1), R(0.5), R(0.05), {R(0.0), R(0.3)}},    /* slow, and moving sideways when it is hit */
+        {R(0.5), R(0.3), R(0.01), {R(-0.4), R(0.0)}},   /* moving against the push */
+        {R(0.5), R(0.05), R(0.01), {R(0.4), R(0.0)}},   /* brakes too weakly: overshoots and comes back */
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_admittance_config_t from = config(GW_ADMITTANCE_FROZEN_IMPULSE);
@@ -168,9 +168,9 @@ static void rare_states_keep_the_limits(void)
         gw_real_t speed;
         gw_real_t acceleration_limit;
     } rows[] = {
-        {R(0.5), R(0.4025), R(2.8)},    /* the exponential's mean is within reach, its end is not */
-        {R(0.5), R(0.0), R(0.001)},     /* weak brakes: slower than the exponential from the start */
-        {R(0.0001), R(0.4), R(2.8)},    /* too fast to stop at the goal */
+        {R(0.5), R(0.4025), R(2.8)},      /* the exponential's mean is within reach, its end is not */
+        {R(0.5), R(0.0), R(0.001)},       /* weak brakes: slower than the exponential from the start */
+        {R(0.0001), R(0.4), R(2.8)},      /* too fast to stop at the goal */
         {R(0.000001), R(0.0025), R(2.8)}, /* arrives in this tick */
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {

@@ -268,8 +268,8 @@ static void the_first_bad_field_is_the_one_that_is_named(void)
     CHECK_STATUS(refused(&made).field, GW_FIELD_BASE_MASS);
     made.controller.period_s = GW_ZERO;
     CHECK_STATUS(refused(&made).field, GW_FIELD_CONTROLLER_PERIOD);
-    CHECK_STATUS(gw_controller_config_check(&made.controller, &(gw_config_error_t){GW_FIELD_NONE, 0U, GW_ZERO,
-                                                                                   GW_ZERO, GW_ZERO}),
+    CHECK_STATUS(gw_controller_config_check(&made.controller,
+                                            &(gw_config_error_t){GW_FIELD_NONE, 0U, GW_ZERO, GW_ZERO, GW_ZERO}),
                  GW_STATUS_CONFIG_INVALID);
 }
 

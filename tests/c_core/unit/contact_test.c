@@ -111,8 +111,8 @@ static void a_line_past_the_outline_gives_the_nearest_corner(void)
     }
 }
 
-/* A line through two corners of a diamond enters at one. One that only touches a corner enters if it has the body on its
- * right; either way the corner is the point. */
+/* A line through two corners of a diamond enters at one. One that only touches a corner enters if it has the body on
+ * its right; either way the corner is the point. */
 static void a_line_through_corners_enters_or_touches(void)
 {
     const gw_contact_config_t diamond = {
@@ -122,10 +122,10 @@ static void a_line_through_corners_enters_or_touches(void)
         gw_vector_t corner;
         bool enters;
     } rows[] = {
-        {{R(10.0), R(0.0), R(0.0)}, {R(-0.5), R(0.0)}, true},   {{R(-10.0), R(0.0), R(0.0)}, {R(0.5), R(0.0)}, true},
-        {{R(0.0), R(10.0), R(0.0)}, {R(0.0), R(-0.5)}, true},   {{R(0.0), R(-10.0), R(0.0)}, {R(0.0), R(0.5)}, true},
-        {{R(10.0), R(0.0), R(-5.0)}, {R(0.0), R(0.5)}, true},   {{R(-10.0), R(0.0), R(5.0)}, {R(0.0), R(0.5)}, false},
-        {{R(10.0), R(0.0), R(5.0)}, {R(0.0), R(-0.5)}, false},   {{R(-10.0), R(0.0), R(-5.0)}, {R(0.0), R(-0.5)}, true},
+        {{R(10.0), R(0.0), R(0.0)}, {R(-0.5), R(0.0)}, true},  {{R(-10.0), R(0.0), R(0.0)}, {R(0.5), R(0.0)}, true},
+        {{R(0.0), R(10.0), R(0.0)}, {R(0.0), R(-0.5)}, true},  {{R(0.0), R(-10.0), R(0.0)}, {R(0.0), R(0.5)}, true},
+        {{R(10.0), R(0.0), R(-5.0)}, {R(0.0), R(0.5)}, true},  {{R(-10.0), R(0.0), R(5.0)}, {R(0.0), R(0.5)}, false},
+        {{R(10.0), R(0.0), R(5.0)}, {R(0.0), R(-0.5)}, false}, {{R(-10.0), R(0.0), R(-5.0)}, {R(0.0), R(-0.5)}, true},
     };
     gw_contact_t contact;
     CHECK_STATUS(gw_contact_init(&contact, &diamond), GW_STATUS_OK);
@@ -214,8 +214,7 @@ static void the_invariant_sees_every_member(void)
 void suite_contact(void)
 {
     unit_run("bad_arguments_are_refused", bad_arguments_are_refused);
-    unit_run("the_outline_has_to_be_convex_and_counter_clockwise",
-             the_outline_has_to_be_convex_and_counter_clockwise);
+    unit_run("the_outline_has_to_be_convex_and_counter_clockwise", the_outline_has_to_be_convex_and_counter_clockwise);
     unit_run("a_push_is_found_where_it_enters_the_body", a_push_is_found_where_it_enters_the_body);
     unit_run("a_line_past_the_outline_gives_the_nearest_corner", a_line_past_the_outline_gives_the_nearest_corner);
     unit_run("a_line_through_corners_enters_or_touches", a_line_through_corners_enters_or_touches);

@@ -20,10 +20,8 @@ static void bad_sensors_command_no_motion(void)
         bool present;
         gw_status_t status;
     } rows[] = {
-        {GW_ZERO, 0, false, GW_STATUS_SENSOR_MISSING},
-        {unit_nan(), 0, true, GW_STATUS_SENSOR_NONFINITE},
-        {unit_infinity(), 0, true, GW_STATUS_SENSOR_NONFINITE},
-        {R(20.0), 0, true, GW_STATUS_SENSOR_SATURATED},
+        {GW_ZERO, 0, false, GW_STATUS_SENSOR_MISSING},          {unit_nan(), 0, true, GW_STATUS_SENSOR_NONFINITE},
+        {unit_infinity(), 0, true, GW_STATUS_SENSOR_NONFINITE}, {R(20.0), 0, true, GW_STATUS_SENSOR_SATURATED},
         {GW_ZERO, 100000, true, GW_STATUS_ENCODER_JUMP},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
@@ -202,8 +200,8 @@ static uint32_t random_bits(void)
 /* A number of any size, NaN and infinity among them. */
 static gw_real_t any_real(void)
 {
-    const gw_real_t special[8] = {unit_nan(), unit_infinity(), -unit_infinity(), GW_REAL_MAX,
-                                  -GW_REAL_MAX, unit_above(GW_ZERO), R(1e9), R(0.001)};
+    const gw_real_t special[8] = {unit_nan(),   unit_infinity(),     -unit_infinity(), GW_REAL_MAX,
+                                  -GW_REAL_MAX, unit_above(GW_ZERO), R(1e9),           R(0.001)};
     const uint32_t bits = random_bits();
     gw_real_t value = special[bits & 7U];
     if ((bits & 0xF00U) != 0U) {
@@ -254,18 +252,42 @@ static void the_invariant_sees_every_member(void)
     for (uint32_t i = 0U; i < 12U; i++) {
         rig_controller = good;
         switch (i) {
-        case 0U: rig_controller.initialised = false; break;
-        case 1U: rig_controller.sensor_check.initialised = false; break;
-        case 2U: rig_controller.estimator.initialised = false; break;
-        case 3U: rig_controller.contact.initialised = false; break;
-        case 4U: rig_controller.detector.initialised = false; break;
-        case 5U: rig_controller.admittance.initialised = false; break;
-        case 6U: rig_controller.reference.initialised = false; break;
-        case 7U: rig_controller.joint.angle_rad[0].value = unit_nan(); break;
-        case 8U: rig_controller.supervisor.initialised = false; break;
-        case 9U: rig_controller.detection_count = GW_TICK_MASK + 1U; break;
-        case 10U: rig_controller.detection_tick = -2; break;
-        default: rig_controller.tick = GW_TICK_MASK + 1U; break;
+        case 0U:
+            rig_controller.initialised = false;
+            break;
+        case 1U:
+            rig_controller.sensor_check.initialised = false;
+            break;
+        case 2U:
+            rig_controller.estimator.initialised = false;
+            break;
+        case 3U:
+            rig_controller.contact.initialised = false;
+            break;
+        case 4U:
+            rig_controller.detector.initialised = false;
+            break;
+        case 5U:
+            rig_controller.admittance.initialised = false;
+            break;
+        case 6U:
+            rig_controller.reference.initialised = false;
+            break;
+        case 7U:
+            rig_controller.joint.angle_rad[0].value = unit_nan();
+            break;
+        case 8U:
+            rig_controller.supervisor.initialised = false;
+            break;
+        case 9U:
+            rig_controller.detection_count = GW_TICK_MASK + 1U;
+            break;
+        case 10U:
+            rig_controller.detection_tick = -2;
+            break;
+        default:
+            rig_controller.tick = GW_TICK_MASK + 1U;
+            break;
         }
         unit_row(i);
         CHECK(!gw_controller_invariant_holds(&rig_controller));

@@ -2,8 +2,8 @@
 
 #define PERIOD R(0.001)
 
-static const gw_detector_config_t impulse_config = {GW_DETECTOR_IMPULSE, R(10.0), R(0.5), R(1.0), R(40.0), R(3.0),
-                                                    R(6.0), 5U};
+static const gw_detector_config_t impulse_config = {
+    GW_DETECTOR_IMPULSE, R(10.0), R(0.5), R(1.0), R(40.0), R(3.0), R(6.0), 5U};
 
 static gw_detector_t made(uint32_t kind)
 {
@@ -102,8 +102,8 @@ static void the_number_of_samples_saturates(void)
     CHECK(step(&detector, &input).samples == GW_TICK_MASK);
 }
 
-/* Without a leak the impulse may be too small for a lever arm: 0.05 N for 1 ms is half the least impulse that gives one,
- * and so gives half the moment. Far above it the moment is the one that was pushed with. */
+/* Without a leak the impulse may be too small for a lever arm: 0.05 N for 1 ms is half the least impulse that gives
+ * one, and so gives half the moment. Far above it the moment is the one that was pushed with. */
 static void too_small_an_impulse_gives_less_lever_arm(void)
 {
     const struct {
@@ -126,7 +126,7 @@ static void the_average_trips_above_its_threshold(void)
         gw_regime_t regime;
         bool trips;
     } rows[] = {
-        {R(10.0), GW_REGIME_REST, false},   {R(10.1), GW_REGIME_REST, true},  {R(10.1), GW_REGIME_MOTION, true},
+        {R(10.0), GW_REGIME_REST, false},     {R(10.1), GW_REGIME_REST, true},     {R(10.1), GW_REGIME_MOTION, true},
         {R(39.0), GW_REGIME_CREEPING, false}, {R(40.1), GW_REGIME_CREEPING, true},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
@@ -167,10 +167,8 @@ static void a_tripped_detector_rests_until_it_may_trip_again(void)
         bool reaction_over;
         bool released;
     } rows[] = {
-        {GW_DETECTOR_IMPULSE, R(7.0), false, false},
-        {GW_DETECTOR_IMPULSE, R(7.0), true, true},
-        {GW_DETECTOR_IMPULSE, R(5.0), false, true},
-        {GW_DETECTOR_FORCE_AVERAGE, R(5.0), false, true},
+        {GW_DETECTOR_IMPULSE, R(7.0), false, false},       {GW_DETECTOR_IMPULSE, R(7.0), true, true},
+        {GW_DETECTOR_IMPULSE, R(5.0), false, true},        {GW_DETECTOR_FORCE_AVERAGE, R(5.0), false, true},
         {GW_DETECTOR_FORCE_AVERAGE, R(7.0), false, false},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {

@@ -261,8 +261,7 @@ static void the_motion_comes_from_the_source_that_is_chosen(void)
             output = step(&input, GW_STATUS_OK);
         }
         const gw_acceleration_t used = {rows[i].acceleration_mps2, R(0.0), R(0.0)};
-        const gw_wheels_t expected =
-            nominal_torques(&nominal, &kinematics, ahead(rows[i].friction_speed), used);
+        const gw_wheels_t expected = nominal_torques(&nominal, &kinematics, ahead(rows[i].friction_speed), used);
         /* Rates jitter by a count per tick, 0.6 mm/s, of which the filter's derivative passes (50 rad/s)^2 * 1 ms:
          * 1.6 mm/s^2, 4 mN m. */
         CHECK_NEAR(output.measured_twist.vx_mps, R(0.2), R(0.0006));
@@ -413,8 +412,7 @@ void suite_estimator(void)
     unit_run("a_stop_has_a_zero_of_its_own", a_stop_has_a_zero_of_its_own);
     unit_run("a_stop_that_is_not_quiet_waits", a_stop_that_is_not_quiet_waits);
     unit_run("standing_long_does_not_wrap", standing_long_does_not_wrap);
-    unit_run("a_tare_of_no_ticks_takes_the_sensors_at_their_word",
-             a_tare_of_no_ticks_takes_the_sensors_at_their_word);
+    unit_run("a_tare_of_no_ticks_takes_the_sensors_at_their_word", a_tare_of_no_ticks_takes_the_sensors_at_their_word);
     unit_run("a_tare_of_one_tick_takes_that_tick", a_tare_of_one_tick_takes_that_tick);
     unit_run("a_new_tare_starts_from_nothing", a_new_tare_starts_from_nothing);
     unit_run("the_motion_comes_from_the_source_that_is_chosen", the_motion_comes_from_the_source_that_is_chosen);

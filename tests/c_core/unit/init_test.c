@@ -192,12 +192,12 @@ static void check_safe(const gw_controller_output_t *output)
 {
     const gw_contact_estimate_t *const contacts[2] = {&output->contact, &output->detection_contact};
     const gw_real_t zeros[] = {
-        output->command.angle_rad[0],       output->command.angle_rad[1],      output->command.angle_rad[2],
-        output->command.speed_radps[0],     output->command.speed_radps[1],    output->command.speed_radps[2],
-        output->estimate.force_x_n,         output->estimate.force_y_n,        output->estimate.torque_nm,
+        output->command.angle_rad[0],       output->command.angle_rad[1],       output->command.angle_rad[2],
+        output->command.speed_radps[0],     output->command.speed_radps[1],     output->command.speed_radps[2],
+        output->estimate.force_x_n,         output->estimate.force_y_n,         output->estimate.torque_nm,
         output->detection_statistic,        output->detection_wrench.force_x_n, output->detection_wrench.force_y_n,
-        output->detection_wrench.torque_nm, output->reference_pose.x_m,        output->reference_pose.y_m,
-        output->reference_pose.theta_rad,   output->reference_twist.vx_mps,    output->reference_twist.vy_mps,
+        output->detection_wrench.torque_nm, output->reference_pose.x_m,         output->reference_pose.y_m,
+        output->reference_pose.theta_rad,   output->reference_twist.vx_mps,     output->reference_twist.vy_mps,
         output->reference_twist.omega_radps};
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(zeros); i++) {
         unit_row(i);

@@ -6,9 +6,8 @@ static void finite_means_neither_nan_nor_infinite(void)
         gw_real_t x;
         bool finite;
     } rows[] = {
-        {R(0.0), true},           {R(-1.5), true},          {GW_REAL_MAX, true},
-        {-GW_REAL_MAX, true},     {unit_infinity(), false}, {-unit_infinity(), false},
-        {unit_nan(), false},
+        {R(0.0), true},           {R(-1.5), true},           {GW_REAL_MAX, true}, {-GW_REAL_MAX, true},
+        {unit_infinity(), false}, {-unit_infinity(), false}, {unit_nan(), false},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         unit_row(i);
@@ -64,10 +63,10 @@ static void a_fraction_is_at_most_one(void)
         gw_real_t whole;
         gw_real_t fraction;
     } rows[] = {
-        {R(1.0), R(4.0), R(0.25)},        {R(-3.0), R(4.0), R(-0.75)},       {R(4.0), R(4.0), R(1.0)},
-        {R(-4.0), R(4.0), R(-1.0)},       {R(5.0), R(4.0), R(1.0)},          {unit_infinity(), R(4.0), R(1.0)},
-        {-unit_infinity(), R(4.0), R(-1.0)}, {unit_nan(), R(4.0), R(0.0)},   {R(1.0), R(0.0), R(0.0)},
-        {R(1.0), R(-4.0), R(0.0)},        {R(1.0), unit_nan(), R(0.0)},
+        {R(1.0), R(4.0), R(0.25)},           {R(-3.0), R(4.0), R(-0.75)},  {R(4.0), R(4.0), R(1.0)},
+        {R(-4.0), R(4.0), R(-1.0)},          {R(5.0), R(4.0), R(1.0)},     {unit_infinity(), R(4.0), R(1.0)},
+        {-unit_infinity(), R(4.0), R(-1.0)}, {unit_nan(), R(4.0), R(0.0)}, {R(1.0), R(0.0), R(0.0)},
+        {R(1.0), R(-4.0), R(0.0)},           {R(1.0), unit_nan(), R(0.0)},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         unit_row(i);

@@ -118,8 +118,8 @@ static void damping_is_felt_at_once(void)
 static void the_wind_up_of_the_drivetrain_is_taken_off(void)
 {
     gw_presliding_t presliding = made();
-    const gw_wheels_t torque = {{GW_ZERO, R(-1000.0) * constants.rad_per_count * R(500.0),
-                                 R(1000.0) * constants.rad_per_count * R(500.0)}};
+    const gw_wheels_t torque = {
+        {GW_ZERO, R(-1000.0) * constants.rad_per_count * R(500.0), R(1000.0) * constants.rad_per_count * R(500.0)}};
     const int32_t before[3] = {0, 0, 0};
     const int32_t after[3] = {0, -1000, 1000};
     (void)step(&presliding, before, &no_torque, still);

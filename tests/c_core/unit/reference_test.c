@@ -47,10 +47,15 @@ static void every_number_of_a_plan_is_bounded(void)
         for (uint32_t k = 0U; k < 4U; k++) {
             const gw_real_t values[4] = {bounds[i], -bounds[i], unit_above(bounds[i]), unit_nan()};
             gw_plan_t plan = origin;
-            gw_real_t *const members[9] = {
-                &plan.pose.x_m,           &plan.pose.y_m,           &plan.pose.theta_rad,
-                &plan.twist.vx_mps,       &plan.twist.vy_mps,       &plan.twist.omega_radps,
-                &plan.acceleration.ax_mps2, &plan.acceleration.ay_mps2, &plan.acceleration.alpha_radps2};
+            gw_real_t *const members[9] = {&plan.pose.x_m,
+                                           &plan.pose.y_m,
+                                           &plan.pose.theta_rad,
+                                           &plan.twist.vx_mps,
+                                           &plan.twist.vy_mps,
+                                           &plan.twist.omega_radps,
+                                           &plan.acceleration.ax_mps2,
+                                           &plan.acceleration.ay_mps2,
+                                           &plan.acceleration.alpha_radps2};
             unit_row((10U * i) + k);
             *members[i] = values[k];
             CHECK(gw_plan_is_valid(&plan) == (k < 2U));
@@ -105,8 +110,10 @@ static void the_reference_comes_to_a_plan_that_is_elsewhere(void)
         gw_pose_t pose;
         bool rejoining;
     } rows[] = {
-        {{R(0.3), R(-0.2), R(0.5)}, false}, {{R(-0.3), R(0.2), R(-0.5)}, false},
-        {{R(0.1), R(-0.05), R(0.3)}, true},  {{R(-0.1), R(0.05), R(-0.3)}, true},
+        {{R(0.3), R(-0.2), R(0.5)}, false},
+        {{R(-0.3), R(0.2), R(-0.5)}, false},
+        {{R(0.1), R(-0.05), R(0.3)}, true},
+        {{R(-0.1), R(0.05), R(-0.3)}, true},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_reference_t reference = made();
@@ -237,8 +244,7 @@ void suite_reference(void)
     unit_run("a_smooth_plan_is_followed_exactly", a_smooth_plan_is_followed_exactly);
     unit_run("a_jump_of_the_plan_s_velocity_is_limited", a_jump_of_the_plan_s_velocity_is_limited);
     unit_run("the_reference_comes_to_a_plan_that_is_elsewhere", the_reference_comes_to_a_plan_that_is_elsewhere);
-    unit_run("a_reference_on_its_plan_stays_there_when_rejoining",
-             a_reference_on_its_plan_stays_there_when_rejoining);
+    unit_run("a_reference_on_its_plan_stays_there_when_rejoining", a_reference_on_its_plan_stays_there_when_rejoining);
     unit_run("placing_takes_the_plan_within_the_limits", placing_takes_the_plan_within_the_limits);
     unit_run("an_escape_moves_as_it_is_told_and_stops_turning", an_escape_moves_as_it_is_told_and_stops_turning);
     unit_run("braking_stops_within_the_limits", braking_stops_within_the_limits);

@@ -69,9 +69,9 @@ static void a_fault_is_named_and_takes_time_to_recover_from(void)
         const gw_sensor_sample_t *sample;
         gw_status_t status;
     } rows[] = {
-        {&missing, GW_STATUS_SENSOR_MISSING},     {&nan, GW_STATUS_SENSOR_NONFINITE},
-        {&infinite, GW_STATUS_SENSOR_NONFINITE},  {&saturated, GW_STATUS_SENSOR_SATURATED},
-        {&negative, GW_STATUS_SENSOR_SATURATED},  {&both, GW_STATUS_SENSOR_NONFINITE},
+        {&missing, GW_STATUS_SENSOR_MISSING},    {&nan, GW_STATUS_SENSOR_NONFINITE},
+        {&infinite, GW_STATUS_SENSOR_NONFINITE}, {&saturated, GW_STATUS_SENSOR_SATURATED},
+        {&negative, GW_STATUS_SENSOR_SATURATED}, {&both, GW_STATUS_SENSOR_NONFINITE},
         {&jump, GW_STATUS_ENCODER_JUMP},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
@@ -191,8 +191,7 @@ void suite_sensor_check(void)
     unit_run("before_the_first_good_sample_there_is_nothing_to_recover_from",
              before_the_first_good_sample_there_is_nothing_to_recover_from);
     unit_run("a_counter_that_stands_is_stale", a_counter_that_stands_is_stale);
-    unit_run("the_jump_limit_grows_with_the_time_between_samples",
-             the_jump_limit_grows_with_the_time_between_samples);
+    unit_run("the_jump_limit_grows_with_the_time_between_samples", the_jump_limit_grows_with_the_time_between_samples);
     unit_run("counts_may_wrap", counts_may_wrap);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

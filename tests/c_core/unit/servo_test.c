@@ -58,8 +58,8 @@ static void torque_is_proportional_up_to_its_limit(void)
         gw_real_t angle;
         gw_real_t torque;
     } rows[] = {
-        {R(0.0), R(0.0)}, {R(0.05), R(5.0)}, {R(-0.05), R(-5.0)}, {R(0.5), R(10.0)}, {R(-0.5), R(-10.0)},
-        {R(6.33318530717958648), R(5.0)}, /* 0.05 rad and a turn */
+        {R(0.0), R(0.0)},  {R(0.05), R(5.0)},   {R(-0.05), R(-5.0)},
+        {R(0.5), R(10.0)}, {R(-0.5), R(-10.0)}, {R(6.33318530717958648), R(5.0)}, /* 0.05 rad and a turn */
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_servo_t servo = of_config(&config);
@@ -129,11 +129,8 @@ static void a_reference_that_is_not_finite_holds_the_last_angle(void)
         gw_real_t angle;
         gw_real_t speed;
     } rows[] = {
-        {unit_nan(), R(0.0)},
-        {unit_infinity(), R(0.0)},
-        {R(0.0), unit_nan()},
-        {R(0.0), unit_above(R(1.0e4))},
-        {R(0.0), unit_below(R(-1.0e4))},
+        {unit_nan(), R(0.0)},           {unit_infinity(), R(0.0)},       {R(0.0), unit_nan()},
+        {R(0.0), unit_above(R(1.0e4))}, {R(0.0), unit_below(R(-1.0e4))},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_servo_t servo = of_config(&config);

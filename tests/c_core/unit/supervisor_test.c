@@ -61,18 +61,30 @@ static void each_event_leads_where_the_table_says(void)
         const gw_supervisor_events_t *events;
         gw_mode_t after;
     } rows[] = {
-        {GW_MODE_TARING, &nothing, GW_MODE_TARING},      {GW_MODE_TARING, &tared, GW_MODE_TRACKING},
-        {GW_MODE_TARING, &hit, GW_MODE_TARING},          {GW_MODE_TARING, &bad, GW_MODE_FAULT},
-        {GW_MODE_TARING, &stop, GW_MODE_STOPPED},        {GW_MODE_TRACKING, &nothing, GW_MODE_TRACKING},
-        {GW_MODE_TRACKING, &retare, GW_MODE_TARING},     {GW_MODE_TRACKING, &hit, GW_MODE_REACTING},
-        {GW_MODE_TRACKING, &stop, GW_MODE_STOPPED},      {GW_MODE_TRACKING, &bad, GW_MODE_FAULT},
-        {GW_MODE_TRACKING, &all_bad, GW_MODE_FAULT},     {GW_MODE_REACTING, &nothing, GW_MODE_REACTING},
-        {GW_MODE_REACTING, &hit, GW_MODE_REACTING},      {GW_MODE_SETTLED, &nothing, GW_MODE_REJOINING},
-        {GW_MODE_SETTLED, &retare, GW_MODE_TARING},      {GW_MODE_SETTLED, &hit, GW_MODE_REACTING},
-        {GW_MODE_REJOINING, &nothing, GW_MODE_REJOINING}, {GW_MODE_REJOINING, &arrived, GW_MODE_TRACKING},
-        {GW_MODE_REJOINING, &hit, GW_MODE_REACTING},     {GW_MODE_STOPPED, &stop, GW_MODE_STOPPED},
-        {GW_MODE_STOPPED, &nothing, GW_MODE_TRACKING},   {GW_MODE_STOPPED, &hit, GW_MODE_TRACKING},
-        {GW_MODE_FAULT, &bad, GW_MODE_FAULT},            {GW_MODE_FAULT, &nothing, GW_MODE_TRACKING},
+        {GW_MODE_TARING, &nothing, GW_MODE_TARING},
+        {GW_MODE_TARING, &tared, GW_MODE_TRACKING},
+        {GW_MODE_TARING, &hit, GW_MODE_TARING},
+        {GW_MODE_TARING, &bad, GW_MODE_FAULT},
+        {GW_MODE_TARING, &stop, GW_MODE_STOPPED},
+        {GW_MODE_TRACKING, &nothing, GW_MODE_TRACKING},
+        {GW_MODE_TRACKING, &retare, GW_MODE_TARING},
+        {GW_MODE_TRACKING, &hit, GW_MODE_REACTING},
+        {GW_MODE_TRACKING, &stop, GW_MODE_STOPPED},
+        {GW_MODE_TRACKING, &bad, GW_MODE_FAULT},
+        {GW_MODE_TRACKING, &all_bad, GW_MODE_FAULT},
+        {GW_MODE_REACTING, &nothing, GW_MODE_REACTING},
+        {GW_MODE_REACTING, &hit, GW_MODE_REACTING},
+        {GW_MODE_SETTLED, &nothing, GW_MODE_REJOINING},
+        {GW_MODE_SETTLED, &retare, GW_MODE_TARING},
+        {GW_MODE_SETTLED, &hit, GW_MODE_REACTING},
+        {GW_MODE_REJOINING, &nothing, GW_MODE_REJOINING},
+        {GW_MODE_REJOINING, &arrived, GW_MODE_TRACKING},
+        {GW_MODE_REJOINING, &hit, GW_MODE_REACTING},
+        {GW_MODE_STOPPED, &stop, GW_MODE_STOPPED},
+        {GW_MODE_STOPPED, &nothing, GW_MODE_TRACKING},
+        {GW_MODE_STOPPED, &hit, GW_MODE_TRACKING},
+        {GW_MODE_FAULT, &bad, GW_MODE_FAULT},
+        {GW_MODE_FAULT, &nothing, GW_MODE_TRACKING},
         {GW_MODE_FAULT, &hit, GW_MODE_TRACKING},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
@@ -89,8 +101,8 @@ static void an_interruption_leads_back(void)
         gw_mode_t before;
         gw_mode_t after;
     } rows[] = {
-        {GW_MODE_TARING, GW_MODE_TARING},   {GW_MODE_TRACKING, GW_MODE_REJOINING},
-        {GW_MODE_REACTING, GW_MODE_REACTING}, {GW_MODE_SETTLED, GW_MODE_SETTLED},
+        {GW_MODE_TARING, GW_MODE_TARING},       {GW_MODE_TRACKING, GW_MODE_REJOINING},
+        {GW_MODE_REACTING, GW_MODE_REACTING},   {GW_MODE_SETTLED, GW_MODE_SETTLED},
         {GW_MODE_REJOINING, GW_MODE_REJOINING},
     };
     gw_supervisor_events_t stop = quiet_tick;

@@ -8,12 +8,12 @@
 
 static int failures = 0;
 
-#define CHECK(condition)                                                                                               \
-    do {                                                                                                               \
-        if (!(condition)) {                                                                                            \
-            (void)printf("%s:%d: %s\n", __FILE__, __LINE__, #condition);                                               \
-            ++failures;                                                                                                \
-        }                                                                                                              \
+#define CHECK(condition) \
+    do { \
+        if (!(condition)) { \
+            (void)printf("%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+            ++failures; \
+        } \
     } while (0)
 
 #define STEPS 300
@@ -148,8 +148,8 @@ static void test_wrong_specs(void) {
     CHECK(gwb_run(NULL, &result) == GWB_WRONG_SPEC);
     CHECK(gwb_run(&spec, NULL) == GWB_WRONG_SPEC);
 
-    const double steps_s[] = {
-        0.0, -0.001, nextafter(GWB_STEP_MIN_S, 0.0), nextafter(GWB_STEP_MAX_S, 1.0), NAN, INFINITY};
+    const double steps_s[] = {0.0, -0.001,  nextafter(GWB_STEP_MIN_S, 0.0), nextafter(GWB_STEP_MAX_S, 1.0),
+                              NAN, INFINITY};
     for (size_t i = 0; i < sizeof steps_s / sizeof steps_s[0]; ++i) {
         spec.step_s = steps_s[i];
         CHECK(refused(&spec, "step_s = "));

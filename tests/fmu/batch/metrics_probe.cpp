@@ -10,11 +10,12 @@ using giveway::batch::Sample;
 namespace {
 
 struct Column {
-    const char* trace; // as in a result's traces
-    void (*set)(Sample&, double);
+    const char *trace; // as in a result's traces
+    void (*set)(Sample &, double);
 };
 
-#define COLUMN(trace, member) {trace, [](Sample& s, double value) { s.member = static_cast<decltype(s.member)>(value); }}
+#define COLUMN(trace, member) \
+    {trace, [](Sample &s, double value) { s.member = static_cast<decltype(s.member)>(value); }}
 
 constexpr Column columns[] = {
     COLUMN("time", time_s),
@@ -23,15 +24,15 @@ constexpr Column columns[] = {
     COLUMN("testbed.truth.theta", theta),
     COLUMN("testbed.truth.vx", vx),
     COLUMN("testbed.truth.vy", vy),
-    {"testbed.truth.wheel_torque[0]", [](Sample& s, double value) { s.wheel_torque[0] = value; }},
-    {"testbed.truth.wheel_torque[1]", [](Sample& s, double value) { s.wheel_torque[1] = value; }},
-    {"testbed.truth.wheel_torque[2]", [](Sample& s, double value) { s.wheel_torque[2] = value; }},
-    {"testbed.truth.motor_torque[0]", [](Sample& s, double value) { s.motor_torque[0] = value; }},
-    {"testbed.truth.motor_torque[1]", [](Sample& s, double value) { s.motor_torque[1] = value; }},
-    {"testbed.truth.motor_torque[2]", [](Sample& s, double value) { s.motor_torque[2] = value; }},
-    {"testbed.sensor.torque[0]", [](Sample& s, double value) { s.sensed_torque[0] = value; }},
-    {"testbed.sensor.torque[1]", [](Sample& s, double value) { s.sensed_torque[1] = value; }},
-    {"testbed.sensor.torque[2]", [](Sample& s, double value) { s.sensed_torque[2] = value; }},
+    {"testbed.truth.wheel_torque[0]", [](Sample &s, double value) { s.wheel_torque[0] = value; }},
+    {"testbed.truth.wheel_torque[1]", [](Sample &s, double value) { s.wheel_torque[1] = value; }},
+    {"testbed.truth.wheel_torque[2]", [](Sample &s, double value) { s.wheel_torque[2] = value; }},
+    {"testbed.truth.motor_torque[0]", [](Sample &s, double value) { s.motor_torque[0] = value; }},
+    {"testbed.truth.motor_torque[1]", [](Sample &s, double value) { s.motor_torque[1] = value; }},
+    {"testbed.truth.motor_torque[2]", [](Sample &s, double value) { s.motor_torque[2] = value; }},
+    {"testbed.sensor.torque[0]", [](Sample &s, double value) { s.sensed_torque[0] = value; }},
+    {"testbed.sensor.torque[1]", [](Sample &s, double value) { s.sensed_torque[1] = value; }},
+    {"testbed.sensor.torque[2]", [](Sample &s, double value) { s.sensed_torque[2] = value; }},
     COLUMN("testbed.truth.contact_force", contact_force),
     COLUMN("testbed.truth.contact_force_x", contact_force_x),
     COLUMN("testbed.truth.contact_force_y", contact_force_y),
@@ -74,20 +75,21 @@ extern "C" {
 
 __attribute__((visibility("default"))) std::size_t metrics_column_count() { return std::size(columns); }
 
-__attribute__((visibility("default"))) const char* metrics_column(std::size_t column) { return columns[column].trace; }
+__attribute__((visibility("default"))) const char *metrics_column(std::size_t column) { return columns[column].trace; }
 
-// `table`: count rows of columns; `parameters`: wheel radius and distance, averaging window, bumper, its travel, tipping, mass,
-// heights of the centre of mass, the contact and the push, limits of transient and lasting force, of the sensed and the motors' torque.
-__attribute__((visibility("default"))) void metrics_evaluate(const double* table, std::size_t count, const double* parameters,
-                                                             double* value, double* truth) {
+// `table`: count rows of columns; `parameters`: wheel radius and distance, averaging window, bumper, its travel,
+// tipping, mass, heights of the centre of mass, the contact and the push, limits of transient and lasting force, of the
+// sensed and the motors' torque.
+__attribute__((visibility("default"))) void metrics_evaluate(const double *table, std::size_t count,
+                                                             const double *parameters, double *value, double *truth) {
     std::vector<Sample> samples(count);
-    for (Sample& s : samples) {
-        for (const Column& column : columns) {
+    for (Sample &s : samples) {
+        for (const Column &column : columns) {
             column.set(s, *table++);
         }
         s.pushed = s.push_force_x != 0.0 || s.push_force_y != 0.0;
     }
-    const double* p = parameters;
+    const double *p = parameters;
     const MetricParameters all{.wheel_radius_m = p[0],
                                .wheel_distance_m = p[1],
                                .estimate_window_s = p[2],

@@ -135,7 +135,8 @@ TEST(ControllerFmu, BadSensorsAreHandledNotRefused) {
     ASSERT_EQ(fmu.initialise(), Status::ok);
     ASSERT_EQ(fmu.model->step(0.0, 0.001, fmu.message), Status::ok);
     EXPECT_EQ(fmu.v.status, GW_STATUS_OK);
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
         fmu.v.sensor_torque[1] = bad; // 1e300 rounds to infinity in float
         ++fmu.v.sensor_counter;
         ASSERT_EQ(fmu.model->step(0.001, 0.001, fmu.message), Status::ok);

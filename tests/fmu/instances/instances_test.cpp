@@ -1,7 +1,8 @@
-// Many instances of one FMU in one process: they do not influence each other, in threads neither, and leave no memory behind.
+// Many instances of one FMU in one process: they do not influence each other, in threads neither, and leave no memory
+// behind.
 //
-// Built once per FMU with the address sanitiser's allocator, whose leak check at exit fails the test if a single block is left
-// (Leaks.AreSeen plants one to see that it would).
+// Built once per FMU with the address sanitiser's allocator, whose leak check at exit fails the test if a single block
+// is left (Leaks.AreSeen plants one to see that it would).
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -31,15 +32,15 @@ void log3(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String text) { la
 void log2(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String text, ...) { last_message = text; }
 
 fmi3Instance instantiate3() {
-    return fmi3InstantiateCoSimulation("test", giveway::model_info().token, nullptr, fmi3False, fmi3False, fmi3False, fmi3False, nullptr, 0, nullptr, log3,
-                                       nullptr);
+    return fmi3InstantiateCoSimulation("test", giveway::model_info().token, nullptr, fmi3False, fmi3False, fmi3False,
+                                       fmi3False, nullptr, 0, nullptr, log3, nullptr);
 }
 
 std::vector<fmi3ValueReference> references(Causality causality, VariableType type) {
-    const ModelInfo& info = giveway::model_info();
+    const ModelInfo &info = giveway::model_info();
     std::vector<fmi3ValueReference> found;
     for (std::size_t i = 0; i < info.variable_count; ++i) {
-        const VariableInfo& variable = info.variables[i];
+        const VariableInfo &variable = info.variables[i];
         if (variable.causality == causality && variable.type == type) {
             found.push_back(variable.reference);
         }
@@ -47,8 +48,8 @@ std::vector<fmi3ValueReference> references(Causality causality, VariableType typ
     return found;
 }
 
-fmi3ValueReference reference_of(const char* name) {
-    const ModelInfo& info = giveway::model_info();
+fmi3ValueReference reference_of(const char *name) {
+    const ModelInfo &info = giveway::model_info();
     for (std::size_t i = 0; i < info.variable_count; ++i) {
         if (std::strcmp(info.variables[i].name, name) == 0) {
             return info.variables[i].reference;
@@ -58,7 +59,7 @@ fmi3ValueReference reference_of(const char* name) {
     return 0;
 }
 
-constexpr const char* parameter = GIVEWAY_PARAMETER;
+constexpr const char *parameter = GIVEWAY_PARAMETER;
 constexpr double values[2] = {GIVEWAY_VALUES};
 
 // All real outputs after each of `steps` steps. The controller is fed a push that it detects.
@@ -94,7 +95,7 @@ std::vector<double> run(double value, int steps) {
     return trace;
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+bool same_bits(const std::vector<double> &a, const std::vector<double> &b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
@@ -110,7 +111,7 @@ TEST(Instances, DoNotInfluenceEachOtherInThreads) {
         for (int i = 0; i < 4; ++i) {
             threads.emplace_back([&together, i] { together[i] = run(values[i % 2], steps); });
         }
-        for (auto& thread : threads) {
+        for (auto &thread : threads) {
             thread.join();
         }
         for (int i = 0; i < 4; ++i) {
@@ -120,10 +121,11 @@ TEST(Instances, DoNotInfluenceEachOtherInThreads) {
 }
 
 // For Model Exchange: into continuous time, one evaluation, and sometimes back to the start.
-static void live_through_exchange(const fmi2CallbackFunctions& callbacks, bool reset) {
+static void live_through_exchange(const fmi2CallbackFunctions &callbacks, bool reset) {
     const std::size_t count = giveway::model_info().state_count;
     std::vector<double> rates(count);
-    fmi3Instance fmu = fmi3InstantiateModelExchange("test", giveway::model_info().token, nullptr, fmi3False, fmi3False, nullptr, log3);
+    fmi3Instance fmu =
+        fmi3InstantiateModelExchange("test", giveway::model_info().token, nullptr, fmi3False, fmi3False, nullptr, log3);
     ASSERT_NE(fmu, nullptr) << last_message;
     ASSERT_EQ(fmi3EnterInitializationMode(fmu, fmi3False, 0.0, 0.0, fmi3False, 0.0), fmi3OK);
     ASSERT_EQ(fmi3ExitInitializationMode(fmu), fmi3OK);
@@ -133,7 +135,8 @@ static void live_through_exchange(const fmi2CallbackFunctions& callbacks, bool r
     ASSERT_EQ(reset ? fmi3Reset(fmu) : fmi3Terminate(fmu), fmi3OK);
     fmi3FreeInstance(fmu);
 
-    fmi2Component component = fmi2Instantiate("test", fmi2ModelExchange, giveway::model_info().token, "", &callbacks, fmi2False, fmi2False);
+    fmi2Component component =
+        fmi2Instantiate("test", fmi2ModelExchange, giveway::model_info().token, "", &callbacks, fmi2False, fmi2False);
     ASSERT_NE(component, nullptr) << last_message;
     if (reset) {
         ASSERT_EQ(fmi2SetupExperiment(component, fmi2False, 0.0, 0.0, fmi2False, 0.0), fmi2OK);
@@ -188,7 +191,8 @@ TEST(Instances, LeaveNoMemoryBehind) {
         }
         fmi3FreeInstance(fmu);
 
-        fmi2Component component = fmi2Instantiate("test", fmi2CoSimulation, giveway::model_info().token, "", &callbacks, fmi2False, fmi2False);
+        fmi2Component component = fmi2Instantiate("test", fmi2CoSimulation, giveway::model_info().token, "", &callbacks,
+                                                  fmi2False, fmi2False);
         ASSERT_NE(component, nullptr) << last_message;
         if (life % 2 == 1) {
             ASSERT_EQ(fmi2SetupExperiment(component, fmi2False, 0.0, 0.0, fmi2False, 0.0), fmi2OK);
@@ -205,8 +209,9 @@ TEST(Instances, LeaveNoMemoryBehind) {
     EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
 }
 
-// More saved states than the table of handles holds by itself: each is found again, and none, freed, is followed or comes back. When all
-// are freed the table holds no memory of the heap: nobody would free it when the library is unloaded.
+// More saved states than the table of handles holds by itself: each is found again, and none, freed, is followed or
+// comes back. When all are freed the table holds no memory of the heap: nobody would free it when the library is
+// unloaded.
 TEST(Instances, KeepManyStatesAndGiveTheirMemoryBack) {
     fmi3Instance fmu = instantiate3();
     ASSERT_NE(fmu, nullptr);
@@ -215,14 +220,14 @@ TEST(Instances, KeepManyStatesAndGiveTheirMemoryBack) {
     freed.reserve(2 * states.size());
     const std::size_t before = __sanitizer_get_current_allocated_bytes();
     for (int repeat = 0; repeat < 2; ++repeat) {
-        for (fmi3FMUState& state : states) {
+        for (fmi3FMUState &state : states) {
             state = nullptr;
             ASSERT_EQ(fmi3GetFMUState(fmu, &state), fmi3OK);
         }
         for (const fmi3FMUState state : freed) {
             EXPECT_EQ(fmi3SetFMUState(fmu, state), fmi3Error);
         }
-        for (fmi3FMUState& state : states) {
+        for (fmi3FMUState &state : states) {
             EXPECT_EQ(fmi3SetFMUState(fmu, state), fmi3OK);
             freed.push_back(state);
             EXPECT_EQ(fmi3FreeFMUState(fmu, &state), fmi3OK);

@@ -28,7 +28,8 @@ template <class F, class Slope> void check_function(F f, Slope slope, double low
         const double tolerance = 1e-15 * std::max(scale, 4.0 * std::fabs(exact));
         ASSERT_NEAR(y.derivative[0], exact, tolerance) << x;
         ASSERT_NEAR(y.derivative[1], -2.5 * exact, 2.5 * tolerance) << x;
-        // Central differences of a smooth function: step^2 f'''/6 and rounding/step, both below 1e-8 of the function's size.
+        // Central differences of a smooth function: step^2 f'''/6 and rounding/step, both below 1e-8 of the function's
+        // size.
         const double step = 1e-5 * std::min(1.0, std::fabs(x) + 1e-3);
         const double difference = (f(x + step) - f(x - step)) / ((x + step) - (x - step));
         ASSERT_NEAR(y.derivative[0], difference, 1e-7 * (std::fabs(exact) + std::fabs(f(x)) + scale)) << x;
@@ -67,7 +68,8 @@ TEST(Dual, FollowsTheRulesOfArithmetic) {
 TEST(Dual, DifferentiatesTheElementaryFunctions) {
     check_function([](auto x) { return math::exp(x); }, [](double x) { return std::exp(x); }, -20.0, 3.0, 0.0);
     check_function([](auto x) { return math::expm1(x); }, [](double x) { return std::exp(x); }, -3.0, 3.0, 1.0);
-    check_function([](auto x) { return math::tanh(x); }, [](double x) { return 1.0 / (std::cosh(x) * std::cosh(x)); }, -25.0, 25.0, 1.0);
+    check_function([](auto x) { return math::tanh(x); }, [](double x) { return 1.0 / (std::cosh(x) * std::cosh(x)); },
+                   -25.0, 25.0, 1.0);
     check_function([](auto x) { return math::sincos(x).sin; }, [](double x) { return std::cos(x); }, -30.0, 30.0, 1.0);
     check_function([](auto x) { return math::sincos(x).cos; }, [](double x) { return -std::sin(x); }, -30.0, 30.0, 1.0);
     check_function([](auto x) { return math::sqrt(x); }, [](double x) { return 0.5 / std::sqrt(x); }, 0.01, 9.0, 0.0);

@@ -21,7 +21,9 @@ template <class Check> void sweep(double low, double high, Check check) {
 }
 
 double relative(double value, long double reference) {
-    return reference == 0.0L ? std::fabs(value) : static_cast<double>(std::fabs((static_cast<long double>(value) - reference) / reference));
+    return reference == 0.0L
+               ? std::fabs(value)
+               : static_cast<double>(std::fabs((static_cast<long double>(value) - reference) / reference));
 }
 
 } // namespace
@@ -29,7 +31,8 @@ double relative(double value, long double reference) {
 // Each bound is a few roundings: reduction, polynomial, scaling.
 TEST(Elementary, ExpIsWithinTwoUlp) {
     double worst = 0.0;
-    sweep(-700.0, 700.0, [&](double a) { worst = std::fmax(worst, relative(gm::exp(a), std::exp(static_cast<long double>(a)))); });
+    sweep(-700.0, 700.0,
+          [&](double a) { worst = std::fmax(worst, relative(gm::exp(a), std::exp(static_cast<long double>(a)))); });
     EXPECT_LT(worst, 2.0 * ulp);
 }
 
@@ -67,7 +70,9 @@ TEST(Elementary, SinCosHoldOverManyTurns) {
 
 TEST(Elementary, LogIsAccurate) {
     double worst = 0.0;
-    sweep(1e-10, 4.0, [&](double a) { worst = std::fmax(worst, std::fabs(gm::log(a) - static_cast<double>(std::log(static_cast<long double>(a))))); });
+    sweep(1e-10, 4.0, [&](double a) {
+        worst = std::fmax(worst, std::fabs(gm::log(a) - static_cast<double>(std::log(static_cast<long double>(a)))));
+    });
     EXPECT_LT(worst, 32.0 * ulp); // absolute; |log| reaches 23 here
 }
 

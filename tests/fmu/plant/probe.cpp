@@ -32,7 +32,7 @@ constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 constexpr int unset_choice = 255;
 
 // visit(name, member) for every parameter, those beside the table included.
-template <class Visitor> void visit_all(Visitor&& visit, Parameters& p) {
+template <class Visitor> void visit_all(Visitor &&visit, Parameters &p) {
     plant::visit_parameters(visit, p);
     visit("wheel_load", p.wheel_load);
     visit("wheel_traction", p.wheel_traction);
@@ -40,37 +40,34 @@ template <class Visitor> void visit_all(Visitor&& visit, Parameters& p) {
     visit("outline_wheels", p.outline_wheels);
 }
 
-void set_number(double& into, const double* values, int count) { into = count == 1 ? values[0] : into; }
-template <std::size_t N> void set_number(std::array<double, N>& into, const double* values, int count) {
+void set_number(double &into, const double *values, int count) { into = count == 1 ? values[0] : into; }
+template <std::size_t N> void set_number(std::array<double, N> &into, const double *values, int count) {
     std::copy_n(values, std::min(count, static_cast<int>(N)), into.begin());
 }
-template <class Choice> void set_number(Choice& into, const double* values, int) { into = static_cast<Choice>(static_cast<int>(values[0])); }
+template <class Choice> void set_number(Choice &into, const double *values, int) {
+    into = static_cast<Choice>(static_cast<int>(values[0]));
+}
 
-bool count_fits(const double&, int count) { return count == 1; }
-template <std::size_t N> bool count_fits(const std::array<double, N>&, int count) {
+bool count_fits(const double &, int count) { return count == 1; }
+template <std::size_t N> bool count_fits(const std::array<double, N> &, int count) {
     return N == plant::max_outline_vertices ? count >= 3 && count <= static_cast<int>(N) : count == static_cast<int>(N);
 }
-template <class Choice> bool count_fits(const Choice&, int count) { return count == 1; }
+template <class Choice> bool count_fits(const Choice &, int count) { return count == 1; }
 
-plant::StateVector<double> state_from(const double* x) {
+plant::StateVector<double> state_from(const double *x) {
     plant::StateVector<double> state = {};
     std::copy_n(x, state.size(), state.begin());
     return state;
 }
 
-plant::Inputs<double> inputs_from(const double* u) {
-    return {{u[0], u[1], u[2]}, u[3], u[4], u[5], u[6]};
-}
+plant::Inputs<double> inputs_from(const double *u) { return {{u[0], u[1], u[2]}, u[3], u[4], u[5], u[6]}; }
 
-Modes modes_from(const double* m) {
-    return {{m[0], m[1], m[2]}, m[3], m[4], m[5], m[6], m[7], m[8], m[9]};
-}
+Modes modes_from(const double *m) { return {{m[0], m[1], m[2]}, m[3], m[4], m[5], m[6], m[7], m[8], m[9]}; }
 
-void modes_to(const Modes& m, double* out) {
-    const double flat[mode_count] = {m.gear_direction[0], m.gear_direction[1], m.gear_direction[2],
-                                     m.contact,           m.rope_taut,         m.end_stop,
-                                     m.bottom_stop,       m.latched,           m.landed,
-                                     m.walled};
+void modes_to(const Modes &m, double *out) {
+    const double flat[mode_count] = {
+        m.gear_direction[0], m.gear_direction[1], m.gear_direction[2], m.contact, m.rope_taut,
+        m.end_stop,          m.bottom_stop,       m.latched,           m.landed,  m.walled};
     std::copy_n(flat, mode_count, out);
 }
 
@@ -83,23 +80,22 @@ struct Event {
 // events.
 class RecordedPlant final : public giveway::solver::HybridSystem {
 public:
-    explicit RecordedPlant(const Probe& probe, const Modes& modes, double absolute_tolerance)
+    explicit RecordedPlant(const Probe &probe, const Modes &modes, double absolute_tolerance)
         : modes(modes), probe_(probe), absolute_tolerance_(absolute_tolerance) {}
 
     [[nodiscard]] int state_count() const override { return plant::state_count; }
     [[nodiscard]] int event_count() const override { return plant::event_count; }
     [[nodiscard]] double absolute_tolerance(int) const override { return absolute_tolerance_; }
 
-    void rhs(double, const double* state, double* rate) override {
+    void rhs(double, const double *state, double *rate) override {
         const auto result = plant::rhs(state_from(state), inputs, modes, probe_.p, probe_.d);
         std::copy(result.begin(), result.end(), rate);
     }
-    void indicators(double, const double* state, double* value) override {
-        const auto result =
-            plant::event_indicators(state_from(state), inputs, modes, probe_.p, probe_.d);
+    void indicators(double, const double *state, double *value) override {
+        const auto result = plant::event_indicators(state_from(state), inputs, modes, probe_.p, probe_.d);
         std::copy(result.begin(), result.end(), value);
     }
-    void transition(double time_s, double* state, const int* fired) override {
+    void transition(double time_s, double *state, const int *fired) override {
         plant::EventVector<double> direction = {};
         for (int i = 0; i < plant::event_count; ++i) {
             direction[i] = fired[i];
@@ -117,17 +113,17 @@ public:
     std::vector<Event> events;
 
 private:
-    const Probe& probe_;
+    const Probe &probe_;
     double absolute_tolerance_;
 };
 
 } // namespace
 
-EXPORT void* probe_new() {
-    auto* probe = new (std::nothrow) Probe;
+EXPORT void *probe_new() {
+    auto *probe = new (std::nothrow) Probe;
     if (probe != nullptr) {
-        const auto forget = [](const char*, auto& member) {
-            if constexpr (std::is_same_v<decltype(member), double&>) {
+        const auto forget = [](const char *, auto &member) {
+            if constexpr (std::is_same_v<decltype(member), double &>) {
                 member = unset;
             } else if constexpr (requires { member.fill(unset); }) {
                 member.fill(unset);
@@ -140,15 +136,15 @@ EXPORT void* probe_new() {
     return probe;
 }
 
-EXPORT void probe_delete(void* handle) { delete static_cast<Probe*>(handle); }
+EXPORT void probe_delete(void *handle) { delete static_cast<Probe *>(handle); }
 
-EXPORT const char* probe_error(void* handle) { return static_cast<Probe*>(handle)->error; }
+EXPORT const char *probe_error(void *handle) { return static_cast<Probe *>(handle)->error; }
 
 // 0, or 1 if there is no parameter of this name and count.
-EXPORT int probe_set(void* handle, const char* name, const double* values, int count) {
-    auto& p = static_cast<Probe*>(handle)->p;
+EXPORT int probe_set(void *handle, const char *name, const double *values, int count) {
+    auto &p = static_cast<Probe *>(handle)->p;
     bool found = false;
-    const auto set = [&](const char* other, auto& member) {
+    const auto set = [&](const char *other, auto &member) {
         if (std::strcmp(name, other) == 0 && count_fits(member, count)) {
             set_number(member, values, count);
             found = true;
@@ -162,30 +158,25 @@ EXPORT int probe_set(void* handle, const char* name, const double* values, int c
 }
 
 // Call after the last probe_set.
-EXPORT void probe_derive(void* handle) {
-    auto* probe = static_cast<Probe*>(handle);
+EXPORT void probe_derive(void *handle) {
+    auto *probe = static_cast<Probe *>(handle);
     probe->d = plant::derive(probe->p);
 }
 
-EXPORT void probe_rhs(void* handle, const double* x, const double* u, const double* m,
-                      double* rate) {
-    const auto* probe = static_cast<const Probe*>(handle);
-    const auto result =
-        plant::rhs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+EXPORT void probe_rhs(void *handle, const double *x, const double *u, const double *m, double *rate) {
+    const auto *probe = static_cast<const Probe *>(handle);
+    const auto result = plant::rhs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
     std::copy(result.begin(), result.end(), rate);
 }
 
-EXPORT void probe_indicators(void* handle, const double* x, const double* u, const double* m,
-                             double* value) {
-    const auto* probe = static_cast<const Probe*>(handle);
-    const auto result =
-        plant::event_indicators(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+EXPORT void probe_indicators(void *handle, const double *x, const double *u, const double *m, double *value) {
+    const auto *probe = static_cast<const Probe *>(handle);
+    const auto result = plant::event_indicators(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
     std::copy(result.begin(), result.end(), value);
 }
 
-EXPORT void probe_transition(void* handle, double* x, const double* u, double* m,
-                             const double* fired) {
-    const auto* probe = static_cast<const Probe*>(handle);
+EXPORT void probe_transition(void *handle, double *x, const double *u, double *m, const double *fired) {
+    const auto *probe = static_cast<const Probe *>(handle);
     auto state = state_from(x);
     auto modes = modes_from(m);
     plant::EventVector<double> direction = {};
@@ -196,12 +187,10 @@ EXPORT void probe_transition(void* handle, double* x, const double* u, double* m
 }
 
 // motion: x, y, theta, vx, vy, omega, slider speed, bristle offsets[3].
-EXPORT void probe_initial_state(void* handle, const double* motion, const double* u, double* x,
-                                double* m) {
-    const auto* probe = static_cast<const Probe*>(handle);
+EXPORT void probe_initial_state(void *handle, const double *motion, const double *u, double *x, double *m) {
+    const auto *probe = static_cast<const Probe *>(handle);
     const plant::InitialMotion<double> start = {motion[0], motion[1], motion[2], motion[3],
-                                                motion[4], motion[5], motion[6],
-                                                {motion[7], motion[8], motion[9]}};
+                                                motion[4], motion[5], motion[6], {motion[7], motion[8], motion[9]}};
     plant::StateVector<double> state = {};
     Modes modes = {};
     plant::initial_state(start, inputs_from(u), probe->p, probe->d, state, modes);
@@ -209,8 +198,8 @@ EXPORT void probe_initial_state(void* handle, const double* motion, const double
     modes_to(modes, m);
 }
 
-EXPORT void probe_accept_inputs(void* handle, const double* x, const double* u, double* m) {
-    const auto* probe = static_cast<const Probe*>(handle);
+EXPORT void probe_accept_inputs(void *handle, const double *x, const double *u, double *m) {
+    const auto *probe = static_cast<const Probe *>(handle);
     auto modes = modes_from(m);
     plant::accept_inputs(state_from(x), inputs_from(u), modes, probe->p, probe->d);
     modes_to(modes, m);
@@ -219,32 +208,28 @@ EXPORT void probe_accept_inputs(void* handle, const double* x, const double* u, 
 // wheel_speed[3], wheel_torque[3], roller_force[3], contact force (magnitude, x, y), contact point
 // (world x, y; base x, y), nose tip x, y, bumper force, rope tension, wall force,
 // stored energy
-EXPORT void probe_outputs(void* handle, const double* x, const double* u, const double* m,
-                          double* out) {
-    const auto* probe = static_cast<const Probe*>(handle);
+EXPORT void probe_outputs(void *handle, const double *x, const double *u, const double *m, double *out) {
+    const auto *probe = static_cast<const Probe *>(handle);
     const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
     for (int i = 0; i < plant::wheel_count; ++i) {
         out[i] = o.wheel_speed[i];
         out[3 + i] = o.wheel_torque[i];
         out[6 + i] = o.roller_force[i];
     }
-    const double rest[] = {o.contact_force,   o.contact_force_x, o.contact_force_y,
-                           o.contact_point_x, o.contact_point_y, o.contact_base_x,
-                           o.contact_base_y,  o.nose_x,          o.nose_y,
-                           o.bumper_force,    o.rope_tension,    o.wall_force,
-                           o.stored_energy};
+    const double rest[] = {o.contact_force,  o.contact_force_x, o.contact_force_y, o.contact_point_x, o.contact_point_y,
+                           o.contact_base_x, o.contact_base_y,  o.nose_x,          o.nose_y,          o.bumper_force,
+                           o.rope_tension,   o.wall_force,      o.stored_energy};
     std::copy(std::begin(rest), std::end(rest), out + 9);
 }
 
 // Runs giveway's own solver from times[0]. Inputs are piecewise constant: row k holds from
 // input_times[k] on, the first from times[0]. states: one row per time; statistics: steps, rhs
 // calls, events. Returns the number of events, or -1 (probe_error says why).
-EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int inputs,
-                          const double* input_times, const double* input_rows, int count,
-                          const double* times, double relative_tolerance, double absolute_tolerance,
-                          double* states, double* modes, int max_events, double* event_times,
-                          int* event_indices, std::int64_t* statistics) {
-    auto* probe = static_cast<Probe*>(handle);
+EXPORT int probe_simulate(void *handle, const double *x0, const double *m0, int inputs, const double *input_times,
+                          const double *input_rows, int count, const double *times, double relative_tolerance,
+                          double absolute_tolerance, double *states, double *modes, int max_events, double *event_times,
+                          int *event_indices, std::int64_t *statistics) {
+    auto *probe = static_cast<Probe *>(handle);
     RecordedPlant system(*probe, modes_from(m0), absolute_tolerance);
     giveway::solver::HybridIntegrator integrator;
     giveway::solver::IntegratorOptions options;
@@ -257,8 +242,7 @@ EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int 
         while (good && next_input < inputs && input_times[next_input] <= times[k]) {
             good = integrator.advance(input_times[next_input]);
             system.inputs = inputs_from(input_rows + next_input * input_count);
-            plant::accept_inputs(state_from(integrator.state()), system.inputs, system.modes,
-                                 probe->p, probe->d);
+            plant::accept_inputs(state_from(integrator.state()), system.inputs, system.modes, probe->p, probe->d);
             integrator.restart();
             ++next_input;
         }
@@ -270,8 +254,7 @@ EXPORT int probe_simulate(void* handle, const double* x0, const double* m0, int 
         std::snprintf(probe->error, sizeof probe->error, "%s", integrator.error());
         return -1;
     }
-    const auto recorded =
-        std::min<std::size_t>(system.events.size(), static_cast<std::size_t>(max_events));
+    const auto recorded = std::min<std::size_t>(system.events.size(), static_cast<std::size_t>(max_events));
     for (std::size_t k = 0; k < recorded; ++k) {
         event_times[k] = system.events[k].time_s;
         event_indices[k] = system.events[k].index;

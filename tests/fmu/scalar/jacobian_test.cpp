@@ -15,8 +15,8 @@ using giveway::plant::random_cases::Case;
 using giveway::plant::random_cases::random_case;
 using giveway::plant::random_cases::random_tipping_case;
 
-// The shared cases, moved to where the plant's parts are at work: bristles around their sliding limit, motions slow enough
-// for friction that is smooth over millimetres per second, and every structural choice.
+// The shared cases, moved to where the plant's parts are at work: bristles around their sliding limit, motions slow
+// enough for friction that is smooth over millimetres per second, and every structural choice.
 Case<double> working_case(unsigned seed) {
     auto c = random_case<double>(seed);
     if (seed % 4U != 0U) {
@@ -37,13 +37,15 @@ Case<double> working_case(unsigned seed) {
     return c;
 }
 
-StateVector<double> rate(const Case<double>& c, const StateVector<double>& x) { return rhs(x, c.u, c.m, c.p, c.d); }
+StateVector<double> rate(const Case<double> &c, const StateVector<double> &x) { return rhs(x, c.u, c.m, c.p, c.d); }
 
 struct Differences {
     StateVector<double> above, below;
     double distance;
     [[nodiscard]] double slope(int row) const { return (above[row] - below[row]) / distance; }
-    [[nodiscard]] double second(int row, const StateVector<double>& centre) const { return (above[row] - centre[row]) - (centre[row] - below[row]); }
+    [[nodiscard]] double second(int row, const StateVector<double> &centre) const {
+        return (above[row] - centre[row]) - (centre[row] - below[row]);
+    }
 };
 
 } // namespace
@@ -64,19 +66,22 @@ TEST(PlantInDuals, HasTheBitsOfDouble) {
         const auto rate_of_double = rate(c, c.x);
         const auto rate_of_dual = rhs(x, u, m, p, d);
         for (int i = 0; i < state_count; ++i) {
-            EXPECT_EQ(std::memcmp(&rate_of_double[i], &rate_of_dual[i].value, sizeof(double)), 0) << "case " << seed << ", rate " << i;
+            EXPECT_EQ(std::memcmp(&rate_of_double[i], &rate_of_dual[i].value, sizeof(double)), 0)
+                << "case " << seed << ", rate " << i;
         }
         const auto indicators_of_double = event_indicators(c.x, c.u, c.m, c.p, c.d);
         const auto indicators_of_dual = event_indicators(x, u, m, p, d);
         for (int i = 0; i < event_count; ++i) {
-            EXPECT_EQ(std::memcmp(&indicators_of_double[i], &indicators_of_dual[i].value, sizeof(double)), 0) << "case " << seed << ", indicator " << i;
+            EXPECT_EQ(std::memcmp(&indicators_of_double[i], &indicators_of_dual[i].value, sizeof(double)), 0)
+                << "case " << seed << ", indicator " << i;
         }
     }
 }
 
 TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
     constexpr unsigned cases = 3000;
-    constexpr double step = 1e-6; // of m, rad, m/s, rad/s: far below the 0.5 mm and 1 mm/s over which the sharpest functions bend
+    constexpr double step =
+        1e-6; // of m, rad, m/s, rad/s: far below the 0.5 mm and 1 mm/s over which the sharpest functions bend
     long compared = 0;
     long sharp = 0;
     for (unsigned seed = 0; seed < cases; ++seed) {
@@ -85,7 +90,8 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
         jacobian.set_parameters(c.p, c.d);
         std::array<double, state_count * state_count> matrix{};
         jacobian.evaluate(c.x, c.u, c.m, matrix.data());
-        // Rounding of a rate: of the terms that it is the sum of, which may cancel. The largest, a stop that presses, is of this size.
+        // Rounding of a rate: of the terms that it is the sum of, which may cancel. The largest, a stop that presses,
+        // is of this size.
         std::array<double, state_count> magnitude{};
         const auto centre = rate(c, c.x);
         for (int row = 0; row < state_count; ++row) {
@@ -109,12 +115,14 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
             for (int row = 0; row < state_count; ++row) {
                 const double exact = matrix[column * state_count + row];
                 const double extrapolated = (4.0 * fine.slope(row) - coarse.slope(row)) / 3.0;
-                // What the differences know of their own error. Curvature and a kink between the points show in the disagreement of the two
-                // steps; a kink right at the centre shows in the second differences, which are 4 to 1 of a smooth function, 2 to 1 there.
+                // What the differences know of their own error. Curvature and a kink between the points show in the
+                // disagreement of the two steps; a kink right at the centre shows in the second differences, which are
+                // 4 to 1 of a smooth function, 2 to 1 there.
                 const double kink = std::fabs(coarse.second(row, centre) - 4.0 * fine.second(row, centre)) / step;
                 const double rounding = 40.0 * std::numeric_limits<double>::epsilon() * magnitude[row] / step;
                 const double tolerance = std::fabs(fine.slope(row) - coarse.slope(row)) + kink + rounding;
-                EXPECT_NEAR(exact, extrapolated, tolerance) << "case " << seed << ": d rate[" << row << "]/d x[" << column << "]";
+                EXPECT_NEAR(exact, extrapolated, tolerance)
+                    << "case " << seed << ": d rate[" << row << "]/d x[" << column << "]";
                 if (exact != 0.0 || extrapolated != 0.0) {
                     ++compared;
                     sharp += tolerance < 1e-4 * std::fabs(exact) ? 1 : 0;
@@ -123,7 +131,8 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
         }
     }
     EXPECT_GT(compared, 100L * cases);
-    // The comparison would be worth little if its tolerances were wide: entries that are small beside their rate's rounding are the rest.
+    // The comparison would be worth little if its tolerances were wide: entries that are small beside their rate's
+    // rounding are the rest.
     EXPECT_GT(static_cast<double>(sharp), 0.9 * static_cast<double>(compared)) << sharp << " of " << compared;
 }
 
@@ -163,9 +172,11 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFindWhereTheBaseTips) {
             for (int row = 0; row < tipping_state_count; ++row) {
                 const double exact = matrix[column * tipping_state_count + row];
                 const double slope = (high[row] - low[row]) / (above[column] - below[column]);
-                // Curvature and kinks show in the second difference; rounding is that of forces up to 1e5 N on a wheel's inertia, 1e-3 kg m2.
+                // Curvature and kinks show in the second difference; rounding is that of forces up to 1e5 N on a
+                // wheel's inertia, 1e-3 kg m2.
                 const double bend = std::fabs((high[row] - centre[row]) - (centre[row] - low[row])) / step;
-                EXPECT_NEAR(exact, slope, bend + 1e-4 * std::fabs(exact) + 2.0) << "case " << seed << ": d rate[" << row << "]/d x[" << column << "]";
+                EXPECT_NEAR(exact, slope, bend + 1e-4 * std::fabs(exact) + 2.0)
+                    << "case " << seed << ": d rate[" << row << "]/d x[" << column << "]";
                 compared += std::fabs(exact) > 100.0 ? 1 : 0;
             }
         }

@@ -1,4 +1,5 @@
-// Checks of Lanes<N>, compiled once per width for the processors that have it. They call report(what, found, expected, lane) for each wrong number.
+// Checks of Lanes<N>, compiled once per width for the processors that have it. They call report(what, found, expected,
+// lane) for each wrong number.
 #pragma once
 
 #include <cmath>
@@ -6,15 +7,15 @@
 
 namespace giveway::lanes_checks {
 
-using Report = void (*)(const char* what, double found, double expected, int lane);
+using Report = void (*)(const char *what, double found, double expected, int lane);
 
-inline void compare(Report report, const char* what, double found, double expected, int lane) {
+inline void compare(Report report, const char *what, double found, double expected, int lane) {
     if (std::memcmp(&found, &expected, sizeof found) != 0) {
         report(what, found, expected, lane);
     }
 }
 
-inline void compare_close(Report report, const char* what, double found, double expected, double relative) {
+inline void compare_close(Report report, const char *what, double found, double expected, double relative) {
     if (!(std::fabs(found - expected) <= relative * std::fabs(expected))) {
         report(what, found, expected, 0);
     }

@@ -19,7 +19,8 @@ template <int N> struct Rows {
 
 // Numbers of every kind: signs, zeros, small, large, whole.
 inline double number(unsigned index) {
-    const double kinds[] = {0.0, -0.0, 1.0, -1.0, 0.5, -2.5, 3.0, 1e-9, -1e-300, 1e5, -7.0e4, 709.0, -708.5, 1e-310, 20.0, -0.3465};
+    const double kinds[] = {0.0,     -0.0, 1.0,    -1.0,  0.5,    -2.5,   3.0,  1e-9,
+                            -1e-300, 1e5,  -7.0e4, 709.0, -708.5, 1e-310, 20.0, -0.3465};
     const double fraction = static_cast<double>((index * 2654435761U) % 1000003U) / 1000003.0;
     return index % 3U == 0U ? kinds[(index / 3U) % 16U] : (fraction - 0.5) * (index % 3U == 1U ? 40.0 : 1e-3);
 }
@@ -35,7 +36,7 @@ template <int N> void operations(Report report) {
         }
         const L x = L::load(a);
         const L y = L::load(b);
-        const auto expect = [&](const char* name, L lanes, auto scalar) {
+        const auto expect = [&](const char *name, L lanes, auto scalar) {
             const Rows<N> found(lanes);
             for (int i = 0; i < N; ++i) {
                 compare(report, name, found.value[i], scalar(a[i], b[i]), i);
@@ -57,13 +58,16 @@ template <int N> void operations(Report report) {
         expect("exp", math::exp(x), [](double p, double) { return math::exp(math::Lanes<1>(p)).value; });
         expect("expm1", math::expm1(x), [](double p, double) { return math::expm1(p); });
         expect("tanh", math::tanh(x), [](double p, double) { return math::tanh(math::Lanes<1>(p)).value; });
-        expect("heading, sin", math::heading(x).sin, [](double p, double) { return math::heading(math::Lanes<1>(p)).sin.value; });
-        expect("heading, cos", math::heading(x).cos, [](double p, double) { return math::heading(math::Lanes<1>(p)).cos.value; });
+        expect("heading, sin", math::heading(x).sin,
+               [](double p, double) { return math::heading(math::Lanes<1>(p)).sin.value; });
+        expect("heading, cos", math::heading(x).cos,
+               [](double p, double) { return math::heading(math::Lanes<1>(p)).cos.value; });
         expect("sin", math::sincos(x).sin, [](double p, double) { return math::sincos(p).sin; });
         expect("cos", math::sincos(x).cos, [](double p, double) { return math::sincos(p).cos; });
         const L positive = math::max(math::abs(x), L(1e-300));
         expect("log", math::log(positive), [](double p, double) { return math::log(math::max(math::abs(p), 1e-300)); });
-        expect("where", math::where(math::less(x, y), [&] { return x / y; }), [](double p, double q) { return p < q ? p / q : 0.0; });
+        expect("where", math::where(math::less(x, y), [&] { return x / y; }),
+               [](double p, double q) { return p < q ? p / q : 0.0; });
         bool some = false;
         for (int i = 0; i < N; ++i) {
             some = some || a[i] < b[i];
@@ -74,32 +78,38 @@ template <int N> void operations(Report report) {
     // A one-sided element acts where it exists and is pressed; for double its mode decides.
     for (const double depth : {-1e-9, 0.0, 1e-9}) {
         for (const double mode : {0.0, 1.0}) {
-            compare(report, "acting, lanes", Rows<N>(math::acting(L(mode), L(depth))).value[N - 1], depth > 0.0 ? mode : 0.0, N - 1);
+            compare(report, "acting, lanes", Rows<N>(math::acting(L(mode), L(depth))).value[N - 1],
+                    depth > 0.0 ? mode : 0.0, N - 1);
             compare(report, "acting, double", math::acting(mode, depth), mode, 0);
         }
     }
 }
 
-// How far exp, tanh and the heading's sine and cosine of lanes are from libm's: relative errors, for arguments over their range and close to 0.
+// How far exp, tanh and the heading's sine and cosine of lanes are from libm's: relative errors, for arguments over
+// their range and close to 0.
 template <int N> void own_functions(Report report) {
     using L = math::Lanes<N>;
     constexpr double bound = 1e-11; // lanes_elementary.hpp: 3e-12, and tanh takes a difference of two of them
-    constexpr int count = 199'999; // odd: no argument is 0, of which tanh keeps no sign
+    constexpr int count = 199'999;  // odd: no argument is 0, of which tanh keeps no sign
     for (int i = 0; i <= count; ++i) {
         const double wide = -700.0 + 1400.0 * (static_cast<double>(i) / count);
         const double near = 0.06 * wide;
         compare_close(report, "exp", Rows<N>(math::exp(L(wide))).value[N - 1], std::exp(wide), bound);
         compare_close(report, "exp", Rows<N>(math::exp(L(near))).value[N - 1], std::exp(near), bound);
         compare_close(report, "tanh", Rows<N>(math::tanh(L(near))).value[N - 1], std::tanh(near), bound);
-        compare(report, "tanh is odd", Rows<N>(math::tanh(L(-near))).value[N - 1], -Rows<N>(math::tanh(L(near))).value[N - 1], N - 1);
+        compare(report, "tanh is odd", Rows<N>(math::tanh(L(-near))).value[N - 1],
+                -Rows<N>(math::tanh(L(near))).value[N - 1], N - 1);
     }
-    constexpr double heading_bound = 5e-13; // lanes_elementary.hpp: 4e-13; of sine and cosine themselves, not relative, hence the 2
+    constexpr double heading_bound =
+        5e-13; // lanes_elementary.hpp: 4e-13; of sine and cosine themselves, not relative, hence the 2
     for (int i = 0; i <= count; ++i) {
         const double turns = -700.0 + 1400.0 * (static_cast<double>(i) / count);
         for (const double angle : {turns, 0.003 * turns, 140.0 * turns}) {
             const auto found = math::heading(L(angle));
-            compare_close(report, "sine of a heading", 2.0 + Rows<N>(found.sin).value[N - 1], 2.0 + std::sin(angle), heading_bound);
-            compare_close(report, "cosine of a heading", 2.0 + Rows<N>(found.cos).value[N - 1], 2.0 + std::cos(angle), heading_bound);
+            compare_close(report, "sine of a heading", 2.0 + Rows<N>(found.sin).value[N - 1], 2.0 + std::sin(angle),
+                          heading_bound);
+            compare_close(report, "cosine of a heading", 2.0 + Rows<N>(found.cos).value[N - 1], 2.0 + std::cos(angle),
+                          heading_bound);
         }
     }
     compare(report, "sine of 0", Rows<N>(math::heading(L(0.0)).sin).value[0], 0.0, 0);
@@ -122,7 +132,8 @@ template <int N> void noise_in_lanes(Report report) {
         const std::uint64_t tick = index % 5U == 0U ? (1ULL << 32U) + index : index;
         const Rows<N> found(math::normal<N>(key, index % 3U, tick));
         for (int i = 0; i < N; ++i) {
-            compare(report, "noise", found.value[i], math::normal(static_cast<std::uint32_t>(seeds[i]), index % 3U, tick), i);
+            compare(report, "noise", found.value[i],
+                    math::normal(static_cast<std::uint32_t>(seeds[i]), index % 3U, tick), i);
         }
     }
 }
@@ -137,8 +148,8 @@ template <int N> void plant_in_lanes(Report report) {
         auto x = plant::detail::converted<L>(design.x);
         const auto rate = plant::rhs(x, plant::convert<L>(design.u), plant::convert<L>(design.m), p, plant::derive(p));
         const auto p1 = plant::convert<One>(design.p);
-        const auto one = plant::rhs(plant::detail::converted<One>(design.x), plant::convert<One>(design.u), plant::convert<One>(design.m), p1,
-                                    plant::derive(p1));
+        const auto one = plant::rhs(plant::detail::converted<One>(design.x), plant::convert<One>(design.u),
+                                    plant::convert<One>(design.m), p1, plant::derive(p1));
         for (std::size_t state = 0; state < rate.size(); ++state) {
             const Rows<N> found(rate[state]);
             for (int i = 0; i < N; ++i) {

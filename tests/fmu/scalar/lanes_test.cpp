@@ -7,12 +7,15 @@ namespace {
 
 using namespace giveway::lanes_checks;
 
-void fail(const char* what, double found, double expected, int lane) {
+void fail(const char *what, double found, double expected, int lane) {
     ADD_FAILURE() << what << ": " << found << " instead of " << expected << " in lane " << lane;
 }
 
 bool has_avx2() { return __builtin_cpu_supports("avx2") != 0; }
-bool has_avx512() { return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0; }
+bool has_avx512() {
+    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+           __builtin_cpu_supports("avx512vl") != 0;
+}
 
 int wrong = 0;
 
@@ -45,7 +48,7 @@ TEST(Lanes, Eight) {
 // The planted fault: a number that is off by its last digit is reported.
 TEST(Lanes, ADifferenceInTheLastDigitIsSeen) {
     wrong = 0;
-    const Report count = [](const char*, double, double, int) { ++wrong; };
+    const Report count = [](const char *, double, double, int) { ++wrong; };
     compare(count, "the same", 0.1, 0.1, 0);
     compare(count, "next to it", 0.1, 0.10000000000000002, 0);
     EXPECT_EQ(wrong, 1);

@@ -11,7 +11,9 @@ namespace giveway::plant::random_cases {
 
 template <class T> Parameters<T> random_parameters(unsigned seed) {
     std::mt19937 generator(seed);
-    const auto draw = [&](double low, double high) { return T(std::uniform_real_distribution<double>(low, high)(generator)); };
+    const auto draw = [&](double low, double high) {
+        return T(std::uniform_real_distribution<double>(low, high)(generator));
+    };
     Parameters<T> p{};
     p.base_mass = draw(10.0, 60.0);
     p.base_yaw_inertia = draw(0.5, 3.0);
@@ -114,14 +116,20 @@ template <class T> Case<T> random_case(unsigned seed) {
     c.p = random_parameters<T>(seed);
     c.d = derive(c.p);
     std::mt19937 generator(seed + 1'000'000U);
-    const auto draw = [&](double low, double high) { return T(std::uniform_real_distribution<double>(low, high)(generator)); };
+    const auto draw = [&](double low, double high) {
+        return T(std::uniform_real_distribution<double>(low, high)(generator));
+    };
     const auto flag = [&] { return T(std::uniform_int_distribution<int>(0, 1)(generator)); };
     const auto three_way = [&] { return T(std::uniform_int_distribution<int>(-1, 1)(generator)); };
-    for (auto& value : c.x) {
+    for (auto &value : c.x) {
         value = draw(-0.2, 0.2);
     }
-    c.u = {{draw(-9.0, 9.0), draw(-9.0, 9.0), draw(-9.0, 9.0)}, draw(-50.0, 50.0), draw(-50.0, 50.0), draw(-0.3, 0.3), draw(-0.3, 0.3)};
-    for (auto& direction : c.m.gear_direction) {
+    c.u = {{draw(-9.0, 9.0), draw(-9.0, 9.0), draw(-9.0, 9.0)},
+           draw(-50.0, 50.0),
+           draw(-50.0, 50.0),
+           draw(-0.3, 0.3),
+           draw(-0.3, 0.3)};
+    for (auto &direction : c.m.gear_direction) {
         direction = three_way();
     }
     c.m.contact = flag();
@@ -131,13 +139,14 @@ template <class T> Case<T> random_case(unsigned seed) {
     c.m.latched = flag();
     c.m.landed = flag();
     c.m.walled = flag();
-    for (auto& f : c.fired) {
+    for (auto &f : c.fired) {
         f = three_way();
     }
     return c;
 }
 
-// The same robot on wheels that it can lift: near the floor, leaning by up to 11 deg, bristles of a tenth of a millimetre.
+// The same robot on wheels that it can lift: near the floor, leaning by up to 11 deg, bristles of a tenth of a
+// millimetre.
 template <class T> struct TippingCase {
     Case<T> planar;
     TippingVector<T> x;
@@ -150,7 +159,9 @@ template <class T> TippingCase<T> random_tipping_case(unsigned seed) {
     c.planar.p.bumper_mount = BumperMount::slider;
     c.planar.d = derive(c.planar.p);
     std::mt19937 generator(seed + 2'000'000U);
-    const auto draw = [&](double low, double high) { return T(std::uniform_real_distribution<double>(low, high)(generator)); };
+    const auto draw = [&](double low, double high) {
+        return T(std::uniform_real_distribution<double>(low, high)(generator));
+    };
     for (int i = 0; i < state_count; ++i) {
         c.x[i] = c.planar.x[i];
     }
@@ -164,7 +175,7 @@ template <class T> TippingCase<T> random_tipping_case(unsigned seed) {
         c.x[grip + i] = draw(-5e-5, 5e-5);
         c.planar.m.on_floor[i] = T(std::uniform_int_distribution<int>(0, 1)(generator));
     }
-    for (auto& f : c.fired) {
+    for (auto &f : c.fired) {
         f = T(std::uniform_int_distribution<int>(-1, 1)(generator));
     }
     return c;

@@ -1,5 +1,5 @@
-// The plant compiles for a scalar that has no comparison operators and no conversion to bool, so no branch on T can hide in it,
-// and gives the same bits as with double: what lanes and derivatives will rely on.
+// The plant compiles for a scalar that has no comparison operators and no conversion to bool, so no branch on T can
+// hide in it, and gives the same bits as with double: what lanes and derivatives will rely on.
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -42,7 +42,8 @@ using namespace giveway::plant;
 using giveway::plant::random_cases::random_case;
 using giveway::plant::random_cases::random_tipping_case;
 
-template <std::size_t N> void expect_same_bits(const std::array<double, N>& a, const std::array<Strict, N>& b, unsigned seed) {
+template <std::size_t N>
+void expect_same_bits(const std::array<double, N> &a, const std::array<Strict, N> &b, unsigned seed) {
     static_assert(sizeof(Strict) == sizeof(double));
     EXPECT_EQ(std::memcmp(a.data(), b.data(), sizeof a), 0) << "case " << seed;
 }
@@ -63,7 +64,9 @@ TEST(StrictScalar, GivesTheBitsOfDouble) {
         expect_same_bits(a.x, b.x, seed);
         EXPECT_EQ(std::memcmp(&a.m, &b.m, sizeof a.m), 0) << "case " << seed;
         initial_state<double>({0.1, 0.2, 0.3, 0.1, -0.2, 0.4, 0.5}, a.u, a.p, a.d, a.x, a.m);
-        initial_state<Strict>({Strict(0.1), Strict(0.2), Strict(0.3), Strict(0.1), Strict(-0.2), Strict(0.4), Strict(0.5)}, b.u, b.p, b.d, b.x, b.m);
+        initial_state<Strict>(
+            {Strict(0.1), Strict(0.2), Strict(0.3), Strict(0.1), Strict(-0.2), Strict(0.4), Strict(0.5)}, b.u, b.p, b.d,
+            b.x, b.m);
         expect_same_bits(a.x, b.x, seed);
     }
 }
@@ -82,7 +85,9 @@ TEST(StrictScalar, GivesTheBitsOfDoubleWhereTheBaseTips) {
         expect_same_bits(xa, xb, seed);
         EXPECT_EQ(std::memcmp(&a.m, &b.m, sizeof a.m), 0) << "case " << seed;
         initial_state<double>({0.1, 0.2, 0.3, 0.1, -0.2, 0.4, 0.5}, a.u, a.p, a.d, xa, a.m);
-        initial_state<Strict>({Strict(0.1), Strict(0.2), Strict(0.3), Strict(0.1), Strict(-0.2), Strict(0.4), Strict(0.5)}, b.u, b.p, b.d, xb, b.m);
+        initial_state<Strict>(
+            {Strict(0.1), Strict(0.2), Strict(0.3), Strict(0.1), Strict(-0.2), Strict(0.4), Strict(0.5)}, b.u, b.p, b.d,
+            xb, b.m);
         expect_same_bits(xa, xb, seed);
         accept_inputs(xa, a.u, a.m, a.p, a.d);
         accept_inputs(xb, b.u, b.m, b.p, b.d);

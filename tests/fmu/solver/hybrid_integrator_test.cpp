@@ -1,4 +1,5 @@
-// The integrator against closed forms: a bouncing ball's impact times, an oscillator under switched input, failures that say so.
+// The integrator against closed forms: a bouncing ball's impact times, an oscillator under switched input, failures
+// that say so.
 #include <cmath>
 #include <string>
 
@@ -21,12 +22,12 @@ struct Ball final : HybridSystem {
     double first_bounce_s = -1.0;
     [[nodiscard]] int state_count() const override { return 2; }
     [[nodiscard]] int event_count() const override { return 1; }
-    void rhs(double, const double* x, double* rate) override {
+    void rhs(double, const double *x, double *rate) override {
         rate[0] = x[1];
         rate[1] = -gravity;
     }
-    void indicators(double, const double* x, double* value) override { value[0] = x[0]; }
-    void transition(double time_s, double* x, const int* fired) override {
+    void indicators(double, const double *x, double *value) override { value[0] = x[0]; }
+    void transition(double time_s, double *x, const int *fired) override {
         if (fired[0] < 0) {
             x[1] = -0.5 * x[1];
             first_bounce_s = bounces == 0 ? time_s : first_bounce_s;
@@ -41,12 +42,12 @@ struct Oscillator final : HybridSystem {
     double input = 0.0;
     [[nodiscard]] int state_count() const override { return 2; }
     [[nodiscard]] int event_count() const override { return 0; }
-    void rhs(double, const double* x, double* rate) override {
+    void rhs(double, const double *x, double *rate) override {
         rate[0] = x[1];
         rate[1] = input - x[0];
     }
-    void indicators(double, const double*, double*) override {}
-    void transition(double, double*, const int*) override {}
+    void indicators(double, const double *, double *) override {}
+    void transition(double, double *, const int *) override {}
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
 };
 
@@ -55,9 +56,9 @@ struct Ticking final : HybridSystem {
     double next_s = 1e-6;
     [[nodiscard]] int state_count() const override { return 1; }
     [[nodiscard]] int event_count() const override { return 1; }
-    void rhs(double, const double*, double* rate) override { rate[0] = 1.0; }
-    void indicators(double, const double* x, double* value) override { value[0] = x[0] - next_s; }
-    void transition(double, double*, const int*) override { next_s += 1e-6; }
+    void rhs(double, const double *, double *rate) override { rate[0] = 1.0; }
+    void indicators(double, const double *x, double *value) override { value[0] = x[0] - next_s; }
+    void transition(double, double *, const int *) override { next_s += 1e-6; }
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
 };
 
@@ -79,7 +80,8 @@ TEST(HybridIntegrator, LocatesImpactsOfABouncingBall) {
     EXPECT_EQ(ball.bounces, 3); // impacts at fall * (1, 2, 2.5, 2.75 ..): three before 1.2 s = 2.66 fall
     const double since = 1.2 - 2.5 * fall;
     EXPECT_NEAR(integrator.state()[0], 0.125 * speed * since - 0.5 * gravity * since * since, 1e-11);
-    EXPECT_EQ(integrator.statistics().events, 2 * ball.bounces); // the floor is crossed downwards and, a rounding later, upwards
+    EXPECT_EQ(integrator.statistics().events,
+              2 * ball.bounces); // the floor is crossed downwards and, a rounding later, upwards
 }
 
 TEST(HybridIntegrator, StartsFreshWhenTheInputChanges) {
@@ -99,8 +101,8 @@ TEST(HybridIntegrator, StartsFreshWhenTheInputChanges) {
         speed = -(position - oscillator.input) * std::sin(step) + speed * std::cos(step);
         position = next;
     }
-    // Fifth order: 1 ms of a 1 rad/s oscillator is (1e-3)^6/720 off, far below rounding; 5000 roundings of 1e-16 remain, whose
-    // signs differ (1e-14 is seen).
+    // Fifth order: 1 ms of a 1 rad/s oscillator is (1e-3)^6/720 off, far below rounding; 5000 roundings of 1e-16
+    // remain, whose signs differ (1e-14 is seen).
     EXPECT_NEAR(integrator.state()[0], position, 1e-13);
     EXPECT_NEAR(integrator.state()[1], speed, 1e-13);
     EXPECT_LT(integrator.statistics().steps, 5100); // one step per input: a restart does not fall back to tiny steps
@@ -112,10 +114,13 @@ TEST(HybridIntegrator, ConvergesWithItsTolerance) {
         Oscillator oscillator;
         const double start[2] = {1.0, 0.0};
         HybridIntegrator integrator;
-        ASSERT_TRUE(integrator.create(oscillator, 0.0, start, {.relative_tolerance = tolerance, .absolute_tolerance_scale = tolerance}));
+        ASSERT_TRUE(integrator.create(oscillator, 0.0, start,
+                                      {.relative_tolerance = tolerance, .absolute_tolerance_scale = tolerance}));
         ASSERT_TRUE(integrator.advance(10.0));
         const double error = std::fabs(integrator.state()[0] - std::cos(10.0));
-        EXPECT_LT(error, tolerance); // local errors of that size, damped by a controller that stays below it: 0.2 to 0.5 is seen
+        EXPECT_LT(
+            error,
+            tolerance); // local errors of that size, damped by a controller that stays below it: 0.2 to 0.5 is seen
         EXPECT_LT(error, previous);
         previous = error;
     }

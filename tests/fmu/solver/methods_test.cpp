@@ -1,4 +1,5 @@
-// Every method on the same ground: events, switched inputs, stiffness, and failures that end with time, reason and the last good state.
+// Every method on the same ground: events, switched inputs, stiffness, and failures that end with time, reason and the
+// last good state.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -17,8 +18,8 @@ using giveway::solver::Method;
 struct Smooth : HybridSystem {
     [[nodiscard]] int state_count() const override { return 1; }
     [[nodiscard]] int event_count() const override { return 0; }
-    void indicators(double, const double*, double*) override {}
-    void transition(double, double*, const int*) override {}
+    void indicators(double, const double *, double *) override {}
+    void transition(double, double *, const int *) override {}
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-9; }
 };
 
@@ -28,19 +29,19 @@ struct Pendulum final : HybridSystem {
     double last_impact_s = 0.0;
     [[nodiscard]] int state_count() const override { return 2; }
     [[nodiscard]] int event_count() const override { return 1; }
-    void rhs(double, const double* x, double* rate) override {
+    void rhs(double, const double *x, double *rate) override {
         rate[0] = x[1];
         rate[1] = -x[0];
     }
-    bool jacobian(double, const double*, double* matrix) override {
+    bool jacobian(double, const double *, double *matrix) override {
         matrix[0] = 0.0;
         matrix[1] = -1.0;
         matrix[2] = 1.0;
         matrix[3] = 0.0;
         return true;
     }
-    void indicators(double, const double* x, double* value) override { value[0] = x[0]; }
-    void transition(double time_s, double* x, const int* fired) override {
+    void indicators(double, const double *x, double *value) override { value[0] = x[0]; }
+    void transition(double time_s, double *x, const int *fired) override {
         if (fired[0] < 0) {
             x[0] = 0.0;
             x[1] *= -0.5;
@@ -54,8 +55,10 @@ struct Pendulum final : HybridSystem {
 // x' = -rate (x - cos t) - sin t: x = cos t, whatever the rate; the faster, the stiffer.
 struct Stiff final : Smooth {
     double decay = 1e6;
-    void rhs(double t, const double* x, double* rate) override { rate[0] = -decay * (x[0] - std::cos(t)) - std::sin(t); }
-    bool jacobian(double, const double*, double* matrix) override {
+    void rhs(double t, const double *x, double *rate) override {
+        rate[0] = -decay * (x[0] - std::cos(t)) - std::sin(t);
+    }
+    bool jacobian(double, const double *, double *matrix) override {
         matrix[0] = -decay;
         return true;
     }
@@ -63,8 +66,8 @@ struct Stiff final : Smooth {
 
 // x' = x^2 from 1: infinite at t = 1.
 struct Exploding final : Smooth {
-    void rhs(double, const double* x, double* rate) override { rate[0] = x[0] * x[0]; }
-    bool jacobian(double, const double* x, double* matrix) override {
+    void rhs(double, const double *x, double *rate) override { rate[0] = x[0] * x[0]; }
+    bool jacobian(double, const double *x, double *matrix) override {
         matrix[0] = 2.0 * x[0];
         return true;
     }
@@ -73,11 +76,11 @@ struct Exploding final : Smooth {
 // x' = 1, y' = sqrt(0.5 - x): not a number beyond t = 0.5.
 struct Ending final : Smooth {
     [[nodiscard]] int state_count() const override { return 2; }
-    void rhs(double, const double* x, double* rate) override {
+    void rhs(double, const double *x, double *rate) override {
         rate[0] = 1.0;
         rate[1] = x[0] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(0.5 - x[0]);
     }
-    bool jacobian(double, const double* x, double* matrix) override {
+    bool jacobian(double, const double *x, double *matrix) override {
         matrix[0] = 0.0;
         matrix[1] = x[0] < 0.5 ? -0.5 / std::sqrt(0.5 - x[0]) : 0.0;
         matrix[2] = 0.0;
@@ -87,17 +90,21 @@ struct Ending final : Smooth {
 };
 
 struct WithoutJacobian final : Smooth {
-    void rhs(double, const double* x, double* rate) override { rate[0] = -x[0]; }
+    void rhs(double, const double *x, double *rate) override { rate[0] = -x[0]; }
 };
 
 class EveryMethod : public testing::TestWithParam<Method> {
 protected:
-    [[nodiscard]] static IntegratorOptions options(double tolerance) { return {.relative_tolerance = tolerance, .method = GetParam()}; }
-    [[nodiscard]] static bool mentions(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
+    [[nodiscard]] static IntegratorOptions options(double tolerance) {
+        return {.relative_tolerance = tolerance, .method = GetParam()};
+    }
+    [[nodiscard]] static bool mentions(const std::string &message, const std::string &part) {
+        return message.find(part) != std::string::npos;
+    }
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, EveryMethod, testing::Values(Method::erk, Method::adams, Method::bdf),
-                         [](const auto& parameter) { return giveway::solver::name(parameter.param); });
+                         [](const auto &parameter) { return giveway::solver::name(parameter.param); });
 
 } // namespace
 
@@ -107,7 +114,8 @@ TEST_P(EveryMethod, LocatesEventsAndStartsFreshThere) {
     HybridIntegrator integrator;
     ASSERT_TRUE(integrator.create(pendulum, 0.0, start, options(1e-9)));
     ASSERT_TRUE(integrator.advance(10.0));
-    // Impacts at pi/2, then every half period of pi: the third at 2.5 pi = 7.85 s. A local error of 1e-9 in each of some hundred steps.
+    // Impacts at pi/2, then every half period of pi: the third at 2.5 pi = 7.85 s. A local error of 1e-9 in each of
+    // some hundred steps.
     EXPECT_EQ(pendulum.impacts, 3);
     EXPECT_NEAR(pendulum.last_impact_s, 2.5 * M_PI, 3e-7);
     EXPECT_NEAR(integrator.state()[0], 0.125 * std::sin(10.0 - 2.5 * M_PI), 1e-7);
@@ -125,7 +133,8 @@ TEST_P(EveryMethod, ConvergesWithItsTolerance) {
         ASSERT_TRUE(integrator.create(system, 0.0, start, options(tolerance)));
         ASSERT_TRUE(integrator.advance(2.0));
         const double error = std::fabs(integrator.state()[0] - (std::cos(2.0) - std::exp(-20.0)));
-        EXPECT_LT(error, 20.0 * tolerance + 2e-9); // multistep methods hold local errors of 1 tolerance; the decay forgets old ones
+        EXPECT_LT(error, 20.0 * tolerance +
+                             2e-9); // multistep methods hold local errors of 1 tolerance; the decay forgets old ones
         if (tolerance > 1e-6) {
             loose = error;
         } else {
@@ -138,8 +147,8 @@ TEST_P(EveryMethod, ForgetsItsHistoryWhenTold) {
     // The input of x' = u - x jumps every 10 ms. An integrator that kept its history would step over the jumps.
     struct Lag final : Smooth {
         double input = 0.0;
-        void rhs(double, const double* x, double* rate) override { rate[0] = input - x[0]; }
-        bool jacobian(double, const double*, double* matrix) override {
+        void rhs(double, const double *x, double *rate) override { rate[0] = input - x[0]; }
+        bool jacobian(double, const double *, double *matrix) override {
             matrix[0] = -1.0;
             return true;
         }
@@ -154,7 +163,8 @@ TEST_P(EveryMethod, ForgetsItsHistoryWhenTold) {
         ASSERT_TRUE(integrator.advance(0.01 * (k + 1)));
         exact = lag.input + (exact - lag.input) * std::exp(-0.01);
     }
-    EXPECT_NEAR(integrator.state()[0], exact, 200.0 * 2e-9); // 200 starts, each of a few absolute tolerances of 1e-9 at most
+    EXPECT_NEAR(integrator.state()[0], exact,
+                200.0 * 2e-9); // 200 starts, each of a few absolute tolerances of 1e-9 at most
 }
 
 TEST_P(EveryMethod, SaysWhenAndWhyItStops) {
@@ -195,11 +205,11 @@ TEST_P(EveryMethod, NamesTheStateThatIsNoNumber) {
     struct Driven final : Smooth {
         double input = 1.0;
         [[nodiscard]] int state_count() const override { return 2; }
-        void rhs(double, const double* x, double* rate) override {
+        void rhs(double, const double *x, double *rate) override {
             rate[0] = -x[0];
             rate[1] = input - x[1];
         }
-        bool jacobian(double, const double*, double* matrix) override {
+        bool jacobian(double, const double *, double *matrix) override {
             matrix[0] = matrix[3] = -1.0;
             matrix[1] = matrix[2] = 0.0;
             return true;
@@ -213,7 +223,8 @@ TEST_P(EveryMethod, NamesTheStateThatIsNoNumber) {
     driven.input = std::numeric_limits<double>::infinity();
     integrator.restart();
     EXPECT_FALSE(integrator.advance(1.0));
-    EXPECT_TRUE(mentions(integrator.error(), "at t = 0.2 s: the rate of state 1 is not a finite number")) << integrator.error();
+    EXPECT_TRUE(mentions(integrator.error(), "at t = 0.2 s: the rate of state 1 is not a finite number"))
+        << integrator.error();
     EXPECT_EQ(integrator.time(), 0.2);
     EXPECT_EQ(integrator.state()[0], good[0]);
     EXPECT_EQ(integrator.state()[1], good[1]);

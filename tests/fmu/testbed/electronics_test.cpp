@@ -69,8 +69,15 @@ TEST(Sensors, TorqueIsRoundedToTheNearestStep) {
         }
     }
     o.torque_resolution_nm = 0.25;
-    for (const auto& [torque_nm, expected] : {std::pair{1.4, 1.5}, {1.3, 1.25}, {-1.3, -1.25}, {-1.4, -1.5}, {0.124, 0.0}, {-0.124, 0.0},
-                                              {0.125, 0.0}, {0.375, 0.5}, {-0.375, -0.5}}) { // halves to even
+    for (const auto &[torque_nm, expected] : {std::pair{1.4, 1.5},
+                                              {1.3, 1.25},
+                                              {-1.3, -1.25},
+                                              {-1.4, -1.5},
+                                              {0.124, 0.0},
+                                              {-0.124, 0.0},
+                                              {0.125, 0.0},
+                                              {0.375, 0.5},
+                                              {-0.375, -0.5}}) { // halves to even
         EXPECT_EQ(measured_torque(o, 0U, torque_nm, 0.0), expected) << torque_nm;
     }
 }
@@ -79,7 +86,8 @@ TEST(Sensors, EachWheelHasItsOwnNoise) {
     SensorOptions o = ideal_sensors();
     o.torque_noise_nm = 0.03;
     o.seed = 4711U;
-    for (const std::int64_t cycle : {std::int64_t{-3}, std::int64_t{0}, std::int64_t{1}, std::int64_t{999}, std::int64_t{1} << 33}) {
+    for (const std::int64_t cycle :
+         {std::int64_t{-3}, std::int64_t{0}, std::int64_t{1}, std::int64_t{999}, std::int64_t{1} << 33}) {
         const Deviates found = deviates(o, cycle);
         for (std::uint32_t wheel = 0; wheel < 3U; ++wheel) {
             EXPECT_NEAR(found[wheel], deviate_of(4711U, wheel, cycle), deviate_rounding);
@@ -126,7 +134,8 @@ TEST(Drives, SampleIsOfEachWheelsOwnTorqueNoiseOffsetAndEncoder) {
     for (int cycle = 0; cycle < 5; ++cycle) {
         const auto sample = drives.sample({10.5 * count, -20.5 * count, 30.5 * count}, {1.0, 2.0, 3.0});
         for (std::uint32_t wheel = 0; wheel < 3U; ++wheel) {
-            const double expected = 1.0 + wheel + o.sensors.torque_offset_nm[wheel] + 0.1 * deviate_of(7U, wheel, cycle);
+            const double expected =
+                1.0 + wheel + o.sensors.torque_offset_nm[wheel] + 0.1 * deviate_of(7U, wheel, cycle);
             EXPECT_NEAR(sample.torque_nm[wheel], expected, 0.1 * deviate_rounding + 1e-15);
         }
         EXPECT_EQ(sample.encoder_counts, (std::array<std::int32_t, 3>{10, -21, 30}));
@@ -138,7 +147,8 @@ TEST(Drives, BeforeTheStartTheWheelsTurnedAtTheirSpeed) {
     const double count = 2.0 * M_PI / 8500.0;
     const std::array<double, 3> speed{100e3 * count, 0.0, -50e3 * count}; // counts per second
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.5 * count, 0.5 * count, 0.5 * count}, speed, {0.0, 0.0, 0.0}, true).field, GW_FIELD_NONE);
+    ASSERT_EQ(drives.start(o, {0.5 * count, 0.5 * count, 0.5 * count}, speed, {0.0, 0.0, 0.0}, true).field,
+              GW_FIELD_NONE);
     for (int cycle = 0; cycle < 3; ++cycle) {
         const int ago = 3 - cycle;
         const auto sample = drives.sample({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
@@ -179,7 +189,8 @@ TEST(Drives, BetweenCommandsTheReferenceMovesOnAndThenStops) {
     // 10 ms after the last one came, at its twentieth tick without, it holds.
     for (int tick = servo_ticks_per_cycle; tick < 60; ++tick) {
         const double moved_s = tick_s * std::min(tick, 19);
-        EXPECT_NEAR(drives.regulate({0.0, 0.0, 0.0})[0], 200.0 * (angle_rad + speed_radps * moved_s), 1e-4) << tick; // twenty sums in float
+        EXPECT_NEAR(drives.regulate({0.0, 0.0, 0.0})[0], 200.0 * (angle_rad + speed_radps * moved_s), 1e-4)
+            << tick; // twenty sums in float
     }
 }
 

@@ -24,7 +24,7 @@ using giveway::testbed::Variables;
 struct Bench {
     std::unique_ptr<Model> model{giveway::create_model()};
     Message message{};
-    [[nodiscard]] Variables& v() const { return *static_cast<Variables*>(model->variables()); }
+    [[nodiscard]] Variables &v() const { return *static_cast<Variables *>(model->variables()); }
     void initialise() { ASSERT_EQ(model->initialise(0.0, message), Status::ok) << message.text; }
     void step_to(double end_s, double step_s) {
         const auto steps = std::llround(end_s / step_s);
@@ -50,7 +50,8 @@ TEST(Testbed, CollisionClosesItsEnergyAccount) {
             run.step_to(0.5, 1e-3);
             EXPECT_GT(run.v().truth_first_contact_time, 0.14);
             EXPECT_GT(run.v().energy_dissipated, 0.5);
-            // At the default relative tolerance of 1e-6, of some J turned over; the errors' signs differ: 5e-8 J is seen.
+            // At the default relative tolerance of 1e-6, of some J turned over; the errors' signs differ: 5e-8 J is
+            // seen.
             EXPECT_LT(std::fabs(run.v().energy_residual), 2e-7) << "kind " << kind << ", mount " << mount;
         }
     }
@@ -91,21 +92,42 @@ TEST(Testbed, StopsWhereTheRobotGoesOver) {
         status = run.model->step(1e-3 * k, 1e-3, run.message);
     }
     EXPECT_EQ(status, Status::error);
-    EXPECT_NE(std::string(run.message.text).find("the robot tips over: at t = "), std::string::npos) << run.message.text;
+    EXPECT_NE(std::string(run.message.text).find("the robot tips over: at t = "), std::string::npos)
+        << run.message.text;
     EXPECT_NEAR(std::hypot(run.v().truth_pitch, run.v().truth_roll), 15.0 * 3.14159265358979 / 180.0, 2e-3);
 }
 
 TEST(Testbed, RefusesWhatDoesNotGoTogether) {
-    const auto refused = [](const auto& change, const char* name) {
+    const auto refused = [](const auto &change, const char *name) {
         Bench run;
         change(run.v());
         EXPECT_EQ(run.model->initialise(0.0, run.message), Status::error);
         EXPECT_NE(std::string(run.message.text).find(name), std::string::npos) << run.message.text;
     };
-    refused([](Variables& v) { v.bumper_mount = 1; v.base_tipping = true; }, "bumper.mount = 1 is not allowed");
-    refused([](Variables& v) { v.bumper_mount = 1; v.contact_nose_shape = 1; }, "contact.nose_shape = 1 is not allowed");
-    refused([](Variables& v) { v.outline_wheels = true; v.outline_clearance = 0.3; }, "outline.clearance = 0.3 is not allowed");
-    refused([](Variables& v) { v.base_tilt_inertia = 0.01; v.wheel_inertia = 0.01; }, "base.tilt_inertia = 0.01 is not allowed");
+    refused(
+        [](Variables &v) {
+            v.bumper_mount = 1;
+            v.base_tipping = true;
+        },
+        "bumper.mount = 1 is not allowed");
+    refused(
+        [](Variables &v) {
+            v.bumper_mount = 1;
+            v.contact_nose_shape = 1;
+        },
+        "contact.nose_shape = 1 is not allowed");
+    refused(
+        [](Variables &v) {
+            v.outline_wheels = true;
+            v.outline_clearance = 0.3;
+        },
+        "outline.clearance = 0.3 is not allowed");
+    refused(
+        [](Variables &v) {
+            v.base_tilt_inertia = 0.01;
+            v.wheel_inertia = 0.01;
+        },
+        "base.tilt_inertia = 0.01 is not allowed");
 }
 
 TEST(Testbed, StepsOfWholeTicksGiveTheSameBits) {
@@ -130,8 +152,8 @@ TEST(Testbed, StepsAcrossTicksAgreeToTheTolerance) {
     // Into the first contact: each bounce of the plate after it would multiply the deviation.
     one.step_to(0.168, 1e-3);
     odd.step_to(0.168, 7e-4);
-    // The integrator stops at other instants, 1e-6 of a rate off at most, and far less where it stops 1400 times: 1e-9 m is
-    // seen. The contact is 0.2 mm deep, so that much is 4e-6 of its force.
+    // The integrator stops at other instants, 1e-6 of a rate off at most, and far less where it stops 1400 times: 1e-9
+    // m is seen. The contact is 0.2 mm deep, so that much is 4e-6 of its force.
     EXPECT_NEAR(odd.v().truth_slider_position, one.v().truth_slider_position, 4e-9);
     EXPECT_NEAR(odd.v().truth_contact_force, one.v().truth_contact_force, 1.5e-5 * one.v().truth_contact_force);
     EXPECT_GT(one.v().truth_contact_force, 1.0);
@@ -190,9 +212,10 @@ TEST(Testbed, ASampleComesAfterItsDelay) {
         for (int cycle = 0; cycle < 20; ++cycle) {
             ASSERT_EQ(run.model->step(1e-3 * cycle, 1e-3, run.message), Status::ok) << run.message.text;
             truth.push_back(std::to_array(run.v().truth_wheel_torque));
-            const auto& then = truth[static_cast<std::size_t>(std::max(0, cycle + 1 - delay))];
+            const auto &then = truth[static_cast<std::size_t>(std::max(0, cycle + 1 - delay))];
             for (std::size_t wheel = 0; wheel < 3; ++wheel) {
-                EXPECT_NEAR(run.v().sensor_torque[wheel], then[wheel], 1e-14) << "delay " << delay << ", cycle " << cycle; // of 1 N m
+                EXPECT_NEAR(run.v().sensor_torque[wheel], then[wheel], 1e-14)
+                    << "delay " << delay << ", cycle " << cycle; // of 1 N m
             }
         }
         EXPECT_GT(std::fabs(truth[20][1]), 0.5);
@@ -202,7 +225,7 @@ TEST(Testbed, ASampleComesAfterItsDelay) {
 
 TEST(Testbed, TheElectronicsAreThoseOfTheVariables) {
     Bench run;
-    Variables& v = run.v();
+    Variables &v = run.v();
     v.slider_present = false;
     v.electronics_sensor_delay = 0;
     v.electronics_seed = 77;
@@ -239,14 +262,17 @@ TEST(Testbed, LoadedRollersAreHeldByTheDrivetrains) {
     run.v().start_bristle[2] = -1e-4;
     run.initialise();
     run.step_to(0.5, 1e-3);
-    const Variables& v = run.v();
+    const Variables &v = run.v();
     double force_x = 0.0;
     double force_y = 0.0;
     for (int i = 0; i < 3; ++i) {
         const double azimuth = 2.0 * M_PI / 3.0 * i;
-        EXPECT_NEAR(v.truth_roller_force[i], v.roller_presliding_stiffness[i] * v.start_bristle[i], 1e-12); // rounding of 5 N, a thousand times
-        force_x += -std::cos(azimuth) * v.truth_roller_force[i] - std::sin(azimuth) * v.truth_wheel_torque[i] / v.wheel_radius;
-        force_y += -std::sin(azimuth) * v.truth_roller_force[i] + std::cos(azimuth) * v.truth_wheel_torque[i] / v.wheel_radius;
+        EXPECT_NEAR(v.truth_roller_force[i], v.roller_presliding_stiffness[i] * v.start_bristle[i],
+                    1e-12); // rounding of 5 N, a thousand times
+        force_x +=
+            -std::cos(azimuth) * v.truth_roller_force[i] - std::sin(azimuth) * v.truth_wheel_torque[i] / v.wheel_radius;
+        force_y +=
+            -std::sin(azimuth) * v.truth_roller_force[i] + std::cos(azimuth) * v.truth_wheel_torque[i] / v.wheel_radius;
     }
     EXPECT_NEAR(force_x, 0.0, 1e-9); // sums of 5 N
     EXPECT_NEAR(force_y, 0.0, 1e-9);
@@ -261,11 +287,16 @@ TEST(Testbed, RefusesWhatDoesNotFitTogether) {
         EXPECT_EQ(run.model->initialise(0.0, run.message), Status::error);
         return std::string(run.message.text);
     };
-    EXPECT_NE(refusal([](Variables& v) { v.drivetrain_gear_stiction = 1.0; }).find("drivetrain.gear_stiction = 1"), std::string::npos);
-    EXPECT_NE(refusal([](Variables& v) { v.bumper_plate_mass = 9.0; }).find("bumper.plate_mass = 9"), std::string::npos);
-    EXPECT_NE(refusal([](Variables& v) { std::swap(v.outline_x[1], v.outline_x[2]), std::swap(v.outline_y[1], v.outline_y[2]); }).find("outline."), std::string::npos);
-    EXPECT_NE(refusal([](Variables& v) { v.slider_target_x = 0.0; }).find("slider.run_up = "), std::string::npos);
-    EXPECT_NE(refusal([](Variables& v) {
+    EXPECT_NE(refusal([](Variables &v) { v.drivetrain_gear_stiction = 1.0; }).find("drivetrain.gear_stiction = 1"),
+              std::string::npos);
+    EXPECT_NE(refusal([](Variables &v) { v.bumper_plate_mass = 9.0; }).find("bumper.plate_mass = 9"),
+              std::string::npos);
+    EXPECT_NE(refusal([](Variables &v) {
+                  std::swap(v.outline_x[1], v.outline_x[2]), std::swap(v.outline_y[1], v.outline_y[2]);
+              }).find("outline."),
+              std::string::npos);
+    EXPECT_NE(refusal([](Variables &v) { v.slider_target_x = 0.0; }).find("slider.run_up = "), std::string::npos);
+    EXPECT_NE(refusal([](Variables &v) {
                   // A pentagram: every corner turns left, yet it is not convex.
                   v.outline_count = 5;
                   for (int i = 0; i < 5; ++i) {
@@ -283,16 +314,17 @@ TEST(Testbed, MethodsAgreeWithTheServosAtWork) {
         run.v().solver_method = method;
         run.v().solver_relative_tolerance = 1e-8;
         run.v().solver_absolute_scale = 0.01;
-        run.v().electronics_encoder_counts = 1'000'000; // a count that flips a rounding earlier moves the motor by its step: make that small
+        run.v().electronics_encoder_counts =
+            1'000'000; // a count that flips a rounding earlier moves the motor by its step: make that small
         run.initialise();
         run.step_to(0.5, 1e-3);
-        const Variables& v = run.v();
+        const Variables &v = run.v();
         erk = method == 0 ? v : erk;
         EXPECT_EQ(v.solver_jacobian_calls > 0, method == 2);
         EXPECT_GT(v.solver_steps, 0);
-        // 4 J are turned over with a local error of 1e-8 of it a step. ERK's step is a servo tick, far shorter than its tolerance
-        // asks for (1e-9 J is seen); Adams and BDF go to the bound, in 9,000 and 16,000 steps, and their errors add up to some
-        // hundredths of it, as signs differ (2e-6 and 1e-5 J).
+        // 4 J are turned over with a local error of 1e-8 of it a step. ERK's step is a servo tick, far shorter than its
+        // tolerance asks for (1e-9 J is seen); Adams and BDF go to the bound, in 9,000 and 16,000 steps, and their
+        // errors add up to some hundredths of it, as signs differ (2e-6 and 1e-5 J).
         constexpr double residual_j[] = {5e-9, 8e-6, 5e-5};
         EXPECT_LT(std::fabs(v.energy_residual), residual_j[method]) << "method " << method;
         // Others than ERK are late by what BDF's errors of position, 0.15 um, are at 0.5 m/s.
@@ -308,7 +340,7 @@ TEST(Testbed, MethodsAgreeWithTheServosAtWork) {
 }
 
 TEST(Testbed, FailureEndsWithTimeMethodReasonAndTheLastGoodState) {
-    constexpr const char* names[] = {"ERK", "Adams", "BDF"};
+    constexpr const char *names[] = {"ERK", "Adams", "BDF"};
     for (const int method : {0, 1, 2}) {
         Bench run;
         run.v().solver_method = method;

@@ -10,24 +10,28 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace giveway_mutation {
+namespace giveway_mutation
+{
 
 struct Choice {
     long number = 0;
     long count = 0;
-    volatile unsigned char* reached = nullptr;
+    volatile unsigned char *reached = nullptr;
 
-    Choice() noexcept {
-        if (const char* chosen = getenv("GIVEWAY_MUTANT")) {
+    Choice() noexcept
+    {
+        if (const char *chosen = getenv("GIVEWAY_MUTANT")) {
             number = atol(chosen);
         }
-        const char* file = getenv("GIVEWAY_MUTANTS_REACHED");
+        const char *file = getenv("GIVEWAY_MUTANTS_REACHED");
         const int descriptor = file != nullptr ? open(file, O_RDWR) : -1;
-        struct stat status {};
+        struct stat status {
+        };
         if (descriptor >= 0 && fstat(descriptor, &status) == 0) {
-            void* map = mmap(nullptr, static_cast<size_t>(status.st_size), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+            void *map =
+                mmap(nullptr, static_cast<size_t>(status.st_size), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
             if (map != MAP_FAILED) {
-                reached = static_cast<volatile unsigned char*>(map);
+                reached = static_cast<volatile unsigned char *>(map);
                 count = status.st_size;
             }
             close(descriptor);
@@ -40,7 +44,8 @@ inline const Choice choice;
 } // namespace giveway_mutation
 
 // Not constexpr: what the compiler computes cannot be chosen at run time, so a mutant there does not compile.
-inline bool giveway_mutant(long number) noexcept {
+inline bool giveway_mutant(long number) noexcept
+{
     if (giveway_mutation::choice.reached != nullptr && number < giveway_mutation::choice.count) {
         giveway_mutation::choice.reached[number] = 1;
     }
