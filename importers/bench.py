@@ -11,10 +11,11 @@ import sys
 import time
 from pathlib import Path
 
-from giveway import experiments, native
-from giveway.fmu import open_fmu
-from giveway.master import simulate
-from giveway.terminal import print_columns
+from giveway import experiments
+from giveway.base import native
+from giveway.base.terminal import print_columns
+from giveway.simulation.fmu import open_fmu
+from giveway.simulation.master import simulate
 
 from importers.matrix import environment
 

@@ -86,7 +86,7 @@ def write_reference(path: Path) -> None:
     import dataclasses
 
     from giveway import experiments
-    from giveway.master import simulate
+    from giveway.simulation.master import simulate
 
     scenario = experiments.get("motionless").scenario("magnetic")
     record = simulate(dataclasses.replace(scenario, duration_s=STEPS * STEP_S, controller={}))

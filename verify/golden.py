@@ -9,7 +9,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from giveway.files import write_text
+from giveway.base.files import write_text
 
 from verify.context import Context
 from verify.rung import RungFailed

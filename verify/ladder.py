@@ -11,7 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from giveway.files import write_text
+from giveway.base.files import write_text
 
 from verify.context import Context, Tool, kill_all
 from verify.rung import Figure, Rung, RungFailed

@@ -17,14 +17,15 @@ import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.errors import GivewayError
-from giveway.scenario import Scenario
+from giveway.base.errors import GivewayError
+from giveway.base.former_names import FORMER_NAMES, forward_former_names
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     from giveway import batch
     from giveway.experiments import Experiment
-    from giveway.master import Progress
-    from giveway.result import Result
+    from giveway.simulation.master import Progress
+    from giveway.simulation.result import Result
     from giveway.study import Study
     from giveway.study.answers import Answers
 
@@ -48,6 +49,7 @@ except importlib.metadata.PackageNotFoundError:  # used from a source tree
     __version__ = "0+source"
 
 logging.getLogger(__name__).addHandler(logging.NullHandler())
+forward_former_names()
 
 
 def run(scenario: Scenario, progress: Progress | None = None) -> Result:
@@ -66,14 +68,14 @@ def run(scenario: Scenario, progress: Progress | None = None) -> Result:
             'giveway.read_scenario("examples/trolley.toml")'
         )
         raise GivewayError("scenario", repr(scenario), allowed)
-    from giveway import runner
+    from giveway.simulation import runner
 
     return runner.run(scenario, progress)
 
 
 def load(folder: Path | str) -> Result:
     """Read a result that was saved with `Result.save` or ``giveway run --out``."""
-    from giveway import result
+    from giveway.simulation import result
 
     return result.load(folder)
 
@@ -87,20 +89,22 @@ def experiment(name: str) -> Experiment:
 
 def read_scenario(path: Path | str) -> Scenario:
     """The scenario in a TOML file, checked; see ``examples/``."""
-    from giveway import scenario_file
+    from giveway.scenario import scenario_file
 
     return scenario_file.read_scenario(path)
 
 
 _LATER = {
     "Answers": "giveway.study.answers",
-    "Result": "giveway.result",
+    "Result": "giveway.simulation.result",
     "Study": "giveway.study",
     "batch": "giveway.batch",
 }
 
 
 def __getattr__(name: str) -> object:
+    if name in FORMER_NAMES:
+        return importlib.import_module(f"{__name__}.{name}")
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = importlib.import_module(_LATER[name])

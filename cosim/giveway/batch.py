@@ -18,21 +18,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway import native
-from giveway.checks import finite, whole
-from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
-from giveway.master import Progress, Record, plan_table, push_table
-from giveway.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
-from giveway.plan_limits import check_plan, limits_of
-from giveway.run_warnings import METRICS, Stated, codes_of
-from giveway.variables import Value, Variable, table
+from giveway.base import native
+from giveway.base.checks import finite, whole
+from giveway.base.errors import FileError, GivewayError, SimulationError, UnknownNameError
+from giveway.robot.variables import Value, Variable, table
+from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
+from giveway.scenario.plan_limits import check_plan, limits_of
+from giveway.simulation.master import Progress, Record, plan_table, push_table
+from giveway.simulation.run_warnings import METRICS, Stated, codes_of
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from giveway.result import Result
-    from giveway.scenario import Scenario
+    from giveway.scenario.scenario import Scenario
+    from giveway.simulation.result import Result
 
 __all__ = ["LANES", "METHODS", "BatchProgress", "Prepared", "run", "run_many", "widest_lanes"]
 
@@ -347,7 +347,7 @@ def run(scenario: Scenario, progress: Progress | None = None) -> Result:
     ``progress``, if given, is called now and then with the simulated time and the duration (both in s). Ctrl-C ends the
     run cleanly; the result then holds what was computed and says so in its manifest. ``fmi_version`` is not used.
     """
-    from giveway.runner import judge
+    from giveway.simulation.runner import judge
 
     inputs = {"controller": PLAN_INPUTS, "testbed": () if scenario.push is None else PUSH_INPUTS}
     traces = [
@@ -396,7 +396,7 @@ def run_many(
     Over the dimension ``run``, in the order of ``scenarios``: every metric under its name with its unit, the truth it
     is compared with as ``NAME (true)``, NaN for what did not happen; ``status`` ("ok", "cancelled", "refused",
     "failed", ...), ``message`` (empty if ok), ``simulated`` (s, how far the run came) and ``warnings`` (codes of what
-    happened otherwise than asked, see `giveway.run_warnings`; empty if nothing did). A run that fails does not
+    happened otherwise than asked, see `simulation.run_warnings`; empty if nothing did). A run that fails does not
     stop the others. Over ``run`` and ``time``: the variables named in ``traces`` ("testbed.truth.contact_force"), zero
     from where a run ended early; for these all scenarios need the same duration and step.
 

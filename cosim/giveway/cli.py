@@ -17,18 +17,18 @@ from typing import TYPE_CHECKING, Annotated, TextIO
 import typer
 
 from giveway import __version__
-from giveway.errors import GivewayError, SimulationError, UnknownNameError, WriteError, one_line
-from giveway.failures import DEBUG_VARIABLE, unforeseen
-from giveway.fmu_commands import fmu_app
-from giveway.scenario import BUMPERS
-from giveway.study_commands import study_app, sweep_designs
-from giveway.terminal import INTERRUPTED, print_columns, print_results, progress_bars, working
+from giveway.base.errors import GivewayError, SimulationError, UnknownNameError, WriteError, one_line
+from giveway.base.failures import DEBUG_VARIABLE, unforeseen
+from giveway.base.terminal import INTERRUPTED, print_columns, print_results, progress_bars, working
+from giveway.fmu_tools.command import fmu_app
+from giveway.scenario.scenario import BUMPERS
+from giveway.study.command import study_app, sweep_designs
 
 if TYPE_CHECKING:
-    from giveway.master import Progress
-    from giveway.result import Result
-    from giveway.scenario import Scenario
-    from giveway.sweep import Sweep
+    from giveway.drivetrain.frequency_response import Sweep
+    from giveway.scenario.scenario import Scenario
+    from giveway.simulation.master import Progress
+    from giveway.simulation.result import Result
 
 __all__ = ["app", "main"]
 
@@ -106,7 +106,7 @@ def run(
 ) -> None:
     """Run one experiment, or your own scenario, with one bumper; writes traces, metrics, manifest and a report."""
     import giveway
-    from giveway.files import check_output, replace_folder
+    from giveway.base.files import check_output, replace_folder
 
     scenario, summary = _scenario(what, bumper, robot)
     scenario = _changed(scenario, assignments, fmi, duration, seed)
@@ -140,8 +140,8 @@ def demo(
     """Run the paper's experiment 5.2 with all three bumpers; table, report.html, overview.png, summary.json."""
     import giveway
     from giveway import experiments
-    from giveway.files import check_output, replace_folder
-    from giveway.summary import write_summary
+    from giveway.base.files import check_output, replace_folder
+    from giveway.simulation.summary import write_summary
 
     check_output(out)
     name = "motionless"
@@ -179,15 +179,15 @@ def reproduce(
     threads: Annotated[int, typer.Option("--threads", help="Native threads, 1 to 256.")] = 2,
 ) -> None:
     """Run every experiment of the paper: one table (paper, ours, target), table.json and an HTML report."""
-    from giveway.files import check_output, replace_folder
-    from giveway.reproduce import HEADER, chosen, table_rows, write_table
-    from giveway.reproduce import reproduce as run_all
+    from giveway.base.files import check_output, replace_folder
+    from giveway.experiments.reproduction.reproduce import HEADER, chosen, table_rows, write_table
+    from giveway.experiments.reproduction.reproduce import reproduce as run_all
 
     names = [experiment.name for experiment in chosen(only or ())]
     check_output(out)
     with progress_bars(names) as progress:
         found = run_all(names, not reduced, threads, progress)
-    from giveway.report.reproduction import write_report
+    from giveway.experiments.reproduction.page import write_report
 
     with replace_folder(out) as folder:
         write_table(folder / "table.json", found)
@@ -221,8 +221,8 @@ def variables(
     grep: Annotated[str, typer.Option("--grep", metavar="TEXT", help="Only names or descriptions with TEXT.")] = "",
 ) -> None:
     """List the variables of an FMU: what can be set, its range and unit, and what comes out."""
-    from giveway.variables import table
-    from giveway.words import counted
+    from giveway.base.words import counted
+    from giveway.robot.variables import table
 
     wanted = grep.lower()
     chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
@@ -245,25 +245,25 @@ def drivetrain(
     sweep: Annotated[bool, typer.Option("--sweep", help="Measure the FMU's response with sines, too.")] = False,
 ) -> None:
     """Linearise the drivetrain: poles, bandwidth of the sensed torque, margins of the 2 kHz servo."""
-    from giveway import drivetrain as model
-    from giveway.drivetrain_analysis import analyse, table_rows
+    from giveway.drivetrain import model
+    from giveway.drivetrain.analysis import analyse, table_rows
 
     if out is None and plot:
         out = Path("out/drivetrain")
     found = model.read(robot, load, delay)
     if out is not None:
-        from giveway.report.drivetrain import check_results, write_results
+        from giveway.drivetrain.pictures import check_results, write_results
 
         check_results(out)
     if sweep:
-        from giveway.sweep import check_load
+        from giveway.drivetrain.frequency_response import check_load
 
         check_load(found[0])
     with working("linear model"):
         analysis = analyse(*found)
     sweeps: list[Sweep] = []
     if sweep:
-        from giveway.sweep import deviations, measurable, measure_all
+        from giveway.drivetrain.frequency_response import deviations, measurable, measure_all
 
         friction = model.gear_friction(robot)
         with progress_bars([f"{case}, {source}" for case, source in measurable(analysis, friction)]) as progress:
@@ -290,8 +290,8 @@ def fit(
     """Fit the robot's open parameters to the paper's results; writes the robot file and its residuals beside it."""
     import json
 
-    from giveway import native
-    from giveway.files import check_file, replace_files
+    from giveway.base import native
+    from giveway.base.files import check_file, replace_files
     from giveway.fitting import record
     from giveway.fitting.quantities import Bench
     from giveway.fitting.search import STAGES, search
@@ -328,7 +328,7 @@ def calibrate(
     out: Annotated[Path, typer.Option("--out", metavar="NEW.toml", help="The new robot file; NEW.png lies beside it.")],
 ) -> None:
     """Fit the roller friction to logs of wheel angles and torques; write a new robot file and a residual plot."""
-    from giveway.calibration.command import calibrate_robot, table_rows
+    from giveway.identification.command import calibrate_robot, table_rows
 
     calibration, written = calibrate_robot(logs, robot, out)
     title = f"Roller friction (28) from {', '.join(log.name for log in calibration.logs)}"
@@ -345,10 +345,10 @@ def bench(
     ] = False,
 ) -> None:
     """Measure speed: a co-simulated second over FMPy, runs per second, cost and error of the integration methods."""
-    from giveway import bench_batch
-    from giveway.bench import measure
-    from giveway.bench_solvers import HEADER, measure_solvers
-    from giveway.checks import whole
+    from giveway.base.checks import whole
+    from giveway.bench import collisions as bench_batch
+    from giveway.bench.co_simulation import measure
+    from giveway.bench.solvers import HEADER, measure_solvers
 
     whole("--repeats", repeats, 1, 100)
     if scale:
@@ -390,8 +390,8 @@ def ssp(
     ] = False,
 ) -> None:
     """Write controller and testbed as a System Structure Package (SSP 1.0), with a parameter set for each bumper."""
-    from giveway.robot import read_robot
-    from giveway.ssp import write_ssp
+    from giveway.fmu_tools.ssp import write_ssp
+    from giveway.robot.robot_file import read_robot
 
     write_ssp(out, None if robot is None else read_robot(robot), sequential=sequential)
     typer.echo(f"Written: {out}")
@@ -405,7 +405,7 @@ def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenar
     from giveway import experiments
 
     if what.endswith(".toml") or "/" in what:
-        from giveway.scenario_file import read_scenario
+        from giveway.scenario.scenario_file import read_scenario
 
         if bumper is not None and bumper not in BUMPERS:
             raise UnknownNameError("--bumper", bumper, BUMPERS)
@@ -424,7 +424,7 @@ def _changed(
     """``scenario`` with the command line's changes, all of it checked before anything runs."""
     import dataclasses
 
-    from giveway.variables import parse_assignments
+    from giveway.robot.variables import parse_assignments
 
     overrides = parse_assignments(assignments or [])
     scenario = dataclasses.replace(

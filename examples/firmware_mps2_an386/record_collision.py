@@ -8,11 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from giveway import native
+from giveway.base import native
+from giveway.base.files import write_text
 from giveway.experiments.motionless import scenario
-from giveway.files import write_text
-from giveway.master import simulate
-from giveway.robot import read_robot
+from giveway.robot.robot_file import read_robot
+from giveway.simulation.master import simulate
 
 TICKS = 800  # tare, hit, reaction, and the second hit of the slider, which is still being pulled
 FILE = Path(__file__).with_name("recorded_collision.inc")

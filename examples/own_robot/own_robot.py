@@ -25,7 +25,7 @@ from typing import Any
 import fmpy
 import numpy as np
 from fmpy.fmi3 import FMU3Slave
-from giveway import native
+from giveway.base import native
 from numpy.typing import NDArray
 
 SECONDS, REPORT_S = 0.3, 1e-3

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from giveway.experiments import get
-from giveway.master import COMMANDS, SENSORS
+from giveway.simulation.master import COMMANDS, SENSORS
 
 from .plan import Fmu, Plan
 

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from giveway import native
-from giveway.fmu import Instance, open_fmu
-from giveway.variables import Value, table
+from giveway.base import native
+from giveway.robot.variables import Value, table
+from giveway.simulation.fmu import Instance, open_fmu
 
 from giveway_modelica.robot_record import numbers
 

@@ -19,11 +19,11 @@ from pathlib import Path
 
 import giveway
 import numpy as np
-from giveway import native
-from giveway.fmu import Instance, open_fmu
-from giveway.master import simulate
-from giveway.plan import Circle, Plan, Straight
-from giveway.variables import Value, table
+from giveway.base import native
+from giveway.robot.variables import Value, table
+from giveway.scenario.plan import Circle, Plan, Straight
+from giveway.simulation.fmu import Instance, open_fmu
+from giveway.simulation.master import simulate
 from numpy.typing import NDArray
 
 from giveway_modelica.bench import Bench
@@ -116,7 +116,7 @@ class Pair:
 
     bumper: str = "magnetic"
     testbed: Mapping[str, Value] = field(default_factory=dict)
-    plan: Plan = field(default_factory=giveway.plan.Rest)
+    plan: Plan = field(default_factory=giveway.scenario.plan.Rest)
     push: Callable[[Array], Array] | None = None
     controller: Mapping[str, Value] = field(default_factory=dict)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from giveway.robot import Entry, read_robot
+from giveway.robot.robot_file import Entry, read_robot
 
 # Types of Modelica.Units.SI; a number whose unit has none there is a Real with that unit.
 SI_TYPES = {

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway import native
-from giveway.fmu import Instance, open_fmu
-from giveway.variables import Value, VariableTable, table
+from giveway.base import native
+from giveway.robot.variables import Value, VariableTable, table
+from giveway.simulation.fmu import Instance, open_fmu
 
 from verify import golden
 from verify.context import Context

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from giveway.robot import read_robot
+from giveway.robot.robot_file import read_robot
 
 ROOT = Path(__file__).parents[2]
 HEADER = ROOT / "c_core" / "include" / "giveway" / "gw_trikey.h"

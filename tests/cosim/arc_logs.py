@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from giveway import native
-from giveway.calibration.motion_log import MotionLog
-from giveway.robot import read_robot
+from giveway.base import native
+from giveway.identification.motion_log import MotionLog
+from giveway.robot.robot_file import read_robot
 
 _ROBOT = read_robot(native.robot())
 R_W, R_R, DISTANCE, MASS, YAW, I_W, I_R = (

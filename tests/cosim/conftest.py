@@ -11,7 +11,7 @@ from pathlib import Path
 
 import giveway
 import pytest
-from giveway.result import Result
+from giveway.simulation.result import Result
 
 sys.path.insert(0, str(Path(__file__).parent))  # for the helpers beside the tests
 

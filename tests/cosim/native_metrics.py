@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray
 from giveway import batch
-from giveway.body_regions import BodyRegion
+from giveway.scenario.body_regions import BodyRegion
 
 
 @functools.cache

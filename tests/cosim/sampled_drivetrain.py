@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from giveway.drivetrain import Drivetrain, Servo
+from giveway.drivetrain.model import Drivetrain, Servo
 from scipy.linalg import expm
 
 TICK_S = 5e-4

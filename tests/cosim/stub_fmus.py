@@ -12,7 +12,7 @@ import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from giveway.fmu_binaries import PLATFORMS, fmi_functions, platform_here
+from giveway.fmu_tools.binaries import PLATFORMS, fmi_functions, platform_here
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 DESCRIPTION = "modelDescription.xml"

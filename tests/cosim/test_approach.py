@@ -9,10 +9,10 @@ import giveway
 import numpy as np
 import pytest
 from giveway import batch
-from giveway.approach import Approach, edge_middle, meet, outline_of, outward_normal
-from giveway.errors import GivewayError
-from giveway.plan import Circle, Plan, Rest, Straight, start_values
-from giveway.variables import Value, table
+from giveway.base.errors import GivewayError
+from giveway.robot.variables import Value, table
+from giveway.scenario.approach import Approach, edge_middle, meet, outline_of, outward_normal
+from giveway.scenario.plan import Circle, Plan, Rest, Straight, start_values
 
 TARE_S = 0.1
 

@@ -16,10 +16,12 @@ import numpy as np
 import pytest
 import xarray
 from cosim_helpers import short
-from giveway import batch, metrics, native
-from giveway.body_regions import body_region
-from giveway.errors import FileError, GivewayError, SimulationError, UnknownNameError
-from giveway.scenario import BUMPERS
+from giveway import batch
+from giveway.base import native
+from giveway.base.errors import FileError, GivewayError, SimulationError, UnknownNameError
+from giveway.scenario.body_regions import body_region
+from giveway.scenario.scenario import BUMPERS
+from giveway.simulation import metrics
 from numpy.typing import NDArray
 
 FORCE, TICK = "testbed.truth.contact_force", "controller.detection.tick"
@@ -74,7 +76,7 @@ CASES: dict[str, giveway.Scenario] = {
     ),
     "push": short(push=push, testbed={"slider.present": False}),
     "plan": short(plan=drive_left),
-    "rest elsewhere": short(plan=giveway.plan.Rest(0.3, -0.2, 0.4)),
+    "rest elsewhere": short(plan=giveway.scenario.plan.Rest(0.3, -0.2, 0.4)),
     "Adams": short(testbed={"solver.method": 1}),
     "BDF": short(testbed={"solver.method": 2}),
     "half a millisecond": short(step_s=0.0005),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from giveway.bench_solvers import HEADER, METHODS, SWEEPS, Measurement, measure_solvers
+from giveway.bench.solvers import HEADER, METHODS, SWEEPS, Measurement, measure_solvers
 
 README = Path(__file__).parents[2] / "fmu" / "README.md"
 BEGIN, END = "<!-- table: giveway bench -->\n", "<!-- end of table -->"

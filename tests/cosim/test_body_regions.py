@@ -9,10 +9,10 @@ from pathlib import Path
 import giveway
 import numpy as np
 import pytest
-from giveway import native
-from giveway.body_regions import NOTICE, body_region, body_regions, contact_peak, judge, source, speed_limit
-from giveway.errors import GivewayError, UnknownNameError
-from giveway.variables import table
+from giveway.base import native
+from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.robot.variables import table
+from giveway.scenario.body_regions import NOTICE, body_region, body_regions, contact_peak, judge, source, speed_limit
 
 # ISO/TS 15066:2016, Annex A: quasi-static force N and pressure N/cm2, factor of the transient ones, stiffness N/mm,
 # mass kg. Open copies disagree, and the lowest counts (body_regions.toml): here a change has to be argued.

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway import experiments, native
-from giveway.fmu import open_fmu
-from giveway.master import simulate
-from giveway.variables import table
+from giveway import experiments
+from giveway.base import native
+from giveway.robot.variables import table
+from giveway.simulation.fmu import open_fmu
+from giveway.simulation.master import simulate
 
 ROOT = Path(__file__).parents[2]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))

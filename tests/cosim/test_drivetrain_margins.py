@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from giveway.drivetrain import read
-from giveway.drivetrain_analysis import Analysis, Margins, _margins, analyse, table_rows
-from giveway.report import drivetrain as picture
-from giveway.units import factor
+from giveway.base.units import factor
+from giveway.drivetrain import pictures as picture
+from giveway.drivetrain.analysis import Analysis, Margins, _margins, analyse, table_rows
+from giveway.drivetrain.model import read
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray

@@ -8,10 +8,10 @@ import giveway
 import numpy as np
 import pytest
 from giveway import batch
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
 from giveway.experiments import circle
-from giveway.push_response import Responses, responses
-from giveway.reproduction import Effort, Findings
+from giveway.experiments.reproduction.findings import Effort, Findings
+from giveway.simulation.push_response import Responses, responses
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import xarray
 from giveway import batch, experiments
-from giveway.body_regions import NOTICE, body_region
 from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, Clamped, _safe_speed, scenario
-from giveway.reproduction import Effort, Findings
-from giveway.result import Result
-from giveway.scenario import BUMPERS
+from giveway.experiments.reproduction.findings import Effort, Findings
+from giveway.scenario.body_regions import NOTICE, body_region
+from giveway.scenario.scenario import BUMPERS
+from giveway.simulation.result import Result
 
 
 @pytest.fixture(scope="module")

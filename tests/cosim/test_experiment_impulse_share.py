@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from giveway import batch, experiments
 from giveway.experiments import impulse_share, motionless
-from giveway.impulse_trials import FORMS, Form, Seen, run_forms
-from giveway.reproduction import Effort, Findings
+from giveway.experiments.impulse_trials import FORMS, Form, Seen, run_forms
+from giveway.experiments.reproduction.findings import Effort, Findings
 
 
 @pytest.fixture(scope="module")

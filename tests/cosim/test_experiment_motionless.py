@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from giveway import experiments
-from giveway.reproduction import Effort, Findings
+from giveway.experiments.reproduction.findings import Effort, Findings
 
 
 @pytest.fixture(scope="module")

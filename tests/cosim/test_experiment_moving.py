@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from giveway import batch, experiments
 from giveway.experiments import moving
-from giveway.reproduction import Effort, Findings
-from giveway.result import Result
+from giveway.experiments.reproduction.findings import Effort, Findings
+from giveway.simulation.result import Result
 
 
 @pytest.fixture(scope="module")

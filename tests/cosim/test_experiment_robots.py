@@ -8,12 +8,13 @@ from pathlib import Path
 import giveway
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway import batch, native
+from giveway import batch
+from giveway.base import native
 from giveway.experiments import get
 from giveway.experiments.placement import outline_of_robot
-from giveway.plan import Pushes
-from giveway.robot import read_robot
-from giveway.ssp import parameter_set
+from giveway.fmu_tools.ssp import parameter_set
+from giveway.robot.robot_file import read_robot
+from giveway.scenario.plan import Pushes
 
 TRIKEY = native.robot().read_text(encoding="utf-8")
 X, Y = "value = [0.352184, -0.176092, -0.176092]", "value = [0.0, 0.305, -0.305]"

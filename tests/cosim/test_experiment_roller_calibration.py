@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from giveway import experiments
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
+from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.experiments.roller_calibration import ARCS, REST_S, WheelArc
-from giveway.reproduction import Effort, Findings
 
 STEP_S = 1e-4
 

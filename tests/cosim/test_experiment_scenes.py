@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from giveway import batch, experiments
-from giveway.body_regions import NOTICE
-from giveway.errors import UnknownNameError
+from giveway.base.errors import UnknownNameError
+from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, scenario
-from giveway.footprint import hull, wheel_corners
-from giveway.metrics import Collision
-from giveway.plan import Straight
-from giveway.reproduction import Effort, Findings
-from giveway.result import Result
+from giveway.robot.footprint import hull, wheel_corners
+from giveway.scenario.body_regions import NOTICE
+from giveway.scenario.plan import Straight
+from giveway.simulation.metrics import Collision
+from giveway.simulation.result import Result
 
 
 @pytest.fixture(scope="module")

@@ -8,12 +8,18 @@ import numpy as np
 import pytest
 from giveway import batch
 from giveway.experiments import get
-from giveway.reproduction import Effort, Findings, Row
-from giveway.scenario import Scenario
-from giveway.static_pushes.groups import PRINTED, group_values, percentile_of
-from giveway.static_pushes.placements import CONE_RAD, Placement, default_outline, paper_placements, random_placements
-from giveway.static_pushes.robots import pushed_robot
-from giveway.static_pushes.trials import Readings, Trial
+from giveway.experiments.reproduction.findings import Effort, Findings, Row
+from giveway.experiments.static_push_study.groups import PRINTED, group_values, percentile_of
+from giveway.experiments.static_push_study.placements import (
+    CONE_RAD,
+    Placement,
+    default_outline,
+    paper_placements,
+    random_placements,
+)
+from giveway.experiments.static_push_study.robots import pushed_robot
+from giveway.experiments.static_push_study.trials import Readings, Trial
+from giveway.scenario.scenario import Scenario
 
 
 @pytest.fixture(scope="module")

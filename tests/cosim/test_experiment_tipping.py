@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.experiments.tipping import EXPERIMENT
-from giveway.reproduction import Effort, Findings
 
 
 @pytest.fixture(scope="module")

@@ -15,9 +15,9 @@ import giveway
 import pytest
 from arc_logs import arc_log, csv_lines, sine
 from cosim_helpers import folder_content, short
+from giveway.base.errors import WriteError
 from giveway.cli import _main
-from giveway.errors import WriteError
-from giveway.result import Result
+from giveway.simulation.result import Result
 from study_helpers import small_study
 
 LIMIT_BYTES = 100  # what a file may hold: as a disk that is full, every write beyond it fails
@@ -46,7 +46,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     log = arc_log((1.0, 0.0, 0.0), sine(2.5, 0.1), 20.0)
     (folder / "arc.csv").write_text("\n".join(csv_lines(log)) + "\n")
-    (folder / "robot.toml").write_bytes(giveway.native.robot().read_bytes())
+    (folder / "robot.toml").write_bytes(giveway.base.native.robot().read_bytes())
     return folder
 
 
@@ -143,7 +143,7 @@ def process(
 def test_a_path_of_any_bytes_is_written_and_read(name: bytes, environment: dict[str, str], tmp_path: Path) -> None:
     folder = os.fsdecode(name)
     (tmp_path / folder).mkdir()
-    (tmp_path / folder / f"{folder}.toml").write_bytes(giveway.native.robot().read_bytes())
+    (tmp_path / folder / f"{folder}.toml").write_bytes(giveway.base.native.robot().read_bytes())
     robot = f"{folder}/{folder}.toml"
     arguments = ("run", "motionless", "--duration", "0.1", "--robot", robot, "--out", f"{folder}/run")
     done = process(*arguments, folder=tmp_path, environment=environment)

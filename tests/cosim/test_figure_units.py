@@ -13,14 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from giveway.errors import GivewayError
-from giveway.report import figures, impact_response, overview, reversal
+from giveway.base.errors import GivewayError
+from giveway.base.units import factor
+from giveway.experiments.figures import impact_response, reversal
+from giveway.report import figures, overview
 from giveway.report.runs import Run
 from giveway.report.style import COLOURS
-from giveway.result import Result
-from giveway.scenario import BUMPERS
+from giveway.scenario.scenario import BUMPERS
+from giveway.simulation.result import Result
 from giveway.study import figures as study_figures
-from giveway.units import factor
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from cosim_helpers import folder_content
-from giveway.errors import FileError, WriteError
-from giveway.files import check_output, replace_folder, write_text
+from giveway.base.errors import FileError, WriteError
+from giveway.base.files import check_output, replace_folder, write_text
 
 
 def write_result(folder: Path, text: str) -> None:
@@ -63,7 +63,7 @@ def test_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.Monkey
     def full_disk(*_arguments: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("giveway.files.Path.replace", full_disk)
+    monkeypatch.setattr("giveway.base.files.Path.replace", full_disk)
     with pytest.raises(WriteError, match="no space"):
         write_text(path, "new")
     assert path.read_text() == "old"

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway.errors import InputFileError
+from giveway.base.errors import InputFileError
 from giveway.fitting.parameters import FREE, from_unit, limits, to_unit
 from giveway.fitting.quantities import QUANTITIES, Bench
 from giveway.fitting.record import read_record, robot_text

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 import xarray
 from cosim_helpers import short
-from giveway import batch, bench_batch
+from giveway import batch
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.batch import LANES
-from giveway.errors import GivewayError, UnknownNameError
-from giveway.random_collisions import random_collisions
-from giveway.scenario import BUMPERS
+from giveway.bench import collisions as bench_batch
+from giveway.scenario.random_collisions import random_collisions
+from giveway.scenario.scenario import BUMPERS
 
 POSSIBLE = [lanes for lanes in LANES if lanes <= batch.widest_lanes()]
 FORCE, TICK = "testbed.truth.contact_force", "controller.detection.tick"
@@ -241,7 +242,7 @@ def test_a_push_and_a_plan_act_as_in_the_event_exact_method() -> None:
 
     for scenario in (
         short(push=push, testbed={"slider.present": False}),
-        short(plan=giveway.plan.Rest(0.3, -0.2, 0.4)),
+        short(plan=giveway.scenario.plan.Rest(0.3, -0.2, 0.4)),
     ):
         names = ["testbed.truth.x", "testbed.truth.y", "testbed.truth.theta"]
         exact, table = batch.run_many([scenario], traces=names), fixed([scenario], traces=names)

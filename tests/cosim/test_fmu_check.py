@@ -9,11 +9,11 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from giveway import native
+from giveway.base import native
+from giveway.base.errors import FileError
 from giveway.cli import _main
-from giveway.errors import FileError
-from giveway.fmu_binaries import read_binary
-from giveway.fmu_check import CHECKS, check_fmu
+from giveway.fmu_tools.binaries import read_binary
+from giveway.fmu_tools.check import CHECKS, check_fmu
 
 MODELS = (*native.MODELS, *native.COMPONENTS)
 EPOCH = (1980, 1, 1, 0, 0, 0)

@@ -14,11 +14,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from giveway.base.errors import FileError, SimulationError
 from giveway.cli import _main
-from giveway.errors import FileError, SimulationError
-from giveway.fmu_check import check_fmu
-from giveway.fmu_limits import Limits
-from giveway.fmu_run import FmuStoppedError, run_fmu
+from giveway.fmu_tools.check import check_fmu
+from giveway.fmu_tools.limits import Limits
+from giveway.fmu_tools.run import FmuStoppedError, run_fmu
 from measured_process import measure
 from stub_fmus import (
     DESCRIPTION,

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway import native
+from giveway.base import native
+from giveway.base.errors import GivewayError, SimulationError
 from giveway.cli import _main
-from giveway.errors import GivewayError, SimulationError
-from giveway.fmu import Instance, open_fmu
-from giveway.fmu_run import run_fmu
-from giveway.variables import table as variable_table
+from giveway.fmu_tools.run import run_fmu
+from giveway.robot.variables import table as variable_table
+from giveway.simulation.fmu import Instance, open_fmu
 from stub_fmus import files, library, pack
 
 DRIVE = ["carrier.velocity=0.2", "bumper.kind=1"]  # the carrier's face moves into the plate's

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from giveway.base.errors import FileError, GivewayError
 from giveway.cli import _main
-from giveway.errors import FileError, GivewayError
-from giveway.fmu_check import Severity, check_fmu
-from giveway.fmu_run import run_fmu
+from giveway.fmu_tools.check import Severity, check_fmu
+from giveway.fmu_tools.run import run_fmu
 from stub_fmus import CO_SIMULATION, STRUCTURE_3, VARIABLES_3, description_3, files, pack
 
 MANIFEST = "extra/org.example.results/fmi-ls-manifest.xml"

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from giveway.approach import outline_of
-from giveway.errors import GivewayError
-from giveway.footprint import controller_outline, hull, wheel_corners
-from giveway.variables import Value, table
+from giveway.base.errors import GivewayError
+from giveway.robot.footprint import controller_outline, hull, wheel_corners
+from giveway.robot.variables import Value, table
+from giveway.scenario.approach import outline_of
 from scipy.spatial import ConvexHull
 
 

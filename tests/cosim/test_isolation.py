@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 
 import pytest
-from giveway.isolation import IsolatedError, isolated
+from giveway.fmu_tools.isolation import IsolatedError, isolated
 
 
 def _spins(_: object) -> None:
@@ -46,7 +46,7 @@ def test_a_limit_that_is_there_already_is_kept() -> None:
     """A process may not raise it: asked for more, the function works within what there is."""
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_AS, (10**9, 10**9))\n"
-        "from giveway.isolation import isolated\n"
+        "from giveway.fmu_tools.isolation import isolated\n"
         "print(isolated(lambda _: resource.getrlimit(resource.RLIMIT_AS), None, 5, 5000))"
     )
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -12,8 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway import native
-from giveway.drivetrain import (
+from giveway.base import native
+from giveway.base.errors import GivewayError, InputFileError
+from giveway.drivetrain.analysis import analyse
+from giveway.drivetrain.model import (
     ANGLE,
     ENVIRONMENT,
     MOTOR,
@@ -26,9 +28,7 @@ from giveway.drivetrain import (
     read,
     response,
 )
-from giveway.drivetrain_analysis import analyse
-from giveway.errors import GivewayError, InputFileError
-from giveway.robot import read_robot
+from giveway.robot.robot_file import read_robot
 from PIL import Image
 from sampled_drivetrain import TICK_S, largest_multiplier, simulate
 
@@ -259,7 +259,6 @@ def test_command_writes_single_files(cli: Cli, tmp_path: Path) -> None:
 
 def test_only_the_analysis_loads_python_control() -> None:
     """It costs a second at start-up."""
-    code = (
-        "import sys, giveway.cli, giveway.drivetrain, giveway.drivetrain_analysis; sys.exit('control' in sys.modules)"
-    )
+    modules = "giveway.cli, giveway.drivetrain.model, giveway.drivetrain.analysis"
+    code = f"import sys, {modules}; sys.exit('control' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

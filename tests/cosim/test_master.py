@@ -12,12 +12,12 @@ import giveway
 import numpy as np
 import pytest
 from cosim_helpers import short
-from giveway import native
-from giveway.errors import FileError, GivewayError, SimulationError
-from giveway.fmu import open_fmu
-from giveway.master import simulate
-from giveway.result import Result
-from giveway.variables import table
+from giveway.base import native
+from giveway.base.errors import FileError, GivewayError, SimulationError
+from giveway.robot.variables import table
+from giveway.simulation.fmu import open_fmu
+from giveway.simulation.master import simulate
+from giveway.simulation.result import Result
 from numpy.typing import NDArray
 
 

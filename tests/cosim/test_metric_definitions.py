@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 import synthetic_collision as synthetic
 import xarray
-from giveway import metrics
-from giveway.body_regions import BodyRegion, body_region
+from giveway.scenario.body_regions import BodyRegion, body_region
+from giveway.simulation import metrics
 from native_metrics import evaluate as native
 
 CONTACT, DETECTED, LAST_TOUCH = 100, 150, 299

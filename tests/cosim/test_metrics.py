@@ -6,7 +6,7 @@ import math
 
 import pytest
 import synthetic_collision as synthetic
-from giveway.metrics import Collision, Metric, collision
+from giveway.simulation.metrics import Collision, Metric, collision
 
 # Sums over a 1 ms grid against integrals: at most one step's worth of force (40 N x 1 ms) on 2 N s.
 ONE_STEP = 0.04 + 1e-9

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arc_logs import arc_log, csv_lines, sine
-from giveway import native
-from giveway.calibration.motion_log import read_log
-from giveway.errors import FileError
-from giveway.robot import Robot, read_robot
+from giveway.base import native
+from giveway.base.errors import FileError
+from giveway.identification.motion_log import read_log
+from giveway.robot.robot_file import Robot, read_robot
 
 SHORT = arc_log((1.0, 0.5, 0.0), sine(4.0, 1.0), 1.0)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from giveway.result import Result
+from giveway.simulation.result import Result
 
 BUMPERS = ("none", "spring", "magnetic")
 

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from giveway.errors import GivewayError
-from giveway.plan import Circle, Pushes, Rest, Straight, TimedPush, start_values
+from giveway.base.errors import GivewayError
+from giveway.scenario.plan import Circle, Pushes, Rest, Straight, TimedPush, start_values
 from numpy.typing import NDArray
 
 POSITION, VELOCITY, ACCELERATION = slice(0, 3), slice(3, 6), slice(6, 9)

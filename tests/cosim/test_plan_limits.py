@@ -8,10 +8,10 @@ from pathlib import Path
 import giveway
 import pytest
 from giveway import batch
-from giveway.errors import GivewayError, InputFileError
-from giveway.plan import Circle, Plan, Straight
-from giveway.plan_limits import Limits, check_plan
-from giveway.scenario_file import read_scenario
+from giveway.base.errors import GivewayError, InputFileError
+from giveway.scenario.plan import Circle, Plan, Straight
+from giveway.scenario.plan_limits import Limits, check_plan
+from giveway.scenario.scenario_file import read_scenario
 from giveway.study import Study
 from study_helpers import small_study, stored_runs
 

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import pytest
 from cosim_helpers import short
 from giveway import batch
-from giveway.variables import Value
+from giveway.robot.variables import Value
 
 TICK_S = 5e-4
 BRISTLE, TANH = 0, 1  # roller.model

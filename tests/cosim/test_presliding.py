@@ -11,10 +11,10 @@ import giveway
 import numpy as np
 import pytest
 from giveway import batch
-from giveway.errors import GivewayError
-from giveway.presliding import Base, KnownPush, calibrate, felt_wrench, static_torques
-from giveway.static_pushes.placements import Placement, default_outline, middles, random_placements
-from giveway.static_pushes.trials import READ_S, STEP_S, Trial
+from giveway.base.errors import GivewayError
+from giveway.experiments.static_push_study.placements import Placement, default_outline, middles, random_placements
+from giveway.experiments.static_push_study.trials import READ_S, STEP_S, Trial
+from giveway.identification.presliding import Base, KnownPush, calibrate, felt_wrench, static_torques
 
 BASE = Base(wheel_radius_m=0.1, wheel_distance_m=0.25, drivetrain_stiffness_nm_per_rad=700.0)
 STIFFNESS = np.array([12e3, 25e3, 60e3])

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway import sweep
+from giveway.base.terminal import progress_bars, working
+from giveway.base.words import counted
 from giveway.cli import _main
-from giveway.drivetrain import read
-from giveway.drivetrain_analysis import analyse
+from giveway.drivetrain import frequency_response as sweep
+from giveway.drivetrain.analysis import analyse
+from giveway.drivetrain.model import read
 from giveway.study import answers
-from giveway.study.command import overview, sizes
 from giveway.study.engine import Outcome, plan_runs
-from giveway.terminal import progress_bars, working
-from giveway.words import counted
+from giveway.study.messages import overview, sizes
 from study_helpers import small_study
 
 

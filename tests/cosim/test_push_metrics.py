@@ -13,12 +13,12 @@ import pytest
 import xarray
 from cosim_helpers import Cli
 from giveway import batch
-from giveway.metrics import Metric
-from giveway.plan import Pushes, TimedPush
-from giveway.push_response import TRACES, push_metrics, responses
 from giveway.report import render
-from giveway.result import Result
-from giveway.summary import false_detection_line, push_rows
+from giveway.scenario.plan import Pushes, TimedPush
+from giveway.simulation.metrics import Metric
+from giveway.simulation.push_response import TRACES, push_metrics, responses
+from giveway.simulation.result import Result
+from giveway.simulation.summary import false_detection_line, push_rows
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pushed_on_a_circle.toml"
 STEP_S = 0.001
@@ -153,7 +153,7 @@ def test_what_no_push_caused_is_told_with_its_times(by_the_paper: Result) -> Non
 
 
 def test_the_rows_and_the_metric_have_one_definition(by_the_paper: Result) -> None:
-    from giveway.push_response import responses_of
+    from giveway.simulation.push_response import responses_of
 
     found = responses_of(by_the_paper.traces, by_the_paper.manifest)
     assert len(found.false_s) == by_the_paper.metric("false detections").value

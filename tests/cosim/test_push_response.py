@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from giveway.plan import TimedPush
-from giveway.push_response import TRACES, Responses, most_events, responses
+from giveway.scenario.plan import TimedPush
+from giveway.simulation.push_response import TRACES, Responses, most_events, responses
 
 STEP_S = 0.01
 PUSH = TimedPush(40.0, math.radians(30.0), 0.1, 0.0, 1.0, 0.5)

@@ -10,7 +10,7 @@ from pathlib import Path
 import giveway
 import numpy as np
 import pytest
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
 from giveway.study import Study, study_file
 from giveway.study.designs import OPTIONS
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway import native
-from giveway.errors import GivewayError
-from giveway.presliding import Base
-from giveway.robot import read_robot
-from giveway.toml_lines import line_of
-from giveway.variables import table
+from giveway.base import native
+from giveway.base.errors import GivewayError
+from giveway.base.toml_lines import line_of
+from giveway.identification.presliding import Base
+from giveway.robot.robot_file import read_robot
+from giveway.robot.variables import table
 
 TRIKEY = native.robot().read_text(encoding="utf-8")
 MASS = 'value = 34.7\nunit = "kg"'

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from giveway.report.overview import numbers
-from giveway.result import Result
-from giveway.summary import table_rows
+from giveway.simulation.result import Result
+from giveway.simulation.summary import table_rows
 from PIL import Image
 
 README = Path(__file__).parents[2] / "README.md"

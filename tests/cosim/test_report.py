@@ -10,10 +10,10 @@ from pathlib import Path
 import giveway
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway.metrics import Metric
 from giveway.report import render
-from giveway.result import Result
-from giveway.summary import cell, number, summary, table_rows
+from giveway.simulation.metrics import Metric
+from giveway.simulation.result import Result
+from giveway.simulation.summary import cell, number, summary, table_rows
 
 MAXIMUM_BYTES = 3_000_000
 

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 from cosim_helpers import Cli
 from giveway import experiments
-from giveway.errors import GivewayError, UnknownNameError
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.experiments import Experiment
-from giveway.report.reproduction import render
-from giveway.reproduce import chosen, reproduce, table_rows, write_table
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.experiments.reproduction.page import render
+from giveway.experiments.reproduction.reproduce import chosen, reproduce, table_rows, write_table
 from matplotlib.figure import Figure
 
 Registry = Callable[..., None]

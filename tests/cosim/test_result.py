@@ -9,10 +9,10 @@ from pathlib import Path
 import giveway
 import numpy as np
 import pytest
-from giveway import native
-from giveway.errors import FileError, UnknownNameError
-from giveway.result import Result
-from giveway.variables import table
+from giveway.base import native
+from giveway.base.errors import FileError, UnknownNameError
+from giveway.robot.variables import table
+from giveway.simulation.result import Result
 
 
 def test_every_output_is_a_labelled_trace(short_run: Result) -> None:

@@ -6,10 +6,10 @@ import difflib
 from pathlib import Path
 
 import pytest
-from giveway import native
-from giveway.errors import FileError
-from giveway.robot import read_robot
-from giveway.robot_changes import NewValue, changed_robot
+from giveway.base import native
+from giveway.base.errors import FileError
+from giveway.robot.changes import NewValue, changed_robot
+from giveway.robot.robot_file import read_robot
 
 NEW = NewValue(0.25, "a test", "fitted", "medium", "a note")
 

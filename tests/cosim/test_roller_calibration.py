@@ -12,17 +12,18 @@ import numpy as np
 import pytest
 from arc_logs import ALPHA, B_R, R_W, STEP_S, Swing, arc_log, csv_lines, sine, world_torques
 from cosim_helpers import Cli, folder_content
-from giveway import batch, native
-from giveway.approach import Approach, edge_middle, meet, outline_of
-from giveway.calibration.motion_log import MotionLog
-from giveway.calibration.roller_fit import RestZone, fit, half_widths, prepare
-from giveway.calibration.roller_friction import Calibration, UnidentifiableError, calibrate
-from giveway.calibration.torque_model import TorqueModel
-from giveway.errors import GivewayError
+from giveway import batch
+from giveway.base import native
+from giveway.base.errors import GivewayError
 from giveway.experiments.roller_calibration import ARCS, RECORDED, arc_scenario, log_of
-from giveway.robot import Robot, read_robot
-from giveway.robot_changes import NewValue, changed_robot
-from giveway.variables import table
+from giveway.identification.motion_log import MotionLog
+from giveway.identification.roller_fit import RestZone, fit, half_widths, prepare
+from giveway.identification.roller_friction import Calibration, UnidentifiableError, calibrate
+from giveway.identification.torque_model import TorqueModel
+from giveway.robot.changes import NewValue, changed_robot
+from giveway.robot.robot_file import Robot, read_robot
+from giveway.robot.variables import table
+from giveway.scenario.approach import Approach, edge_middle, meet, outline_of
 from PIL import Image
 
 GOOD = arc_log((1.0, 0.0, 0.0), sine(1.5, 0.1), 30.0)

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 from cosim_helpers import Cli, short
 from giveway import batch
-from giveway.errors import GivewayError
-from giveway.plan import Straight
+from giveway.base.errors import GivewayError
+from giveway.experiments.reproduction.findings import warning_notes
 from giveway.report import render
-from giveway.reproduction import warning_notes
-from giveway.run_warnings import BOUNDS, CODES, METRICS, Stated, masks, warnings_of
-from giveway.scenario_file import scenario_of
-from giveway.stated_contact import StatedContact
-from giveway.summary import summary, warning_lines
+from giveway.scenario.plan import Straight
+from giveway.scenario.scenario_file import scenario_of
+from giveway.scenario.stated_contact import StatedContact
+from giveway.simulation.run_warnings import BOUNDS, CODES, METRICS, Stated, masks, warnings_of
+from giveway.simulation.summary import summary, warning_lines
 from numpy.typing import NDArray
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
@@ -295,6 +295,6 @@ def test_an_interrupted_run_has_none() -> None:
 
 
 def all_metrics(result: giveway.Result) -> list[object]:  # type: ignore[name-defined]
-    from giveway import metrics
+    from giveway.simulation import metrics
 
     return [*result.metrics, *metrics.design(result.traces, result.manifest["parameters"])]

@@ -9,9 +9,9 @@ import sys
 
 import giveway
 import pytest
-from giveway.errors import GivewayError, UnknownNameError
-from giveway.plan import Rest
-from giveway.variables import parse_assignments, table
+from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.robot.variables import parse_assignments, table
+from giveway.scenario.plan import Rest
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from cosim_helpers import Cli, folder_content
 from giveway import batch
-from giveway.errors import InputFileError
-from giveway.plan import Circle, Pushes, Straight
-from giveway.scenario_file import read_scenario
-from giveway.toml_lines import flatten, line_of
+from giveway.base.errors import InputFileError
+from giveway.base.toml_lines import flatten, line_of
+from giveway.scenario.plan import Circle, Pushes, Straight
+from giveway.scenario.scenario_file import read_scenario
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 

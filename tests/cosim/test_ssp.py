@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
-from giveway import experiments, native
+from giveway import experiments
+from giveway.base import native
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.cli import _main
-from giveway.errors import GivewayError, UnknownNameError
-from giveway.fmu import Instance, open_fmu
-from giveway.master import COMMANDS, KINDS, SENSORS, simulate
-from giveway.scenario import BUMPERS
-from giveway.ssp import parameter_set, write_ssp
-from giveway.variables import table
+from giveway.fmu_tools.ssp import parameter_set, write_ssp
+from giveway.robot.variables import table
+from giveway.scenario.scenario import BUMPERS
+from giveway.simulation.fmu import Instance, open_fmu
+from giveway.simulation.master import COMMANDS, KINDS, SENSORS, simulate
 from lxml import etree
 
 SCHEMAS = Path(fmpy.__file__).parent / "ssp" / "schema"

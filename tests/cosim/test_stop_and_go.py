@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from giveway import batch
-from giveway.plan import PLAN_INPUTS
-from giveway.scenario import Scenario
+from giveway.scenario.plan import PLAN_INPUTS
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
-    from giveway.variables import Value
+    from giveway.robot.variables import Value
     from numpy.typing import NDArray
 
 PERIOD_S, SPEED_MPS, ACCELERATION_MPS2 = 4.0, 0.16, 0.3

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from giveway import batch
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
 from giveway.study import answers
 from giveway.study.answers import over_runs
 from giveway.study.chosen import simulate

@@ -11,9 +11,10 @@ import fmpy.ssp
 import giveway
 import numpy as np
 import pytest
-from giveway import batch, native
-from giveway.errors import GivewayError
-from giveway.robot_changes import NewValue, changed_robot
+from giveway import batch
+from giveway.base import native
+from giveway.base.errors import GivewayError
+from giveway.robot.changes import NewValue, changed_robot
 from giveway.study.answers import Answers, load
 from giveway.study.engine import sweep
 from giveway.study.export import SSV, export_design, export_table

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
 from giveway.study import study_file
 from study_helpers import LATCH, small_study
 
@@ -159,7 +159,7 @@ def test_a_file_that_is_no_csv_is_refused(tmp_path: Path) -> None:
 def test_a_limit_of_a_body_region_is_its_number() -> None:
     study = small_study().constraint("peak force of the run", maximum="transient limit")
     study.document["scenario"]["judge_as"] = "lower leg"
-    from giveway.body_regions import body_region
+    from giveway.scenario.body_regions import body_region
 
     assert study.setup().constraints[0].maximum == body_region("lower leg").peak_limit_n
     # 420 N/cm2 on half a square centimetre

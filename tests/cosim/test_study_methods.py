@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
 from giveway.study.engine import sweep
 from study_helpers import small_study, stored_runs
 
@@ -30,7 +30,7 @@ def test_the_plant_s_step_is_part_of_the_run(tmp_path: Path) -> None:
 
 
 def test_limits_of_the_body_region_reach_the_library(tmp_path: Path) -> None:
-    from giveway.body_regions import body_region
+    from giveway.scenario.body_regions import body_region
 
     study = small_study()
     study.document["scenario"]["judge_as"] = "lower leg"

@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 from giveway import batch
-from giveway.approach import Approach, edge_middle, meet_as_stated, outline_of
-from giveway.plan import Rest, Straight
-from giveway.scenario import Scenario
+from giveway.robot.variables import table
+from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
+from giveway.scenario.plan import Rest, Straight
+from giveway.scenario.scenario import Scenario
 from giveway.study import Study
 from giveway.study.chosen import scenario_of_run
 from giveway.study.engine import plan_runs
 from giveway.study.native_part import NativePart
 from giveway.study.runs import RunTable
-from giveway.variables import table
 from study_helpers import LATCH, small_study
 
 VARIED = {
@@ -104,7 +104,7 @@ def test_values_end_up_where_they_belong() -> None:
 @pytest.mark.parametrize("plan", [Rest(0.3, -0.2, 0.4), Straight(0.2, 0.5, theta_rad=0.1)], ids=["rest", "moving"])
 @pytest.mark.parametrize("rope", [False, True])
 def test_many_approaches_are_as_one_by_one(plan: object, rope: bool) -> None:
-    from giveway.approach import Approaches, meet_many
+    from giveway.scenario.approach import Approaches, meet_many
 
     testbed = {v.name: v.start for v in table("testbed").select("parameter") if v.start is not None} | {
         "bumper.kind": 0

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
-from giveway.errors import FileError
+from giveway.base.errors import FileError
 from giveway.study import Study
 from giveway.study.engine import Outcome, plan_runs, sweep
 from giveway.study.native_part import NativePart

@@ -6,13 +6,13 @@ import csv
 from pathlib import Path
 
 import pytest
+from giveway.base.units import WrittenUnit
+from giveway.robot.variables import table
 from giveway.study.answers import Answers
 from giveway.study.asked import asked
 from giveway.study.export import export_design, export_table
 from giveway.study.report import write_report
 from giveway.study.tables import design_rows, goal_header
-from giveway.units import WrittenUnit
-from giveway.variables import table
 from study_helpers import LATCH, SPRING, small_study
 
 

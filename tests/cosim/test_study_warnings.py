@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from cosim_helpers import Cli
 from giveway import batch
-from giveway.run_warnings import MEANINGS
+from giveway.simulation.run_warnings import MEANINGS
 from giveway.study.answers import Answers
 from giveway.study.chosen import scenario_of_run
 from giveway.study.export import export_table

@@ -7,11 +7,11 @@ import dataclasses
 import numpy as np
 import pytest
 from cosim_helpers import Cli
-from giveway import sweep
-from giveway.drivetrain import Drivetrain, Servo, read, response
-from giveway.drivetrain_analysis import SOURCES, analyse
-from giveway.errors import GivewayError, SimulationError
-from giveway.sweep import Sweep, measure
+from giveway.base.errors import GivewayError, SimulationError
+from giveway.drivetrain import frequency_response as sweep
+from giveway.drivetrain.analysis import SOURCES, analyse
+from giveway.drivetrain.frequency_response import Sweep, measure
+from giveway.drivetrain.model import Drivetrain, Servo, read, response
 
 FREQUENCY_HZ = np.array([0.7, 4.0, 9.0, 19.0, 33.0, 80.0, 250.0, 600.0])
 FRICTION_NM = 2.8  # Trikey's

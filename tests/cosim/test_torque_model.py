@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 from arc_logs import world_torques
-from giveway import native
-from giveway.calibration.torque_model import TorqueModel
-from giveway.robot import read_robot
+from giveway.base import native
+from giveway.identification.torque_model import TorqueModel
+from giveway.robot.robot_file import read_robot
 
 STEP_S = 1e-3
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from giveway import units
-from giveway.errors import GivewayError
-from giveway.units import factor
+from giveway.base import units
+from giveway.base.errors import GivewayError
+from giveway.base.units import factor
 
 SIZES = {  # of one unit in SI: the SI brochure; NIST SP 811 for inch, foot, pound and pound-force, which are exact
     ("m",): {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "km": 1e3, "in": 0.0254, "ft": 0.3048},

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway import native
+from giveway.base import native
 from giveway.cli import main as cli_main
 
 RUN = ("run", "motionless", "--out", "out/run")
@@ -92,7 +92,7 @@ def test_broken_robot_files_name_the_key(cli: Cli, tmp_path: Path) -> None:
 def test_missing_native_parts_name_both_places(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(native, "__file__", str(tmp_path / "giveway" / "native.py"))
+    monkeypatch.setattr(native, "__file__", str(tmp_path / "giveway" / "base" / "native.py"))
     monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "elsewhere"))
     monkeypatch.setattr("sys.argv", ["giveway", "run", "motionless", "--out", str(tmp_path / "out")])
     with pytest.raises(SystemExit) as caught:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from giveway.plan import PLAN_INPUTS, PUSH_INPUTS
+from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS
 from giveway_modelica.agreement import SAMPLED, SMOOTH, STOP_S, heights, signals, simulated
 from giveway_modelica.compiler import Compiler
 from giveway_modelica.fmu_runs import CONTROLLER, COUNTS, RUNS, TESTBED, Alone, Array, Pair, two_pushes

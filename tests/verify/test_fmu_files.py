@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from giveway import native
+from giveway.base import native
 
 from verify.fmu_files.faults import FAULTS
 from verify.fmu_files.make import MAKERS, bases, hostile

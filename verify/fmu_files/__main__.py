@@ -74,14 +74,14 @@ def main() -> int:
 def _load() -> list[Base]:
     """Everything that the commands import, once, and the healthy files."""
     import fmpy.model_description  # noqa: F401
-    import giveway.fmu_check
-    import giveway.fmu_commands
-    import giveway.fmu_info
-    import giveway.fmu_page
-    import giveway.fmu_run  # noqa: F401
+    import giveway.fmu_tools.check
+    import giveway.fmu_tools.command
+    import giveway.fmu_tools.info
+    import giveway.fmu_tools.page
+    import giveway.fmu_tools.run  # noqa: F401
     import lief  # noqa: F401
     import lxml.etree  # noqa: F401
-    from giveway import native
+    from giveway.base import native
 
     return bases([native.fmu("bumper", version).read_bytes() for version in (2, 3)])
 

@@ -14,7 +14,7 @@ __all__ = ["FAULTS", "Fault"]
 
 
 def _replace_check(name: str, function: Callable[[Any], Any]) -> None:
-    import giveway.fmu_check as checks
+    import giveway.fmu_tools.check as checks
 
     changed = dataclasses.replace(checks.CHECKS[name], function=function)
     checks.CHECKS = {**checks.CHECKS, name: changed}
@@ -42,7 +42,7 @@ def _leaves_behind() -> None:
 
 def _no_limits() -> None:
     """XML of any size is held in memory."""
-    from giveway import fmu_xml
+    from giveway.fmu_tools import xml_files as fmu_xml
 
     kept: list[bytes] = []
     fmu_xml.Budget.add_element = lambda _self: kept.append(bytes(1000))  # type: ignore[method-assign,assignment]
@@ -50,7 +50,7 @@ def _no_limits() -> None:
 
 def _traceback() -> None:
     """A number is taken for one without a look."""
-    from giveway import fmu_description
+    from giveway.fmu_tools import description as fmu_description
 
     fmu_description._Reader._number = lambda _self, text, *_: int(text)  # type: ignore[method-assign]
 

@@ -132,7 +132,7 @@ def _try(trial: Trial, command: str, arguments: list[str], folders: Folders) -> 
 
 def _call(arguments: list[str]) -> int:
     """The command line without its handler of last resort: what nobody foresaw comes through."""
-    from giveway.errors import GivewayError
+    from giveway.base.errors import GivewayError
 
     try:
         code = _commands()(args=arguments, standalone_mode=False)
@@ -145,7 +145,7 @@ def _call(arguments: list[str]) -> int:
 @functools.cache
 def _commands() -> Callable[..., object]:
     """Made once: that takes Typer longer than most files do."""
-    from giveway.fmu_commands import fmu_app
+    from giveway.fmu_tools.command import fmu_app
     from typer.main import get_command
 
     return get_command(fmu_app)

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from giveway.errors import GivewayError, UnknownNameError
+from giveway.base.errors import GivewayError, UnknownNameError
 
 if TYPE_CHECKING:
-    from giveway.reproduction import Effort, Findings
-    from giveway.scenario import Scenario
+    from giveway.experiments.reproduction.findings import Effort, Findings
+    from giveway.scenario.scenario import Scenario
 
 __all__ = ["Experiment", "all_experiments", "get"]
 

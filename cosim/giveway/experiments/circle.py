@@ -20,20 +20,20 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from giveway.errors import UnknownNameError
+from giveway.base.errors import UnknownNameError
 from giveway.experiments import Experiment
 from giveway.experiments.placement import for_this_robot, outline_of_robot
-from giveway.plan import Circle, Pushes, TimedPush, start_values
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
-from giveway.scenario import Scenario
-from giveway.variables import Value, table
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.variables import Value, table
+from giveway.scenario.plan import Circle, Pushes, TimedPush, start_values
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     import numpy as np
     import xarray
     from numpy.typing import NDArray
 
-    from giveway.push_response import Responses
+    from giveway.simulation.push_response import Responses
 
 DIAMETER_M, SPEED_MPS = 1.5, 0.16  # the paper's
 START_MPS2 = 0.1
@@ -121,7 +121,7 @@ def _push(
     duration_s: float,
 ) -> TimedPush:
     """A push on a side of the robot, which keeps the heading of its plan."""
-    from giveway.approach import edge_middle, outward_normal
+    from giveway.scenario.approach import edge_middle, outward_normal
 
     point = edge_middle(outline, side, offset_m)
     normal = outward_normal(outline, point)
@@ -157,7 +157,7 @@ def _random_pushes(count: int, oblique: bool, estimator: str) -> list[tuple[Scen
 
 def _respond(runs: Sequence[tuple[Scenario, TimedPush]], threads: int) -> list[Responses]:
     from giveway import batch
-    from giveway.push_response import TRACES, responses
+    from giveway.simulation.push_response import TRACES, responses
 
     data = batch.run_many([one for one, _ in runs], threads=threads, traces=TRACES)
     _refuse_failures(data)
@@ -171,7 +171,7 @@ def _trace_of(data: xarray.Dataset, run: int | None = None) -> Callable[[str], N
 
 
 def _refuse_failures(data: xarray.Dataset) -> None:
-    from giveway.errors import SimulationError
+    from giveway.base.errors import SimulationError
 
     for run, status in enumerate(data["status"].values):
         if status != "ok":
@@ -212,8 +212,8 @@ def _mismatched(
 def reproduce(effort: Effort) -> Findings:
     """The paper's 5.4: a round with pushes, random pushes, an hour undisturbed, and rollers unlike the model."""
     from giveway import batch
-    from giveway.push_response import responses
     from giveway.report import circle as drawn
+    from giveway.simulation.push_response import responses
 
     pushes = effort.pick(len(BY_HAND), 2)
     runs = {name: batch.run(scenario(estimator=name, pushes=pushes)) for name in (FULL, PAPER)}
@@ -347,7 +347,7 @@ def _rows_of_random_pushes(estimator: str, oblique: bool, found: Sequence[Respon
 
 
 def _rows_of_false_alarms(estimator: str, count: int, hours: float) -> list[Row]:
-    from giveway.push_response import most_events
+    from giveway.simulation.push_response import most_events
 
     target = (
         Target(maximum=FALSE_ALARMS_PER_HOUR, text=f"below {FALSE_ALARMS_PER_HOUR:g}") if estimator == FULL else None

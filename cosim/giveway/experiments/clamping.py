@@ -13,12 +13,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
 from giveway.experiments import Experiment
 from giveway.experiments.placement import before_resting, stated_contact, tare_s, testbed_of
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
-from giveway.scenario import BUMPERS, Scenario
-from giveway.variables import table
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.variables import table
+from giveway.scenario.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
     import xarray

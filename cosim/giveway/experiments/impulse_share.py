@@ -10,11 +10,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment, motionless
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 
 if TYPE_CHECKING:
-    from giveway.impulse_trials import Seen
-    from giveway.scenario import Scenario
+    from giveway.experiments.impulse_trials import Seen
+    from giveway.scenario.scenario import Scenario
 
 JUDGED_S = 0.08
 """When the share is taken, after the contact, s: about when 5.2's bumpers are noticed."""
@@ -30,7 +30,7 @@ def hits() -> dict[str, Scenario]:
     import dataclasses
 
     from giveway.experiments import moving
-    from giveway.impulse_trials import SHOWN_S
+    from giveway.experiments.impulse_trials import SHOWN_S
 
     still = {
         "at rest, no bumper": "none",
@@ -46,8 +46,8 @@ def hits() -> dict[str, Scenario]:
 
 def reproduce(effort: Effort) -> Findings:
     """Shares by 80 ms after the contact, for every hit and form of the estimator, and the impulses over time."""
-    from giveway.impulse_trials import FORMS, run_forms
-    from giveway.report.impulse_share import draw
+    from giveway.experiments.figures.impulse_share import draw
+    from giveway.experiments.impulse_trials import FORMS, run_forms
 
     seeds = effort.pick(SEEDS, FEW_SEEDS)
     forms = list(FORMS.values())
@@ -74,7 +74,7 @@ def reproduce(effort: Effort) -> Findings:
 
 
 def _rows(name: str, seen: dict[str, Seen]) -> list[Row]:
-    from giveway.impulse_trials import FORMS
+    from giveway.experiments.impulse_trials import FORMS
 
     return [
         Row(
@@ -92,7 +92,7 @@ def _rows(name: str, seen: dict[str, Seen]) -> list[Row]:
 
 def _reason(seen: dict[str, Seen]) -> str:
     """For a miss: what another corner of the rate filters would give."""
-    from giveway.impulse_trials import HIGH_CUTOFF_RADPS, LOW_CUTOFF_RADPS
+    from giveway.experiments.impulse_trials import HIGH_CUTOFF_RADPS, LOW_CUTOFF_RADPS
 
     slow, fast = (seen[form].share(JUDGED_S) for form in ("slow", "fast"))
     return (
@@ -102,7 +102,7 @@ def _reason(seen: dict[str, Seen]) -> str:
 
 
 def _note(name: str, seen: dict[str, Seen], quiet: Seen) -> str:
-    from giveway.impulse_trials import CUTOFF_RADPS, HIGH_CUTOFF_RADPS, LOW_CUTOFF_RADPS
+    from giveway.experiments.impulse_trials import CUTOFF_RADPS, HIGH_CUTOFF_RADPS, LOW_CUTOFF_RADPS
 
     noisy = seen["bristles"]
     share, without = noisy.share(JUDGED_S), float(quiet.share(JUDGED_S)[0])

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment
 from giveway.experiments.placement import pulled_by_weight, stated_contact
-from giveway.reproduction import Effort, Findings, Picture, Row, Target, warning_notes
-from giveway.scenario import BUMPERS, Scenario
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 DURATION_S = 8.0
 SPEED_MPS = 0.5  # of the slider at the contact
@@ -53,9 +53,9 @@ def scenario(bumper: str, duration_s: float = DURATION_S, *, robot: Path | None 
 def reproduce(effort: Effort) -> Findings:
     """5.2's rows and Fig. 10."""
     from giveway import batch
-    from giveway.noise_range import noise_note
+    from giveway.experiments.figures.impact_response import draw
+    from giveway.experiments.noise_range import noise_note
     from giveway.report import BUMPER_LABELS
-    from giveway.report.impact_response import draw
 
     results: dict[str, Result] = {}
     notes = []
@@ -90,7 +90,7 @@ def peak_torque_ms(result: Result) -> float:
     """When the peak torque of the impact is reached, ms since contact."""
     import numpy as np
 
-    from giveway.metrics import PEAK_WINDOW_S, Collision
+    from giveway.simulation.metrics import PEAK_WINDOW_S, Collision
 
     hit = Collision(result.traces, result.manifest["parameters"])
     time_s = hit.time_s - (hit.contact_s or 0.0)

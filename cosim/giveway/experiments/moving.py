@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment, motionless
 from giveway.experiments.placement import before_resting, stated_contact, tare_s
-from giveway.reproduction import Effort, Findings, Picture, Row, Target, warning_notes
-from giveway.scenario import BUMPERS, Scenario
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 SPEED_MPS = 0.22
 SLIDER_KG = 13.62
@@ -52,9 +52,9 @@ def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | No
 def reproduce(effort: Effort) -> Findings:
     """5.3's rows and Fig. 11."""
     from giveway import batch
-    from giveway.noise_range import noise_note
+    from giveway.experiments.figures.reversal import draw
+    from giveway.experiments.noise_range import noise_note
     from giveway.report import BUMPER_LABELS
-    from giveway.report.reversal import draw
 
     bumpers = ("spring", "magnetic")
     while_still = [batch.run(motionless.scenario(bumper, motionless.IMPACT_S)) for bumper in bumpers]

@@ -11,18 +11,18 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.errors import FileError, GivewayError, InputFileError
-from giveway.plan import Rest, Straight
-from giveway.robot import read_robot
-from giveway.stated_contact import StatedContact
-from giveway.variables import Value, table
+from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.robot.robot_file import read_robot
+from giveway.robot.variables import Value, table
+from giveway.scenario.plan import Rest, Straight
+from giveway.scenario.stated_contact import StatedContact
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from giveway.approach import Approach
-    from giveway.plan import Plan
+    from giveway.scenario.approach import Approach
+    from giveway.scenario.plan import Plan
 
 __all__ = [
     "before_resting",
@@ -48,7 +48,7 @@ def testbed_of(robot: Path | None) -> dict[str, Value]:
 
 def outline_of_robot(robot: Path | None) -> NDArray[np.float64]:
     """Corners of the robot, base frame, m, anticlockwise, shape (n, 2)."""
-    from giveway.approach import outline_of
+    from giveway.scenario.approach import outline_of
 
     return outline_of(testbed_of(robot))
 
@@ -73,7 +73,7 @@ def pulled_by_weight(experiment: str, robot: Path | None, speed_mps: float) -> d
     """
     if robot is None:
         return {}
-    from giveway.approach import Approach, edge_middle
+    from giveway.scenario.approach import Approach, edge_middle
 
     with for_this_robot(experiment, robot):
         testbed = testbed_of(robot)
@@ -94,7 +94,7 @@ def before_resting(
 
     They meet when the robot has been at ``speed_mps`` for ``steady_s``.
     """
-    from giveway.approach import Approach, edge_middle, outward_normal
+    from giveway.scenario.approach import Approach, edge_middle, outward_normal
 
     with for_this_robot(experiment, robot):
         testbed = testbed_of(robot)
@@ -119,7 +119,7 @@ def before_resting(
 
 def stated_contact(robot: Path | None, speed_mps: float, time_s: float | None = None) -> StatedContact:
     """The contact that an experiment asks for: in the middle of `SIDE`, this fast, and when, if that is stated."""
-    from giveway.approach import edge_middle
+    from giveway.scenario.approach import edge_middle
 
     return StatedContact(speed_mps, edge_middle(outline_of_robot(robot), SIDE), time_s)
 
@@ -131,7 +131,7 @@ def tare_s() -> float:
 
 
 def _meet(approach: Approach, testbed: Mapping[str, Value], plan: Plan) -> dict[str, Value]:
-    from giveway.approach import meet
+    from giveway.scenario.approach import meet
 
     found = meet(approach, {**testbed, "bumper.kind": 0}, plan, tare_s())
     return {name: value for name, value in found.items() if name not in ("slider.present", "rope.attached")}

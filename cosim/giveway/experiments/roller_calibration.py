@@ -13,20 +13,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from giveway.checks import finite
+from giveway.base.checks import finite
 from giveway.experiments import Experiment
-from giveway.plan import PLAN_INPUTS
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
-from giveway.scenario import Scenario
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.scenario.plan import PLAN_INPUTS
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     import numpy as np
     import xarray
     from numpy.typing import NDArray
 
-    from giveway.calibration.motion_log import MotionLog
-    from giveway.calibration.roller_friction import Calibration, FittedLog
-    from giveway.robot import Robot
+    from giveway.identification.motion_log import MotionLog
+    from giveway.identification.roller_friction import Calibration, FittedLog
+    from giveway.robot.robot_file import Robot
 
 SWING_RAD = 1.5
 FREQUENCY_HZ = 0.1
@@ -115,7 +115,7 @@ def log_of(name: str, table: xarray.Dataset, run: int, robot: Robot) -> MotionLo
     """What the robot's own computer would have written down in ``run`` of a batch that recorded `RECORDED`."""
     import numpy as np
 
-    from giveway.calibration.motion_log import MotionLog, behind_drivetrain, counts_to_rad
+    from giveway.identification.motion_log import MotionLog, behind_drivetrain, counts_to_rad
 
     columns = [table[column].values[run].astype(np.float64) for column in RECORDED]
     torque, counts = np.stack(columns[:3], axis=1), np.stack(columns[3:], axis=1)
@@ -127,9 +127,10 @@ def reproduce(effort: Effort) -> Findings:
     """Both arcs on both plants over several seeds: ratio of the torques, B_r and alpha with their intervals."""
     import numpy as np
 
-    from giveway import batch, native
-    from giveway.calibration.roller_friction import calibrate
-    from giveway.robot import read_robot
+    from giveway import batch
+    from giveway.base import native
+    from giveway.identification.roller_friction import calibrate
+    from giveway.robot.robot_file import read_robot
 
     robot = read_robot(native.robot())
     seeds = range(1, effort.pick(6, 1) + 1)
@@ -242,7 +243,7 @@ def _fit_rows(plant: str, found: Sequence[Calibration], robot: Robot) -> list[Ro
 
 
 def _pictures(found: Calibration) -> list[Picture]:
-    from giveway.report.calibration import residual_figure, torque_figure
+    from giveway.identification.figures import residual_figure, torque_figure
 
     return [
         Picture(
@@ -263,7 +264,7 @@ def _pictures(found: Calibration) -> list[Picture]:
 
 
 def _notes(found: Calibration, robot: Robot) -> list[str]:
-    from giveway.calibration.roller_fit import RestZone
+    from giveway.identification.roller_fit import RestZone
 
     zone = RestZone.of(robot)
     bend = 1e3 * float(robot.value("roller.radius")) / float(robot.value("roller.tanh_slope"))

@@ -13,22 +13,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from giveway.approach import outline_of
-from giveway.body_regions import NOTICE, body_region, body_regions, judge
-from giveway.errors import UnknownNameError
+from giveway.base.errors import UnknownNameError
 from giveway.experiments import Experiment
-from giveway.footprint import controller_outline, hull, wheel_corners
-from giveway.plan import Straight
-from giveway.reproduction import Effort, Findings, Picture, Row, Target, warning_notes
-from giveway.scenario import Scenario
-from giveway.stated_contact import StatedContact
-from giveway.variables import Value, table
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.robot.footprint import controller_outline, hull, wheel_corners
+from giveway.robot.variables import Value, table
+from giveway.scenario.approach import outline_of
+from giveway.scenario.body_regions import NOTICE, body_region, body_regions, judge
+from giveway.scenario.plan import Straight
+from giveway.scenario.scenario import Scenario
+from giveway.scenario.stated_contact import StatedContact
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
 AFTER_S = 6.0  # most of the escape, whose time constant is 1.25 s
@@ -208,7 +208,7 @@ def _reach(testbed: Mapping[str, Value], scene: Scene, ahead: NDArray[np.float64
 def reproduce(effort: Effort) -> Findings:
     """Detection, location and force of each scene, and the scenes from above."""
     from giveway import batch
-    from giveway.report.scene_view import scenes_figure
+    from giveway.experiments.figures.scene_view import scenes_figure
 
     found: dict[str, Result] = {}
     rows: list[Row] = []
@@ -237,7 +237,7 @@ def _creeping_roller(name: str, result: Result) -> list[str]:
     """What the slowest roller holds at the first hit long after the contact, against what (28) says; empty if none."""
     import numpy as np
 
-    from giveway.metrics import CAUSE_WINDOW_S, WHEELS, Collision
+    from giveway.simulation.metrics import CAUSE_WINDOW_S, WHEELS, Collision
 
     hit = Collision(result.traces, result.manifest["parameters"])
     hits = np.flatnonzero(np.diff(hit["controller.detection.count"], prepend=0) > 0)
@@ -325,7 +325,7 @@ def _values(result: Result, region: str) -> dict[str, float | None]:
 
 def _moved_m(result: Result) -> float | None:
     """How far the base is at the end from where it was at the first detection, m."""
-    from giveway.metrics import Collision
+    from giveway.simulation.metrics import Collision
 
     hit = Collision(result.traces, result.manifest["parameters"])
     if hit.detected is None:

@@ -3,7 +3,7 @@
 The weight of 1 kg pushes the robot, whose gears hold it; the torque sensors alone say where, from which side and how
 hard. The paper did this four times. Here it is done on many robots whose rollers differ, so that the paper's four have
 a distribution to lie in; then each robot's three presliding stiffnesses are learnt from three known pushes
-(`giveway.presliding`), and the controller that knows them is judged on other placements and other noise.
+(`giveway.identification.presliding`), and the controller that knows them is judged on other placements and other noise.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment
-from giveway.reproduction import Effort, Findings, Row, Target
+from giveway.experiments.reproduction.findings import Effort, Findings, Row, Target
 
 if TYPE_CHECKING:
-    from giveway.static_pushes.statics import Statics
-    from giveway.static_pushes.study import Study
-    from giveway.static_pushes.trials import Readings
+    from giveway.experiments.static_push_study.statics import Statics
+    from giveway.experiments.static_push_study.study import Study
+    from giveway.experiments.static_push_study.trials import Readings
 
 BAND = Target(5.0, 95.0, "5 to 95")  # outside: fewer than one group of four in ten is as extreme
 MEAN, TAIL = "mean", "95th percentile"
@@ -30,10 +30,10 @@ DRIFTS_NM = tuple(0.005 * step for step in range(1, 61))
 
 def reproduce(effort: Effort) -> Findings:
     """5.1's numbers beside their distribution over groups of four pushes, and the errors left after calibration."""
-    from giveway.report.static_pushes import pictures
-    from giveway.static_pushes.placements import default_outline
-    from giveway.static_pushes.statics import Statics
-    from giveway.static_pushes.study import Sizes, run_study
+    from giveway.experiments.figures.static_pushes import pictures
+    from giveway.experiments.static_push_study.placements import default_outline
+    from giveway.experiments.static_push_study.statics import Statics
+    from giveway.experiments.static_push_study.study import Sizes, run_study
 
     statics = Statics(default_outline(), effort.pick(2000, 300), STATIC_SEED)
     drift_nm = _drift_needed(statics)
@@ -47,7 +47,7 @@ def _group_rows(study: Study, statics: Statics) -> list[Row]:
     """The paper's six numbers against random groups of four pushes on one robot, and its four placements."""
     import numpy as np
 
-    from giveway.static_pushes.groups import PRINTED, group_values, percentile_of
+    from giveway.experiments.static_push_study.groups import PRINTED, group_values, percentile_of
 
     groups, placed = group_values(study.random), group_values(study.paper)
     rows = []
@@ -67,9 +67,9 @@ def _group_rows(study: Study, statics: Statics) -> list[Row]:
 
 def _reason(column: int, study: Study, statics: Statics) -> str:
     """Which parameter would have to be what for the paper's number in ``column`` to be an ordinary one."""
-    from giveway.static_pushes.groups import PRINTED, group_values, percentile_of
-    from giveway.static_pushes.robots import SCATTER, presliding_stiffness_n_per_m
-    from giveway.static_pushes.statics import first_reaching
+    from giveway.experiments.static_push_study.groups import PRINTED, group_values, percentile_of
+    from giveway.experiments.static_push_study.robots import SCATTER, presliding_stiffness_n_per_m
+    from giveway.experiments.static_push_study.statics import first_reaching
 
     paper = PRINTED[column].value
     drifted = percentile_of(paper, group_values(study.drifted)[:, column])
@@ -92,9 +92,9 @@ def _reason(column: int, study: Study, statics: Statics) -> str:
 
 def _drift_needed(statics: Statics) -> float:
     """The least drift of the torque zeros (N m) for which the paper's strongest push, 10 N, is in the band."""
-    from giveway.static_pushes.groups import PRINTED, percentile_of
-    from giveway.static_pushes.robots import SCATTER, presliding_stiffness_n_per_m
-    from giveway.static_pushes.statics import first_reaching
+    from giveway.experiments.static_push_study.groups import PRINTED, percentile_of
+    from giveway.experiments.static_push_study.robots import SCATTER, presliding_stiffness_n_per_m
+    from giveway.experiments.static_push_study.statics import first_reaching
 
     def reached(drift_nm: float) -> bool:
         magnitude, _ = statics.feel(presliding_stiffness_n_per_m(), SCATTER, drift_nm)
@@ -120,7 +120,7 @@ def _compensated_rows(study: Study) -> list[Row]:
     """What the calibrated controller is off by, on placements, loads and noise that it was not calibrated with."""
     import numpy as np
 
-    from giveway.static_pushes.study import KNOWN_PUSHES
+    from giveway.experiments.static_push_study.study import KNOWN_PUSHES
 
     stiffness = 100.0 * float(np.sqrt(np.mean(study.calibration_errors(KNOWN_PUSHES) ** 2)))
     rows = [Row(f"presliding stiffness from {KNOWN_PUSHES} known pushes, rms error", stiffness, "%", "assumed")]
@@ -150,8 +150,8 @@ def _notes(study: Study) -> list[str]:
 
 
 def _setting(study: Study) -> list[str]:
-    from giveway.static_pushes.robots import LOAD_SHARE, SCATTER
-    from giveway.static_pushes.trials import WEIGHT_N
+    from giveway.experiments.static_push_study.robots import LOAD_SHARE, SCATTER
+    from giveway.experiments.static_push_study.trials import WEIGHT_N
 
     return [
         f"{len(study.random.trials)} random pushes of {WEIGHT_N:g} N on {len(study.robots)} unpowered robots: anywhere "
@@ -168,8 +168,8 @@ def _strongest(study: Study) -> list[str]:
     """Why no push is felt in full, and what would make one be."""
     import numpy as np
 
-    from giveway.static_pushes.groups import PAPER_FORCE_N, PRINTED, group_values, percentile_of
-    from giveway.static_pushes.trials import WEIGHT_N
+    from giveway.experiments.static_push_study.groups import PAPER_FORCE_N, PRINTED, group_values, percentile_of
+    from giveway.experiments.static_push_study.trials import WEIGHT_N
 
     groups, loaded, drifted = (group_values(found) for found in (study.random, study.loaded, study.drifted))
     column = STRONGEST
@@ -191,7 +191,7 @@ def _strongest(study: Study) -> list[str]:
 def _calibration(study: Study) -> list[str]:
     import numpy as np
 
-    from giveway.static_pushes.study import KNOWN_PUSHES
+    from giveway.experiments.static_push_study.study import KNOWN_PUSHES
 
     counts = (2, KNOWN_PUSHES, 2 * KNOWN_PUSHES)
     spread = [100.0 * float(np.sqrt(np.mean(study.calibration_errors(count) ** 2))) for count in counts]

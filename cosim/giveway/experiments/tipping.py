@@ -18,15 +18,15 @@ import numpy as np
 
 from giveway import batch
 from giveway.experiments import Experiment, motionless
-from giveway.reproduction import Effort, Findings, Picture, Row, Target
-from giveway.scenario import BUMPERS, Scenario
+from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from giveway.result import Result
-    from giveway.variables import Value
+    from giveway.robot.variables import Value
+    from giveway.simulation.result import Result
 
 CENTRE_OF_MASS_M, TOP_M = 0.414, 0.751  # robot file; upper end of the same source's collision cylinder
 CONTACT_HEIGHT_M = 0.58

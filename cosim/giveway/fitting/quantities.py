@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway import native
+from giveway.base import native
+from giveway.base.errors import GivewayError
 from giveway.batch import run_many
-from giveway.errors import GivewayError
 from giveway.experiments import motionless, moving
 from giveway.experiments.placement import has_default_outline
-from giveway.robot import read_robot
-from giveway.scenario import BUMPERS, Scenario
-from giveway.variables import Value, table
+from giveway.robot.robot_file import read_robot
+from giveway.robot.variables import Value, table
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
     import xarray

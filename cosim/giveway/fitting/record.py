@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from giveway.files import read_json
+from giveway.base.files import read_json
 from giveway.fitting.parameters import FREE, to_unit
 from giveway.fitting.quantities import QUANTITIES
 from giveway.fitting.search import SEEDS, Fit
-from giveway.robot_changes import NewValue, changed_robot
+from giveway.robot.changes import NewValue, changed_robot
 
 __all__ = ["PARAMETER_HEADER", "TARGET_HEADER", "parameter_rows", "read_record", "record", "robot_text", "target_rows"]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.checks import whole
+from giveway.base.checks import whole
 from giveway.fitting.parameters import FREE, from_unit, limits, rounded, to_unit
 from giveway.fitting.quantities import QUANTITIES, Bench
 

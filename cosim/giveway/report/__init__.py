@@ -8,10 +8,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.files import write_text
+from giveway.base.files import write_text
 
 if TYPE_CHECKING:
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 __all__ = ["render", "write_picture", "write_report"]
 
@@ -37,7 +37,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     from giveway.report import pushes
     from giveway.report.animation import scene
     from giveway.report.figures import figures
-    from giveway.summary import false_detection_line, push_rows, table_rows, warning_lines
+    from giveway.simulation.summary import false_detection_line, push_rows, table_rows, warning_lines
 
     by_bumper = {result.manifest["scenario"]["bumper"]: result for result in results}
     hit = {

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.approach import outline_of
-from giveway.metrics import Collision
-from giveway.push_response import responses_of
 from giveway.report.obstacle import obstacle, plate
+from giveway.scenario.approach import outline_of
+from giveway.simulation.metrics import Collision
+from giveway.simulation.push_response import responses_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.push_response import PushResponse
-    from giveway.result import Result
+    from giveway.simulation.push_response import PushResponse
+    from giveway.simulation.result import Result
 
 __all__ = ["scene"]
 

@@ -10,16 +10,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.approach import outline_of
 from giveway.report.style import STYLE, TRUTH_COLOUR
-from giveway.variables import table
+from giveway.robot.variables import table
+from giveway.scenario.approach import outline_of
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from giveway.push_response import PushResponse, Responses
+    from giveway.simulation.push_response import PushResponse, Responses
 
 __all__ = ["alarm", "path"]
 

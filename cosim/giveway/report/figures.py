@@ -10,16 +10,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.metrics import WHEELS
 from giveway.report.inline_svg import inline_svg
 from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
+from giveway.simulation.metrics import WHEELS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 __all__ = ["NamedFigure", "figures"]
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from giveway.approach import outline_of
+from giveway.scenario.approach import outline_of
 
 __all__ = ["EDGE_DEPTH_M", "EDGE_M", "SLIDER_M", "obstacle", "plate", "rail"]
 

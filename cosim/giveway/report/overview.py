@@ -16,12 +16,12 @@ from matplotlib.transforms import Affine2D
 from giveway.report.obstacle import SLIDER_M
 from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
-from giveway.summary import table_rows
+from giveway.simulation.summary import table_rows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 __all__ = ["numbers", "write_overview"]
 

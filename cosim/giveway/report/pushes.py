@@ -9,18 +9,18 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.approach import outline_of
-from giveway.push_response import responses_of
 from giveway.report import circle
 from giveway.report.figures import NamedFigure
 from giveway.report.inline_svg import inline_svg
 from giveway.report.style import STYLE, TRUTH_COLOUR
+from giveway.scenario.approach import outline_of
+from giveway.simulation.push_response import responses_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.push_response import PushResponse
-    from giveway.result import Result
+    from giveway.simulation.push_response import PushResponse
+    from giveway.simulation.result import Result
 
 __all__ = ["figures"]
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.metrics import Collision
 from giveway.report.obstacle import rail
 from giveway.report.style import COLOURS
+from giveway.simulation.metrics import Collision
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from giveway.result import Result
+    from giveway.simulation.result import Result
 
 __all__ = ["IMPACT_MS", "Run", "force_window_ms"]
 

@@ -305,8 +305,8 @@ class Study:
             WriteError: the disk refused on the way; the parts before it are kept.
         """
         from giveway.study.answers import load
-        from giveway.study.command import showing
         from giveway.study.engine import sweep
+        from giveway.study.messages import showing
 
         setup = self.setup()
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:

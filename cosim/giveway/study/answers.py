@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import GivewayError
-from giveway.run_warnings import SEPARATOR
+from giveway.base.errors import GivewayError
+from giveway.base.units import WrittenUnit
+from giveway.simulation.run_warnings import SEPARATOR
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Varied
 from giveway.study.engine import load_runs
@@ -21,7 +22,6 @@ from giveway.study.results_table import read_part
 from giveway.study.runs import RunTable
 from giveway.study.setup import Goal, Setup
 from giveway.study.store import PARTS, list_parts
-from giveway.units import WrittenUnit
 
 if TYPE_CHECKING:
     import xarray

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from giveway import native
+from giveway.base import native
+from giveway.robot.variables import table
 from giveway.study.quantities import columns
-from giveway.variables import table
 
 if TYPE_CHECKING:
     from giveway.study.setup import Setup

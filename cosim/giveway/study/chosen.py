@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.scenario import BUMPERS
-from giveway.stated_contact import StatedContact
+from giveway.scenario.scenario import BUMPERS
+from giveway.scenario.stated_contact import StatedContact
 from giveway.study.runs import RunTable
 from giveway.study.setup import Setup
 
 if TYPE_CHECKING:
-    from giveway.result import Result
-    from giveway.scenario import Scenario
-    from giveway.variables import Value
+    from giveway.robot.variables import Value
+    from giveway.scenario.scenario import Scenario
+    from giveway.simulation.result import Result
 
 __all__ = ["hit_of", "scenario_of_run", "settings_of_run", "simulate"]
 
@@ -31,7 +31,7 @@ def settings_of_run(table: RunTable, design: int, sample: int, case: int) -> dic
     """
     rows = table.rows(np.array([design]), np.array([sample]), case)
     if rows.refused:
-        from giveway.errors import GivewayError
+        from giveway.base.errors import GivewayError
 
         raise GivewayError(f"design {design}", table.cases[case].case.name, rows.refused[0])
     found: dict[str, dict[str, Value]] = {"controller": {}, "testbed": {}}
@@ -85,7 +85,7 @@ def simulate(setup: Setup, table: RunTable, folder: Path, design: int) -> dict[s
     Returns the results by the collision's name.
     """
     from giveway import batch
-    from giveway.files import replace_folder
+    from giveway.base.files import replace_folder
 
     results: dict[str, Result] = {}
     for number, case in enumerate(setup.cases):

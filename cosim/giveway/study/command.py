@@ -1,112 +1,163 @@
-"""What `giveway sweep` and `giveway study` say: progress, what was done, what was written."""
+"""The commands `giveway sweep` and `giveway study`."""
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from giveway.study.engine import Outcome, Progress, Report
-from giveway.words import counted
+import typer
+
+from giveway.base.terminal import INTERRUPTED, print_columns, print_results, progress_bars, working
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
-    from giveway.study.runs import RunTable
-    from giveway.study.setup import Setup
 
-__all__ = ["CHOSEN", "REPORT", "duration", "overview", "showing", "sizes", "write_all"]
+__all__ = ["study_app", "sweep_designs"]
 
-SAY_EVERY_S = 5.0  # without a terminal
-CHOSEN, REPORT = "chosen designs", "report"  # what `write_all` does
+QUICK_S = 1.0  # nobody needs to be told of what takes less
+
+study_app = typer.Typer(name="study", help="Look at a study, and take its designs away.", no_args_is_help=True)
 
 
-@contextmanager
-def showing(name: str) -> Iterator[Report]:
-    """Progress on stderr with rate and time left: a bar at a terminal, else a line every few seconds."""
-    if not sys.stderr.isatty():
-        said = time.monotonic()
+def sweep_designs(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/studies/magnetic_latch.toml`.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Check the study and say how many runs it has; run nothing.")
+    ] = False,
+) -> None:
+    """Run a study of many designs, or go on with it; then tables, Pareto front, traces and a report in DIR."""
+    from giveway.study import messages as command
+    from giveway.study import study_file
+    from giveway.study.engine import plan_runs
+    from giveway.study.engine import sweep as run_study
 
-        def say(progress: Progress) -> None:
-            nonlocal said
-            if progress.done == progress.runs or time.monotonic() - said >= SAY_EVERY_S:
-                said = time.monotonic()
-                print(f"{name}: {_words(progress)}", file=sys.stderr, flush=True)
-
-        yield say
+    setup = study_file.read(study)
+    folder = Path("out/studies") / study.stem if out is None else out
+    if check:
+        typer.echo(command.sizes(setup, plan_runs(setup)))
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, TextColumn
-    from rich.progress import Progress as Bars
-
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[words]}"))
-    with Bars(*columns, console=Console(stderr=True)) as bars:
-        task = bars.add_task(name, total=None, words="")
-
-        def draw(progress: Progress) -> None:
-            bars.update(task, completed=progress.done, total=progress.runs, words=_words(progress))
-
-        yield draw
-
-
-def _words(progress: Progress) -> str:
-    left = progress.left_s
-    words = f"{progress.done:,} of {counted(progress.runs, 'run')}"
-    if left is not None and progress.done < progress.runs:
-        words += f", {progress.rate:,.0f} per second, {duration(left)} left"
-    if progress.failed:
-        words += f", {progress.failed:,} failed"
-    return words
+    with command.showing(setup.name) as progress:
+        outcome = run_study(setup, folder, threads=threads, progress=progress)
+    typer.echo(command.overview(setup, outcome))
+    if outcome.interrupted:
+        again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
+        typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    try:
+        found = _load(folder)
+        with progress_bars((command.CHOSEN, command.REPORT)) as report_progress:
+            written = command.write_all(found, progress=report_progress)
+    except KeyboardInterrupt:
+        typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    _print_answers(found)
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
-def duration(seconds: float) -> str:
-    """Seconds in words that can be read at a glance."""
-    if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+@study_app.command("show")
+def study_show(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+) -> None:
+    """Show the first answers of a study, also while it runs or after it was interrupted; writes its report."""
+    from giveway.study import messages as command
+
+    found = _load(folder)
+    _print_answers(found)
+    with working(command.REPORT) as progress:
+        written = command.write_all(found, simulate_chosen=False, progress=lambda _name, share: progress(share))
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
-def overview(setup: Setup, outcome: Outcome) -> str:
-    """One line about a sweep that has ended."""
-    are = "is" if outcome.runs == 1 else "are"
-    words = f"{setup.name}: {outcome.stored:,} of {counted(outcome.runs, 'run')} {are} stored in {outcome.folder}"
-    words += f"; {outcome.ran:,} run now in {duration(outcome.wall_s)}"
-    if outcome.reused:
-        words += f", {outcome.reused:,} taken from equal runs"
-    return words + (f", {outcome.failed:,} failed" if outcome.failed else "")
+@study_app.command("run")
+def study_run(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    design: Annotated[int, typer.Option("--design", metavar="N", help="Number of the design.")],
+) -> None:
+    """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
+    from giveway.study.chosen import CHOSEN, simulate
+
+    found = _load(folder)
+    found.check_design(design)
+    with working(f"design {design}"):
+        results = simulate(found.setup, found.runs, folder, design)
+    for name, result in results.items():
+        print_results(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
+    typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")
 
 
-def sizes(setup: Setup, table: RunTable) -> str:
-    """One line about a study that has not been run."""
-    return (
-        f"{setup.name}: {counted(len(table.designs), 'design')}, {counted(len(table.cases), 'collision')}, "
-        f"{counted(table.samples, 'sample')} with the nominal one: {counted(table.count, 'run')}"
-    )
+@study_app.command("export")
+def study_export(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="FILE.ssv, FILE.toml (for `giveway run`) or FILE.csv.")
+    ],
+    design: Annotated[
+        int | None, typer.Option("--design", metavar="N", help="Without it: the table of all, as CSV.")
+    ] = None,
+    collision: Annotated[str | None, typer.Option("--collision", metavar="NAME", help="Without it: the first.")] = None,
+    model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
+) -> None:
+    """Take a design away: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
+    from giveway.base.files import check_file
+    from giveway.study.export import export_design, export_table
+
+    check_file(out)
+    found = _load(folder)
+    if design is None:
+        export_table(found, out)
+    else:
+        export_design(found, design, out, collision=collision, model=model)
+    typer.echo(f"Written: {out}")
 
 
-def write_all(
-    answers: Answers, simulate_chosen: bool = True, progress: Callable[[str, float], None] = lambda name, share: None
-) -> list[Path]:
-    """Simulate the best designs event-exact with traces; write report.html, designs table and figures.
+@study_app.command("gallery")
+def study_gallery(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the pictures.")] = Path("docs"),
+    studies: Annotated[Path, typer.Option("--studies", metavar="DIR", help="Folder for the runs.")] = Path(
+        "out/studies"
+    ),
+    examples: Annotated[Path, typer.Option("--examples", metavar="DIR", help="Where the study files are.")] = Path(
+        "examples/studies"
+    ),
+) -> None:
+    """Run the example studies and draw the README's pictures of them."""
+    from giveway.study import messages as command
+    from giveway.study.gallery import draw_all
 
-    ``progress`` is called with `CHOSEN` or `REPORT` and the share of it that is done.
-    """
-    from giveway.study.chosen import simulate
-    from giveway.study.export import export_table
-    from giveway.study.report import write_report
+    for path, sentence in draw_all(examples, studies, out, command.showing):
+        typer.echo(f"{path}: {sentence}")
 
-    results = {}
-    if simulate_chosen and answers.setup.chosen:
-        best = answers.order[: answers.setup.chosen].tolist()
-        for index, design in enumerate(best):
-            progress(CHOSEN, index / len(best))
-            results[design] = simulate(answers.setup, answers.runs, answers.folder, design)
-        progress(CHOSEN, 1.0)
-    progress(REPORT, 0.0)
-    table_file, report = answers.folder / "table.csv", answers.folder / "report.html"
-    export_table(answers, table_file)
-    write_report(report, answers, results)
-    progress(REPORT, 1.0)
-    return [report, table_file]
+
+def _load(folder: Path) -> Answers:
+    """The answers of the study in ``folder``; a large one takes a while to read, which is said."""
+    from giveway.study import answers
+
+    name = "reading the runs"
+    began = time.monotonic()
+    with progress_bars((name,)) as progress:
+
+        def say(share: float) -> None:
+            if time.monotonic() - began > QUICK_S:
+                progress(name, share)
+
+        return answers.load(folder, say)
+
+
+def _print_answers(found: Answers) -> None:
+    from giveway.study import tables
+
+    print_columns(f"{found.setup.name}: {tables.counts(found)}", tables.goal_header(found), tables.design_rows(found))
+    rows = tables.sensitivity_rows(found)
+    if rows:
+        print_columns("What decides", tables.sensitivity_header(found), rows)
+    if reason := found.sensitivities().reason:
+        typer.echo(f"What decides is not known: {reason}.")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import GivewayError
+from giveway.base.errors import GivewayError
 from giveway.study.distributions import Tolerance, Varied
 
 if TYPE_CHECKING:

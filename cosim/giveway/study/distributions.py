@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.checks import finite
-from giveway.errors import GivewayError, UnknownNameError
+from giveway.base.checks import finite
+from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.base.units import WrittenUnit
 from giveway.study.quantities import Quantity
-from giveway.units import WrittenUnit
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import FileError, GivewayError, InputFileError
-from giveway.run_warnings import Stated
+from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
 from giveway.study.runs import RunTable
@@ -101,7 +101,7 @@ def check_disk(setup: Setup, count: int, folder: Path) -> None:
         allowed = f"as many as fit into {DISK_SHARE * free / 1e9:.3g} GB of free space on the disk of {folder}"
         error = GivewayError(key, f"{count} runs ({needed / 1e9:.3g} GB)", allowed)
         if setup.text is not None and setup.path is not None:
-            from giveway.toml_lines import line_of
+            from giveway.base.toml_lines import line_of
 
             raise InputFileError(setup.path, line_of(setup.text, key), error)
         raise error
@@ -117,7 +117,7 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
         FileError: the folder holds something else, is in use, or cannot be written.
         WriteError: the disk refused on the way; the parts before it are kept.
     """
-    from giveway.checks import whole
+    from giveway.base.checks import whole
     from giveway.study.native_part import default_threads
 
     threads = default_threads() if threads is None else whole("threads", threads, 1, 1024)
@@ -378,7 +378,7 @@ def _portable(setup: Setup) -> dict[str, Any]:
 
 def _keep_inputs(setup: Setup, folder: Path) -> None:
     """Copies of the files that the study names: the folder must say all by itself."""
-    from giveway.files import write_text
+    from giveway.base.files import write_text
 
     for source, name in _input_files(setup):
         text = source.read_text(encoding="utf-8")

@@ -11,17 +11,17 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from giveway.errors import GivewayError, UnknownNameError
-from giveway.files import check_file, replace_file, write_text
+from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.base.files import check_file, replace_file, write_text
+from giveway.robot.variables import table as variable_table
 from giveway.study.chosen import hit_of, settings_of_run
 from giveway.study.runs import COVER
-from giveway.variables import table as variable_table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from giveway.robot.variables import Value
     from giveway.study.answers import Answers
-    from giveway.variables import Value
 
 __all__ = ["MODELS", "export_design", "export_table"]
 
@@ -137,7 +137,7 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
         document["judge_as"] = document.pop("body_region")
         document["collision"]["mass"] = settings["testbed"]["slider.mass"]
     if any(one.name == "bumper" for one in quantities):
-        from giveway.scenario import BUMPERS
+        from giveway.scenario.scenario import BUMPERS
 
         document["bumper"] = list(BUMPERS)[int(settings["testbed"]["bumper.kind"])]
     if "robot" in document:
@@ -183,7 +183,7 @@ def _collision(
 
 
 def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    from giveway.scenario_file import scalars
+    from giveway.scenario.scenario_file import scalars
 
     return dict(scalars(values, prefix))
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from giveway.result import Result
+    from giveway.simulation.result import Result
     from giveway.study.answers import Answers
 
 __all__ = ["axis_label", "drawn", "effect_panels", "effects", "sensitivities", "traces", "trade_off"]

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.files import replace_file
+from giveway.base.files import replace_file
 from giveway.report.style import STYLE
 from giveway.study.answers import Answers, load
 from giveway.study.engine import Report, sweep

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.errors import UnknownNameError
-from giveway.metric_names import current_name
+from giveway.base.errors import UnknownNameError
+from giveway.simulation.metric_names import current_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

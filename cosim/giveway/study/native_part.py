@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway import batch
-from giveway.errors import SimulationError
+from giveway.base.errors import SimulationError
 from giveway.study.runs import RunTable
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """What a study can vary: parameters of both models, numbers of the robot file, the hit, the bumper, the temperature.
 
 A run is a row of a table with one column per parameter of the controller and the testbed. Most quantities are some of
-its columns; those of the hit (speed, place, direction) are turned into the slider's start by `giveway.approach`.
+its columns; those of the hit (speed, place, direction) are turned into the slider's start by `scenario.approach`.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway import native
-from giveway.errors import GivewayError, UnknownNameError
-from giveway.scenario import BUMPERS
-from giveway.scenario_file import SET_BY
-from giveway.variables import Variable, table
+from giveway.base import native
+from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.robot.variables import Variable, table
+from giveway.scenario.scenario import BUMPERS
+from giveway.scenario.scenario_file import SET_BY
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

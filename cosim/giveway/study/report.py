@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.files import write_text
+from giveway.base.files import write_text
 from giveway.report.figures import NamedFigure
 from giveway.study.asked import asked, in_words
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
 
-    from giveway.result import Result
+    from giveway.simulation.result import Result
     from giveway.study.answers import Answers
     from giveway.study.distributions import Tolerance, Varied
     from giveway.study.setup import Constraint
@@ -75,7 +75,7 @@ def _reasons(reason: Mapping[int, str]) -> list[tuple[str, list[int]]]:
 
 def _warnings(warnings: Mapping[int, Mapping[str, int]]) -> list[tuple[str, str, list[int]]]:
     """Each code with what it means and the designs that have it, the most frequent first."""
-    from giveway.run_warnings import MEANINGS
+    from giveway.simulation.run_warnings import MEANINGS
 
     found: dict[str, list[int]] = {}
     for design in sorted(warnings):

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway import batch
-from giveway.errors import FileError
-from giveway.metric_names import former_name
-from giveway.run_warnings import codes_of
+from giveway.base.errors import FileError
+from giveway.simulation.metric_names import former_name
+from giveway.simulation.run_warnings import codes_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.run_warnings import Stated
+    from giveway.simulation.run_warnings import Stated
     from giveway.study.runs import RunTable
 
 __all__ = ["Outcomes", "part_table", "read_part", "read_runs", "result_columns"]

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.approach import Approaches, edge_middle, meet_many, outline_of
-from giveway.errors import GivewayError
-from giveway.master import plan_table, push_table
-from giveway.plan_limits import LIMIT_NAMES, check_plan, limits_of
-from giveway.run_warnings import Stated, plan_speed
-from giveway.scenario_file import PLAN_KEYS
+from giveway.base.errors import GivewayError
+from giveway.scenario.approach import Approaches, edge_middle, meet_many, outline_of
+from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan, limits_of
+from giveway.scenario.scenario_file import PLAN_KEYS
+from giveway.simulation.master import plan_table, push_table
+from giveway.simulation.run_warnings import Stated, plan_speed
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Columns, columns
 from giveway.study.setup import Case, Hit, Setup
@@ -276,7 +276,7 @@ def _points(
         share = (way - ends[side]) / lengths[side]
         return outline[side] + share[:, None] * sides[side], inward[side]
     if hit.point_m is not None:
-        from giveway.approach import outward_normal
+        from giveway.scenario.approach import outward_normal
 
         normal = outward_normal(outline, hit.point_m)
         return np.tile(hit.point_m, (count, 1)), np.full(count, math.atan2(-normal[1], -normal[0]))

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from giveway.base.units import WrittenUnit
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.metrics import Metric
-from giveway.units import WrittenUnit
 
 if TYPE_CHECKING:
-    from giveway.scenario import Scenario
+    from giveway.scenario.scenario import Scenario
 
 __all__ = ["Case", "Constraint", "Goal", "Hit", "Setup"]
 

@@ -22,8 +22,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import FileError, WriteError, system_words
-from giveway.files import check_file, read_json, replace_file, write_text
+from giveway.base.errors import FileError, WriteError, system_words
+from giveway.base.files import check_file, read_json, replace_file, write_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,13 +15,15 @@ from typing import Any
 
 import numpy as np
 
+from giveway.base.checks import finite, whole
+from giveway.base.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
+from giveway.base.units import WrittenUnit, factor
 from giveway.batch import METHODS, PLANT_STEP_RANGE_S
-from giveway.checks import finite, whole
-from giveway.errors import FileError, GivewayError, InputFileError, UnknownNameError
-from giveway.plan_limits import LIMIT_NAMES, check_plan_of
-from giveway.run_warnings import plan_speed
-from giveway.scenario import Scenario
-from giveway.scenario_file import PLAN_KEYS, scenario_of
+from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan_of
+from giveway.scenario.scenario import Scenario
+from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
+from giveway.simulation.run_warnings import plan_speed
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
@@ -29,8 +31,6 @@ from giveway.study.metrics import find_metric
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
 from giveway.study.runs import COVER
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
-from giveway.toml_sections import Section, lines_named, read_toml, renamed
-from giveway.units import WrittenUnit, factor
 
 __all__ = ["check", "read"]
 
@@ -516,7 +516,7 @@ def _shown(report: Section) -> tuple[Goal, ...]:
 
 def with_line(setup: Setup, error: GivewayError) -> GivewayError:
     """``error`` about a key of the study, with file and line if it came from a file."""
-    from giveway.toml_lines import line_of
+    from giveway.base.toml_lines import line_of
 
     if setup.text is None or setup.path is None:
         return error

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from giveway.words import counted
+from giveway.base.words import counted
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers

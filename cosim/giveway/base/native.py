@@ -1,0 +1,51 @@
+"""Where the native parts are: FMUs, the batch library, variable tables and the robot file.
+
+They lie flat in one folder: ``giveway/native`` of the installed package, else the folder that the environment
+variable ``GIVEWAY_NATIVE_DIR`` names.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from giveway.base.errors import NativeMissingError
+
+__all__ = ["COMPONENTS", "MODELS", "batch_library", "file", "fmu", "robot", "variables"]
+
+ENVIRONMENT_VARIABLE = "GIVEWAY_NATIVE_DIR"
+MODELS = ("controller", "testbed")  # what an experiment runs
+COMPONENTS = ("drivetrain", "bumper")  # pieces of it, for a user's own robot
+DEFAULT_ROBOT = "trikey.toml"
+
+
+def file(name: str) -> Path:
+    """Path of the native file ``name``; NativeMissingError names both places that were searched."""
+    installed = Path(__file__).resolve().parents[1] / "native"
+    if (installed / name).is_file():
+        return installed / name
+    folder = os.environ.get(ENVIRONMENT_VARIABLE)
+    if folder and (Path(folder) / name).is_file():
+        return (Path(folder) / name).resolve()
+    searched = f"{ENVIRONMENT_VARIABLE}={folder}" if folder else f"{ENVIRONMENT_VARIABLE}, which is not set"
+    raise NativeMissingError(name, installed, searched)
+
+
+def fmu(model: str, fmi_version: int) -> Path:
+    """Path of the FMU of ``model``, one of MODELS or COMPONENTS, for FMI 2 or 3."""
+    return file(f"giveway_{model}_fmi{fmi_version}.fmu")
+
+
+def batch_library() -> Path:
+    """Path of libgiveway_batch."""
+    return file("giveway_batch.so")
+
+
+def variables(model: str) -> Path:
+    """Path of the variable table of ``model``."""
+    return file(f"{model}.variables.toml")
+
+
+def robot() -> Path:
+    """Path of the robot file that the FMUs were built with."""
+    return file(DEFAULT_ROBOT)

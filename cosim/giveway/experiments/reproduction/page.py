@@ -1,0 +1,93 @@
+"""The reproduction as one self-contained HTML file: the table, then figure and paper's numbers side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from giveway.base import native
+from giveway.base.files import write_text
+from giveway.experiments.reproduction.findings import PROVENANCES
+from giveway.experiments.reproduction.reproduce import number
+from giveway.report.inline_svg import inline_svg
+from giveway.report.style import STYLE
+from giveway.robot.robot_file import read_robot
+
+if TYPE_CHECKING:
+    from giveway.experiments.reproduction.findings import Row
+    from giveway.experiments.reproduction.reproduce import Reproduction
+    from giveway.robot.robot_file import Entry
+
+__all__ = ["render", "write_report"]
+
+VERDICTS = {True: "met", False: "missed", None: ""}
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A row as the page shows it."""
+
+    quantity: str
+    paper: str
+    ours: str
+    target: str
+    verdict: str
+    provenance: str
+    reason: str
+
+
+def write_report(path: Path, reproduction: Reproduction) -> None:
+    """Write the report to ``path``, atomically."""
+    write_text(path, render(reproduction))
+
+
+def render(reproduction: Reproduction) -> str:
+    """The report as HTML text; it refers to nothing outside itself."""
+    import jinja2
+    from matplotlib.style import context
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    with context(STYLE):
+        drawings = {
+            (chapter.experiment.name, picture.name): inline_svg(picture.figure, f"{anchor}-{picture.name}-")
+            for anchor, chapter in ((chapter.experiment.name, chapter) for chapter in reproduction.chapters)
+            for picture in chapter.findings.pictures
+        }
+    return environment.get_template("reproduction.html.j2").render(
+        chapters=reproduction.chapters,
+        lines={
+            chapter.experiment.name: [_line(row) for row in chapter.findings.rows] for chapter in reproduction.chapters
+        },
+        drawings=drawings,
+        met=reproduction.count(True),
+        missed=reproduction.count(False),
+        interrupted=reproduction.interrupted,
+        manifest=reproduction.manifest,
+        parameters=_parameters(),
+        style=(files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8"),
+    )
+
+
+def _line(row: Row) -> _Line:
+    unit = "" if row.unit == "1" else f" {row.unit}"
+
+    def cell(value: float | str | None) -> str:
+        return number(value, row.decimals) + (unit if isinstance(value, float | int) else "")
+
+    target = "" if row.target is None else f"{row.target.text}{unit}"
+    return _Line(row.quantity, cell(row.paper), cell(row.ours), target, VERDICTS[row.met], row.provenance, row.reason)
+
+
+def _parameters() -> Sequence[tuple[str, list[tuple[str, Entry]]]]:
+    """The robot file's entries by provenance, in the order of `PROVENANCES`."""
+    robot = read_robot(native.robot())
+    found = [
+        (provenance, [(name, entry) for name, entry in robot.entries() if entry.provenance == provenance])
+        for provenance in PROVENANCES
+    ]
+    return [(provenance, entries) for provenance, entries in found if entries]

@@ -1,0 +1,73 @@
+"""Groups of four pushes on one robot, as in 5.1, and where the paper's numbers lie among them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.experiments.static_push_study.trials import Readings
+
+__all__ = ["GROUP", "PRINTED", "Printed", "group_values", "percentile_of"]
+
+GROUP = 4
+PAPER_FORCE_N = 10.0  # what the paper calls the weight of 1 kg, and compares with
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What the paper prints of its four pushes.
+
+    Attributes:
+        name: the quantity.
+        unit: of the value.
+        value: printed.
+        decimals: digits worth printing.
+    """
+
+    name: str
+    unit: str
+    value: float
+    decimals: int = 1
+
+
+# 5.1: 5.5 to 10 N of 10 N; 12 deg at most, "mean value of 2 %" of the full circle; 11 cm at most, 4.5 cm in the mean.
+PRINTED = (
+    Printed("magnitude error, weakest of four pushes", "%", -45.0),
+    Printed("magnitude error, strongest of four pushes", "%", 0.0),
+    Printed("direction error, largest of four pushes", "deg", 12.0),
+    Printed("direction error, mean of four pushes", "deg", 7.2),
+    Printed("location error, largest of four pushes", "cm", 11.0),
+    Printed("location error, mean of four pushes", "cm", 4.5),
+)
+
+
+def group_values(readings: Readings) -> NDArray[np.float64]:
+    """The six quantities of `PRINTED` for each four consecutive trials, shape (groups, 6).
+
+    Magnitudes are compared with 10 N, as the paper does, though the weight of 1 kg is 9.81 N.
+    """
+    magnitude = _grouped(100.0 * (readings.force_n / PAPER_FORCE_N - 1.0))
+    direction, location = _grouped(np.abs(readings.direction_error_deg)), _grouped(readings.location_error_cm)
+    columns = [
+        magnitude.min(1),
+        magnitude.max(1),
+        direction.max(1),
+        direction.mean(1),
+        location.max(1),
+        location.mean(1),
+    ]
+    return np.stack(columns, axis=1)
+
+
+def _grouped(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return values.reshape(-1, GROUP)
+
+
+def percentile_of(value: float, values: NDArray[np.float64]) -> float:
+    """Share of ``values`` below ``value``, in percent; those equal to it count half."""
+    return float(100.0 * (np.mean(values < value) + 0.5 * np.mean(values == value)))

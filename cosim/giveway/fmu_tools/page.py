@@ -1,0 +1,121 @@
+"""What `giveway fmu run` writes: every recorded variable as CSV, or a page with plots."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.base.files import replace_file
+from giveway.fmu_tools.inputs import column_name
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.fmu_tools.run import FmuRun
+
+__all__ = ["write_run"]
+
+PLOTTED_VARIABLES, POINTS_SHOWN = 60, 2000
+SWITCHES, COUNTS = "switches", "whole numbers"  # plots of their own, beside those of each unit
+
+
+def write_run(out: Path, run: FmuRun) -> None:
+    """Write ``out``: FILE.csv with every recorded variable, or FILE.html with a plot per unit."""
+    with replace_file(out) as temporary:
+        if out.suffix == ".csv":
+            _write_csv(temporary, run)
+        else:
+            temporary.write_text(_page(run), encoding="utf-8")
+
+
+def _write_csv(path: Path, run: FmuRun) -> None:
+    import csv
+
+    units = {"time": "s", **run.units}
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(column_name(name, units[name]) for name in run.traces.dtype.names or ())
+        for row in run.traces:
+            writer.writerow(value.item() if isinstance(value, np.generic) else value for value in row)
+
+
+def _page(run: FmuRun) -> str:
+    """One self-contained page. What is not drawn is listed: what never changes, and counters beside reals."""
+    from html import escape
+
+    from giveway.report.inline_svg import inline_svg
+
+    drawn, others, still = _sorted_out(run)
+    figures = []
+    for number, (unit, names) in enumerate(drawn.items()):
+        shown = names[:PLOTTED_VARIABLES]
+        more = f"<p>and {len(names) - len(shown)} more, in the CSV</p>" if len(names) > len(shown) else ""
+        figures.append(inline_svg(_figure(run.traces, unit, shown), f"plot{number}") + more)
+    title = escape(run.path.name)
+    constant = ", ".join(escape(f"{name} = {run.traces[name][0]}") for name in still) or "none"
+    listed = f"<h2>Not drawn</h2><p>{escape(', '.join(others))} (--plot NAME draws them)</p>\n" if others else ""
+    style = "body{font-family:sans-serif;max-width:70rem;margin:2rem auto;color:#2b2f36}svg{max-width:100%;height:auto}"
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f"<style>{style}</style></head>\n"
+        f"<body><h1>{title}</h1><p>{escape(run.description)}</p><p>{run.interface}, {len(run.traces)} rows, "
+        f"{run.step_s:g} s apart, to {run.traces['time'][-1]:g} s.</p>\n{''.join(figures)}\n{listed}"
+        f"<h2>Constant</h2><p>{constant}</p></body></html>\n"
+    )
+
+
+def _sorted_out(run: FmuRun) -> tuple[dict[str, list[str]], list[str], list[str]]:
+    """What is drawn, by unit (reals first, then switches and whole numbers); what is not; what never changes.
+
+    Unless the user chose: whole numbers (counters, mostly) are drawn only if there is nothing else.
+    """
+    drawn: dict[str, list[str]] = {}
+    switches: list[str] = []
+    counts: list[str] = []
+    others: list[str] = []
+    still: list[str] = []
+    for name, unit in run.units.items():
+        values = run.traces[name]
+        if values.ndim > 1 or not np.any(values != values[0]):
+            still.append(name)
+        elif run.plotted and name not in run.plotted:
+            others.append(name)
+        elif values.dtype.kind == "f":
+            drawn.setdefault(unit, []).append(name)
+        else:
+            (switches if values.dtype == np.bool_ else counts).append(name)
+    if not run.plotted and (drawn or switches):
+        others, counts = others + counts, []
+    return drawn | {kind: names for kind, names in ((SWITCHES, switches), (COUNTS, counts)) if names}, others, still
+
+
+def _figure(traces: NDArray[Any], unit: str, names: list[str]) -> Any:
+    from matplotlib.figure import Figure
+    from matplotlib.style import context
+
+    from giveway.report.style import STYLE
+
+    every = max(1, len(traces) // POINTS_SHOWN)
+    with context(STYLE):
+        figure = Figure(figsize=(9.0, 3.2), layout="constrained")
+        axes = figure.add_subplot()
+        for name in names:
+            values = traces[name][::every]
+            axes.plot(
+                traces["time"][::every],
+                values.astype(float),
+                label=_label(name),
+                drawstyle="steps-post" if values.dtype.kind in "biu" else None,
+            )
+        axes.set_xlabel("time (s)")
+        axes.set_ylabel(_label(unit or "value"))
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7, ncols=1 + len(names) // 20)
+    return figure
+
+
+def _label(text: str) -> str:
+    """Names are from elsewhere: no formula in them, and none is hidden for its first character."""
+    plain = text.replace("\\", "\\\\").replace("$", "\\$")
+    return f" {plain}" if plain.startswith("_") else plain

@@ -1,0 +1,197 @@
+"""A user's own log of wheel angles and wheel torques, from a CSV file.
+
+Columns are found by their names, in any order; others are left alone:
+
+    time_s                                        also _ms, _us
+    wheel_angle_0_rad  ..._1_rad  ..._2_rad       also _deg, _counts (the robot's drivetrain.encoder_counts per turn)
+    torque_0_nm        ..._1_nm   ..._2_nm        also _mnm
+
+`motor_angle_0_...` instead of `wheel_angle_0_...` says that the encoders sit on the motor side of the torque sensors,
+as Trikey's do; the deflection T/k of the drivetrain is then taken off. Angles may wrap (at a turn, counts at 32 bits).
+Signs and order are those of the robot: wheel i at azimuth 120 i deg, positive torque turns it towards positive angles.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from giveway.base.errors import FileError, nearest_names
+from giveway.robot.robot_file import Robot
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["MotionLog", "behind_drivetrain", "counts_to_rad", "read_log"]
+
+WHEELS = 3
+ROWS_MIN = 10  # anything shorter is a wrong file; whether a log is long enough is for the fit to say
+GAP_STEPS = 10.0  # a step longer than this many usual ones is a hole in the log
+COUNT_WRAP = 2.0**32
+_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+_TORQUE = {"nm": 1.0, "mnm": 1e-3}
+_ANGLE_UNITS = ("rad", "deg", "counts")
+
+
+@dataclass(frozen=True)
+class MotionLog:
+    """What a robot's wheels did and felt.
+
+    Attributes:
+        name: for messages and figures.
+        time_s: shape (n,), s, strictly rising.
+        wheel_angle_rad: shape (n, 3), rad, without wraps.
+        torque_nm: shape (n, 3), sensed torque of the drivetrain on each wheel, N m.
+        sha256: hash of the file; "" if there is none.
+    """
+
+    name: str
+    time_s: NDArray[np.float64]
+    wheel_angle_rad: NDArray[np.float64]
+    torque_nm: NDArray[np.float64]
+    sha256: str = ""
+
+
+@dataclass(frozen=True)
+class _Column:
+    """Where a quantity is in a row, and its factor to SI units."""
+
+    name: str
+    index: int
+    unit: str
+
+
+def read_log(path: Path, robot: Robot) -> MotionLog:
+    """Read ``path``; FileError names the file, the line and the column of what is wrong.
+
+    Args:
+        path: a CSV file with a header line; see the module for its columns.
+        robot: for encoder counts, and for the stiffness between motor and wheel.
+    """
+    import numpy as np
+
+    try:
+        content = path.read_bytes()
+        lines = content.decode("utf-8-sig").splitlines()
+    except FileNotFoundError:
+        raise FileError(path, "no such file", "give the path of a log (CSV)") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(path, f"cannot be read: {error}") from None
+    header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
+    time = _find(path, header, r"time", _TIME)
+    kind = "motor" if any(name.startswith("motor_angle_") for name in header) else "wheel"
+    angles = [_find(path, header, f"{kind}_angle_{wheel}", dict.fromkeys(_ANGLE_UNITS, 1.0)) for wheel in range(WHEELS)]
+    torques = [_find(path, header, f"torque_{wheel}", _TORQUE) for wheel in range(WHEELS)]
+    columns = [time, *angles, *torques]
+    values, numbers = _values(path, lines, columns)
+
+    time_s = values[:, 0] * _TIME[time.unit]
+    _check_time(path, time_s, numbers)
+    torque = np.stack([values[:, 4 + i] * _TORQUE[column.unit] for i, column in enumerate(torques)], axis=1)
+    angle = np.stack([_radians(values[:, 1 + i], column, robot) for i, column in enumerate(angles)], axis=1)
+    if kind == "motor":
+        angle = behind_drivetrain(angle, torque, robot)
+    return MotionLog(path.name, time_s, angle, torque, hashlib.sha256(content).hexdigest())
+
+
+def behind_drivetrain(
+    motor_angle_rad: NDArray[np.float64], torque_nm: NDArray[np.float64], robot: Robot
+) -> NDArray[np.float64]:
+    """Wheel angles from motor angles at the wheel axle and sensed torques, all of shape (n, 3): q_w = th_m - T/k."""
+    return motor_angle_rad - torque_nm / float(robot.value("drivetrain.stiffness"))
+
+
+def counts_to_rad(counts: NDArray[np.float64], robot: Robot) -> NDArray[np.float64]:
+    """Encoder counts over time (first axis), 32-bit wraps undone, in rad."""
+    import numpy as np
+
+    turn = float(robot.value("drivetrain.encoder_counts"))
+    return np.asarray(np.unwrap(counts, period=COUNT_WRAP, axis=0)) * (2.0 * math.pi / turn)
+
+
+def _find(path: Path, header: list[str], quantity: str, units: Mapping[str, float]) -> _Column:
+    """The one column of ``quantity``; its unit is the end of its name."""
+    allowed = " or ".join(f"{quantity}_{unit}" for unit in units)
+    found = [i for i, name in enumerate(header) if re.fullmatch(rf"{quantity}(_[^_]*)?", name)]
+    if not found:
+        near = nearest_names(f"{quantity}_{next(iter(units))}", header)
+        hint = f" (the header has {' and '.join(near)})" if near else ""
+        raise FileError(path, f"line 1: there is no column for {quantity}{hint}", f"needed: {allowed}")
+    if len(found) > 1:
+        names = " and ".join(header[i] for i in found)
+        raise FileError(path, f"line 1: {names} say the same thing", f"give one of: {allowed}")
+    name = header[found[0]]
+    unit = name.removeprefix(quantity).removeprefix("_")
+    if unit not in units:
+        reason = f"line 1: column {name} has the unit {unit}" if unit else f"line 1: column {name} states no unit"
+        raise FileError(path, reason, f"allowed: {allowed}")
+    return _Column(name, found[0], unit)
+
+
+def _values(path: Path, lines: list[str], columns: list[_Column]) -> tuple[NDArray[np.float64], list[int]]:
+    """The wanted columns, shape (n, columns), and the number in the file of each of the n lines."""
+    import numpy as np
+
+    table: list[list[float]] = []
+    numbers: list[int] = []
+    last = max(column.index for column in columns)
+    for number, line in enumerate(lines[1:], 2):
+        if not line.strip():
+            continue
+        row = next(csv.reader([line]))
+        if len(row) <= last:
+            _refuse(path, number, f"{len(row)} values, but {columns[-1].name} and others need {last + 1}")
+        for column in columns:
+            if not _is_finite(row[column.index]):
+                text = row[column.index].strip()
+                _refuse(path, number, f"{column.name} is {text if text else 'empty'}, not a finite number")
+        table.append([float(row[column.index]) for column in columns])
+        numbers.append(number)
+    if len(table) < ROWS_MIN:
+        raise FileError(path, f"has {len(table)} lines of data", f"a log needs at least {ROWS_MIN}")
+    return np.array(table), numbers
+
+
+def _is_finite(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def _check_time(path: Path, time_s: NDArray[np.float64], numbers: list[int]) -> None:
+    import numpy as np
+
+    steps = np.diff(time_s)
+    back = np.flatnonzero(steps <= 0.0)
+    if back.size:
+        row = int(back[0]) + 1
+        _refuse(path, numbers[row], f"time goes from {time_s[row - 1]:.9g} s to {time_s[row]:.9g} s; it has to rise")
+    usual = float(np.median(steps))
+    gaps = np.flatnonzero(steps > GAP_STEPS * usual)
+    if gaps.size:
+        row = int(gaps[0]) + 1
+        reason = f"{steps[row - 1]:.3g} s since the line before, {steps[row - 1] / usual:.0f} times the usual step"
+        _refuse(path, numbers[row], f"{reason}; give the pieces as logs of their own")
+
+
+def _radians(values: NDArray[np.float64], column: _Column, robot: Robot) -> NDArray[np.float64]:
+    """Angles in rad, with every jump of more than half a period taken as a wrap."""
+    import numpy as np
+
+    if column.unit == "counts":
+        return counts_to_rad(values, robot)
+    if column.unit == "deg":
+        values = np.deg2rad(values)
+    return np.asarray(np.unwrap(values))
+
+
+def _refuse(path: Path, line: int, reason: str) -> NoReturn:
+    raise FileError(path, f"line {line}: {reason}")

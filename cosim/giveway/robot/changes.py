@@ -1,0 +1,72 @@
+"""A robot file with some values replaced; comments, order and everything else stay as they are."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from giveway.base.checks import finite
+from giveway.base.errors import FileError
+from giveway.robot.robot_file import read_robot
+
+__all__ = ["NewValue", "changed_robot"]
+
+
+@dataclass(frozen=True)
+class NewValue:
+    """What replaces an entry of a robot file; the unit that the file states stays.
+
+    Attributes:
+        value: in the unit of the variable tables.
+        source: where it comes from.
+        provenance: given, sourced, fitted or assumed.
+        confidence: high, medium or low; None: as it was.
+        note: what to know about it; None: as it was.
+    """
+
+    value: float
+    source: str
+    provenance: str
+    confidence: str | None = None
+    note: str | None = None
+
+
+def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
+    """The text of the robot file ``path`` with the entries ``changes`` ("roller.coulomb_torque") replaced."""
+    import tomlkit
+    from tomlkit.items import AbstractTable
+
+    robot = read_robot(path)
+    document = tomlkit.parse(path.read_text(encoding="utf-8"))
+    stated: dict[str, float] = {}
+    for name, new in changes.items():
+        stated[name] = finite(name, new.value) / robot[name].scale
+        table = document
+        for key in name.split("."):
+            table = table[key]
+        assert isinstance(table, AbstractTable)
+        table["value"] = stated[name]
+        for key in ("source", "confidence", "provenance", "note"):
+            words = getattr(new, key)
+            if words is not None:
+                table[key] = words
+    text = tomlkit.dumps(document)
+    _check(path, text, stated)
+    return text
+
+
+def _check(path: Path, text: str, changes: Mapping[str, float]) -> None:
+    """The new text says what the old one said, but for ``changes``: the new values by name."""
+    old, new = tomllib.loads(path.read_text(encoding="utf-8")), tomllib.loads(text)
+    for name, value in changes.items():
+        *tables, key = name.split(".")
+        before, after = old, new
+        for table in tables:
+            before, after = before[table], after[table]
+        if after[key]["value"] != value:
+            raise FileError(path, f"{name} could not be replaced")
+        before[key] = after[key]
+    if old != new:
+        raise FileError(path, "could not be changed without changing more than was wanted")

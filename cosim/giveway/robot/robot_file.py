@@ -1,0 +1,167 @@
+"""The robot file: every number of a robot with its unit, source, confidence and provenance.
+
+`read_robot` is the one reader. What a robot file may state, and in which unit its numbers are handed on, is what the
+variable tables take from it; another unit of the same kind ("lb", "mm") is converted.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from giveway.base import native
+from giveway.base.checks import finite
+from giveway.base.errors import FileError, GivewayError, InputFileError, nearest_names
+from giveway.base.toml_lines import line_of
+from giveway.base.toml_sections import Section, lines_named, read_toml
+from giveway.base.units import factor
+from giveway.robot.table_files import entry_unit, read_table_file, robot_paths
+
+__all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot"]
+
+SCHEMA_VERSION = 1
+PROVENANCE = ("given", "sourced", "fitted", "assumed")
+CONFIDENCE = ("high", "medium", "low")
+_KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
+_HEADER = ("schema_version", "robot")  # what is no number
+_Number = float | int
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One number, or list of numbers, of a robot file.
+
+    Attributes:
+        values: in ``unit``; a single number is a tuple of one.
+        is_list: the file states a list.
+        unit: of the variable tables; "1" for what has none.
+        text: value with unit as the file states them.
+        scale: what the stated value was multiplied by to be in ``unit``.
+        provenance: given, sourced, fitted or assumed; "" if the file does not say.
+        confidence: high, medium or low; "" likewise.
+        source, note: in words; "" likewise.
+    """
+
+    values: tuple[_Number, ...]
+    is_list: bool
+    unit: str
+    text: str
+    scale: float
+    provenance: str
+    confidence: str
+    source: str
+    note: str
+
+
+class Robot:
+    """A robot file that has been read; values are addressed by their table path (``base.mass``)."""
+
+    def __init__(self, path: Path, text: str, name: str, entries: Mapping[str, Entry]) -> None:
+        self.path, self.name = path, name
+        self._text, self._entries = text, dict(entries)
+
+    def __getitem__(self, name: str) -> Entry:
+        """The entry at ``name``; FileError if the file does not have it."""
+        if name not in self._entries:
+            near = nearest_names(name, self._entries)
+            hint = f"the file has {' and '.join(near)}" if near else "every value of the robot is needed"
+            raise FileError(self.path, f"{name} is missing", hint)
+        return self._entries[name]
+
+    def value(self, name: str, index: int = 0) -> float | int:
+        """The value at ``name`` in the unit of the variable tables; ``index`` selects from a list value."""
+        entry = self[name]
+        if not entry.is_list:
+            return entry.values[0]
+        return entry.values[index] if index < len(entry.values) else 0.0  # a shorter list leaves the rest unused
+
+    def entries(self) -> Iterator[tuple[str, Entry]]:
+        """Every entry with its name, in the order of the file."""
+        yield from self._entries.items()
+
+    def count(self, name: str) -> int:
+        """Number of values at ``name``: the length of a list, 1 for a single number."""
+        return len(self[name].values)
+
+    def refusal(self, name: str, allowed: str) -> GivewayError:
+        """The error that says, with file and line, that the value at ``name`` is not ``allowed``."""
+        entry = self[name]
+        values = ", ".join(f"{value:g}" for value in entry.values)
+        converted = f" ({values} {entry.unit})" if entry.scale != 1.0 else ""
+        cause = GivewayError(name, entry.text + converted, allowed)
+        return InputFileError(self.path, line_of(self._text, f"{name}.value"), cause)
+
+
+def read_robot(path: Path) -> Robot:
+    """Read and check the robot file ``path``.
+
+    Raises:
+        FileError: the file cannot be read.
+        InputFileError: it is no TOML, or a table, key, word or unit in it is unknown, of the wrong type or kind; names
+            file and line.
+    """
+    text, document = read_toml(path, "give the path of a robot file (TOML)")
+    with lines_named(path, text):
+        known = _known()
+        top = Section("", document, (*_HEADER, *dict.fromkeys(name.partition(".")[0] for name in known)))
+        version = top.required("schema_version", str(SCHEMA_VERSION))
+        if version != SCHEMA_VERSION:
+            raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+        header = top.table("robot", ("name",))
+        name = "" if header is None else header.text("name", "")
+        entries: dict[str, Entry] = {}
+        for part, values in document.items():
+            if part in _HEADER:
+                continue
+            keys = [name.removeprefix(f"{part}.") for name in known if name.startswith(f"{part}.")]
+            section = Section(part, values, keys)
+            for key in section.values:
+                entries[section.full(key)] = _entry(section.full(key), section.values[key], *known[section.full(key)])
+        x, y = entries.get("outline.x"), entries.get("outline.y")
+        if x is not None and y is not None and len(x.values) != len(y.values):
+            allowed = f"as many as outline.x has, {len(x.values)}: every corner has both"
+            raise GivewayError("outline.y.value", f"{len(y.values)} numbers", allowed)
+    return Robot(path, text, name, entries)
+
+
+def _entry(name: str, values: Any, unit: str, count: int | None) -> Entry:
+    """The entry ``name``, converted to ``unit``; it may be a list of up to ``count`` numbers."""
+    if not isinstance(values, dict):
+        raise GivewayError(name, values, f'a table with value and unit, {name} = {{ value = ..., unit = "{unit}" }}')
+    section = Section(name, values, _KEYS)
+    stated = section.required("value", "a finite number" if count is None else f"up to {count} finite numbers")
+    items = stated if isinstance(stated, list) else [stated]
+    field = section.full("value")
+    if isinstance(stated, list) and not (count is not None and 1 <= len(stated) <= count):
+        raise GivewayError(field, stated, "one number" if count is None else f"a list of 1 to {count} numbers")
+    for index, item in enumerate(items):
+        finite(f"{field}[{index}]" if isinstance(stated, list) else field, item)
+    section.required("unit", f'"{unit}"' + (", or a unit of the same kind" if unit != "1" else ""))
+    stated_unit = section.text("unit")
+    scale = 1.0 if stated_unit == unit else factor(section.full("unit"), stated_unit, unit)
+    shown = ", ".join(f"{item:g}" for item in items)
+    return Entry(
+        values=tuple(items) if scale == 1.0 else tuple(item * scale for item in items),
+        is_list=isinstance(stated, list),
+        unit=unit,
+        text=shown if stated_unit == "1" else f"{shown} {stated_unit}",
+        scale=scale,
+        provenance=section.choice("provenance", PROVENANCE) if "provenance" in values else "",
+        confidence=section.choice("confidence", CONFIDENCE) if "confidence" in values else "",
+        source=section.text("source", ""),
+        note=section.text("note", ""),
+    )
+
+
+@functools.cache
+def _known() -> Mapping[str, tuple[str, int | None]]:
+    """Every name that a robot file may have, with its unit and how many numbers it may state (None: one)."""
+    known: dict[str, tuple[str, int | None]] = {}
+    for model in (*native.MODELS, *native.COMPONENTS):
+        for variable in read_table_file(native.variables(model))["variable"]:
+            for name in robot_paths(variable):
+                known.setdefault(name, (entry_unit(variable) or "1", variable.get("count")))
+    return known

@@ -1,0 +1,260 @@
+"""A user's own scenario as a TOML file; `cosim/README.md` lists its keys, `examples/` has files to start from.
+
+Points are on the robot (base frame, m), directions and headings in the world (degrees). A wrong file is refused with
+one message that names file, line and key; ranges are those of the variable tables and of the plans, not stated twice.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from giveway.base.errors import GivewayError
+from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
+from giveway.base.units import factor
+from giveway.robot.variables import Value, table
+from giveway.scenario.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
+from giveway.scenario.plan_limits import check_plan_of
+from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.stated_contact import StatedContact
+
+__all__ = ["PLAN_KEYS", "SET_BY", "read_scenario", "scalars", "scenario_of"]
+
+SCHEMA_VERSION = 1
+NAME_MAX = 80
+START_ACCELERATION_MPS2 = 0.2
+MEETING_S = 0.5
+PLANS = ("rest", "straight", "circle")
+
+_TOP = (
+    "schema_version", "name", "duration", "bumper", "robot", "seed", "body_region", "judge_as",
+    "contact_area",
+    "plan", "collision", "push", "testbed", "controller",
+)  # fmt: skip
+_POSE = ("x", "y", "heading")
+PLAN_KEYS = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}  # fields of plans, in the file's words
+_PLAN_KEYS = {
+    "rest": _POSE,
+    "straight": (*_POSE, "speed", "direction", "acceleration"),
+    "circle": ("diameter", "speed", "centre", "start", "heading", "turning", "acceleration"),
+}
+_COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
+_PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
+# Parameters that a key of the file sets; [testbed] must not set them once more.
+SET_BY = {
+    "bumper.kind": "bumper",
+    "electronics.seed": "seed",
+    "base.tipping": "collision.height",
+    "contact.height": "collision.height",
+    "rope.attached": "collision.rope",
+    "slider.present": "collision",
+    "slider.mass": "collision.mass",
+    "slider.direction": "collision.direction",
+    "slider.target_x": "collision.point",
+    "slider.target_y": "collision.point",
+    "slider.run_up": "collision.time",
+    "slider.speed": "collision.speed",
+    **{f"start.{name}": "plan" for name in ("x", "y", "theta", "vx", "vy", "omega")},
+}
+
+
+def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | None = None) -> Scenario:
+    """The scenario in the file ``path``, checked; ``bumper`` and ``robot`` replace the file's.
+
+    Raises:
+        FileError: the file cannot be read.
+        InputFileError: it is no TOML, or something in it is unknown, of the wrong type, out of range or contradicts
+            something else in it; names the line.
+    """
+    path = Path(path)
+    text, document = read_toml(path, "give the path of a scenario file (TOML)")
+    with lines_named(path, text):
+        scenario = scenario_of(document, path, bumper, robot)
+        with renamed("plan", **PLAN_KEYS):
+            check_plan_of(scenario)
+        return scenario
+
+
+def scenario_of(
+    document: Mapping[str, Any], path: Path, bumper: str | None = None, robot: Path | None = None
+) -> Scenario:
+    """The scenario that ``document`` describes, as the file ``path`` would; errors name its keys, without lines."""
+    top = Section("", document, _TOP)
+    version = top.required("schema_version", "1")
+    if version != SCHEMA_VERSION:
+        raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+    seed = top.values.get("seed")
+    if robot is None and "robot" in top.values:
+        robot = path.parent / top.text("robot")
+        if not robot.is_file():
+            raise GivewayError("robot", top.values["robot"], "a robot file, its path seen from this file")
+    collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
+    if collision is None and top.values.get("bumper", "none") != "none":
+        raise GivewayError("bumper", top.values["bumper"], "none without [collision]: the bumper is on what collides")
+    for key in ("body_region", "judge_as"):
+        if collision is None and key in top.values:
+            raise GivewayError(key, top.values[key], "nothing without [collision]: it is about a contact")
+    plan = _plan(top)
+    overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
+    with renamed("", duration_s="duration", contact_area_m2="contact_area"):
+        bare = Scenario(
+            name=top.text("name", path.stem),
+            duration_s=top.number("duration"),
+            bumper=bumper or top.choice("bumper", BUMPERS, "none"),
+            testbed={**overrides["testbed"], **start_values(plan), "slider.present": collision is not None},
+            controller=overrides["controller"],
+            plan=plan,
+            push=pushes,
+            seed=seed,
+            robot=robot,
+            body_region=top.text("body_region") if "body_region" in top.values else None,
+            judge_as=top.text("judge_as") if "judge_as" in top.values else None,
+            contact_area_m2=_area_m2(top),
+        )
+    if not 1 <= len(bare.name) <= NAME_MAX:
+        raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")
+    for index, push in enumerate(pushes.pushes if pushes is not None else ()):
+        if push.start_s >= bare.duration_s:
+            allowed = f"a start before the end of the run at {bare.duration_s:g} s"
+            raise GivewayError(f"push[{index}].start", push.start_s, allowed)
+    if collision is None:
+        return bare
+    met, contact, time_s = _collision(collision, bare)
+    if time_s >= bare.duration_s:
+        field, found = ("collision.time", time_s) if contact.time_s is not None else ("duration", bare.duration_s)
+        allowed = f"before the end of the run at {bare.duration_s:g} s"
+        if contact.time_s is None:
+            allowed = f"above {time_s:.3g} s, when the weight has pulled the slider to the robot"
+        raise GivewayError(field, found, allowed)
+    return dataclasses.replace(bare, testbed={**bare.testbed, **met}, contact=contact)
+
+
+def _plan(top: Section) -> Plan:
+    kind = "rest"
+    if "plan" in top.values:
+        kind = Section("plan", top.values["plan"], None).choice("kind", PLANS)
+    section = top.table("plan", ("kind", *_PLAN_KEYS[kind])) or Section("plan", {}, None)
+    heading = section.angle("heading", 0.0)
+    if kind == "rest":
+        with renamed("plan", x_m="x", y_m="y"):
+            return Rest(section.number("x", 0.0), section.number("y", 0.0), heading)
+    speed, acceleration = section.number("speed"), section.number("acceleration", START_ACCELERATION_MPS2)
+    if kind == "straight":
+        with renamed("plan", x_m="x", y_m="y", **PLAN_KEYS):
+            x, y = section.number("x", 0.0), section.number("y", 0.0)
+            return Straight(speed, section.angle("direction", 0.0), x, y, heading, acceleration)
+    centre = section.pair("centre", (0.0, 0.0))
+    turning = "turning" if section.flag("turning", False) else "fixed"
+    with renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **PLAN_KEYS):
+        start = section.angle("start", 0.0)
+        return Circle(section.number("diameter"), speed, *centre, start, turning, heading, acceleration)
+
+
+def _pushes(top: Section) -> Pushes | None:
+    if "push" not in top.values:
+        return None
+    entries = top.values["push"]
+    if not isinstance(entries, list):
+        raise GivewayError("push", entries, "one or more [[push]]")
+    names = {"force_n": "force", "start_s": "start", "duration_s": "duration", "ramp_s": "ramp"}
+    pushes: list[TimedPush] = []
+    for index, entry in enumerate(entries):
+        section = Section(f"push[{index}]", entry, _PUSH_KEYS)
+        point = section.pair("point")
+        with renamed(section.name, point_x_m="point", point_y_m="point", **names):
+            pushes.append(
+                TimedPush(
+                    section.number("force"),
+                    section.angle("direction"),
+                    *point,
+                    section.number("start"),
+                    section.number("duration"),
+                    section.number("ramp", 0.0),
+                )
+            )
+            Pushes(tuple(pushes))  # so that an overlap is told with the later one's line
+    return Pushes(tuple(pushes))
+
+
+def _overrides(top: Section, model: str) -> dict[str, Value]:
+    """Checked parameters of [testbed] or [controller]; dotted names and lists as in the variable tables."""
+    values = top.values.get(model, {})
+    if not isinstance(values, dict):
+        raise GivewayError(model, values, "a table")
+    found: dict[str, Value] = {}
+    for name, value in scalars(values):
+        if model == "testbed" and name in SET_BY:
+            raise GivewayError(f"{model}.{name}", value, f"one place to set it: {SET_BY[name]}")
+        try:
+            found[name] = table(model).check(name, value)
+        except GivewayError as error:
+            error.field = f"{model}.{name}"
+            raise
+    return found
+
+
+def scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Names and values of nested tables: ``slider.friction``; lists as ``x[0]``, ``x[1]``."""
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            yield from scalars(value, f"{prefix}{key}.")
+        elif isinstance(value, list):
+            yield from ((f"{prefix}{key}[{index}]", entry) for index, entry in enumerate(value))
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _collision(section: Section, bare: Scenario) -> tuple[dict[str, Value], StatedContact, float]:
+    """The testbed's parameters for the dummy, the contact that they are meant to make, and when that is, s."""
+    from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
+
+    set_already = bare.parameters("testbed")
+    mass = section.number("mass", float(set_already.get("slider.mass", table("testbed")["slider.mass"].start or 0.0)))
+    with renamed("collision", **{"testbed.slider.mass": "mass"}):
+        set_already["slider.mass"] = table("testbed").check("slider.mass", mass)
+        dataclasses.replace(bare, testbed={**bare.testbed, "slider.mass": mass})  # refuses what is no body's mass
+    everything = {v.name: set_already.get(v.name, v.start) for v in table("testbed").select("parameter")}
+    testbed = {name: value for name, value in everything.items() if value is not None}
+    if "edge" in section.values and "point" in section.values:
+        raise GivewayError("collision.edge", section.values["edge"], "one place to choose: edge and offset, or point")
+    if "offset" in section.values and "edge" not in section.values:
+        raise GivewayError("collision.offset", section.values["offset"], "only with edge: it counts from its middle")
+    names = {"point_m": "point", "offset_m": "offset", "speed_mps": "speed", "direction_rad": "direction"}
+    with renamed("collision", edge="edge", time_s="time", **names):
+        if "edge" in section.values:
+            point = edge_middle(outline_of(testbed), section.values["edge"], section.number("offset", 0.0))
+        else:
+            point = section.pair("point")
+        rope = section.flag("rope", False)
+        time_s = None if rope and "time" not in section.values else section.number("time", MEETING_S)
+        direction = section.angle("direction") if "direction" in section.values else None
+        approach = Approach(point, section.number("speed"), direction, time_s, rope)
+        slider, contact, meeting_s = meet_as_stated(approach, testbed, bare.plan, _tare_s(bare))
+    return {"slider.mass": mass} | slider | _height(section), contact, meeting_s
+
+
+def _area_m2(top: Section) -> float | None:
+    """The area of the contact, stated with its unit."""
+    section = top.table("contact_area", ("value", "unit"))
+    if section is None:
+        return None
+    section.required("unit", '"cm2", or another unit of an area')
+    return section.number("value") * factor(section.full("unit"), section.text("unit"), "m2")
+
+
+def _height(section: Section) -> dict[str, Value]:
+    """A height above the floor matters to a base that can tip."""
+    if "height" not in section.values:
+        return {}
+    with renamed("collision", **{"testbed.contact.height": "height"}):
+        height = table("testbed").check("contact.height", section.number("height"))
+    return {"base.tipping": True, "contact.height": height}
+
+
+def _tare_s(scenario: Scenario) -> float:
+    """How long the controller tares before the plan's clock starts, s."""
+    values, variables = scenario.parameters("controller"), table("controller")
+    ticks, period = (values.get(n, variables[n].start) for n in ("estimator.tare_ticks", "controller.period"))
+    return float(ticks or 0) * float(period or 0.0)

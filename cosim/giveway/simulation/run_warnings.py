@@ -1,0 +1,306 @@
+"""What happened in a run otherwise than it was asked: one line each, from what was stated and from its metrics.
+
+`BOUNDS` says from where on something is worth a warning. Whatever can be told for certain before a run is refused
+there (`plan_limits`, `approach`, the variable tables); these are the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.scenario.plan import Circle, Straight
+from giveway.scenario.stated_contact import StatedContact
+from giveway.simulation.metrics import FIRST_PEAK
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.scenario.scenario import Scenario
+    from giveway.simulation.metrics import Metric
+
+    Numbers = NDArray[np.float64]
+    Masks = NDArray[np.bool_]
+
+__all__ = [
+    "BOUNDS",
+    "CODES",
+    "MEANINGS",
+    "METRICS",
+    "SEPARATOR",
+    "RunWarning",
+    "Stated",
+    "codes_of",
+    "masks",
+    "plan_speed",
+    "warnings_of",
+]
+
+BOUNDS: Mapping[str, float] = MappingProxyType(
+    {
+        "speed": 0.02,  # of the stated one; the last millisecond before a contact on the rope changes it by 1 %
+        "place_mm": 10.0,  # a moving robot lags its plan by up to 5 mm
+        "time_s": 0.02,  # the servo's lag is 16 ms
+        "plan_mm": 10.0,  # a plan within the limits is followed to 0.01 mm
+        "plan_deg": 1.0,
+        "saturated": 1.0 - 1e-6,  # share of a limit that single precision carries
+    }
+)
+
+
+SEPARATOR = "; "  # of codes in a table
+
+
+@dataclass(frozen=True)
+class RunWarning:
+    """One thing that was otherwise.
+
+    Attributes:
+        code: which one, for tables and scripts; one of `CODES`.
+        text: a sentence with the numbers.
+    """
+
+    code: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What some runs were asked to do, each a number per run, shape (n,); NaN: not stated.
+
+    Attributes:
+        contact_speed_mps: of the nose relative to the base.
+        point_x_m, point_y_m: of the contact, base frame.
+        time_s: of the contact.
+        plan_speed_mps: of the plan, once it has started; in runs with a contact.
+        contact: whether one is stated at all, shape (n,).
+        region: a body region is to be judged, shape (n,).
+    """
+
+    contact_speed_mps: Numbers
+    point_x_m: Numbers
+    point_y_m: Numbers
+    time_s: Numbers
+    plan_speed_mps: Numbers
+    contact: Masks
+    region: Masks
+
+    @classmethod
+    def nothing(cls, count: int) -> Stated:
+        """What ``count`` runs state that state nothing; to be filled by `put`."""
+        return cls(*(np.full(count, math.nan) for _ in range(5)), *(np.zeros(count, dtype=np.bool_) for _ in range(2)))
+
+    def put(self, where: NDArray[np.int64], other: Stated) -> None:
+        """The runs ``where`` state what ``other`` does."""
+        for one in fields(self):
+            getattr(self, one.name)[where] = getattr(other, one.name)
+
+    @classmethod
+    def of(cls, scenarios: Sequence[Scenario]) -> Stated:
+        """What scenarios state."""
+        contacts = [scenario.contact or StatedContact() for scenario in scenarios]
+        points = [contact.point_m or (None, None) for contact in contacts]
+        planned = [None if scenario.contact is None else plan_speed(scenario) for scenario in scenarios]
+        return cls(
+            _known([contact.speed_mps for contact in contacts]),
+            _known([x for x, _ in points]),
+            _known([y for _, y in points]),
+            _known([contact.time_s for contact in contacts]),
+            _known(planned),
+            np.array([scenario.contact is not None for scenario in scenarios], dtype=np.bool_),
+            np.array([scenario.judged is not None for scenario in scenarios], dtype=np.bool_),
+        )
+
+
+def _known(values: Sequence[float | None]) -> Numbers:
+    """NaN for None."""
+    return np.array(values, dtype=np.float64)
+
+
+def plan_speed(scenario: Scenario) -> float | None:
+    """The speed that the scenario's plan states, m/s; None: none, or it stands."""
+    plan = scenario.plan
+    return abs(plan.speed_mps) or None if isinstance(plan, Straight | Circle) else None
+
+
+_Metrics = Mapping[str, "Numbers"]
+
+
+@dataclass(frozen=True)
+class _Check:
+    """One kind of warning: what it means, whether each run has it, and its sentence for one run (index 0)."""
+
+    code: str
+    meaning: str
+    metrics: tuple[str, ...]
+    found: Callable[[Stated, _Metrics], Masks]
+    text: Callable[[Stated, _Metrics], str]
+
+
+def _at(values: Numbers) -> float:
+    return float(values[0])
+
+
+def _off(found: Numbers, stated: Numbers, share: float) -> Masks:
+    return np.asarray(np.abs(found - stated) > share * stated)
+
+
+def _away_mm(stated: Stated, found: _Metrics) -> Numbers:
+    return np.hypot(
+        found["first contact x"] - 1e3 * stated.point_x_m, found["first contact y"] - 1e3 * stated.point_y_m
+    )
+
+
+_CHECKS: Sequence[_Check] = (
+    _Check(
+        "no contact",
+        "slider and robot did not touch",
+        ("contact time",),
+        lambda stated, found: stated.contact & np.isnan(found["contact time"]),
+        lambda _stated, _found: "slider and robot did not touch",
+    ),
+    _Check(
+        "contact speed",
+        f"the contact was at another speed than asked for, by more than {100.0 * BOUNDS['speed']:g} %",
+        ("contact speed",),
+        lambda stated, found: _off(found["contact speed"], stated.contact_speed_mps, BOUNDS["speed"]),
+        lambda stated, found: (
+            f"the contact was at {_at(found['contact speed']):.3g} m/s, "
+            f"asked for {_at(stated.contact_speed_mps):.3g} m/s"
+        ),
+    ),
+    _Check(
+        "contact place",
+        f"the contact was elsewhere on the robot than asked for, by more than {BOUNDS['place_mm']:g} mm",
+        ("first contact x", "first contact y"),
+        lambda stated, found: _away_mm(stated, found) > BOUNDS["place_mm"],
+        lambda stated, found: (
+            f"the contact was at [{1e-3 * _at(found['first contact x']):.3f}, "
+            f"{1e-3 * _at(found['first contact y']):.3f}] m on the robot, "
+            f"{_at(_away_mm(stated, found)):.0f} mm from where it was asked for"
+        ),
+    ),
+    _Check(
+        "contact time",
+        f"the contact was at another time than asked for, by more than {1e3 * BOUNDS['time_s']:g} ms",
+        ("contact time",),
+        lambda stated, found: np.abs(found["contact time"] - stated.time_s) > BOUNDS["time_s"],
+        lambda stated, found: (
+            f"the contact was at {_at(found['contact time']):.3f} s, asked for {_at(stated.time_s):.3f} s"
+        ),
+    ),
+    _Check(
+        "robot speed",
+        "at the contact the robot was not as fast as its plan asks for",
+        ("robot speed at contact",),
+        lambda stated, found: _off(found["robot speed at contact"], stated.plan_speed_mps, BOUNDS["speed"]),
+        lambda stated, found: (
+            f"the robot moved at {_at(found['robot speed at contact']):.3g} m/s at the contact, its plan asks for "
+            f"{_at(stated.plan_speed_mps):.3g} m/s: hit before or after, or not yet so fast"
+        ),
+    ),
+    _Check(
+        "plan not followed",
+        "the plan goes beyond the limits of controller.reference",
+        ("distance from the plan", "angle from the plan"),
+        lambda _stated, found: (
+            (found["distance from the plan"] > BOUNDS["plan_mm"]) | (found["angle from the plan"] > BOUNDS["plan_deg"])
+        ),
+        lambda _stated, found: (
+            f"the plan goes beyond the limits of controller.reference: the controller fell behind it by up to "
+            f"{_at(found['distance from the plan']):.0f} mm and {_at(found['angle from the plan']):.1f} deg"
+        ),
+    ),
+    _Check(
+        "torque sensor saturated",
+        "a torque sensor was at its end",
+        ("sensed torque share",),
+        lambda _stated, found: found["sensed torque share"] >= BOUNDS["saturated"],
+        lambda _stated, _found: "a torque sensor was saturated: the robot felt less than there was",
+    ),
+    _Check(
+        "motor saturated",
+        "a motor gave its largest torque",
+        ("motor torque share",),
+        lambda _stated, found: found["motor torque share"] >= BOUNDS["saturated"],
+        lambda _stated, _found: (
+            "a motor gave its largest torque (drivetrain.torque_limit): the robot could not do as told"
+        ),
+    ),
+    _Check(
+        "sensor fault",
+        "the controller took its sensors for faulty and stood still",
+        ("time in sensor fault",),
+        lambda _stated, found: found["time in sensor fault"] > 0.0,
+        lambda _stated, found: (
+            f"the controller took its sensors for faulty for {_at(found['time in sensor fault']):.3g} s and stood still"
+        ),
+    ),
+    _Check(
+        "bumper bottomed",
+        "the bumper was pressed into its stop",
+        ("bottoming margin",),
+        lambda _stated, found: found["bottoming margin"] <= 0.0,
+        lambda _stated, found: (
+            f"the bumper was pressed into its stop, {-_at(found['bottoming margin']):.1f} mm beyond its travel"
+        ),
+    ),
+    _Check(
+        "lasting force unknown",
+        "the run was over before the lasting force was known",
+        ("contact time", "lasting force"),
+        lambda stated, found: stated.region & ~np.isnan(found["contact time"]) & np.isnan(found["lasting force"]),
+        lambda _stated, _found: (
+            "the run was over before the lasting force was known: it counts from 0.5 s after the contact"
+        ),
+    ),
+    _Check(
+        "second hit harder",
+        "a later contact was harder than the first",
+        (FIRST_PEAK, "peak force of the run"),
+        lambda _stated, found: found["peak force of the run"] > found[FIRST_PEAK],
+        lambda _stated, found: (
+            f"a later contact was harder than the first: {_at(found['peak force of the run']):.0f} N after "
+            f"{_at(found[FIRST_PEAK]):.0f} N"
+        ),
+    ),
+)
+
+CODES = tuple(check.code for check in _CHECKS)
+"""Every code there is, in the order of lines and tables."""
+
+MEANINGS = MappingProxyType({check.code: check.meaning for check in _CHECKS})
+"""What each code says, without the numbers of a run."""
+
+METRICS = tuple(dict.fromkeys(name for check in _CHECKS for name in check.metrics))
+"""The metrics that warnings follow from."""
+
+
+def masks(stated: Stated, metrics: _Metrics) -> dict[str, Masks]:
+    """Which runs have which warning, by code, each of shape (n,); ``metrics`` holds `METRICS`, NaN for what was not."""
+    with np.errstate(invalid="ignore"):
+        return {check.code: check.found(stated, metrics) for check in _CHECKS}
+
+
+def codes_of(stated: Stated, metrics: _Metrics) -> list[str]:
+    """The codes of each run's warnings, as text: "bumper bottomed; second hit harder"; empty: none."""
+    which = masks(stated, metrics)
+    found = [""] * len(stated.time_s)
+    for code, mask in which.items():
+        for run in np.flatnonzero(mask).tolist():
+            found[run] += f"{SEPARATOR}{code}" if found[run] else code
+    return found
+
+
+def warnings_of(scenario: Scenario, metrics: Sequence[Metric]) -> tuple[RunWarning, ...]:
+    """The warnings of a run of ``scenario`` that came to its end, in the order of `CODES`."""
+    values = {metric.name: metric.value for metric in metrics}
+    found = {name: _known([values[name]]) for name in METRICS}
+    stated = Stated.of([scenario])
+    which = masks(stated, found)
+    return tuple(RunWarning(check.code, check.text(stated, found)) for check in _CHECKS if which[check.code][0])
