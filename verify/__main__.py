@@ -22,8 +22,8 @@ def main() -> int:
     chosen: list[str] | None = parser.parse_args().only
     start = time.perf_counter()
     sources = core_hash(ROOT)
-    # Tools that are Python packages have an environment of their own.
-    path = f"{ROOT / 'build/verify/tools/bin'}{os.pathsep}{os.environ['PATH']}"
+    # Tools that are Python packages have an environment of their own; then comes the one that runs this.
+    path = os.pathsep.join([str(ROOT / "build/verify/tools/bin"), str(Path(sys.executable).parent), os.environ["PATH"]])
     outcomes = climb(ROOT, {name: rung for name, rung in rungs.items() if not chosen or name in chosen}, path)
     seconds = time.perf_counter() - start
     summary = write_summary(ROOT, outcomes, sources, seconds)
