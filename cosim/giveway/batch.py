@@ -74,7 +74,15 @@ _SPEC = np.dtype(
 
 
 class _MetricInfo(ctypes.Structure):
-    _fields_ = [("name", ctypes.c_char_p), ("unit", ctypes.c_char_p), ("has_truth", ctypes.c_uint32)]
+    _fields_ = [
+        ("name", ctypes.c_char_p),
+        ("unit", ctypes.c_char_p),
+        ("has_truth", ctypes.c_uint32),
+        ("decimals", ctypes.c_int32),
+        ("shown", ctypes.c_uint32),
+        ("line", ctypes.c_uint32),
+        ("description", ctypes.c_char_p),
+    ]
 
 
 class _Variable(ctypes.Structure):

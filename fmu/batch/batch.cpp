@@ -2,14 +2,17 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <memory>
 #include <new>
 
+#include "evaluation.hpp"
 #include "giveway_batch.h"
 #include "lane_group.hpp"
+#include "metrics.hpp"
 #include "models.hpp"
 #include "run.hpp"
 
@@ -19,52 +22,21 @@ namespace batch = giveway::batch;
 
 namespace {
 
-constexpr gwb_metric_info_t metric_infos[] = {
-    {"contact speed", "m/s", 0},
-    {"false detections", "1", 1},
-    {"detection time", "ms", 0},
-    {"force direction", "deg", 1},
-    {"direction error", "deg", 1},
-    {"contact point x", "mm", 1},
-    {"contact point y", "mm", 1},
-    {"location error", "mm", 1},
-    {"force at detection", "N", 1},
-    {"impulse at detection", "N.s", 1},
-    {"peak force of the run", "N", 0},
-    {"bumper compression", "mm", 0},
-    {"peak wheel torque", "N.m", 0},
-    {"peak torque, any sign", "N.m", 0},
-    {"escape distance", "m", 1},
-    {"energy residual", "1", 1},
-    {"contact time", "s", 0},
-    {"detections", "1", 0},
-    {"contact impulse", "N.s", 0},
-    {"contact at end", "1", 0},
-    {"latched at end", "1", 0},
-    {"rope taut at end", "1", 0},
-    {"events", "1", 0},
-    {"transient force", "N", 0},
-    {"lasting force", "N", 0},
-    {"longest contact", "s", 0},
-    {"transient force share", "1", 0},
-    {"lasting force share", "1", 0},
-    {"bottoming margin", "mm", 0},
-    {"contacts", "1", 0},
-    {"rebound speed", "m/s", 0},
-    {"re-latches", "1", 0},
-    {"re-latch time", "ms", 0},
-    {"tip margin", "1", 0},
-    {"peak force of the first contact", "N", 0},
-    {"first contact x", "mm", 0},
-    {"first contact y", "mm", 0},
-    {"robot speed at contact", "m/s", 0},
-    {"distance from the plan", "mm", 0},
-    {"angle from the plan", "deg", 0},
-    {"sensed torque share", "1", 0},
-    {"motor torque share", "1", 0},
-    {"time in sensor fault", "s", 0},
-};
-static_assert(std::size(metric_infos) == GWB_METRIC_COUNT);
+using MetricInfos = std::array<gwb_metric_info_t, GWB_METRIC_COUNT>;
+
+// GWB_METRICS by number.
+constexpr MetricInfos metric_infos = [] {
+    MetricInfos infos{};
+    std::uint32_t line = 0;
+#define GIVEWAY_INFO(metric, number, name, unit, has_truth, decimals, shown, description) \
+    infos[number] = {name, unit, has_truth, decimals, shown, line++, description};
+    GWB_METRICS(GIVEWAY_INFO)
+#undef GIVEWAY_INFO
+    return infos;
+}();
+static_assert(std::all_of(metric_infos.begin(), metric_infos.end(),
+                          [](const auto &info) { return info.name != nullptr; }),
+              "each number from 0 to the last stands in GWB_METRICS once");
 
 int describe(std::uint32_t model, const VariableInfo *found, gwb_variable_t *variable) {
     if (found == nullptr || variable == nullptr) {
@@ -239,6 +211,33 @@ int gwb_metric_info(uint32_t metric, gwb_metric_info_t *info) {
         return 0;
     }
     *info = metric_infos[metric];
+    return 1;
+}
+
+gwb_windows_t gwb_windows(void) {
+    return {GWB_CAUSE_WINDOW_S, GWB_TRANSIENT_WINDOW_S, GWB_CONTACT_GAP_S, GWB_PEAK_TORQUE_WINDOW_S};
+}
+
+uint32_t gwb_evaluate(const gwb_traces_t *traces, gwb_result_t *result) {
+    if (traces == nullptr || result == nullptr) {
+        return GWB_WRONG_SPEC;
+    }
+    batch::evaluate_traces(*traces, *result);
+    return result->status;
+}
+
+int gwb_judge_force(const double *time_s, const double *force_n, size_t rows, double touch_n, gwb_force_t *judged) {
+    if (time_s == nullptr || force_n == nullptr || judged == nullptr) {
+        return 0;
+    }
+    for (std::size_t i = 0; i < rows; ++i) {
+        const bool later = i == 0 || time_s[i] > time_s[i - 1];
+        if (!later || !std::isfinite(time_s[i]) || !std::isfinite(force_n[i]) || force_n[i] < 0.0) {
+            return 0;
+        }
+    }
+    *judged = batch::judge_force(
+        rows, [=](std::size_t i) { return time_s[i]; }, [=](std::size_t i) { return force_n[i]; }, touch_n);
     return 1;
 }
 

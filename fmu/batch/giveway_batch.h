@@ -55,57 +55,125 @@ enum { GWB_PLAN_COLUMNS = 9, GWB_PUSH_COLUMNS = 4, GWB_STEP_COUNT_MAX = 4000000,
 enum { GWB_THREADS_MAX = 1024 };
 #define GWB_NONE UINT32_MAX /* no model, no reference */
 
-/* Metrics, append-only; units in the comments and from gwb_metric_info. "Truth" is what the testbed knows. The
- * definitions are those of cosim/giveway/metrics.py where it has the same name. */
+/* Windows of the metrics' definitions. */
+#define GWB_CAUSE_WINDOW_S 0.25       /* a detection is false if nothing touched the robot for so long */
+#define GWB_TRANSIENT_WINDOW_S 0.5    /* of a contact with a person; what lasts longer is quasi-static */
+#define GWB_CONTACT_GAP_S 0.1         /* touches less than this apart are one contact */
+#define GWB_PEAK_TORQUE_WINDOW_S 0.35 /* from contact on: the impact's peak, not that of the escape */
+
+/* Where a metric is shown. Batches and studies have all of them. */
 enum {
-    GWB_CONTACT_SPEED = 0,       /* m/s: of the nose relative to the robot, last step before contact */
-    GWB_FALSE_DETECTIONS = 1,    /* 1: without true contact in the 0.25 s before */
-    GWB_DETECTION_TIME = 2,      /* ms: contact to decision */
-    GWB_FORCE_DIRECTION = 3,     /* deg, base frame */
-    GWB_DIRECTION_ERROR = 4,     /* deg */
-    GWB_CONTACT_POINT_X = 5,     /* mm, base frame */
-    GWB_CONTACT_POINT_Y = 6,     /* mm, base frame */
-    GWB_LOCATION_ERROR = 7,      /* mm */
-    GWB_FORCE_AT_DETECTION = 8,  /* N; truth: averaged over the estimator's window */
-    GWB_IMPULSE = 9,             /* N.s: contact to detection */
-    GWB_PEAK_FORCE = 10,         /* N: largest true contact force */
-    GWB_BUMPER_COMPRESSION = 11, /* mm: largest; its travel is a parameter */
-    GWB_PEAK_TORQUE = 12,        /* N.m: of a loaded wheel in the impact's direction, within 0.35 s of contact */
-    GWB_PEAK_TORQUE_ANY = 13,    /* N.m: of any wheel, either sign, from contact on */
-    GWB_ESCAPE = 14,             /* m: reference's travel from the last detection to the end; truth: the base's */
-    GWB_ENERGY_RESIDUAL = 15,    /* 1: largest error of the energy balance over the energy in play */
-    GWB_CONTACT_TIME = 16,       /* s: first cover contact, located by the integrator */
-    GWB_DETECTIONS = 17,         /* 1: all of the run */
-    GWB_CONTACT_IMPULSE = 18,    /* N.s: of the whole run, magnitude */
-    GWB_CONTACT_AT_END = 19,     /* 0 or 1 */
-    GWB_LATCHED_AT_END = 20,     /* 0 or 1: the bumper's magnetic latch */
-    GWB_ROPE_TAUT_AT_END = 21,   /* 0 or 1 */
-    GWB_EVENTS = 22,             /* 1: located by the integrator */
-    /* A contact ends when no force came for 0.5 s (cosim/giveway/body_regions.py). */
-    GWB_TRANSIENT_FORCE = 23, /* N: largest within the first 0.5 s of a contact */
-    GWB_LASTING_FORCE =
-        24, /* N: largest later than 0.5 s into a contact; NaN if the run ended within 0.5 s of the first */
-    GWB_LONGEST_CONTACT = 25,  /* s */
-    GWB_TRANSIENT_SHARE = 26,  /* 1: of the body region's transient limit; infinite where none is allowed and one was */
-    GWB_LASTING_SHARE = 27,    /* 1: of the body region's lasting limit */
-    GWB_BOTTOMING_MARGIN = 28, /* mm: bumper's travel less its largest compression; negative in the stop */
-    GWB_CONTACTS = 29,         /* 1: contacts; touches less than 0.1 s apart are one: a bumper's plate bounces */
-    GWB_REBOUND_SPEED = 30,    /* m/s: of the nose relative to the robot when the first contact has ended */
-    GWB_RELATCHES = 31,        /* 1: times that the bumper's magnet caught its plate again */
-    GWB_RELATCH_TIME = 32,     /* ms: contact to the first of them */
-    GWB_TIP_MARGIN = 33,       /* 1: least of the run; 0: a wheel lifts (on a plane), or it goes over (base.tipping) */
-    /* What happened otherwise than asked (cosim/giveway/run_warnings.py). */
-    GWB_FIRST_PEAK_FORCE = 34, /* N: largest true contact force of the first contact; GWB_PEAK_FORCE is the run's */
-    GWB_FIRST_CONTACT_X = 35,  /* mm, base frame: true point in the first row of the first contact */
-    GWB_FIRST_CONTACT_Y = 36,  /* mm */
-    GWB_ROBOT_SPEED = 37,      /* m/s: of the base in the last row before contact */
-    GWB_PLAN_DISTANCE = 38, /* mm: largest of the reference from the plan while it tracks, up to the first reaction */
-    GWB_PLAN_ANGLE = 39,    /* deg: likewise */
-    GWB_SENSED_TORQUE_SHARE = 40, /* 1: largest sensed torque over what counts as saturated */
-    GWB_MOTOR_TORQUE_SHARE = 41,  /* 1: largest motor torque over its limit */
-    GWB_FAULT_TIME = 42,          /* s: in the controller's mode 6, sensor fault */
-    GWB_METRIC_COUNT = 43
+    GWB_OF_BATCH = 0,
+    GWB_OF_COLLISION = 1, /* the table of a run in which something can be hit */
+    GWB_OF_DESIGN = 2,    /* what a bumper design is judged by, and what happened otherwise than asked */
+    GWB_OF_FREE_RUN = 4   /* the table of a run in which nothing can be hit */
 };
+
+/* Every metric, in the order in which tables show them: enumerator, number, name, unit, whether the testbed knows the
+ * truth, decimals worth printing (-1: judged by its exponent), where it is shown, and its definition. Numbers never
+ * change; a new metric gets the next one, a line here and its value in metrics.cpp.
+ *
+ * "Contact" is the first one of the cover with the robot, at the time that the integrator found; detection times
+ * resolve one step. "True" is what the testbed knows. The base frame has x forward, y left, and is fixed to the robot.
+ */
+/* clang-format off */
+#define GWB_METRICS(METRIC) \
+    METRIC(GWB_CONTACT_SPEED, 0, "contact speed", "m/s", 0, 3, GWB_OF_COLLISION, \
+           "speed of the slider's nose relative to the robot in the last step before contact") \
+    METRIC(GWB_FALSE_DETECTIONS, 1, "false detections", "1", 1, 0, GWB_OF_COLLISION | GWB_OF_FREE_RUN, \
+           "detections without true contact or push in the " GWB_TEXT(GWB_CAUSE_WINDOW_S) " s before them") \
+    METRIC(GWB_DETECTION_TIME, 2, "detection time", "ms", 0, 1, GWB_OF_COLLISION, \
+           "from contact to the controller's decision, all delays included") \
+    METRIC(GWB_FORCE_DIRECTION, 3, "force direction", "deg", 1, 1, GWB_OF_COLLISION, \
+           "direction of the detection's mean force in the base frame; true: of the impulse up to detection") \
+    METRIC(GWB_DIRECTION_ERROR, 4, "direction error", "deg", 1, 1, GWB_OF_COLLISION, \
+           "estimated minus true force direction, in [-180, 180)") \
+    METRIC(GWB_CONTACT_POINT_X, 5, "contact point x", "mm", 1, 1, GWB_OF_COLLISION, \
+           "x of where the robot was hit, base frame; true: mean up to detection, weighted by the force") \
+    METRIC(GWB_CONTACT_POINT_Y, 6, "contact point y", "mm", 1, 1, GWB_OF_COLLISION, \
+           "y of where the robot was hit, base frame; true: mean up to detection, weighted by the force") \
+    METRIC(GWB_LOCATION_ERROR, 7, "location error", "mm", 1, 1, GWB_OF_COLLISION, \
+           "distance of the estimated contact point from the true one") \
+    METRIC(GWB_FORCE_AT_DETECTION, 8, "force at detection", "N", 1, 1, GWB_OF_COLLISION, \
+           "filtered estimate of the force; true: mean force vector over the filter's window, to detection") \
+    METRIC(GWB_IMPULSE, 9, "impulse at detection", "N.s", 1, 2, GWB_OF_COLLISION, \
+           "integral of the estimated force vector from contact to detection; true: of the contact force") \
+    METRIC(GWB_CONTACTS, 29, "contacts", "1", 0, 0, GWB_OF_COLLISION, \
+           "number of contacts; touches less than " GWB_TEXT(GWB_CONTACT_GAP_S) " s apart are one: a plate bounces") \
+    METRIC(GWB_FIRST_PEAK_FORCE, 34, "peak force of the first contact", "N", 0, 1, GWB_OF_COLLISION, \
+           "largest true contact force of the first contact") \
+    METRIC(GWB_PEAK_FORCE, 10, "peak force of the run", "N", 0, 1, GWB_OF_COLLISION, \
+           "largest true contact force of the run") \
+    METRIC(GWB_BUMPER_COMPRESSION, 11, "bumper compression", "mm", 0, 1, GWB_OF_COLLISION, \
+           "largest compression: what the collision used of the bumper's travel, which is a parameter") \
+    METRIC(GWB_PEAK_TORQUE, 12, "peak wheel torque", "N.m", 0, 2, GWB_OF_COLLISION, \
+           "largest true torque of a wheel that carries the impact, in the impact's direction, within " \
+           GWB_TEXT(GWB_PEAK_TORQUE_WINDOW_S) " s of contact") \
+    METRIC(GWB_PEAK_TORQUE_ANY, 13, "peak torque, any sign", "N.m", 0, 2, GWB_OF_COLLISION, \
+           "largest true torque of any wheel, either sign, from contact on") \
+    METRIC(GWB_ESCAPE, 14, "escape distance", "m", 1, 3, GWB_OF_COLLISION, \
+           "travel of the controller's reference from the last detection to the end; true: of the base") \
+    METRIC(GWB_TRANSIENT_FORCE, 23, "transient force", "N", 0, 1, GWB_OF_DESIGN, \
+           "largest contact force within the first " GWB_TEXT(GWB_TRANSIENT_WINDOW_S) " s of a contact") \
+    METRIC(GWB_LASTING_FORCE, 24, "lasting force", "N", 0, 1, GWB_OF_DESIGN, \
+           "largest contact force later in a contact; unknown if the run ended so soon after the first touch") \
+    METRIC(GWB_LONGEST_CONTACT, 25, "longest contact", "s", 0, 3, GWB_OF_DESIGN, \
+           "length of the longest contact; it ends when no force came for " GWB_TEXT(GWB_TRANSIENT_WINDOW_S) " s") \
+    METRIC(GWB_TRANSIENT_SHARE, 26, "transient force share", "1", 0, 2, GWB_OF_DESIGN, \
+           "transient force over the body region's limit; infinite where no contact is allowed and there was one") \
+    METRIC(GWB_LASTING_SHARE, 27, "lasting force share", "1", 0, 2, GWB_OF_DESIGN, \
+           "lasting force over the body region's limit") \
+    METRIC(GWB_BOTTOMING_MARGIN, 28, "bottoming margin", "mm", 0, 1, GWB_OF_DESIGN, \
+           "travel that the bumper had left at its largest compression; negative in its stop") \
+    METRIC(GWB_REBOUND_SPEED, 30, "rebound speed", "m/s", 0, 3, GWB_OF_DESIGN, \
+           "speed of the slider's nose relative to the robot when the first contact has ended") \
+    METRIC(GWB_RELATCHES, 31, "re-latches", "1", 0, 0, GWB_OF_DESIGN, \
+           "times that the bumper's magnet caught its plate again") \
+    METRIC(GWB_RELATCH_TIME, 32, "re-latch time", "ms", 0, 1, GWB_OF_DESIGN, \
+           "from contact to the first time that the bumper's magnet caught its plate again") \
+    METRIC(GWB_TIP_MARGIN, 33, "tip margin", "1", 0, 2, GWB_OF_DESIGN, \
+           "least margin of the run: 1 level and at rest; 0: a wheel lifts or, with base.tipping, the base goes over") \
+    METRIC(GWB_FIRST_CONTACT_X, 35, "first contact x", "mm", 0, 1, GWB_OF_DESIGN, \
+           "x of the true contact point in the first row of the first contact, base frame") \
+    METRIC(GWB_FIRST_CONTACT_Y, 36, "first contact y", "mm", 0, 1, GWB_OF_DESIGN, \
+           "y of the true contact point in the first row of the first contact, base frame") \
+    METRIC(GWB_ROBOT_SPEED, 37, "robot speed at contact", "m/s", 0, 3, GWB_OF_DESIGN, \
+           "true speed of the base in the last row before contact") \
+    METRIC(GWB_PLAN_DISTANCE, 38, "distance from the plan", "mm", 0, 1, GWB_OF_DESIGN | GWB_OF_FREE_RUN, \
+           "largest distance of the tracking controller's reference from the plan, up to its first reaction") \
+    METRIC(GWB_PLAN_ANGLE, 39, "angle from the plan", "deg", 0, 1, GWB_OF_DESIGN | GWB_OF_FREE_RUN, \
+           "largest angle of the tracking controller's reference from the plan, up to its first reaction") \
+    METRIC(GWB_SENSED_TORQUE_SHARE, 40, "sensed torque share", "1", 0, 2, GWB_OF_DESIGN, \
+           "largest sensed torque of a wheel over what counts as saturated") \
+    METRIC(GWB_MOTOR_TORQUE_SHARE, 41, "motor torque share", "1", 0, 2, GWB_OF_DESIGN, \
+           "largest motor torque over its limit") \
+    METRIC(GWB_FAULT_TIME, 42, "time in sensor fault", "s", 0, 3, GWB_OF_DESIGN, \
+           "time in the controller's mode 6") \
+    METRIC(GWB_CONTACT_TIME, 16, "contact time", "s", 0, 3, GWB_OF_DESIGN, \
+           "time of contact in the run") \
+    METRIC(GWB_ENERGY_RESIDUAL, 15, "energy residual", "1", 1, -1, GWB_OF_COLLISION | GWB_OF_FREE_RUN, \
+           "largest error of work in = stored + dissipated, over the largest of work, change of storage and loss") \
+    METRIC(GWB_DETECTIONS, 17, "detections", "1", 0, 0, GWB_OF_BATCH, \
+           "detections of the whole run") \
+    METRIC(GWB_CONTACT_IMPULSE, 18, "contact impulse", "N.s", 0, 2, GWB_OF_BATCH, \
+           "magnitude of the true impulse of the whole run") \
+    METRIC(GWB_CONTACT_AT_END, 19, "contact at end", "1", 0, 0, GWB_OF_BATCH, \
+           "1 if the cover touches the robot in the last row, else 0") \
+    METRIC(GWB_LATCHED_AT_END, 20, "latched at end", "1", 0, 0, GWB_OF_BATCH, \
+           "1 if the bumper's magnet holds its plate in the last row, else 0") \
+    METRIC(GWB_ROPE_TAUT_AT_END, 21, "rope taut at end", "1", 0, 0, GWB_OF_BATCH, \
+           "1 if the rope is taut in the last row, else 0") \
+    METRIC(GWB_EVENTS, 22, "events", "1", 0, 0, GWB_OF_BATCH, \
+           "events that the integrator located")
+/* clang-format on */
+#define GWB_TEXT(number) GWB_TEXT_OF(number)
+#define GWB_TEXT_OF(number) #number
+
+#define GWB_ENUMERATOR(metric, number, name, unit, has_truth, decimals, shown, description) metric = (number),
+#define GWB_ONE(metric, number, name, unit, has_truth, decimals, shown, description) +1
+enum { GWB_METRICS(GWB_ENUMERATOR) GWB_METRIC_COUNT = 0 GWB_METRICS(GWB_ONE) };
+#undef GWB_ENUMERATOR
+#undef GWB_ONE
 
 typedef struct gwb_variable {
     uint32_t model;
@@ -116,10 +184,15 @@ typedef struct gwb_variable {
     const char *name;        /* lives as long as the library */
 } gwb_variable_t;
 
+/* A metric's line in GWB_METRICS. The texts live as long as the library. */
 typedef struct gwb_metric_info {
     const char *name;
     const char *unit;
     uint32_t has_truth;
+    int32_t decimals;
+    uint32_t shown; /* sum of GWB_OF_... */
+    uint32_t line;  /* 0 for the first: the order in which tables show them */
+    const char *description;
 } gwb_metric_info_t;
 
 /* A parameter's value; integers as whole numbers, booleans as 0 and 1. Later settings win. */
@@ -192,12 +265,50 @@ GWB_API size_t gwb_variable_count(uint32_t model);
 GWB_API int gwb_variable_at(uint32_t model, size_t index, gwb_variable_t *variable);
 GWB_API int gwb_find_variable(uint32_t model, const char *name, gwb_variable_t *variable);
 
-/* GWB_METRIC_COUNT of the library, and name and unit of a metric (1; 0 if there is none, and *info is as before). */
+/* GWB_METRIC_COUNT of the library, and what it says of a metric (1; 0 if there is none, and *info is as before). */
 GWB_API uint32_t gwb_metric_count(void);
 GWB_API int gwb_metric_info(uint32_t metric, gwb_metric_info_t *info);
 
+/* The windows of the library. */
+typedef struct gwb_windows {
+    double cause_s, transient_s, contact_gap_s, peak_torque_s;
+} gwb_windows_t;
+GWB_API gwb_windows_t gwb_windows(void);
+
 /* One run on the calling thread. Returns result->status; GWB_WRONG_SPEC for null pointers. */
 GWB_API uint32_t gwb_run(const gwb_spec_t *spec, gwb_result_t *result);
+
+/* What a run recorded, of this library or of the FMUs, whether it came to its end or not. All pointers are only read.
+ * Of the variables that no metric needs, columns and settings may be missing or there; those of the inputs push.* may
+ * be missing, too: there was no push. */
+typedef struct gwb_traces {
+    const double *time_s;        /* of the rows: finite, each above the one before */
+    const gwb_column_t *columns; /* as in gwb_spec_t, each of `rows` values */
+    const gwb_setting_t *settings;
+    uint32_t rows; /* [1, GWB_STEP_COUNT_MAX + 1] */
+    uint32_t column_count;
+    uint32_t setting_count;
+    uint32_t reserved; /* 0 */
+    double transient_limit_n, lasting_limit_n;
+} gwb_traces_t;
+
+/* The metrics of recorded traces: bit for bit those of the run that recorded them. Returns result->status: GWB_OK,
+ * GWB_NO_MEMORY, or GWB_WRONG_SPEC with a message that names what is missing or wrong. */
+GWB_API uint32_t gwb_evaluate(const gwb_traces_t *traces, gwb_result_t *result);
+
+/* A contact force over time as GWB_TRANSIENT_FORCE, GWB_LASTING_FORCE and GWB_LONGEST_CONTACT have it. */
+typedef struct gwb_force {
+    double transient_n, transient_time_s; /* 0 and NaN without contact */
+    double lasting_n, lasting_time_s;     /* 0 and NaN if none lasted so long */
+    double longest_contact_s;
+    uint32_t lasting_known; /* 0: the trace ends too soon after the first touch */
+    uint32_t reserved;      /* 0 */
+} gwb_force_t;
+
+/* Judges `rows` forces: a touch is a force above touch_n, above the noise of a measured trace. 1; or 0 for null
+ * pointers, a time that is not finite and above the one before it, or a force that is not finite and at least 0. */
+GWB_API int gwb_judge_force(const double *time_s, const double *force_n, size_t rows, double touch_n,
+                            gwb_force_t *judged);
 
 /* Many runs on threads of their own. There are no callbacks: whoever waits asks for progress as often as it likes,
  * on its own thread.

@@ -5,18 +5,13 @@
 #include <limits>
 
 #include "elementary.hpp"
-#include "giveway_batch.h"
 #include "scalar.hpp"
 
 namespace giveway::batch {
 
 namespace {
 
-constexpr double peak_window_s = 0.35;
-constexpr double loaded_share = 0.5;
-constexpr double cause_window_s = 0.25;
-constexpr double transient_s = 0.5;   // of a contact; what lasts longer is quasi-static
-constexpr double contact_gap_s = 0.1; // touches less than this apart are one contact
+constexpr double loaded_share = 0.5; // of the torque that an impact makes at the wheel it loads most
 constexpr int mode_tracking = 1;
 constexpr int mode_fault = 6;
 constexpr double gravity_mps2 = 9.81;
@@ -41,13 +36,36 @@ double degrees(double radians) { return radians * (180.0 / pi); }
 // Wrapped to [-180, 180).
 double wrapped(double deg) { return deg + 180.0 - 360.0 * std::floor((deg + 180.0) / 360.0) - 180.0; }
 
+// What the metrics need of the parameters.
+struct Parameters {
+    Parameters(const testbed::Variables &t, const controller::Variables &c, const ForceLimits &force_limits)
+        : wheel_radius_m(t.wheel_radius), wheel_distance_m(t.wheel_distance),
+          estimate_window_s(static_cast<double>(c.estimator_average_window) * c.controller_period),
+          bumper(t.bumper_kind != 0), bumper_travel_m(t.bumper_travel), tipping(t.base_tipping), mass_kg(t.base_mass),
+          com_height_m(t.base_com_height), contact_height_m(t.contact_height), push_height_m(t.push_height),
+          limits(force_limits),
+          sensed_torque_limit_nm(std::min(t.electronics_torque_range, c.sensor_check_torque_limit)),
+          motor_torque_limit_nm(t.drivetrain_torque_limit) {}
+
+    double wheel_radius_m, wheel_distance_m;
+    double estimate_window_s; // over which the estimate is averaged
+    bool bumper;
+    double bumper_travel_m;
+    bool tipping;
+    double mass_kg, com_height_m, contact_height_m, push_height_m;
+    ForceLimits limits;
+    double sensed_torque_limit_nm, motor_torque_limit_nm;
+};
+
+bool pushed(const Sample &s) { return s.push_force_x != 0.0 || s.push_force_y != 0.0; }
+
 class Collision {
 public:
-    Collision(const Sample *samples, std::size_t count, const MetricParameters &parameters, double *value,
-              double *truth)
+    Collision(const Sample *samples, std::size_t count, const Parameters &parameters, double *value, double *truth)
         : s_(samples), count_(count), parameters_(parameters), value_(value), truth_(truth) {
         std::fill_n(value_, GWB_METRIC_COUNT, std::numeric_limits<double>::quiet_NaN());
         std::fill_n(truth_, GWB_METRIC_COUNT, std::numeric_limits<double>::quiet_NaN());
+        step_s_ = count_ > 1 ? s_[1].time_s - s_[0].time_s : std::numeric_limits<double>::quiet_NaN();
         contact_s_ = last().first_contact_time;
         hit_ = contact_s_ >= 0.0;
         if (hit_) {
@@ -118,8 +136,8 @@ private:
             work = std::max(work, std::fabs(s.energy_work_in));
             dissipated = std::max(dissipated, s.energy_dissipated);
             residual = std::max(residual, std::fabs(s.energy_residual));
-            touched_s = (s.contact || s.pushed) ? s.time_s : touched_s;
-            if (s.detection_count > detections && !(touched_s >= s.time_s - cause_window_s)) {
+            touched_s = (s.contact || pushed(s)) ? s.time_s : touched_s;
+            if (s.detection_count > detections && !(touched_s >= s.time_s - GWB_CAUSE_WINDOW_S)) {
                 ++false_detections;
             }
             detections = s.detection_count;
@@ -143,37 +161,20 @@ private:
         set(GWB_EVENTS, last().events);
     }
 
-    // As body_regions.judge.
     void forces_on_a_person() {
-        double transient = 0.0;
-        double lasting = 0.0;
-        double longest = 0.0;
-        double began_s = -std::numeric_limits<double>::infinity();
-        double touched_s = began_s;
-        for (std::size_t i = 0; i < count_; ++i) {
-            const Sample &s = s_[i];
-            if (!(s.contact_force > 0.0)) {
-                continue;
-            }
-            if (s.time_s - touched_s >= transient_s) {
-                began_s = s.time_s;
-            }
-            touched_s = s.time_s;
-            const double since_s = s.time_s - began_s;
-            longest = std::max(longest, since_s);
-            double &largest = since_s <= transient_s ? transient : lasting;
-            largest = std::max(largest, s.contact_force);
+        const gwb_force_t found = judge_force(
+            count_, [this](std::size_t i) { return s_[i].time_s; },
+            [this](std::size_t i) { return s_[i].contact_force; }, 0.0);
+        set(GWB_TRANSIENT_FORCE, found.transient_n);
+        set(GWB_LONGEST_CONTACT, found.longest_contact_s);
+        if (found.lasting_known != 0) {
+            set(GWB_LASTING_FORCE, found.lasting_n);
         }
-        const bool known = !hit_ || last().time_s - s_[std::min(start_, count_ - 1)].time_s > transient_s;
-        set(GWB_TRANSIENT_FORCE, transient);
-        set(GWB_LONGEST_CONTACT, longest);
-        if (known) {
-            set(GWB_LASTING_FORCE, lasting);
-        }
-        if (parameters_.lasting_limit_n > 0.0) {
-            set(GWB_TRANSIENT_SHARE, transient > 0.0 ? transient / parameters_.transient_limit_n : 0.0);
-            if (known) {
-                set(GWB_LASTING_SHARE, lasting / parameters_.lasting_limit_n);
+        const ForceLimits &limits = parameters_.limits;
+        if (limits.lasting_n > 0.0) {
+            set(GWB_TRANSIENT_SHARE, found.transient_n > 0.0 ? found.transient_n / limits.transient_n : 0.0);
+            if (found.lasting_known != 0) {
+                set(GWB_LASTING_SHARE, found.lasting_n / limits.lasting_n);
             }
         }
     }
@@ -190,7 +191,7 @@ private:
 
     // Over a row: mean acceleration, mean contact force, the push that acted.
     [[nodiscard]] double standing_margin(const Sample &a, const Sample &b) const {
-        const MetricParameters &p = parameters_;
+        const Parameters &p = parameters_;
         const double step_s = b.time_s - a.time_s;
         const auto reach = [&](double push, double force_a, double force_b, double va, double vb) {
             const double moment = p.contact_height_m * 0.5 * (force_a + force_b) + p.push_height_m * push -
@@ -218,7 +219,7 @@ private:
             if (!s_[i].contact) {
                 continue;
             }
-            contacts += s_[i].time_s - touched_s >= contact_gap_s ? 1 : 0;
+            contacts += s_[i].time_s - touched_s >= GWB_CONTACT_GAP_S ? 1 : 0;
             touched_s = s_[i].time_s;
             if (contacts == 1) {
                 peak = std::max(peak, s_[i].contact_force);
@@ -268,7 +269,7 @@ private:
         set(GWB_PLAN_ANGLE, angle);
         set(GWB_SENSED_TORQUE_SHARE, sensed / parameters_.sensed_torque_limit_nm);
         set(GWB_MOTOR_TORQUE_SHARE, motor / parameters_.motor_torque_limit_nm);
-        set(GWB_FAULT_TIME, faulty * (s_[1].time_s - s_[0].time_s));
+        set(GWB_FAULT_TIME, faulty * step_s_);
     }
 
     void relatching() {
@@ -334,7 +335,7 @@ private:
             for (int wheel = 0; wheel < 3; ++wheel) {
                 const double torque = s_[i].wheel_torque[wheel];
                 any = std::max(any, std::fabs(torque));
-                if (s_[i].time_s <= contact_s_ + peak_window_s) {
+                if (s_[i].time_s <= contact_s_ + GWB_PEAK_TORQUE_WINDOW_S) {
                     positive[wheel] = std::max(positive[wheel], torque);
                     negative[wheel] = std::max(negative[wheel], -torque);
                 }
@@ -385,8 +386,7 @@ private:
         }
 
         // Halves round to even, as in Python.
-        const double step_s = s_[1].time_s - s_[0].time_s;
-        const double rows = std::max(1.0, math::round(parameters_.estimate_window_s / step_s));
+        const double rows = std::max(1.0, math::round(parameters_.estimate_window_s / step_s_));
         const std::size_t available = detected_ + 1;
         const std::size_t window = rows < static_cast<double>(available) ? static_cast<std::size_t>(rows) : available;
         Vector mean{0.0, 0.0};
@@ -402,7 +402,7 @@ private:
             estimated.x += s_[i].estimate_force_x;
             estimated.y += s_[i].estimate_force_y;
         }
-        set(GWB_IMPULSE, estimated.length() * step_s, impulse.length());
+        set(GWB_IMPULSE, estimated.length() * step_s_, impulse.length());
     }
 
     // Every new hit starts the escape anew, so it counts from the last detection.
@@ -418,9 +418,10 @@ private:
 
     const Sample *s_;
     std::size_t count_;
-    const MetricParameters &parameters_;
+    const Parameters &parameters_;
     double *value_;
     double *truth_;
+    double step_s_ = 0.0; // NaN if there is but one row
     double contact_s_ = -1.0;
     bool hit_ = false;
     std::size_t start_ = 0; // first row at or after contact
@@ -429,8 +430,9 @@ private:
 
 } // namespace
 
-void evaluate(const Sample *samples, std::size_t count, const MetricParameters &parameters, double *value,
-              double *truth) {
+void evaluate(const Sample *samples, std::size_t count, const testbed::Variables &testbed,
+              const controller::Variables &controller, const ForceLimits &limits, double *value, double *truth) {
+    const Parameters parameters(testbed, controller, limits);
     Collision(samples, count, parameters, value, truth).all();
 }
 

@@ -1,51 +1,55 @@
-// What a collision is judged by, computed from samples of a run. The definitions are those of
-// cosim/giveway/metrics.py; a test holds both equal.
+// What a collision is judged by, computed from samples of a run; each metric's definition is its line in GWB_METRICS.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
+
+#include "giveway_batch.h"
+#include "sample.hpp"
 
 namespace giveway::batch {
 
-// What the metrics need of one row of the traces; names as in the variable tables, SI units.
-struct Sample {
-    double time_s;
-    // testbed.truth
-    double x, y, theta, vx, vy;
-    double wheel_torque[3], motor_torque[3], sensed_torque[3];
-    double contact_force, contact_force_x, contact_force_y;
-    double contact_base_x, contact_base_y;
-    double contact_impulse_x, contact_impulse_y;
-    double first_contact_time;
-    double nose_x, nose_y;
-    double bumper_compression;
-    double tip_margin;
-    // testbed inputs
-    double push_force_x, push_force_y;
-    double energy_stored, energy_work_in, energy_dissipated, energy_residual;
-    // controller
-    double estimate_force, estimate_force_x, estimate_force_y;
-    double detection_direction, detection_point_x, detection_point_y;
-    double reference_x, reference_y, reference_theta;
-    double plan_x, plan_y, plan_theta;
-    int detection_count;
-    int mode;
-    int events;
-    bool contact, pushed, latched, rope_taut;
+struct ForceLimits {
+    double transient_n, lasting_n; // as in gwb_spec_t
 };
 
-struct MetricParameters {
-    double wheel_radius_m, wheel_distance_m;
-    double estimate_window_s; // over which the estimate is averaged
-    bool bumper;
-    double bumper_travel_m;
-    bool tipping;
-    double mass_kg, com_height_m, contact_height_m, push_height_m;
-    double transient_limit_n, lasting_limit_n; // as in gwb_spec_t
-    double sensed_torque_limit_nm, motor_torque_limit_nm;
-};
+// Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least one sample; the models'
+// variables hold the run's parameters.
+void evaluate(const Sample *samples, std::size_t count, const testbed::Variables &testbed,
+              const controller::Variables &controller, const ForceLimits &limits, double *value, double *truth);
 
-// Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least two samples.
-void evaluate(const Sample *samples, std::size_t count, const MetricParameters &parameters, double *value,
-              double *truth);
+// gwb_judge_force, with time_s(row) and force_n(row).
+template <class Time, class Force>
+gwb_force_t judge_force(std::size_t rows, const Time &time_s, const Force &force_n, double touch_n) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double long_ago_s = -std::numeric_limits<double>::infinity();
+    gwb_force_t found{0.0, nan, 0.0, nan, 0.0, 1, 0};
+    double began_s = long_ago_s;
+    double touched_s = long_ago_s;
+    double first_s = long_ago_s;
+    for (std::size_t i = 0; i < rows; ++i) {
+        const double now_s = time_s(i);
+        const double force = force_n(i);
+        if (!(force > touch_n)) {
+            continue;
+        }
+        if (now_s - touched_s >= GWB_TRANSIENT_WINDOW_S) {
+            began_s = now_s;
+        }
+        first_s = touched_s == long_ago_s ? now_s : first_s;
+        touched_s = now_s;
+        const double since_s = now_s - began_s;
+        found.longest_contact_s = std::max(found.longest_contact_s, since_s);
+        const bool transient = since_s <= GWB_TRANSIENT_WINDOW_S;
+        double &largest = transient ? found.transient_n : found.lasting_n;
+        if (force > largest) {
+            largest = force;
+            (transient ? found.transient_time_s : found.lasting_time_s) = now_s;
+        }
+    }
+    found.lasting_known = first_s == long_ago_s || time_s(rows - 1) - first_s > GWB_TRANSIENT_WINDOW_S ? 1 : 0;
+    return found;
+}
 
 } // namespace giveway::batch

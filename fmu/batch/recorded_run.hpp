@@ -6,14 +6,10 @@
 #include <memory>
 #include <new>
 
-#include "metrics.hpp"
-#include "models.hpp"
+#include "judged.hpp"
 #include "run.hpp"
 
 namespace giveway::batch {
-
-// Writes all of `result`, as of a run that has not started.
-void clear(gwb_result_t &result);
 
 // Memory for the samples of one run after the other: fresh pages for each would cost a twentieth of a run over fixed
 // steps.
@@ -33,7 +29,7 @@ private:
     std::size_t count_ = 0;
 };
 
-class RecordedRun {
+class RecordedRun : public Judged {
 public:
     RecordedRun(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result);
     ~RecordedRun(); // counts all steps as done
@@ -55,12 +51,9 @@ public:
 
     // Another goes on with this run and counts its steps.
     void hand_over() { reported_ = spec_.step_count; }
-    // Ends the run with a message; always false.
-    [[gnu::format(printf, 3, 4)]] bool end(std::uint32_t status, const char *format, ...);
     bool model_failed(std::uint32_t status, std::uint32_t model, Message &message);
 
     [[nodiscard]] const gwb_spec_t &spec() const { return spec_; }
-    [[nodiscard]] gwb_result_t &result() { return result_; }
     [[nodiscard]] double time_s(std::uint32_t step) const { return static_cast<double>(step) * spec_.step_s; }
 
 private:
@@ -70,23 +63,16 @@ private:
         std::size_t size;
     };
 
-    bool refuse_value(std::uint32_t status, const char *where, std::uint32_t model, const VariableInfo &variable,
-                      double value);
     bool check_spec();
     template <class Inputs>
     bool check_table(const char *name, const Inputs &inputs, const double *table, std::uint32_t rows);
-    const VariableInfo *lookup(const char *array, std::uint32_t index, std::uint32_t model, std::uint32_t reference);
-    bool check_columns();
     bool create();
-    bool apply_settings();
     bool pass(const class Links &links, std::uint32_t receiver);
     void record(std::uint32_t k, double now_s);
 
     const gwb_spec_t &spec_;
     Monitor &monitor_;
-    gwb_result_t &result_;
     std::unique_ptr<Model> controller_;
-    std::array<unsigned char *, GWB_MODEL_COUNT> variables_{};
     Sample *samples_ = nullptr;
     std::unique_ptr<Recorder[]> recorders_;
     std::uint32_t path_row_ = 0;

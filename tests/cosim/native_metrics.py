@@ -1,57 +1,75 @@
-"""The batch library's metrics of any traces, through the probe library of tests/fmu/batch."""
+"""The batch library's metrics of any traces, by gwb_evaluate."""
 
 from __future__ import annotations
 
 import ctypes
 import functools
-import math
-import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
 from giveway import batch
+from giveway.base import native
+from giveway.robot.variables import table
 from giveway.scenario.body_regions import BodyRegion
+
+DTYPES = {"real": np.float64, "integer": np.int32, "boolean": np.bool_}
+
+
+class Column(ctypes.Structure):
+    _fields_ = [("model", ctypes.c_uint32), ("reference", ctypes.c_uint32), ("values", ctypes.c_void_p)]
+
+
+class Setting(ctypes.Structure):
+    _fields_ = [("model", ctypes.c_uint32), ("reference", ctypes.c_uint32), ("value", ctypes.c_double)]
+
+
+class Traces(ctypes.Structure):
+    _fields_ = [
+        ("time_s", ctypes.c_void_p),
+        ("columns", ctypes.c_void_p),
+        ("settings", ctypes.c_void_p),
+        *((name, ctypes.c_uint32) for name in ("rows", "column_count", "setting_count", "reserved")),
+        ("transient_limit_n", ctypes.c_double),
+        ("lasting_limit_n", ctypes.c_double),
+    ]
 
 
 @functools.cache
 def _library() -> ctypes.CDLL:
-    build = Path(os.environ.get("GIVEWAY_TEST_DIR", Path(__file__).parents[2] / "build" / "tests"))
-    library = ctypes.CDLL(str(build / "libgiveway_metrics_probe.so"))
-    library.metrics_column_count.restype = ctypes.c_size_t
-    library.metrics_column.restype = ctypes.c_char_p
-    return library
+    return ctypes.CDLL(str(native.batch_library()))
 
 
 def evaluate(
     traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]], region: BodyRegion | None = None
 ) -> dict[str, tuple[float, float]]:
     """Value and truth of every metric by name, NaN for what did not happen; traces that are missing are 0."""
-    library = _library()
-    names = [library.metrics_column(ctypes.c_size_t(i)).decode() for i in range(library.metrics_column_count())]
-    nothing = np.zeros(traces.sizes["time"])
-    table = np.ascontiguousarray([traces[n].values if n in traces else nothing for n in names], dtype=float).T.copy()
-    testbed, controller = parameters["testbed"], parameters["controller"]
-    row = np.array([
-        testbed["wheel.radius"],
-        testbed["wheel.distance"],
-        controller["estimator.average_window"] * controller["controller.period"],
-        testbed["bumper.kind"],
-        testbed["bumper.travel"],
-        testbed["base.tipping"],
-        testbed["base.mass"],
-        testbed["base.com_height"],
-        testbed["contact.height"],
-        testbed["push.height"],
+    time_s = np.ascontiguousarray(traces["time"].values, dtype=np.float64)
+    arrays, columns, settings = [], [], []
+    for model, name in enumerate(native.MODELS):
+        for variable in table(name):
+            trace = f"{name}.{variable.name}"
+            if variable.causality in ("input", "output"):
+                values = traces[trace].values if trace in traces else np.zeros(len(time_s))
+                arrays.append(np.ascontiguousarray(values, dtype=DTYPES[variable.type]))
+                columns.append(Column(model, variable.reference, arrays[-1].ctypes.data))
+            elif variable.name in parameters[name]:
+                settings.append(Setting(model, variable.reference, float(parameters[name][variable.name])))
+    column_array, setting_array = (Column * len(columns))(*columns), (Setting * len(settings))(*settings)
+    result = np.zeros(1, dtype=batch._library().result)
+    one = Traces(
+        time_s.ctypes.data,
+        ctypes.addressof(column_array),
+        ctypes.addressof(setting_array),
+        len(time_s),
+        len(columns),
+        len(settings),
+        0,
         0.0 if region is None else region.peak_limit_n,
         0.0 if region is None else region.lasting_limit_n,
-        min(testbed["electronics.torque_range"], controller["sensor_check.torque_limit"]),
-        testbed["drivetrain.torque_limit"],
-    ], dtype=float)  # fmt: skip
-    metrics = batch.native_metrics()
-    value, truth = np.full(len(metrics), math.inf), np.full(len(metrics), math.inf)
-    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (row, value, truth)]
-    library.metrics_evaluate(ctypes.c_void_p(table.ctypes.data), ctypes.c_size_t(len(table)), *pointers)
-    return {metric.name: (float(value[i]), float(truth[i])) for i, metric in enumerate(metrics)}
+    )
+    status = _library().gwb_evaluate(ctypes.byref(one), ctypes.c_void_p(result.ctypes.data))
+    assert status == batch.OK, result["message"][0].decode()
+    numbers = zip(result["metric"][0].tolist(), result["truth"][0].tolist(), strict=True)
+    return dict(zip((metric.name for metric in batch.native_metrics()), numbers, strict=True))

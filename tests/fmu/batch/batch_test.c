@@ -84,14 +84,26 @@ static void test_tables(void) {
 
 static void test_metric_infos(void) {
     gwb_metric_info_t info = {.name = "untouched"};
+    int lines[GWB_METRIC_COUNT] = {0};
     CHECK(gwb_metric_count() == GWB_METRIC_COUNT);
     CHECK(gwb_metric_info(GWB_METRIC_COUNT, &info) == 0);
     CHECK(strcmp(info.name, "untouched") == 0);
     CHECK(gwb_metric_info(0, NULL) == 0);
     for (uint32_t metric = 0; metric < GWB_METRIC_COUNT; ++metric) {
         CHECK(gwb_metric_info(metric, &info) == 1);
-        CHECK(strlen(info.name) > 0 && strlen(info.unit) > 0);
+        CHECK(strlen(info.name) > 0 && strlen(info.unit) > 0 && strlen(info.description) > 10);
+        CHECK(info.has_truth <= 1 && info.decimals >= -1 && info.decimals <= 3);
+        CHECK(info.line < GWB_METRIC_COUNT && !lines[info.line]);
+        lines[info.line] = 1;
     }
+    /* Numbers never change: programs have them compiled in, and studies their columns. */
+    CHECK(GWB_CONTACT_SPEED == 0 && GWB_PEAK_FORCE == 10 && GWB_EVENTS == 22 && GWB_TIP_MARGIN == 33);
+    CHECK(GWB_FAULT_TIME == 42 && GWB_METRIC_COUNT >= 43);
+    CHECK(gwb_metric_info(GWB_FALSE_DETECTIONS, &info) == 1);
+    CHECK(strcmp(info.description, "detections without true contact or push in the 0.25 s before them") == 0);
+    CHECK(info.shown == (GWB_OF_COLLISION | GWB_OF_FREE_RUN) && info.line == 1 && info.decimals == 0);
+    CHECK(gwb_windows().cause_s == 0.25 && gwb_windows().transient_s == 0.5);
+    CHECK(gwb_windows().contact_gap_s == 0.1 && gwb_windows().peak_torque_s == 0.35);
     CHECK(gwb_metric_info(GWB_PEAK_FORCE, &info) == 1 && strcmp(info.name, "peak force of the run") == 0);
 }
 
@@ -273,6 +285,161 @@ static void test_a_refusal_of_the_models(void) {
     CHECK(says(&result, "testbed: outline"));
 }
 
+/* Room for every output and input of a run. */
+#define COLUMNS_MAX 400
+
+typedef struct recording {
+    gwb_column_t columns[COLUMNS_MAX];
+    double values[COLUMNS_MAX][STEPS + 1];
+    uint32_t count;
+} recording_t;
+
+static void record_all(recording_t *all) {
+    all->count = 0;
+    for (uint32_t model = 0; model < GWB_MODEL_COUNT; ++model) {
+        for (size_t i = 0; i < gwb_variable_count(model); ++i) {
+            gwb_variable_t v;
+            CHECK(gwb_variable_at(model, i, &v) == 1);
+            if ((v.causality != GWB_INPUT && v.causality != GWB_OUTPUT) || all->count == COLUMNS_MAX) {
+                continue;
+            }
+            all->columns[all->count] = (gwb_column_t){model, v.reference, all->values[all->count]};
+            ++all->count;
+        }
+    }
+    CHECK(all->count < COLUMNS_MAX);
+}
+
+static int evaluation_refused(const gwb_traces_t *traces, const char *text) {
+    gwb_result_t result;
+    CHECK(gwb_evaluate(traces, &result) == GWB_WRONG_SPEC);
+    CHECK(result.status == GWB_WRONG_SPEC && result.rows == 0);
+    CHECK(isnan(result.metric[GWB_PEAK_FORCE]));
+    return says(&result, text);
+}
+
+static void test_recorded_traces(void) {
+    static recording_t all;
+    static double time_s[STEPS + 1];
+    record_all(&all);
+    const gwb_setting_t settings[] = {
+        {GWB_TESTBED, variable(GWB_TESTBED, "bumper.kind").reference, 2.0},
+        {GWB_TESTBED, variable(GWB_TESTBED, "bumper.travel").reference, 0.1},
+        {GWB_CONTROLLER, variable(GWB_CONTROLLER, "estimator.average_window").reference, 7.0}};
+    gwb_spec_t spec = rest_spec();
+    spec.settings = settings;
+    spec.setting_count = 3;
+    spec.columns = all.columns;
+    spec.column_count = all.count;
+    spec.transient_limit_n = 260.0;
+    spec.lasting_limit_n = 130.0;
+    gwb_result_t run;
+    CHECK(gwb_run(&spec, &run) == GWB_OK);
+    CHECK(run.metric[GWB_DETECTION_TIME] > 0.0 && run.metric[GWB_TRANSIENT_SHARE] > 0.0);
+    for (int k = 0; k <= STEPS; ++k) {
+        time_s[k] = k * 0.001;
+    }
+    gwb_traces_t traces = {.time_s = time_s,
+                           .columns = all.columns,
+                           .settings = settings,
+                           .rows = run.rows,
+                           .column_count = all.count,
+                           .setting_count = 3,
+                           .transient_limit_n = 260.0,
+                           .lasting_limit_n = 130.0};
+    gwb_result_t again;
+    CHECK(gwb_evaluate(&traces, &again) == GWB_OK);
+    CHECK(again.rows == run.rows && again.time_s == run.time_s && again.message[0] == '\0');
+    CHECK(memcmp(run.metric, again.metric, sizeof run.metric) == 0);
+    CHECK(memcmp(run.truth, again.truth, sizeof run.truth) == 0);
+
+    /* Parameters count, and a run that ended early is judged by what there is, down to one row. */
+    traces.setting_count = 0;
+    CHECK(gwb_evaluate(&traces, &again) == GWB_OK);
+    CHECK(fabs(again.metric[GWB_BOTTOMING_MARGIN] - run.metric[GWB_BOTTOMING_MARGIN]) > 1.0);
+    traces.setting_count = 3;
+    for (uint32_t rows = 1; rows <= STEPS; ++rows) {
+        traces.rows = rows;
+        CHECK(gwb_evaluate(&traces, &again) == GWB_OK);
+        CHECK(again.rows == rows && again.metric[GWB_PEAK_FORCE] <= run.metric[GWB_PEAK_FORCE]);
+        CHECK(isnan(again.metric[GWB_FAULT_TIME]) == (rows == 1));
+    }
+
+    traces.rows = 0;
+    CHECK(evaluation_refused(&traces, "rows = 0 is not allowed: [1, 4000001]"));
+    traces.rows = STEPS + 1;
+    time_s[7] = time_s[6];
+    CHECK(evaluation_refused(&traces, "time_s[7] = 0.006"));
+    time_s[7] = NAN;
+    CHECK(evaluation_refused(&traces, "time_s[7] = nan is not allowed: finite and above the one before it"));
+    time_s[7] = 7 * 0.001;
+    traces.time_s = NULL;
+    CHECK(evaluation_refused(&traces, "time_s is a null pointer"));
+    traces.time_s = time_s;
+    traces.lasting_limit_n = -1.0;
+    CHECK(evaluation_refused(&traces, "lasting_limit_n = -1 is not allowed"));
+    traces.lasting_limit_n = 0.0;
+    traces.settings = NULL;
+    CHECK(evaluation_refused(&traces, "settings is a null pointer"));
+    traces.settings = settings;
+    traces.columns = NULL;
+    CHECK(evaluation_refused(&traces, "columns is a null pointer"));
+    traces.columns = all.columns;
+    const gwb_setting_t wrong = {GWB_TESTBED, settings[1].reference, -1.0};
+    traces.settings = &wrong;
+    traces.setting_count = 1;
+    CHECK(evaluation_refused(&traces, "testbed.bumper.travel = -1 is not allowed"));
+    traces.setting_count = 0;
+    CHECK(gwb_evaluate(NULL, &again) == GWB_WRONG_SPEC && gwb_evaluate(&traces, NULL) == GWB_WRONG_SPEC);
+
+    /* Each column alone: one that is needed is named, others and those of the push may be missing. */
+    uint32_t needed = 0;
+    for (uint32_t i = 0; i < all.count; ++i) {
+        const gwb_column_t left_out = all.columns[i];
+        gwb_variable_t v = {.name = ""};
+        for (size_t k = 0; k < gwb_variable_count(left_out.model) && v.reference != left_out.reference; ++k) {
+            CHECK(gwb_variable_at(left_out.model, k, &v) == 1);
+        }
+        all.columns[i] = all.columns[all.count - 1];
+        traces.column_count = all.count - 1;
+        if (gwb_evaluate(&traces, &again) == GWB_WRONG_SPEC) {
+            CHECK(says(&again, v.name) && says(&again, "is missing"));
+            CHECK(again.model == left_out.model && again.reference == left_out.reference);
+            CHECK(strncmp(v.name, "push.", 5) != 0);
+            ++needed;
+        }
+        all.columns[i] = left_out;
+    }
+    CHECK(needed > 40 && needed < all.count);
+}
+
+static void test_forces(void) {
+    const double time_s[] = {0.0, 0.1, 0.5, 0.7, 1.3, 1.4};
+    const double force_n[] = {0.0, 30.0, 50.0, 20.0, 60.0, 0.0};
+    gwb_force_t judged;
+    CHECK(gwb_judge_force(time_s, force_n, 6, 0.0, &judged) == 1);
+    CHECK(judged.transient_n == 60.0 && judged.transient_time_s == 1.3);
+    CHECK(judged.lasting_n == 20.0 && judged.lasting_time_s == 0.7 && judged.lasting_known == 1);
+    CHECK(judged.longest_contact_s == 0.7 - 0.1);
+    CHECK(gwb_judge_force(time_s, force_n, 3, 0.0, &judged) == 1);
+    CHECK(judged.lasting_known == 0 && judged.lasting_n == 0.0 && isnan(judged.lasting_time_s));
+    CHECK(gwb_judge_force(time_s, force_n, 6, 55.0, &judged) == 1);
+    CHECK(judged.transient_n == 60.0 && judged.longest_contact_s == 0.0 && judged.lasting_known == 0);
+    CHECK(gwb_judge_force(time_s, force_n, 6, 100.0, &judged) == 1);
+    CHECK(judged.transient_n == 0.0 && isnan(judged.transient_time_s) && judged.lasting_known == 1);
+    CHECK(gwb_judge_force(time_s, force_n, 0, 0.0, &judged) == 1 && judged.lasting_known == 1);
+    CHECK(gwb_judge_force(NULL, force_n, 6, 0.0, &judged) == 0);
+    CHECK(gwb_judge_force(time_s, NULL, 6, 0.0, &judged) == 0);
+    CHECK(gwb_judge_force(time_s, force_n, 6, 0.0, NULL) == 0);
+    const double wrong[] = {0.0, 1.0, 1.0, NAN, -1.0, INFINITY};
+    CHECK(gwb_judge_force(wrong, force_n, 2, 0.0, &judged) == 1);
+    CHECK(gwb_judge_force(wrong, force_n, 3, 0.0, &judged) == 0);
+    CHECK(gwb_judge_force(&wrong[3], force_n, 1, 0.0, &judged) == 0);
+    for (int i = 3; i < 6; ++i) {
+        CHECK(gwb_judge_force(time_s, &wrong[i], 1, 0.0, &judged) == 0);
+    }
+}
+
 #define RUNS 6
 
 static void test_batches(void) {
@@ -384,6 +551,8 @@ int main(void) {
     test_wrong_specs();
     test_wrong_settings();
     test_a_refusal_of_the_models();
+    test_recorded_traces();
+    test_forces();
     test_batches();
     test_wrong_batches();
     (void)printf("%d failures\n", failures);
