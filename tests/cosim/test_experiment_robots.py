@@ -10,7 +10,8 @@ import pytest
 from cosim_helpers import Cli, folder_content
 from giveway import batch
 from giveway.base import native
-from giveway.experiments import get
+from giveway.cli import _scenario
+from giveway.experiments import all_experiments, get
 from giveway.experiments.placement import outline_of_robot
 from giveway.fmu_tools.ssp import parameter_set
 from giveway.robot.robot_file import read_robot
@@ -136,3 +137,12 @@ def test_the_fit_is_for_the_papers_outline(cli: Cli, tmp_path: Path) -> None:
     assert "robot: mine.toml" in done.stderr
     assert "outline of the paper's" in done.stderr
     assert folder_content(tmp_path) == ["mine.toml"]
+
+
+@pytest.mark.parametrize("name", [name for name, one in all_experiments().items() if one.is_single_run])
+def test_without_a_bumper_an_experiment_has_the_magnetic_one_or_its_own(name: str) -> None:
+    own = get(name).bumpers
+    bumper = "magnetic" if not own or "magnetic" in own else own[0]
+    scenario, _ = _scenario(name, None, None)
+    assert scenario.bumper == bumper
+    assert scenario == get(name).scenario(bumper)

@@ -161,6 +161,18 @@ def test_traces_are_those_of_the_event_exact_method() -> None:
         assert table["testbed.events"].values[0, -1] == pytest.approx(exact["testbed.events"].values[0, -1], abs=3)
 
 
+def test_the_wall_throws_the_slider_back_as_in_the_event_exact_method() -> None:
+    thrown = {"rope.attached": False, "wall.present": True, "slider.speed": -0.3}
+    names = [f"testbed.truth.{name}" for name in ("wall_force", "slider_position", "slider_speed")]
+    scenarios = [short(duration_s=0.4, testbed=thrown)]
+    exact, table = batch.run_many(scenarios, traces=names), fixed(scenarios, traces=names)
+    assert set(table["method"].values) == {"fixed-step"}
+    assert exact["testbed.truth.slider_speed"].values.max() > 0.2  # it came back
+    for name in names:
+        # A hit lasts some milliseconds, whose ends are found to a hundredth of a step.
+        assert np.abs(table[name].values - exact[name].values).max() < 0.01 * np.abs(exact[name].values).max(), name
+
+
 def test_the_noise_of_each_sensor_is_that_of_the_event_exact_method() -> None:
     names = [f"testbed.sensor.torque[{wheel}]" for wheel in range(3)]
     # Nothing moves: what is sensed is noise and offset, rounded to the sensor's steps.

@@ -174,6 +174,43 @@ def test_bandwidth_and_resonance_lie_on_the_curve() -> None:
                 assert gain(aside * channel.resonance_hz) < gain(channel.resonance_hz)
 
 
+@pytest.mark.parametrize("load", ["base", "wheel", "locked"])
+def test_the_curves_reach_half_the_servos_rate_and_resolve_every_peak(load: str) -> None:
+    analysis = analyse(*read(load=load))
+    grid = analysis.frequency_hz
+    assert grid[0] == pytest.approx(1e-3)
+    half_rate_hz = 0.5 / TICK_S
+    assert 0.98 * half_rate_hz < grid[-1] < half_rate_hz
+    assert (np.diff(grid) > 0.0).all()
+    assert np.max(grid[1:] / grid[:-1]) < 1.01  # a smooth curve over six decades
+    peaks = [pole for case in analysis.cases.values() for pole in case.poles if 0.0 < abs(pole.damping or 0.0) < 0.5]
+    assert peaks
+    for pole in peaks:
+        width_hz = abs(pole.damping or 0.0) * pole.frequency_hz  # half of that between the points 3 dB below the peak
+        near = grid[np.abs(grid - pole.frequency_hz) < min(5.0 * width_hz, 0.99 * half_rate_hz - pole.frequency_hz)]
+        assert np.diff(near).max() < 0.06 * width_hz
+        assert np.abs(near - pole.frequency_hz).max() > 4.8 * width_hz
+
+
+@pytest.mark.parametrize(
+    ("change", "lasts_s"),
+    [
+        # d/2J per second, of a motor of inertia J on a spring that ends in a wall, slowed down by the friction d.
+        ({"damping": 0.0, "gear_viscous": 0.4, "motor_inertia": 0.05}, 3.0 / (0.4 / 0.1)),
+        # All over in milliseconds, with the servo, too: the shortest response.
+        ({"damping": 0.0, "gear_viscous": 1.5, "motor_inertia": 0.001}, 0.05),
+    ],
+)
+def test_step_responses_last_three_time_constants_of_the_slowest_motion(
+    change: dict[str, float], lasts_s: float
+) -> None:
+    p, servo = read(load="locked")
+    time_s = analyse(dataclasses.replace(p, **change), servo).time_s
+    assert time_s[0] == 0.0
+    assert np.diff(time_s) == pytest.approx(TICK_S)
+    assert time_s[-1] == pytest.approx(lasts_s, abs=TICK_S)
+
+
 def test_a_delay_beyond_the_margin_is_called_unstable() -> None:
     margin_s = analyse(*read(load="wheel")).margins.delay_s
     assert margin_s is not None

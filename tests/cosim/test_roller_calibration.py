@@ -18,7 +18,13 @@ from giveway.base.errors import GivewayError
 from giveway.experiments.roller_calibration import ARCS, RECORDED, arc_scenario, log_of
 from giveway.identification.motion_log import MotionLog
 from giveway.identification.roller_fit import RestZone, fit, half_widths, prepare
-from giveway.identification.roller_friction import Calibration, UnidentifiableError, calibrate
+from giveway.identification.roller_friction import (
+    Calibration,
+    Estimate,
+    UnidentifiableError,
+    _force_uncertainty,
+    calibrate,
+)
 from giveway.identification.torque_model import TorqueModel
 from giveway.robot.changes import NewValue, changed_robot
 from giveway.robot.robot_file import Robot, read_robot
@@ -100,6 +106,27 @@ def test_intervals_hold_what_they_promise_for_correlated_uneven_noise(robot: Rob
     # Of 40 intervals of 95 % fewer than 33 hold with a probability of 0.1 %; few blocks cost some coverage, too.
     assert min(interval_hits(logs, robot)) >= 33
     assert interval_hits(logs[:3], robot) != (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("from_noise", "from_choices"), [((0.003, 0.0), (0.004, 0.0)), ((0.0, 1.5), (0.0, 2.0)), ((0.005, 9.0), (0.0, 0.0))]
+)
+def test_the_uncertainty_of_the_force_is_the_widest_place_of_the_band(
+    from_noise: tuple[float, float], from_choices: tuple[float, float]
+) -> None:
+    """Over a dense grid of rates, from rest to where tanh has long been 1; coarser points miss a tenth of a percent."""
+    coulomb = Estimate(0.02, from_noise[0], from_choices[0])
+    slope = Estimate(5.0, from_noise[1], from_choices[1])
+    half = [math.hypot(noise, choice) for noise, choice in zip(from_noise, from_choices, strict=True)]
+    rate = np.linspace(0.0, 40.0, 200_001)
+    band = 0.5 * 0.02 * (np.tanh((5.0 + half[1]) * rate) - np.tanh(max(0.0, 5.0 - half[1]) * rate))
+    assert _force_uncertainty(coulomb, slope) == pytest.approx(np.hypot(half[0], band).max(), rel=1e-3)
+
+
+def test_the_force_is_uncertain_without_end_where_an_estimate_is() -> None:
+    sure, unsure = Estimate(0.02, 0.001, 0.0), Estimate(5.0, math.inf, 0.0)
+    assert _force_uncertainty(sure, unsure) == math.inf
+    assert _force_uncertainty(unsure, sure) == math.inf
 
 
 def test_two_logs_have_their_own_tares(robot: Robot) -> None:

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #include "giveway_batch.h"
 
@@ -480,13 +481,20 @@ static void test_batches(void) {
 
     for (int i = 0; i < RUNS; ++i) {
         masses[i].value = 5.0;
-        specs[i].step_count = 400000; /* seconds of computing */
+        specs[i].step_count = 2000000; /* more than ten seconds of computing */
     }
     CHECK(gwb_start(specs, RUNS, &two, results, &batch, message) == 1);
     do {
         CHECK(gwb_wait(batch, 0.01, &progress) == 0);
     } while (progress.steps_done == 0);
     CHECK(progress.steps_done < progress.steps && progress.runs_done == 0);
+    /* It waits for as long as asked, also where a second ends meanwhile; whole seconds are all that C99 has. */
+    const time_t before = time(NULL);
+    for (int i = 0; i < 5; ++i) {
+        CHECK(gwb_wait(batch, 0.45, NULL) == 0);
+    }
+    const double waited_s = difftime(time(NULL), before);
+    CHECK(waited_s >= 2.0 && waited_s <= 3.0); /* 2.25 s, in whole seconds */
     gwb_cancel(batch);
     CHECK(gwb_wait(batch, 60.0, &progress) == 1);
     CHECK(progress.steps_done == progress.steps);
