@@ -48,7 +48,7 @@ public:
             return run_.model_failed(GWB_REFUSED, GWB_TESTBED, message);
         }
         start_.parameters = system.parameters();
-        std::copy_n(state.begin(), plant::state_count, start_.state.begin());
+        std::copy_n(state.begin(), plant::Layout<>::state_count, start_.state.begin());
         start_.modes = system.modes();
         start_.inputs = system.inputs();
         start_.first_contact_s = system.first_contact_time();
@@ -161,7 +161,7 @@ private:
         });
         plant_.set_pushes(push);
         for (int tick = 0; tick < ticks; ++tick, ++tick_) {
-            double torque[3 * widest] = {};
+            double torque[testbed::wheel_count * widest] = {};
             each([&](Lane &lane, std::size_t i) {
                 if (tick_ % testbed::servo_ticks_per_cycle == 0) {
                     lane.drives().receive(testbed::bus_command(lane.variables()));
@@ -210,8 +210,8 @@ private:
         return std::bit_cast<Block>(values);
     }
 
-    [[nodiscard]] std::array<double, 3> motor_angles(std::size_t i) const {
-        return take<std::array<double, 3>>(plant_.state() + plant::motor_angle * width_, i);
+    [[nodiscard]] testbed::PerWheel<double> motor_angles(std::size_t i) const {
+        return take<testbed::PerWheel<double>>(plant_.state() + plant::Layout<>::motor_angle * width_, i);
     }
 
     // What the sensors measure in this bus cycle.
@@ -225,7 +225,7 @@ private:
             using Outputs = plant::Outputs<double>;
             const double *torque = plant_.outputs() + offsetof(Outputs, wheel_torque) / sizeof(double) * width_;
             testbed::write_sensors(lane.variables(),
-                                   lane.drives().sample(motor_angles(i), take<std::array<double, 3>>(torque, i),
+                                   lane.drives().sample(motor_angles(i), take<testbed::PerWheel<double>>(torque, i),
                                                         take<testbed::Deviates>(drawn.data(), i)));
         });
     }
@@ -254,7 +254,7 @@ private:
     std::int64_t cycle_ = 0; // of the bus
     std::array<std::uint64_t, widest> seeds_{};
     bool noisy_ = false;
-    std::array<std::array<double, 3>, widest> motor_torque_{};
+    std::array<testbed::PerWheel<double>, widest> motor_torque_{};
 };
 
 // What is compiled for a width.

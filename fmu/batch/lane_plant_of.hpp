@@ -39,6 +39,7 @@ template <int N> class LanePlantOf final : public LanePlant {
     using State = plant::StateVector<L>;
     using Evaluation = plant::Evaluation<L>;
     using Events = plant::EventVector<L>;
+    using At = plant::Layout<>;
 
 public:
     [[nodiscard]] int lanes() const override { return N; }
@@ -164,7 +165,7 @@ private:
             // As accept_inputs() of the plant.
             const auto before = m_.gear_direction;
             L changed(0.0);
-            for (int i = 0; i < plant::wheel_count; ++i) {
+            for (int i = 0; i < plant::table_wheels; ++i) {
                 plant::break_away(u_, m_, p_, i, present_.sensed_torque[i]);
                 changed = changed + math::abs(m_.gear_direction[i] - before[i]);
             }
@@ -186,7 +187,7 @@ private:
         const L one(1.0);
         // The gears with the torques that acted during the step.
         const auto net_torque = end.net_torque;
-        for (int i = 0; i < plant::wheel_count; ++i) {
+        for (int i = 0; i < plant::table_wheels; ++i) {
             end.net_torque[i] = plant::net_motor_torque(p_, acted_.motor_torque[i], end.sensed_torque[i]);
         }
         const Events g = plant::event_indicators(end, x_, m_, p_, d_);
@@ -196,18 +197,24 @@ private:
         const auto follow = [&](int event, L mode) {
             reported[event] = math::select(math::less(zero, g[event]), one, zero) - mode;
         };
-        follow(plant::event_contact, m_.contact);
-        follow(plant::event_rope, m_.rope_taut);
-        follow(plant::event_bottom_stop, m_.bottom_stop);
-        follow(plant::event_landing, m_.landed);
-        follow(plant::event_wall, m_.walled);
+        follow(At::event_contact, m_.contact);
+        follow(At::event_rope, m_.rope_taut);
+        follow(At::event_bottom_stop, m_.bottom_stop);
+        follow(At::event_landing, m_.landed);
+        follow(At::event_wall, m_.walled);
         if (!plant::bumper_holds(p_)) {
-            follow(plant::event_end_stop, one - m_.end_stop);
+            follow(At::event_end_stop, one - m_.end_stop);
         }
         // What decides.
-        constexpr int deciding[] = {plant::event_gear, plant::event_gear + 1, plant::event_gear + 2,
-                                    plant::event_end_stop};
-        const int deciding_count = plant::bumper_holds(p_) ? 4 : 3;
+        constexpr auto deciding = [] {
+            std::array<int, plant::table_wheels + 1> events{};
+            for (int i = 0; i < plant::table_wheels; ++i) {
+                events[i] = At::event_gear + i;
+            }
+            events.back() = At::event_end_stop;
+            return events;
+        }();
+        const int deciding_count = plant::bumper_holds(p_) ? plant::table_wheels + 1 : plant::table_wheels;
         L lowest = zero;
         for (int k = 0; k < deciding_count; ++k) {
             lowest = math::min(lowest, g[deciding[k]]);
@@ -223,7 +230,7 @@ private:
             return false;
         }
         // Of several in one step the first.
-        L share[4];
+        L share[deciding.size()];
         L first = L(2.0);
         for (int k = 0; k < deciding_count; ++k) {
             const int event = deciding[k];
@@ -233,10 +240,10 @@ private:
             first = math::min(first, share[k]);
         }
         const double before_s = now_s_ - last_step_s_;
-        const L before_depth = indicators_before_[plant::event_contact];
-        const L rise = math::max(g[plant::event_contact] - before_depth, L(1e-300));
+        const L before_depth = indicators_before_[At::event_contact];
+        const L rise = math::max(g[At::event_contact] - before_depth, L(1e-300));
         const L touched = L(before_s) + L(last_step_s_) * math::clamp((zero - before_depth) / rise, zero, one);
-        const L met = math::select(math::less(zero, reported[plant::event_contact]), touched, first_contact_);
+        const L met = math::select(math::less(zero, reported[At::event_contact]), touched, first_contact_);
         first_contact_ = math::select(math::less(first_contact_, zero), met, first_contact_);
         events_ = events_ + math::select(changed, one, zero);
         last_event_ =

@@ -39,7 +39,8 @@ void slider(Stiffest &s, const plant::Parameters<double> &p, double v) {
     s.vibration(p.contact_stiffness, contact);
     s.decay(p.contact_stiffness * p.contact_damping * v * std::sqrt(contact / p.contact_stiffness), contact);
     const double peak = v * std::sqrt(p.contact_stiffness * contact);
-    s.decay(p.contact_friction * peak / p.contact_friction_speed, together(p.slider_mass, p.base_mass / 3.0));
+    s.decay(p.contact_friction * peak / p.contact_friction_speed,
+            together(p.slider_mass, p.base_mass / plant::table_wheels));
     s.decay(p.slider_friction / p.slider_friction_speed + p.slider_damping, carriage);
     if (plate) {
         const double guided = together(p.bumper_plate_mass, p.plate_on_robot() ? p.base_mass : carriage);
@@ -78,8 +79,8 @@ double greatest_impact_speed(const plant::Parameters<double> &p, double slider_s
 int lane_steps_per_tick(const plant::Parameters<double> &p, double impact_speed_mps) {
     Stiffest s;
     const double v = impact_speed_mps;
-    // Wheels: drivetrain between motor and base, rollers under the base. A wheel's share of the base is a third.
-    const double share = p.base_mass / 3.0;
+    // Wheels: drivetrain between motor and base, rollers under the base. Each wheel has its share of the base.
+    const double share = p.base_mass / plant::table_wheels;
     const double wheel = p.wheel_inertia + share * p.wheel_radius * p.wheel_radius;
     s.vibration(p.drivetrain_stiffness, together(p.drivetrain_motor_inertia, wheel));
     s.decay(p.drivetrain_damping, together(p.drivetrain_motor_inertia, wheel));

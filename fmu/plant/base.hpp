@@ -21,12 +21,13 @@ template <class T> Planar3<T> wrench_direction(Vector2<T> axis, Vector2<T> point
 }
 
 // Rows of (15), (16) in the base frame.
-template <class T> Planar3<T> wheel_row(const Parameters<T> &p, int wheel) {
-    return {T(-wheel_sin[wheel]) / p.wheel_radius, T(wheel_cos[wheel]) / p.wheel_radius,
+template <class T, int Wheels> Planar3<T> wheel_row(const Parameters<T, Wheels> &p, int wheel) {
+    return {T(-Azimuths<Wheels>::sin[wheel]) / p.wheel_radius, T(Azimuths<Wheels>::cos[wheel]) / p.wheel_radius,
             p.wheel_distance / p.wheel_radius};
 }
-template <class T> Planar3<T> roller_row(const Parameters<T> &p, int wheel) {
-    return {T(wheel_cos[wheel]) / p.roller_radius, T(wheel_sin[wheel]) / p.roller_radius, T(0.0)};
+template <class T, int Wheels> Planar3<T> roller_row(const Parameters<T, Wheels> &p, int wheel) {
+    return {T(Azimuths<Wheels>::cos[wheel]) / p.roller_radius, T(Azimuths<Wheels>::sin[wheel]) / p.roller_radius,
+            T(0.0)};
 }
 
 // L D L^T of a symmetric and positive definite matrix, without pivoting.
@@ -68,21 +69,20 @@ template <class T> struct Inertia3 {
 };
 
 // Body, wheels and rollers, without a bumper plate.
-template <class T> Inertia3<T> base_inertia(const Parameters<T> &p) {
+template <class T, int Wheels> Inertia3<T> base_inertia(const Parameters<T, Wheels> &p) {
     Inertia3<T> inertia{p.base_mass, T(0.0), T(0.0), p.base_mass, T(0.0), p.base_yaw_inertia};
-    for (int i = 0; i < wheel_count; ++i) {
+    for (int i = 0; i < Wheels; ++i) {
         inertia.add(p.wheel_traction[i] * p.wheel_inertia, wheel_row(p, i));
         inertia.add(p.wheel_traction[i] * p.roller_inertia, roller_row(p, i));
     }
     return inertia;
 }
 
-// J_w^-T w: the wheel torques that balance a wrench in base axes (closed form of (15)).
-template <class T> std::array<T, wheel_count> balancing_torques(const Parameters<T> &p, Planar3<T> w) {
-    std::array<T, wheel_count> torque{};
-    for (int i = 0; i < wheel_count; ++i) {
-        torque[i] = p.wheel_radius * (T(2.0 / 3.0) * (T(wheel_cos[i]) * w.y - T(wheel_sin[i]) * w.x) +
-                                      w.z / (T(3.0) * p.wheel_distance));
+// The wheel torques that balance a wrench in base axes.
+template <class T, int Wheels> std::array<T, Wheels> balancing_torques(const Parameters<T, Wheels> &p, Planar3<T> w) {
+    std::array<T, Wheels> torque{};
+    for (int i = 0; i < Wheels; ++i) {
+        torque[i] = balancing_torque<Wheels, T>(i, p.wheel_radius, p.wheel_distance, w.x, w.y, w.z);
     }
     return torque;
 }

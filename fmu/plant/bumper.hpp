@@ -22,7 +22,8 @@ template <class T> StopForce<T> stop_force(T engaged, T stiffness, T damping, T 
     return {force, (force - spring) * rate, T(0.5) * spring * depth};
 }
 
-template <class T> BumperForce<T> bumper_force(const Parameters<T> &p, const Modes<T> &m, T c, T rate) {
+template <class T, int Wheels>
+BumperForce<T> bumper_force(const Parameters<T, Wheels> &p, const Modes<T, Wheels> &m, T c, T rate) {
     return with_bumper_law(p, [&](auto law) {
         const LawForce<T> spring = law.spring(p, c, rate);
         const T loss =
@@ -43,7 +44,7 @@ template <class T> BumperForce<T> bumper_force(const Parameters<T> &p, const Mod
 }
 
 // Where the plate of a bumper that nothing holds rests against its end stop.
-template <class T> T resting_compression(const Parameters<T> &p) {
+template <class T, int Wheels> T resting_compression(const Parameters<T, Wheels> &p) {
     return with_bumper_law(p, [&](auto law) -> T {
         return T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness);
     });

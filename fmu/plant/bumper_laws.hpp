@@ -26,27 +26,33 @@ template <class T> struct LawForce {
 struct PreloadedSpring {
     static constexpr bool has_latch = false;
     static constexpr bool holds = false;
-    template <class T> static LawForce<T> spring(const Parameters<T> &p, T c, T) {
+    template <class T, int Wheels> static LawForce<T> spring(const Parameters<T, Wheels> &p, T c, T) {
         return {p.bumper_preload + p.bumper_spring_rate * c,
                 p.bumper_preload * c + T(0.5) * p.bumper_spring_rate * c * c};
     }
-    template <class T> static T rest_force(const Parameters<T> &p) { return p.bumper_preload; }
-    template <class T> static T rest_stiffness(const Parameters<T> &p) { return p.bumper_spring_rate; }
-    template <class T> static bool is_latched(const Parameters<T> &, T) { return false; }
+    template <class T, int Wheels> static T rest_force(const Parameters<T, Wheels> &p) { return p.bumper_preload; }
+    template <class T, int Wheels> static T rest_stiffness(const Parameters<T, Wheels> &p) {
+        return p.bumper_spring_rate;
+    }
+    template <class T, int Wheels> static bool is_latched(const Parameters<T, Wheels> &, T) { return false; }
     static double greatest_stiffness(const Parameters<double> &p) { return p.bumper_spring_rate; }
 };
 
 // A magnet whose pull falls with the gap.
 struct MagneticLatch : PreloadedSpring {
     static constexpr bool has_latch = true;
-    template <class T> static LawForce<T> latch(const Parameters<T> &p, T c) {
+    template <class T, int Wheels> static LawForce<T> latch(const Parameters<T, Wheels> &p, T c) {
         const T gap = math::max(c, T(0.0));
         return {p.bumper_latch_force / math::square(T(1.0) + gap / p.bumper_latch_gap),
                 p.bumper_latch_force *
                     math::select(math::less(T(0.0), c), p.bumper_latch_gap * gap / (p.bumper_latch_gap + gap), c)};
     }
-    template <class T> static T rest_force(const Parameters<T> &p) { return p.bumper_preload + p.bumper_latch_force; }
-    template <class T> static bool is_latched(const Parameters<T> &p, T c) { return c < p.bumper_latch_gap; }
+    template <class T, int Wheels> static T rest_force(const Parameters<T, Wheels> &p) {
+        return p.bumper_preload + p.bumper_latch_force;
+    }
+    template <class T, int Wheels> static bool is_latched(const Parameters<T, Wheels> &p, T c) {
+        return c < p.bumper_latch_gap;
+    }
     static double greatest_stiffness(const Parameters<double> &p) {
         return std::max<double>(p.bumper_spring_rate, 2.0 * p.bumper_latch_force / p.bumper_latch_gap);
     }
@@ -55,7 +61,9 @@ struct MagneticLatch : PreloadedSpring {
 // The same without any reach: all of its pull at full extension, none beyond.
 struct IdealLatch : PreloadedSpring {
     static constexpr bool holds = true;
-    template <class T> static T holding_force(const Parameters<T> &p) { return p.bumper_latch_force; }
+    template <class T, int Wheels> static T holding_force(const Parameters<T, Wheels> &p) {
+        return p.bumper_latch_force;
+    }
 };
 
 template <class Law>
@@ -74,7 +82,7 @@ concept BumperLaw = requires(const Parameters<double> &p, double c) {
 };
 
 // use(law) for the bumper that there is, which has to have a plate.
-template <class T, class Use> auto with_bumper_law(const Parameters<T> &p, Use &&use) {
+template <class T, int Wheels, class Use> auto with_bumper_law(const Parameters<T, Wheels> &p, Use &&use) {
     const auto checked = [&use]<BumperLaw Law>(Law law) { return use(law); };
     switch (p.bumper_kind) {
     case BumperKind::magnetic:
@@ -86,12 +94,12 @@ template <class T, class Use> auto with_bumper_law(const Parameters<T> &p, Use &
     return checked(PreloadedSpring{});
 }
 
-template <class T> bool bumper_holds(const Parameters<T> &p) {
+template <class T, int Wheels> bool bumper_holds(const Parameters<T, Wheels> &p) {
     return with_bumper_law(p, [](auto law) { return decltype(law)::holds; });
 }
 
 // What the hold adds at full extension, beyond the spring; 0 where nothing holds.
-template <class T> T bumper_holding_force(const Parameters<T> &p) {
+template <class T, int Wheels> T bumper_holding_force(const Parameters<T, Wheels> &p) {
     return with_bumper_law(p, [&](auto law) -> T {
         if constexpr (decltype(law)::holds) {
             return law.holding_force(p);
@@ -102,12 +110,12 @@ template <class T> T bumper_holding_force(const Parameters<T> &p) {
 }
 
 // What the plate has to be pulled with so that it leaves full extension.
-template <class T> T bumper_release_force(const Parameters<T> &p) {
+template <class T, int Wheels> T bumper_release_force(const Parameters<T, Wheels> &p) {
     return bumper_holding_force(p) + with_bumper_law(p, [&](auto law) -> T { return law.rest_force(p); });
 }
 
 // `held`: the mode of a law that holds.
-template <class T> bool is_latched(const Parameters<T> &p, T c, bool held) {
+template <class T, int Wheels> bool is_latched(const Parameters<T, Wheels> &p, T c, bool held) {
     return with_bumper_law(p, [&](auto law) { return decltype(law)::holds ? held : law.is_latched(p, c); });
 }
 

@@ -26,9 +26,9 @@ template <class T> struct Nose {
 };
 
 // velocity: of the base, in its axes; compression of a plate on the robot, else 0.
-template <class T>
-Contact<T> locate_disc(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
-                       T compression, T compression_rate) {
+template <class T, int Wheels>
+Contact<T> locate_disc(const Parameters<T, Wheels> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity,
+                       T omega, T compression, T compression_rate) {
     ClosestPoint<T> closest;
     Vector2<T> plate_velocity{T(0.0), T(0.0)};
     if (p.plate_on_robot()) {
@@ -46,7 +46,8 @@ Contact<T> locate_disc(const Parameters<T> &p, const Derived<T> &d, const Nose<T
 }
 
 // Hunt and Crossley (1975), exponent 1; tangential Coulomb friction, smooth over contact_friction_speed.
-template <class T> ContactForce<T> disc_force(const Parameters<T> &p, const Contact<T> &c, T engaged) {
+template <class T, int Wheels>
+ContactForce<T> disc_force(const Parameters<T, Wheels> &p, const Contact<T> &c, T engaged) {
     const T spring = math::acting(engaged, c.depth) * p.contact_stiffness * c.depth;
     const T normal_force = math::max(T(0.0), spring * (T(1.0) + p.contact_damping * c.depth_rate));
     const T friction = math::where(math::less(T(0.0), normal_force), [&] {
@@ -65,9 +66,9 @@ template <class T> struct Touch {
 // A long straight edge across the rail. Every corner that reaches beyond it is pressed by itself, so a side that lies
 // flat is held at both ends. The contact's depth is that of the farthest corner; its point the centre of pressure, or
 // that corner.
-template <class T>
-Touch<T> touch_edge(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
-                    T engaged) {
+template <class T, int Wheels>
+Touch<T> touch_edge(const Parameters<T, Wheels> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity,
+                    T omega, T engaged) {
     const Vector2<T> normal = T(-1.0) * nose.travel;
     const Vector2<T> along = turned(normal);
     const Vector2<T> tip = nose.centre + p.contact_nose_radius * nose.travel;
@@ -101,16 +102,16 @@ Touch<T> touch_edge(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &
     return sum;
 }
 
-template <class T>
-Contact<T> locate_contact(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity,
+template <class T, int Wheels>
+Contact<T> locate_contact(const Parameters<T, Wheels> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity,
                           T omega, T compression, T compression_rate) {
     return p.contact_nose_shape == NoseShape::edge
                ? touch_edge(p, d, nose, velocity, omega, T(0.0)).contact
                : locate_disc(p, d, nose, velocity, omega, compression, compression_rate);
 }
 
-template <class T>
-Touch<T> touch(const Parameters<T> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
+template <class T, int Wheels>
+Touch<T> touch(const Parameters<T, Wheels> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity, T omega,
                T compression, T compression_rate, T engaged) {
     if (p.contact_nose_shape == NoseShape::edge) {
         return touch_edge(p, d, nose, velocity, omega, engaged);

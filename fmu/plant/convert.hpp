@@ -20,8 +20,8 @@ template <class To, class From, std::size_t N> std::array<To, N> converted(const
 
 } // namespace detail
 
-template <class To, class From> Parameters<To> convert(const Parameters<From> &p) {
-    Parameters<To> to{};
+template <class To, class From, int Wheels> Parameters<To, Wheels> convert(const Parameters<From, Wheels> &p) {
+    Parameters<To, Wheels> to{};
     const auto number = [](const char *, auto &into, const auto &from) {
         using Into = std::remove_reference_t<decltype(into)>;
         if constexpr (std::is_integral_v<Into> || std::is_enum_v<Into>) {
@@ -65,7 +65,7 @@ template <class To, class From> Derived<To> convert(const Derived<From> &d) {
     };
 }
 
-template <class To, class From> Inputs<To> convert(const Inputs<From> &u) {
+template <class To, class From, int Wheels> Inputs<To, Wheels> convert(const Inputs<From, Wheels> &u) {
     return {
         .motor_torque = detail::converted<To>(u.motor_torque),
         .push_force_x = To(u.push_force_x),
@@ -75,7 +75,7 @@ template <class To, class From> Inputs<To> convert(const Inputs<From> &u) {
     };
 }
 
-template <class To, class From> Modes<To> convert(const Modes<From> &m) {
+template <class To, class From, int Wheels> Modes<To, Wheels> convert(const Modes<From, Wheels> &m) {
     return {
         .gear_direction = detail::converted<To>(m.gear_direction),
         .contact = To(m.contact),

@@ -18,7 +18,7 @@ template <class T> struct Derived {
     std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
 };
 
-template <class T> Derived<T> derive(const Parameters<T> &p) {
+template <class T, int Wheels> Derived<T> derive(const Parameters<T, Wheels> &p) {
     Derived<T> d{};
     const auto rail = math::sincos(p.slider_direction);
     d.rail_x = rail.cos;
@@ -33,7 +33,8 @@ template <class T> Derived<T> derive(const Parameters<T> &p) {
     d.roller_plastic_fraction = T(1.0) - p.roller_elastic_fraction;
     d.rope_pretension_length = T(p.rope_hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
     const T tipping_inertia =
-        p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) + math::square(T(0.5) * p.wheel_distance));
+        p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) +
+                                             math::square(T(Azimuths<Wheels>::side_distance) * p.wheel_distance));
     d.tip_rate = math::sqrt(p.base_mass * T(gravity_mps2) * p.base_com_height / tipping_inertia);
     d.wheel_half_length = math::sqrt(
         math::max(T(0.0), math::square(T(p.wheel_radius)) - math::square(p.contact_height - p.wheel_radius)));

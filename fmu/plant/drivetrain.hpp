@@ -6,33 +6,36 @@
 namespace giveway::plant {
 
 // Torque delivered to the wheel, which is what the sensor reads.
-template <class T> T sensed_torque(const Parameters<T> &p, T motor_angle, T motor_speed, T wheel_angle, T wheel_speed) {
+template <class T, int Wheels>
+T sensed_torque(const Parameters<T, Wheels> &p, T motor_angle, T motor_speed, T wheel_angle, T wheel_speed) {
     return p.drivetrain_stiffness * (motor_angle - wheel_angle) + p.drivetrain_damping * (motor_speed - wheel_speed);
 }
 
 // What the gear friction has to hold while the motor is stuck.
-template <class T> T net_motor_torque(const Parameters<T> &p, T motor_torque, T sensed) {
+template <class T, int Wheels> T net_motor_torque(const Parameters<T, Wheels> &p, T motor_torque, T sensed) {
     return math::clamp(motor_torque, T(-1.0) * p.drivetrain_torque_limit, p.drivetrain_torque_limit) - sensed;
 }
 
-template <class T> T motor_acceleration(const Parameters<T> &p, T direction, T net_torque, T motor_speed) {
+template <class T, int Wheels>
+T motor_acceleration(const Parameters<T, Wheels> &p, T direction, T net_torque, T motor_speed) {
     const T friction = p.drivetrain_gear_coulomb * direction + p.drivetrain_gear_viscous * motor_speed;
     return direction * direction * (net_torque - friction) / p.drivetrain_motor_inertia;
 }
 
-template <class T> T gear_dissipation(const Parameters<T> &p, T direction, T motor_speed) {
+template <class T, int Wheels> T gear_dissipation(const Parameters<T, Wheels> &p, T direction, T motor_speed) {
     return (p.drivetrain_gear_coulomb * direction + p.drivetrain_gear_viscous * motor_speed) * motor_speed;
 }
 
 // Positive while the mode holds.
-template <class T> T gear_indicator(const Parameters<T> &p, T direction, T net_torque, T motor_speed) {
+template <class T, int Wheels>
+T gear_indicator(const Parameters<T, Wheels> &p, T direction, T net_torque, T motor_speed) {
     const T stuck = math::abs(direction);
     return math::select(math::less(T(0.5), stuck), motor_speed * direction,
                         p.drivetrain_gear_stiction - math::abs(net_torque));
 }
 
 // Direction after the motor's speed came to zero, or after its stiction was overcome.
-template <class T> T gear_direction_from_rest(const Parameters<T> &p, T net_torque) {
+template <class T, int Wheels> T gear_direction_from_rest(const Parameters<T, Wheels> &p, T net_torque) {
     return math::select(math::less(p.drivetrain_gear_stiction, math::abs(net_torque)), math::sign(net_torque), T(0.0));
 }
 

@@ -11,19 +11,21 @@ namespace giveway::plant {
 // Directions per evaluation.
 inline constexpr int jacobian_chunk = 8;
 
-class Jacobian {
+template <int Wheels = table_wheels> class Jacobian {
+    using At = Layout<Wheels>;
+
 public:
     using Scalar = math::Dual<jacobian_chunk>;
 
     // Constant during a run; what changes between calls is handed to evaluate().
-    void set_parameters(const Parameters<double> &p, const Derived<double> &d) {
+    void set_parameters(const Parameters<double, Wheels> &p, const Derived<double> &d) {
         parameters_ = convert<Scalar>(p);
         derived_ = convert<Scalar>(d);
     }
 
     // matrix[column * N + row] = d rate[row] / d x[column], N the number of states.
     template <std::size_t N>
-    void evaluate(const std::array<double, N> &x, const Inputs<double> &u, const Modes<double> &m,
+    void evaluate(const std::array<double, N> &x, const Inputs<double, Wheels> &u, const Modes<double, Wheels> &m,
                   double *matrix) const {
         const auto inputs = convert<Scalar>(u);
         const auto modes = convert<Scalar>(m);
@@ -34,7 +36,7 @@ public:
             std::array<std::size_t, jacobian_chunk> columns{};
             std::size_t count = 0;
             for (std::size_t column = first; column < std::min<std::size_t>(first + jacobian_chunk, N); ++column) {
-                if (column < work_in || column >= state_count) {
+                if (column < At::work_in || column >= At::state_count) {
                     state[column] = Scalar::variable(x[column], static_cast<int>(count));
                     columns[count++] = column;
                 }
@@ -53,7 +55,7 @@ public:
     }
 
 private:
-    Parameters<Scalar> parameters_{};
+    Parameters<Scalar, Wheels> parameters_{};
     Derived<Scalar> derived_{};
 };
 

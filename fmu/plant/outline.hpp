@@ -12,7 +12,8 @@ template <class T> struct ClosestPoint {
     Vector2<T> point;  // on the outline
 };
 
-template <class T> ClosestPoint<T> closest_on_body(const Parameters<T> &p, const Derived<T> &d, Vector2<T> q) {
+template <class T, int Wheels>
+ClosestPoint<T> closest_on_body(const Parameters<T, Wheels> &p, const Derived<T> &d, Vector2<T> q) {
     // Inside, the nearest edge line decides; outside, the nearest point of any edge.
     T line_distance = T(-1e300);
     Vector2<T> line_normal{T(0.0), T(0.0)};
@@ -42,9 +43,9 @@ template <class T> ClosestPoint<T> closest_on_body(const Parameters<T> &p, const
 }
 
 // A wheel's section at the contact's height: a rectangle, its width along the axle.
-template <class T>
-ClosestPoint<T> closest_on_wheel(const Parameters<T> &p, const Derived<T> &d, int wheel, Vector2<T> q) {
-    const Vector2<T> radial{T(wheel_cos[wheel]), T(wheel_sin[wheel])};
+template <class T, int Wheels>
+ClosestPoint<T> closest_on_wheel(const Parameters<T, Wheels> &p, const Derived<T> &d, int wheel, Vector2<T> q) {
+    const Vector2<T> radial{T(Azimuths<Wheels>::cos[wheel]), T(Azimuths<Wheels>::sin[wheel])};
     const T axial = dot(q, radial) - p.wheel_distance;
     const T rolling = dot(q, turned(radial));
     const Vector2<T> outward_axial = math::select(math::less(axial, T(0.0)), T(-1.0), T(1.0)) * radial;
@@ -66,12 +67,13 @@ ClosestPoint<T> closest_on_wheel(const Parameters<T> &p, const Derived<T> &d, in
 }
 
 // Of several parts the nearest: unique but where two are equally near.
-template <class T> ClosestPoint<T> closest_point(const Parameters<T> &p, const Derived<T> &d, Vector2<T> q) {
+template <class T, int Wheels>
+ClosestPoint<T> closest_point(const Parameters<T, Wheels> &p, const Derived<T> &d, Vector2<T> q) {
     if (p.outline_wheels == 0) {
         return closest_on_body(p, d, q);
     }
     ClosestPoint<T> nearest = p.outline_body != 0 ? closest_on_body(p, d, q) : closest_on_wheel(p, d, 0, q);
-    for (int wheel = p.outline_body != 0 ? 0 : 1; wheel < wheel_count; ++wheel) {
+    for (int wheel = p.outline_body != 0 ? 0 : 1; wheel < Wheels; ++wheel) {
         const ClosestPoint<T> other = closest_on_wheel(p, d, wheel, q);
         const auto nearer = math::less(other.distance, nearest.distance);
         const auto pick = [nearer](Vector2<T> a, Vector2<T> b) {
@@ -84,12 +86,13 @@ template <class T> ClosestPoint<T> closest_point(const Parameters<T> &p, const D
 }
 
 // Calls visit(corner) for every corner of every part.
-template <class T, class Visit> void for_each_corner(const Parameters<T> &p, const Derived<T> &d, Visit visit) {
+template <class T, int Wheels, class Visit>
+void for_each_corner(const Parameters<T, Wheels> &p, const Derived<T> &d, Visit visit) {
     for (int i = 0; p.outline_body != 0 && i < p.outline_count; ++i) {
         visit(Vector2<T>{p.outline_x[i], p.outline_y[i]});
     }
-    for (int wheel = 0; p.outline_wheels != 0 && wheel < wheel_count; ++wheel) {
-        const Vector2<T> radial{T(wheel_cos[wheel]), T(wheel_sin[wheel])};
+    for (int wheel = 0; p.outline_wheels != 0 && wheel < Wheels; ++wheel) {
+        const Vector2<T> radial{T(Azimuths<Wheels>::cos[wheel]), T(Azimuths<Wheels>::sin[wheel])};
         for (const double side : {-0.5, 0.5}) {
             for (const double end : {-1.0, 1.0}) {
                 visit((p.wheel_distance + T(side) * p.wheel_width) * radial +

@@ -5,8 +5,8 @@
 
 namespace giveway::plant {
 
-template <class T> struct Outputs {
-    std::array<T, wheel_count> wheel_speed, wheel_torque, roller_force;
+template <class T, int Wheels = table_wheels> struct Outputs {
+    std::array<T, Wheels> wheel_speed, wheel_torque, roller_force;
     T contact_depth;                    // negative: clear of the robot
     T contact_force;                    // magnitude, N
     T contact_force_x, contact_force_y; // on the robot, world frame
@@ -16,28 +16,29 @@ template <class T> struct Outputs {
     T bumper_force, rope_tension, wall_force;
     T stored_energy;
     T roll, pitch;
-    std::array<T, wheel_count> wheel_load;
+    std::array<T, Wheels> wheel_load;
     T tip_margin;
 };
 
 // Of slider, weight, bumper and contact; a plate on the robot included.
-template <class T, std::size_t N>
-T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, N> &e, const Parameters<T> &p,
+template <class T, int Wheels, std::size_t N>
+T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, Wheels, N> &e, const Parameters<T, Wheels> &p,
                 const Derived<T> &d) {
+    using At = Layout<Wheels>;
     const T half = T(0.5);
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
-        const Vector2<T> speed = e.velocity + x[base_omega] * turned(plate) - x[compression_rate] * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
+        const Vector2<T> speed = e.velocity + x[At::base_omega] * turned(plate) - x[At::compression_rate] * outward;
         energy = energy + half * p.bumper_plate_mass * dot(speed, speed);
     }
     if (p.slider_present != 0) {
-        energy = energy + half * d.carriage_mass * math::square(x[slider_speed]);
+        energy = energy + half * d.carriage_mass * math::square(x[At::slider_speed]);
         if (p.has_plate() && !p.plate_on_robot()) {
-            energy = energy + half * p.bumper_plate_mass * math::square(x[slider_speed] - x[compression_rate]);
+            energy = energy + half * p.bumper_plate_mass * math::square(x[At::slider_speed] - x[At::compression_rate]);
         }
         if (p.rope_attached != 0) {
-            energy = energy + half * p.rope_hanging_mass * math::square(x[weight_speed]);
+            energy = energy + half * p.rope_hanging_mass * math::square(x[At::weight_speed]);
         }
         energy = energy + e.bumper.stored + e.rope.stored + e.contact_force.stored;
         if (p.wall_present != 0) {
@@ -47,49 +48,55 @@ T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, N> &e, 
     return energy;
 }
 
-template <class T>
-T stored_energy(const StateVector<T> &x, const Evaluation<T> &e, const Parameters<T> &p, const Derived<T> &d) {
+template <class T, int Wheels>
+T stored_energy(const StateVector<T, Wheels> &x, const Evaluation<T, Wheels> &e, const Parameters<T, Wheels> &p,
+                const Derived<T> &d) {
+    using At = Layout<Wheels>;
     const T half = T(0.5);
     T energy =
-        half * p.base_mass * dot(e.velocity, e.velocity) + half * p.base_yaw_inertia * math::square(x[base_omega]);
-    for (int i = 0; i < wheel_count; ++i) {
-        const T roller_speed = (T(wheel_cos[i]) * e.velocity.x + T(wheel_sin[i]) * e.velocity.y) / p.roller_radius;
+        half * p.base_mass * dot(e.velocity, e.velocity) + half * p.base_yaw_inertia * math::square(x[At::base_omega]);
+    for (int i = 0; i < Wheels; ++i) {
+        const T roller_speed =
+            (T(Azimuths<Wheels>::cos[i]) * e.velocity.x + T(Azimuths<Wheels>::sin[i]) * e.velocity.y) / p.roller_radius;
         energy =
             energy +
             half * p.wheel_traction[i] *
                 (p.wheel_inertia * math::square(e.wheel_speed[i]) + p.roller_inertia * math::square(roller_speed)) +
-            half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
-            half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
+            half * p.drivetrain_motor_inertia * math::square(x[At::motor_speed + i]) +
+            half * p.drivetrain_stiffness * math::square(x[At::motor_angle + i] - x[At::wheel_angle + i]);
         if (p.roller_model == RollerModel::bristle) {
-            energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[bristle + i]);
+            energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[At::bristle + i]);
         }
     }
     return slider_energy(energy, x, e, p, d);
 }
 
-template <class T>
-T stored_energy(const TippingVector<T> &x, const TippingEvaluation<T> &e, const Parameters<T> &p, const Derived<T> &d) {
+template <class T, int Wheels>
+T stored_energy(const TippingVector<T, Wheels> &x, const TippingEvaluation<T, Wheels> &e,
+                const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
     const T half = T(0.5);
     const Stance<T> &s = e.stance;
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector3<T> velocity = s.velocity_of(mass_centre);
-    const T tilting = p.base_tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
+    const T tilting = p.base_tilt_inertia - T(0.5 * Wheels) * p.wheel_inertia;
     T energy = half * p.base_mass * dot(velocity, velocity) +
-               p.base_mass * T(gravity_mps2) * (x[base_heave] + mass_centre.z) + e.floor_stored +
-               half * tilting * (math::square(x[body_roll_rate]) + math::square(x[body_pitch_rate])) +
+               p.base_mass * T(gravity_mps2) * (x[At::base_heave] + mass_centre.z) + e.floor_stored +
+               half * tilting * (math::square(x[At::body_roll_rate]) + math::square(x[At::body_pitch_rate])) +
                half * p.base_yaw_inertia * math::square(s.yaw_rate);
-    for (int i = 0; i < wheel_count; ++i) {
-        energy = energy + half * p.wheel_inertia * math::square(x[wheel_spin + i]) +
-                 half * p.drivetrain_motor_inertia * math::square(x[motor_speed + i]) +
-                 half * p.drivetrain_stiffness * math::square(x[motor_angle + i] - x[wheel_angle + i]);
+    for (int i = 0; i < Wheels; ++i) {
+        energy = energy + half * p.wheel_inertia * math::square(x[At::wheel_spin + i]) +
+                 half * p.drivetrain_motor_inertia * math::square(x[At::motor_speed + i]) +
+                 half * p.drivetrain_stiffness * math::square(x[At::motor_angle + i] - x[At::wheel_angle + i]);
     }
     return slider_energy(energy, x, e, p, d);
 }
 
 // `e`: everything evaluated at x.
-template <class E, class T, std::size_t N>
-Outputs<T> outputs(const E &e, const std::array<T, N> &x, const Parameters<T> &p, const Derived<T> &d) {
-    Outputs<T> o{};
+template <class E, class T, int Wheels, std::size_t N>
+Outputs<T, Wheels> outputs(const E &e, const std::array<T, N> &x, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    Outputs<T, Wheels> o{};
     o.wheel_speed = e.wheel_speed;
     o.wheel_torque = e.sensed_torque;
     o.roller_force = e.roller_force;
@@ -101,21 +108,21 @@ Outputs<T> outputs(const E &e, const std::array<T, N> &x, const Parameters<T> &p
     o.contact_base_x = e.contact.point.x;
     o.contact_base_y = e.contact.point.y;
     Vector2<T> reach = e.contact.point;
-    if constexpr (N == tipping_state_count) {
+    if constexpr (N == At::tipping_state_count) {
         reach = reach + e.contact_offset;
-        o.roll = x[base_roll];
-        o.pitch = x[base_pitch];
+        o.roll = x[At::base_roll];
+        o.pitch = x[At::base_pitch];
         o.wheel_load = e.load;
         o.tip_margin = tip_margin(e.stance, p, d);
     } else {
-        o.wheel_load.fill(p.base_mass * T(gravity_mps2) / T(wheel_count));
+        o.wheel_load.fill(p.base_mass * T(gravity_mps2) / T(Wheels));
         o.tip_margin = T(1.0);
     }
     const Vector2<T> point = to_world(e.heading, reach);
-    o.contact_point_x = x[base_x] + point.x;
-    o.contact_point_y = x[base_y] + point.y;
-    const T travel =
-        x[slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[compression] : T(0.0)) + p.contact_nose_radius;
+    o.contact_point_x = x[At::base_x] + point.x;
+    o.contact_point_y = x[At::base_y] + point.y;
+    const T travel = x[At::slider_position] - ((p.has_plate() && !p.plate_on_robot()) ? x[At::compression] : T(0.0)) +
+                     p.contact_nose_radius;
     o.nose_x = d.origin_x + travel * d.rail_x;
     o.nose_y = d.origin_y + travel * d.rail_y;
     o.bumper_force = e.internal_force;
@@ -125,9 +132,9 @@ Outputs<T> outputs(const E &e, const std::array<T, N> &x, const Parameters<T> &p
     return o;
 }
 
-template <class T, std::size_t N>
-Outputs<T> outputs(const std::array<T, N> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
-                   const Derived<T> &d) {
+template <class T, int Wheels, std::size_t N>
+Outputs<T, Wheels> outputs(const std::array<T, N> &x, const Inputs<T, Wheels> &u, const Modes<T, Wheels> &m,
+                           const Parameters<T, Wheels> &p, const Derived<T> &d) {
     return outputs(evaluate(x, u, m, p, d), x, p, d);
 }
 

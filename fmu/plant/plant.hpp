@@ -11,12 +11,12 @@
 namespace giveway::plant {
 
 // Everything that the equations produce on the way to the state's rate.
-template <class T, std::size_t N = state_count> struct Evaluation {
+template <class T, int Wheels = table_wheels, std::size_t N = Layout<Wheels>::state_count> struct Evaluation {
     std::array<T, N> rate;
     math::SinCos<T> heading;
     Vector2<T> velocity; // base axes
     T push_power;
-    std::array<T, wheel_count> wheel_speed, sensed_torque, net_torque, roller_force;
+    std::array<T, Wheels> wheel_speed, sensed_torque, net_torque, roller_force;
     Contact<T> contact;
     ContactForce<T> contact_force;
     BumperForce<T> bumper;
@@ -33,7 +33,7 @@ template <class T> Vector2<T> to_world(const math::SinCos<T> &heading, Vector2<T
 }
 
 // 1 where the plate moves as one with its carrier.
-template <class T> T locked(const Parameters<T> &p, const Modes<T> &m) {
+template <class T, int Wheels> T locked(const Parameters<T, Wheels> &p, const Modes<T, Wheels> &m) {
     if (!p.has_plate() || p.slider_present == 0) {
         return T(1.0);
     }
@@ -42,14 +42,16 @@ template <class T> T locked(const Parameters<T> &p, const Modes<T> &m) {
 
 namespace detail {
 
-template <class T, std::size_t N>
-Nose<T> find_nose(const std::array<T, N> &x, const Parameters<T> &p, const Derived<T> &d,
+template <class T, int Wheels, std::size_t N>
+Nose<T> find_nose(const std::array<T, N> &x, const Parameters<T, Wheels> &p, const Derived<T> &d,
                   const math::SinCos<T> &heading) {
+    using At = Layout<Wheels>;
     const bool plate_on_slider = p.has_plate() && !p.plate_on_robot();
-    const T nose_travel = plate_on_slider ? x[slider_position] - x[compression] : x[slider_position];
-    const T nose_speed = plate_on_slider ? x[slider_speed] - x[compression_rate] : x[slider_speed];
+    const T nose_travel = plate_on_slider ? x[At::slider_position] - x[At::compression] : x[At::slider_position];
+    const T nose_speed = plate_on_slider ? x[At::slider_speed] - x[At::compression_rate] : x[At::slider_speed];
     const Vector2<T> rail{d.rail_x, d.rail_y};
-    const Vector2<T> nose{d.origin_x + nose_travel * rail.x - x[base_x], d.origin_y + nose_travel * rail.y - x[base_y]};
+    const Vector2<T> nose{d.origin_x + nose_travel * rail.x - x[At::base_x],
+                          d.origin_y + nose_travel * rail.y - x[At::base_y]};
     return {to_base(heading, nose), to_base(heading, nose_speed * rail), to_base(heading, rail)};
 }
 
@@ -57,63 +59,68 @@ Nose<T> find_nose(const std::array<T, N> &x, const Parameters<T> &p, const Deriv
 
 // Slider, weight and bumper; `decelerating`: what the contact takes from the slider along its rail. Adds their losses
 // to `loss`.
-template <class T, std::size_t N>
-void slider_rates(Evaluation<T, N> &e, const std::array<T, N> &x, const Modes<T> &m, const Parameters<T> &p,
-                  const Derived<T> &d, T decelerating, T &loss) {
+template <class T, int Wheels, std::size_t N>
+void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const Modes<T, Wheels> &m,
+                  const Parameters<T, Wheels> &p, const Derived<T> &d, T decelerating, T &loss) {
+    using At = Layout<Wheels>;
     const T lock = locked(p, m);
     const T free = T(1.0) - lock;
     if (p.slider_present != 0) {
-        e.rope = rope_forces(p, d, m, x[slider_position], x[slider_speed], x[weight_drop], x[weight_speed]);
-        const T rail = rail_friction(p, x[slider_speed]);
-        loss = loss + e.rope.dissipation + rail * x[slider_speed] + e.contact_force.dissipation;
+        e.rope =
+            rope_forces(p, d, m, x[At::slider_position], x[At::slider_speed], x[At::weight_drop], x[At::weight_speed]);
+        const T rail = rail_friction(p, x[At::slider_speed]);
+        loss = loss + e.rope.dissipation + rail * x[At::slider_speed] + e.contact_force.dissipation;
         if (p.has_plate()) {
-            e.bumper = bumper_force(p, m, x[compression], x[compression_rate]);
+            e.bumper = bumper_force(p, m, x[At::compression], x[At::compression_rate]);
             loss = loss + e.bumper.dissipation;
         }
         T drive = e.rope.tension - rail;
         if (p.wall_present != 0) {
             e.wall = stop_force(m.walled, p.wall_stiffness, p.wall_damping,
-                                T(-1.0) * (x[slider_position] + p.wall_distance), T(-1.0) * x[slider_speed]);
+                                T(-1.0) * (x[At::slider_position] + p.wall_distance), T(-1.0) * x[At::slider_speed]);
             drive = drive + e.wall.force;
             loss = loss + e.wall.dissipation;
         }
         const T whole = (drive - decelerating) / p.slider_mass;
-        e.rate[slider_position] = x[slider_speed];
-        e.rate[slider_speed] = whole;
+        e.rate[At::slider_position] = x[At::slider_speed];
+        e.rate[At::slider_speed] = whole;
         if (p.has_plate() && !p.plate_on_robot()) {
             const T alone = (drive - e.bumper.force) / d.carriage_mass;
-            e.rate[slider_speed] = free * alone + lock * whole;
-            e.rate[compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.bumper_plate_mass);
+            e.rate[At::slider_speed] = free * alone + lock * whole;
+            e.rate[At::compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.bumper_plate_mass);
             e.internal_force = free * e.bumper.force + lock * (decelerating + p.bumper_plate_mass * whole);
         }
-        e.rate[compression] = free * x[compression_rate];
+        e.rate[At::compression] = free * x[At::compression_rate];
         if (p.rope_attached != 0) {
-            e.rate[weight_drop] = x[weight_speed];
-            e.rate[weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.rope_hanging_mass;
+            e.rate[At::weight_drop] = x[At::weight_speed];
+            e.rate[At::weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.rope_hanging_mass;
         }
     }
 }
 
 // What the motors' torques act on: all of it, so new torques at the same state need no more than this.
-template <class T>
-void drive_motors(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m,
-                  const Parameters<T> &p) {
+template <class T, int Wheels>
+void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
+                  const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p) {
+    using At = Layout<Wheels>;
     T work = e.push_power;
-    for (int i = 0; i < wheel_count; ++i) {
+    for (int i = 0; i < Wheels; ++i) {
         e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
-        e.rate[motor_speed + i] = motor_acceleration(p, m.gear_direction[i], e.net_torque[i], x[motor_speed + i]);
-        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
+        e.rate[At::motor_speed + i] =
+            motor_acceleration(p, m.gear_direction[i], e.net_torque[i], x[At::motor_speed + i]);
+        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[At::motor_speed + i];
     }
-    e.rate[work_in] = work;
+    e.rate[At::work_in] = work;
 }
 
 // `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
-template <class T>
-void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m,
-                   const Parameters<T> &p, const Derived<T> &d) {
-    e.heading = math::heading(x[base_theta]);
-    e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
-    const T omega = x[base_omega];
+template <class T, int Wheels>
+void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
+                   const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    e.heading = math::heading(x[At::base_theta]);
+    e.velocity = to_base(e.heading, Vector2<T>{x[At::base_vx], x[At::base_vy]});
+    const T omega = x[At::base_omega];
     const Planar3<T> twist{e.velocity.x, e.velocity.y, omega};
     const Vector2<T> push = to_base(e.heading, Vector2<T>{u.push_force_x, u.push_force_y});
     const Vector2<T> push_point{u.push_point_x, u.push_point_y};
@@ -121,20 +128,21 @@ void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u
     e.push_power = dot(push, e.velocity + omega * turned(push_point));
 
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
-    // Of all wheels first: three chains of operations side by side in the processor.
-    std::array<T, wheel_count> steady;
-    for (int i = 0; i < wheel_count; ++i) {
-        steady[i] = steady_friction(p, i, dot(Vector2<T>{T(wheel_cos[i]), T(wheel_sin[i])}, e.velocity));
+    // Of all wheels first: chains of operations side by side in the processor.
+    std::array<T, Wheels> steady;
+    for (int i = 0; i < Wheels; ++i) {
+        steady[i] = steady_friction(
+            p, i, dot(Vector2<T>{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])}, e.velocity));
     }
-    for (int i = 0; i < wheel_count; ++i) {
-        const Vector2<T> radial{T(wheel_cos[i]), T(wheel_sin[i])};
+    for (int i = 0; i < Wheels; ++i) {
+        const Vector2<T> radial{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])};
         const T axial_speed = dot(radial, e.velocity);
         const T rolling_speed = dot(turned(radial), e.velocity);
         const Planar3<T> row = wheel_row(p, i);
         e.wheel_speed[i] = dot(row, twist);
         e.sensed_torque[i] =
-            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], e.wheel_speed[i]);
-        const auto roller = roller_force(p, d.roller_plastic_fraction, i, axial_speed, x[bristle + i], steady[i]);
+            sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], e.wheel_speed[i]);
+        const auto roller = roller_force(p, d.roller_plastic_fraction, i, axial_speed, x[At::bristle + i], steady[i]);
         e.roller_force[i] = p.wheel_traction[i] * roller.force;
 
         // The parts of the wheel's and roller's accelerations that come from turning (29), (30).
@@ -145,17 +153,17 @@ void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u
         wrench = wrench + (T(-1.0) * p.wheel_traction[i] * p.roller_inertia * roller_turning) * roller_row(p, i);
 
         const T direction = m.gear_direction[i];
-        e.rate[motor_angle + i] = x[motor_speed + i];
-        e.rate[wheel_angle + i] = e.wheel_speed[i];
-        e.rate[bristle + i] = roller.deflection_rate;
-        loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
-               p.drivetrain_damping * math::square(x[motor_speed + i] - e.wheel_speed[i]) +
+        e.rate[At::motor_angle + i] = x[At::motor_speed + i];
+        e.rate[At::wheel_angle + i] = e.wheel_speed[i];
+        e.rate[At::bristle + i] = roller.deflection_rate;
+        loss = loss + gear_dissipation(p, direction, x[At::motor_speed + i]) +
+               p.drivetrain_damping * math::square(x[At::motor_speed + i] - e.wheel_speed[i]) +
                p.wheel_traction[i] * roller.dissipation;
     }
     drive_motors(e, x, u, m, p);
 
-    const auto touching = touch(p, d, detail::find_nose(x, p, d, e.heading), e.velocity, omega, x[compression],
-                                x[compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
+    const auto touching = touch(p, d, detail::find_nose(x, p, d, e.heading), e.velocity, omega, x[At::compression],
+                                x[At::compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
     e.contact = touching.contact;
     e.contact_force = touching.force;
     const Vector2<T> force = e.contact_force.on_robot;
@@ -173,7 +181,7 @@ void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u
         // Point mass on a guide along `outward`: across the guide, and along it while locked, it adds to the base's
         // inertia.
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
         const Planar3<T> along = wrench_direction(outward, plate);
         const Planar3<T> across = wrench_direction(turned(outward), plate);
         const T centripetal = omega * omega;
@@ -181,7 +189,7 @@ void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u
         inertia.add(p.bumper_plate_mass, across);
         inertia.add(lock * p.bumper_plate_mass, along);
         const T across_turning =
-            T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[compression_rate];
+            T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[At::compression_rate];
         const T along_turning = T(-1.0) * centripetal * dot(plate, outward);
         const T pull = dot(force, outward);
         wrench = wrench + (T(-1.0) * p.bumper_plate_mass * across_turning) * across;
@@ -189,88 +197,95 @@ void evaluate_into(Evaluation<T> &e, const StateVector<T> &x, const Inputs<T> &u
             wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.bumper_plate_mass * along_turning)) * along;
         acceleration = inertia.solve(wrench);
         const T guide = dot(along, acceleration) + along_turning;
-        e.rate[compression_rate] = free * (guide - (pull + e.bumper.force) / p.bumper_plate_mass);
+        e.rate[At::compression_rate] = free * (guide - (pull + e.bumper.force) / p.bumper_plate_mass);
         e.internal_force = free * e.bumper.force + lock * (p.bumper_plate_mass * guide - pull);
     } else {
         acceleration = d.base_inertia.solve(wrench);
     }
 
     const Vector2<T> acceleration_world = to_world(e.heading, Vector2<T>{acceleration.x, acceleration.y});
-    e.rate[base_x] = x[base_vx];
-    e.rate[base_y] = x[base_vy];
-    e.rate[base_theta] = omega;
-    e.rate[base_vx] = acceleration_world.x;
-    e.rate[base_vy] = acceleration_world.y;
-    e.rate[base_omega] = acceleration.z;
-    e.rate[dissipated] = loss;
-    e.rate[impulse_x] = force_world.x;
-    e.rate[impulse_y] = force_world.y;
+    e.rate[At::base_x] = x[At::base_vx];
+    e.rate[At::base_y] = x[At::base_vy];
+    e.rate[At::base_theta] = omega;
+    e.rate[At::base_vx] = acceleration_world.x;
+    e.rate[At::base_vy] = acceleration_world.y;
+    e.rate[At::base_omega] = acceleration.z;
+    e.rate[At::dissipated] = loss;
+    e.rate[At::impulse_x] = force_world.x;
+    e.rate[At::impulse_y] = force_world.y;
 }
 
-template <class T>
-Evaluation<T> evaluate(const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
-                       const Derived<T> &d) {
-    Evaluation<T> e{};
+template <class T, int Wheels>
+Evaluation<T, Wheels> evaluate(const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, const Modes<T, Wheels> &m,
+                               const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    Evaluation<T, Wheels> e{};
     evaluate_into(e, x, u, m, p, d);
     return e;
 }
 
-template <class T>
-StateVector<T> rhs(const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
-                   const Derived<T> &d) {
+template <class T, int Wheels>
+StateVector<T, Wheels> rhs(const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, const Modes<T, Wheels> &m,
+                           const Parameters<T, Wheels> &p, const Derived<T> &d) {
     return evaluate(x, u, m, p, d).rate;
 }
 
 // Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for a bumper that
 // holds only.
-template <class T, std::size_t N, std::size_t E, class InternalForce>
-void slider_indicators(std::array<T, E> &g, const std::array<T, N> &x, const Modes<T> &m, const Parameters<T> &p,
-                       const Derived<T> &d, T depth, InternalForce internal_force) {
+template <class T, int Wheels, std::size_t N, std::size_t E, class InternalForce>
+void slider_indicators(std::array<T, E> &g, const std::array<T, N> &x, const Modes<T, Wheels> &m,
+                       const Parameters<T, Wheels> &p, const Derived<T> &d, T depth, InternalForce internal_force) {
+    using At = Layout<Wheels>;
     const bool slider = p.slider_present != 0;
-    g[event_contact] = depth;
-    g[event_rope] =
-        slider && p.rope_attached != 0 ? d.rope_pretension_length + x[weight_drop] - x[slider_position] : T(-1.0);
-    g[event_end_stop] = T(1.0);
+    g[At::event_contact] = depth;
+    g[At::event_rope] = slider && p.rope_attached != 0
+                            ? d.rope_pretension_length + x[At::weight_drop] - x[At::slider_position]
+                            : T(-1.0);
+    g[At::event_end_stop] = T(1.0);
     if (slider && bumper_holds(p)) {
         const T holding = bumper_release_force(p) - internal_force();
-        g[event_end_stop] = math::select(math::less(T(0.5), m.latched), holding, x[compression]);
+        g[At::event_end_stop] = math::select(math::less(T(0.5), m.latched), holding, x[At::compression]);
     } else if (slider && p.has_plate()) {
-        g[event_end_stop] = x[compression];
+        g[At::event_end_stop] = x[At::compression];
     }
-    g[event_bottom_stop] = slider && p.has_plate() ? x[compression] - p.bumper_travel : T(-1.0);
-    g[event_landing] = slider && p.rope_attached != 0 ? x[weight_drop] - p.rope_drop_height : T(-1.0);
-    g[event_wall] = slider && p.wall_present != 0 ? T(-1.0) * (x[slider_position] + p.wall_distance) : T(-1.0);
+    g[At::event_bottom_stop] = slider && p.has_plate() ? x[At::compression] - p.bumper_travel : T(-1.0);
+    g[At::event_landing] = slider && p.rope_attached != 0 ? x[At::weight_drop] - p.rope_drop_height : T(-1.0);
+    g[At::event_wall] = slider && p.wall_present != 0 ? T(-1.0) * (x[At::slider_position] + p.wall_distance) : T(-1.0);
 }
 
 // Zero at an event; see the table in README.md for the meaning of the signs.
-template <class T>
-EventVector<T> event_indicators(const StateVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
-                                const Derived<T> &d) {
-    EventVector<T> g{};
-    const auto heading = math::heading(x[base_theta]);
-    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
-    const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
-    for (int i = 0; i < wheel_count; ++i) {
-        const T sensed =
-            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
-        g[event_gear + i] =
-            gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
+template <class T, int Wheels>
+EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
+                                        const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p,
+                                        const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    EventVector<T, Wheels> g{};
+    const auto heading = math::heading(x[At::base_theta]);
+    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]});
+    const Planar3<T> twist{velocity.x, velocity.y, x[At::base_omega]};
+    for (int i = 0; i < Wheels; ++i) {
+        const T sensed = sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i],
+                                       dot(wheel_row(p, i), twist));
+        g[At::event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed),
+                                               x[At::motor_speed + i]);
     }
-    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity,
-                                                           x[base_omega], x[compression], x[compression_rate])
-                                                .depth
-                                          : T(-1.0);
+    const T depth = p.slider_present != 0
+                        ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity, x[At::base_omega],
+                                         x[At::compression], x[At::compression_rate])
+                              .depth
+                        : T(-1.0);
     slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
     return g;
 }
 
 // The same where everything has been evaluated already.
-template <class T>
-EventVector<T> event_indicators(const Evaluation<T> &e, const StateVector<T> &x, const Modes<T> &m,
-                                const Parameters<T> &p, const Derived<T> &d) {
-    EventVector<T> g{};
-    for (int i = 0; i < wheel_count; ++i) {
-        g[event_gear + i] = gear_indicator(p, m.gear_direction[i], e.net_torque[i], x[motor_speed + i]);
+template <class T, int Wheels>
+EventVector<T, Wheels> event_indicators(const Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x,
+                                        const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p,
+                                        const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    EventVector<T, Wheels> g{};
+    for (int i = 0; i < Wheels; ++i) {
+        g[At::event_gear + i] = gear_indicator(p, m.gear_direction[i], e.net_torque[i], x[At::motor_speed + i]);
     }
     slider_indicators(g, x, m, p, d, p.slider_present != 0 ? e.contact.depth : T(-1.0),
                       [&] { return e.internal_force; });
@@ -278,84 +293,87 @@ EventVector<T> event_indicators(const Evaluation<T> &e, const StateVector<T> &x,
 }
 
 // The events that the planar plant has; `e` is the evaluation before them.
-template <class T, std::size_t N, std::size_t E>
-void planar_transition(const Evaluation<T, N> &e, std::array<T, N> &x, Modes<T> &m, const std::array<T, E> &fired,
-                       const Parameters<T> &p, const Derived<T> &d) {
-    for (int i = 0; i < wheel_count; ++i) {
-        const auto now = math::less(fired[event_gear + i], T(0.0));
+template <class T, int Wheels, std::size_t N, std::size_t E>
+void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, Modes<T, Wheels> &m,
+                       const std::array<T, E> &fired, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    for (int i = 0; i < Wheels; ++i) {
+        const auto now = math::less(fired[At::event_gear + i], T(0.0));
         const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
         // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the
         // torque.
         const T from_stuck = math::sign(e.net_torque[i]);
         const T from_sliding = gear_direction_from_rest(p, e.net_torque[i]);
-        x[motor_speed + i] = math::select(now, T(0.0), x[motor_speed + i]);
+        x[At::motor_speed + i] = math::select(now, T(0.0), x[At::motor_speed + i]);
         m.gear_direction[i] = math::select(now, math::select(was_stuck, from_stuck, from_sliding), m.gear_direction[i]);
     }
     const auto follow = [&](int event, T mode) {
         return math::select(math::less(T(0.0), fired[event]), T(1.0),
                             math::select(math::less(fired[event], T(0.0)), T(0.0), mode));
     };
-    m.contact = follow(event_contact, m.contact);
-    m.rope_taut = follow(event_rope, m.rope_taut);
-    m.bottom_stop = follow(event_bottom_stop, m.bottom_stop);
-    m.landed = follow(event_landing, m.landed);
-    m.walled = follow(event_wall, m.walled);
+    m.contact = follow(At::event_contact, m.contact);
+    m.rope_taut = follow(At::event_rope, m.rope_taut);
+    m.bottom_stop = follow(At::event_bottom_stop, m.bottom_stop);
+    m.landed = follow(At::event_landing, m.landed);
+    m.walled = follow(At::event_wall, m.walled);
     if (!bumper_holds(p)) {
-        m.end_stop = T(1.0) - follow(event_end_stop, T(1.0) - m.end_stop);
+        m.end_stop = T(1.0) - follow(At::event_end_stop, T(1.0) - m.end_stop);
         return;
     }
     // Either way the indicator falls: the latch lets go, or the plate is back and latches in a plastic impact.
-    const auto now = math::less(fired[event_end_stop], T(0.0));
+    const auto now = math::less(fired[At::event_end_stop], T(0.0));
     const T latching = math::select(now, T(1.0) - m.latched, T(0.0));
-    const T rate = latching * x[compression_rate];
+    const T rate = latching * x[At::compression_rate];
     T impulse;
     if (p.plate_on_robot()) {
         const Vector2<T> outward{d.plate_x, d.plate_y};
-        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[compression] * outward;
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
         const Planar3<T> along = wrench_direction(outward, plate);
         Inertia3<T> inertia = base_inertia(p);
         inertia.add(p.bumper_plate_mass, wrench_direction(turned(outward), plate));
         inertia.add(p.bumper_plate_mass, along);
         const Planar3<T> change = inertia.solve((T(-1.0) * p.bumper_plate_mass * rate) * along);
         const Vector2<T> change_world = to_world(e.heading, Vector2<T>{change.x, change.y});
-        x[base_vx] = x[base_vx] + change_world.x;
-        x[base_vy] = x[base_vy] + change_world.y;
-        x[base_omega] = x[base_omega] + change.z;
+        x[At::base_vx] = x[At::base_vx] + change_world.x;
+        x[At::base_vy] = x[At::base_vy] + change_world.y;
+        x[At::base_omega] = x[At::base_omega] + change.z;
         impulse = p.bumper_plate_mass * (dot(along, change) + rate);
     } else {
-        x[slider_speed] = x[slider_speed] - p.bumper_plate_mass / p.slider_mass * rate;
+        x[At::slider_speed] = x[At::slider_speed] - p.bumper_plate_mass / p.slider_mass * rate;
         impulse = T(p.bumper_plate_mass) * d.carriage_mass / p.slider_mass * rate;
     }
-    x[dissipated] = x[dissipated] + T(0.5) * impulse * rate;
-    x[compression] = math::select(now, T(0.0), x[compression]);
-    x[compression_rate] = math::select(now, T(0.0), x[compression_rate]);
+    x[At::dissipated] = x[At::dissipated] + T(0.5) * impulse * rate;
+    x[At::compression] = math::select(now, T(0.0), x[At::compression]);
+    x[At::compression_rate] = math::select(now, T(0.0), x[At::compression_rate]);
     m.latched = math::select(now, T(1.0) - m.latched, m.latched);
 }
 
 // `fired`: +1 where the indicator rose through zero, -1 where it fell, 0 elsewhere. Changes modes, and the state where
 // it jumps.
-template <class T>
-void transition(StateVector<T> &x, const Inputs<T> &u, Modes<T> &m, const EventVector<T> &fired, const Parameters<T> &p,
-                const Derived<T> &d) {
+template <class T, int Wheels>
+void transition(StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
+                const EventVector<T, Wheels> &fired, const Parameters<T, Wheels> &p, const Derived<T> &d) {
     planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
 }
 
-template <class T> void break_away(const Inputs<T> &u, Modes<T> &m, const Parameters<T> &p, int wheel, T sensed) {
+template <class T, int Wheels>
+void break_away(const Inputs<T, Wheels> &u, Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, int wheel, T sensed) {
     const T direction = gear_direction_from_rest(p, net_motor_torque(p, u.motor_torque[wheel], sensed));
     m.gear_direction[wheel] =
         math::select(math::less(math::abs(m.gear_direction[wheel]), T(0.5)), direction, m.gear_direction[wheel]);
 }
 
 // After the inputs changed: a stuck gear whose motor now pulls more than its stiction breaks away.
-template <class T>
-void accept_inputs(const StateVector<T> &x, const Inputs<T> &u, Modes<T> &m, const Parameters<T> &p,
-                   const Derived<T> &) {
-    const auto heading = math::heading(x[base_theta]);
-    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[base_vx], x[base_vy]});
-    const Planar3<T> twist{velocity.x, velocity.y, x[base_omega]};
-    for (int i = 0; i < wheel_count; ++i) {
-        const T sensed =
-            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], dot(wheel_row(p, i), twist));
+template <class T, int Wheels>
+void accept_inputs(const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
+                   const Parameters<T, Wheels> &p, const Derived<T> &) {
+    using At = Layout<Wheels>;
+    const auto heading = math::heading(x[At::base_theta]);
+    const Vector2<T> velocity = to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]});
+    const Planar3<T> twist{velocity.x, velocity.y, x[At::base_omega]};
+    for (int i = 0; i < Wheels; ++i) {
+        const T sensed = sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i],
+                                       dot(wheel_row(p, i), twist));
         break_away(u, m, p, i, sensed);
     }
 }

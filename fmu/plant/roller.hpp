@@ -23,7 +23,7 @@ T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction, const math::D
 
 // What a roller's friction comes to in steady motion at speed v (28); a bristle sticks to as much as Coulomb friction
 // near rest.
-template <class T> T steady_friction(const Parameters<T> &p, int wheel, T v) {
+template <class T, int Wheels> T steady_friction(const Parameters<T, Wheels> &p, int wheel, T v) {
     const T coulomb = p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
     const T steady = math::tanh(p.roller_tanh_slope * math::abs(v) / p.roller_radius);
     if (p.roller_model == RollerModel::tanh) {
@@ -34,9 +34,9 @@ template <class T> T steady_friction(const Parameters<T> &p, int wheel, T v) {
 }
 
 // v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m; steady: steady_friction() at v, N.
-template <class T>
-RollerForce<T> roller_force(const Parameters<T> &p, const math::Divisor<T> &plastic_fraction, int wheel, T v, T z,
-                            T steady) {
+template <class T, int Wheels>
+RollerForce<T> roller_force(const Parameters<T, Wheels> &p, const math::Divisor<T> &plastic_fraction, int wheel, T v,
+                            T z, T steady) {
     if (p.roller_model == RollerModel::tanh) {
         const T force = math::select(math::less(v, T(0.0)), T(-1.0) * steady, steady);
         return {force, T(0.0), force * v};
@@ -48,13 +48,13 @@ RollerForce<T> roller_force(const Parameters<T> &p, const math::Divisor<T> &plas
     const T force = sigma0 * z + p.roller_presliding_damping * rate;
     return {force, rate, force * v - sigma0 * z * rate};
 }
-template <class T> RollerForce<T> roller_force(const Parameters<T> &p, int wheel, T v, T z) {
+template <class T, int Wheels> RollerForce<T> roller_force(const Parameters<T, Wheels> &p, int wheel, T v, T z) {
     return roller_force(p, math::Divisor<T>(T(1.0) - p.roller_elastic_fraction), wheel, v, z,
                         steady_friction(p, wheel, v));
 }
 
 // Deflection in steady motion at speed v, where z' = 0 and the friction is that of (28).
-template <class T> T steady_deflection(const Parameters<T> &p, int wheel, T v) {
+template <class T, int Wheels> T steady_deflection(const Parameters<T, Wheels> &p, int wheel, T v) {
     if (p.roller_model == RollerModel::tanh) {
         return T(0.0);
     }

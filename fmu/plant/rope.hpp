@@ -10,9 +10,9 @@ template <class T> struct RopeForces {
     T dissipation, stored; // gravity included
 };
 
-template <class T>
-RopeForces<T> rope_forces(const Parameters<T> &p, const Derived<T> &d, const Modes<T> &m, T slider, T slider_speed,
-                          T drop, T drop_speed) {
+template <class T, int Wheels>
+RopeForces<T> rope_forces(const Parameters<T, Wheels> &p, const Derived<T> &d, const Modes<T, Wheels> &m, T slider,
+                          T slider_speed, T drop, T drop_speed) {
     if (p.rope_attached == 0) {
         return {T(-1.0), T(0.0), T(0.0), T(0.0), T(0.0)};
     }
@@ -27,7 +27,7 @@ RopeForces<T> rope_forces(const Parameters<T> &p, const Derived<T> &d, const Mod
     return {extension, tension, floor.force, (tension - spring) * rate + floor.dissipation, stored};
 }
 
-template <class T> T rail_friction(const Parameters<T> &p, T speed) {
+template <class T, int Wheels> T rail_friction(const Parameters<T, Wheels> &p, T speed) {
     return p.slider_friction * math::tanh(speed / p.slider_friction_speed) + p.slider_damping * speed;
 }
 

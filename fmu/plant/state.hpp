@@ -7,74 +7,76 @@
 
 namespace giveway::plant {
 
-enum StateIndex : int {
-    base_x = 0,
-    base_y = 1,
-    base_theta = 2,
-    base_vx = 3,
-    base_vy = 4,
-    base_omega = 5,
-    motor_angle = 6,  // 3
-    motor_speed = 9,  // 3
-    wheel_angle = 12, // 3
-    bristle = 15,     // 3
-    slider_position = 18,
-    slider_speed = 19,
-    weight_drop = 20,
-    weight_speed = 21,
-    compression = 22,
-    compression_rate = 23,
-    work_in = 24,
-    dissipated = 25,
-    impulse_x = 26,
-    impulse_y = 27,
-    state_count = 28,
-    // Only with tipping.
-    base_heave = 28,
-    base_roll = 29,
-    base_pitch = 30,
-    heave_rate = 31,
-    body_roll_rate = 32, // about the body's own axes
-    body_pitch_rate = 33,
-    wheel_spin = 34, // 3
-    grip = 37,       // 3
-    tipping_state_count = 40,
+// Where a state and an event stand in their vectors.
+template <int Wheels = table_wheels> struct Layout {
+    enum State : int {
+        base_x,
+        base_y,
+        base_theta,
+        base_vx,
+        base_vy,
+        base_omega,
+        motor_angle,                        // of each wheel
+        motor_speed = motor_angle + Wheels, // of each wheel
+        wheel_angle = motor_speed + Wheels, // of each wheel
+        bristle = wheel_angle + Wheels,     // of each wheel
+        slider_position = bristle + Wheels,
+        slider_speed,
+        weight_drop,
+        weight_speed,
+        compression,
+        compression_rate,
+        work_in,
+        dissipated,
+        impulse_x,
+        impulse_y,
+        state_count,
+        // Only with tipping.
+        base_heave = state_count,
+        base_roll,
+        base_pitch,
+        heave_rate,
+        body_roll_rate, // about the body's own axes
+        body_pitch_rate,
+        wheel_spin,                 // of each wheel
+        grip = wheel_spin + Wheels, // of each wheel
+        tipping_state_count = grip + Wheels,
+    };
+    enum Event : int {
+        event_gear, // of each wheel
+        event_contact = event_gear + Wheels,
+        event_rope,
+        event_end_stop,
+        event_bottom_stop,
+        event_landing,
+        event_wall,
+        event_count,
+        // Only with tipping.
+        event_floor = event_count, // of each wheel
+        event_tilt = event_floor + Wheels,
+        tipping_event_count,
+    };
 };
 
-template <class T> using StateVector = std::array<T, state_count>;
-template <class T> using TippingVector = std::array<T, tipping_state_count>;
+template <class T, int Wheels = table_wheels> using StateVector = std::array<T, Layout<Wheels>::state_count>;
+template <class T, int Wheels = table_wheels> using TippingVector = std::array<T, Layout<Wheels>::tipping_state_count>;
 
-template <class T> struct Inputs {
-    std::array<T, wheel_count> motor_torque;
+template <class T, int Wheels = table_wheels> struct Inputs {
+    std::array<T, Wheels> motor_torque;
     T push_force_x, push_force_y; // world frame, N
     T push_point_x, push_point_y; // base frame, m
 };
 
 // Constant between events. Numbers, not booleans: lanes differ.
-template <class T> struct Modes {
-    std::array<T, wheel_count> gear_direction;                            // -1, 0 (stuck), +1
+template <class T, int Wheels = table_wheels> struct Modes {
+    std::array<T, Wheels> gear_direction;                                 // -1, 0 (stuck), +1
     T contact, rope_taut, end_stop, bottom_stop, latched, landed, walled; // 0 or 1
     // Only with tipping.
-    std::array<T, wheel_count> on_floor = {};
+    std::array<T, Wheels> on_floor = {};
     T overturned = T(0.0); // tilted further than the model goes
 };
 
-enum EventIndex : int {
-    event_gear = 0, // 3
-    event_contact = 3,
-    event_rope = 4,
-    event_end_stop = 5,
-    event_bottom_stop = 6,
-    event_landing = 7,
-    event_wall = 8,
-    event_count = 9,
-    // Only with tipping.
-    event_floor = 9, // 3
-    event_tilt = 12,
-    tipping_event_count = 13,
-};
-
-template <class T> using EventVector = std::array<T, event_count>;
-template <class T> using TippingEvents = std::array<T, tipping_event_count>;
+template <class T, int Wheels = table_wheels> using EventVector = std::array<T, Layout<Wheels>::event_count>;
+template <class T, int Wheels = table_wheels> using TippingEvents = std::array<T, Layout<Wheels>::tipping_event_count>;
 
 } // namespace giveway::plant

@@ -1,4 +1,4 @@
-// The plant whose base can tip: a rigid body on three wheels that press on the floor, grip it and leave it.
+// The plant whose base can tip: a rigid body on wheels that press on the floor, grip it and leave it.
 // Everything but the base and its wheels is the planar plant's. README.md of this folder has the equations.
 #pragma once
 
@@ -23,18 +23,19 @@ template <class T> struct Stance {
     [[nodiscard]] Vector3<T> velocity_of(Vector3<T> point) const { return velocity + cross(turning, point); }
 };
 
-template <class T> Stance<T> stance(const TippingVector<T> &x, Vector2<T> velocity) {
-    const auto roll = math::sincos(x[base_roll]);
-    const auto pitch = math::sincos(x[base_pitch]);
+template <int Wheels, class T> Stance<T> stance(const TippingVector<T, Wheels> &x, Vector2<T> velocity) {
+    using At = Layout<Wheels>;
+    const auto roll = math::sincos(x[At::base_roll]);
+    const auto pitch = math::sincos(x[At::base_pitch]);
     Stance<T> s;
     s.forward = {pitch.cos, T(0.0), T(-1.0) * pitch.sin};
     s.left = {pitch.sin * roll.sin, roll.cos, pitch.cos * roll.sin};
     s.up = {pitch.sin * roll.cos, T(-1.0) * roll.sin, pitch.cos * roll.cos};
-    s.velocity = {velocity.x, velocity.y, x[heave_rate]};
-    s.yaw_rate = (x[base_omega] * pitch.cos - x[body_pitch_rate] * roll.sin) / roll.cos;
-    s.turning = x[body_roll_rate] * s.forward + x[body_pitch_rate] * s.left + s.yaw_rate * s.up;
-    s.roll_rate = x[body_roll_rate] + pitch.sin * x[base_omega];
-    s.pitch_rate = x[body_pitch_rate] * roll.cos - s.yaw_rate * roll.sin;
+    s.velocity = {velocity.x, velocity.y, x[At::heave_rate]};
+    s.yaw_rate = (x[At::base_omega] * pitch.cos - x[At::body_pitch_rate] * roll.sin) / roll.cos;
+    s.turning = x[At::body_roll_rate] * s.forward + x[At::body_pitch_rate] * s.left + s.yaw_rate * s.up;
+    s.roll_rate = x[At::body_roll_rate] + pitch.sin * x[At::base_omega];
+    s.pitch_rate = x[At::body_pitch_rate] * roll.cos - s.yaw_rate * roll.sin;
     return s;
 }
 
@@ -48,10 +49,11 @@ template <class T> struct Footing {
     T wheel_speed; // against the body
 };
 
-template <class T>
-Footing<T> footing(const TippingVector<T> &x, const Parameters<T> &p, const Stance<T> &s, int wheel) {
+template <class T, int Wheels>
+Footing<T> footing(const TippingVector<T, Wheels> &x, const Parameters<T, Wheels> &p, const Stance<T> &s, int wheel) {
+    using At = Layout<Wheels>;
     Footing<T> f;
-    f.axle = T(wheel_cos[wheel]) * s.forward + T(wheel_sin[wheel]) * s.left;
+    f.axle = T(Azimuths<Wheels>::cos[wheel]) * s.forward + T(Azimuths<Wheels>::sin[wheel]) * s.left;
     const T level = math::sqrt(f.axle.x * f.axle.x + f.axle.y * f.axle.y);
     f.radial = {f.axle.x / level, f.axle.y / level, T(0.0)};
     f.rolling = {T(-1.0) * f.radial.y, f.radial.x, T(0.0)};
@@ -59,24 +61,24 @@ Footing<T> footing(const TippingVector<T> &x, const Parameters<T> &p, const Stan
                                                 f.axle.z * f.axle); // from the hub straight down in the wheel's plane
     f.point = p.wheel_distance * f.axle + p.wheel_radius * (s.up + rim);
     f.velocity = s.velocity_of(f.point);
-    f.depth = T(-1.0) * (x[base_heave] + f.point.z);
+    f.depth = T(-1.0) * (x[At::base_heave] + f.point.z);
     f.depth_rate = T(-1.0) * f.velocity.z;
-    f.wheel_speed = x[wheel_spin + wheel] + dot(s.turning, f.axle);
+    f.wheel_speed = x[At::wheel_spin + wheel] + dot(s.turning, f.axle);
     return f;
 }
 
-template <class T> struct TippingEvaluation : Evaluation<T, tipping_state_count> {
+template <class T, int Wheels> struct TippingEvaluation : Evaluation<T, Wheels, Layout<Wheels>::tipping_state_count> {
     Stance<T> stance;
-    std::array<T, wheel_count> depth, load; // m, N
-    Vector2<T> contact_offset;              // of the body's axis at the contact's height
+    std::array<T, Wheels> depth, load; // m, N
+    Vector2<T> contact_offset;         // of the body's axis at the contact's height
     T floor_stored;
 };
 
 // The base's centre as a contact at the contact's height sees it, and the nose relative to that.
 namespace detail {
 
-template <class T>
-Nose<T> nose_at_height(const TippingVector<T> &x, const Parameters<T> &p, const Derived<T> &d,
+template <class T, int Wheels>
+Nose<T> nose_at_height(const TippingVector<T, Wheels> &x, const Parameters<T, Wheels> &p, const Derived<T> &d,
                        const math::SinCos<T> &heading, const Stance<T> &s) {
     Nose<T> nose = find_nose(x, p, d, heading);
     nose.centre = nose.centre - (p.contact_height * s.up).plan();
@@ -85,13 +87,14 @@ Nose<T> nose_at_height(const TippingVector<T> &x, const Parameters<T> &p, const 
 
 } // namespace detail
 
-template <class T>
-TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
-                              const Derived<T> &d) {
-    TippingEvaluation<T> e{};
-    e.heading = math::sincos(x[base_theta]);
-    e.velocity = to_base(e.heading, Vector2<T>{x[base_vx], x[base_vy]});
-    e.stance = stance(x, e.velocity);
+template <class T, int Wheels>
+TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
+                                      const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    TippingEvaluation<T, Wheels> e{};
+    e.heading = math::sincos(x[At::base_theta]);
+    e.velocity = to_base(e.heading, Vector2<T>{x[At::base_vx], x[At::base_vy]});
+    e.stance = stance<Wheels>(x, e.velocity);
     const Stance<T> &s = e.stance;
     const Vector2<T> push_plan = to_base(e.heading, Vector2<T>{u.push_force_x, u.push_force_y});
     const Vector3<T> push{push_plan.x, push_plan.y, T(0.0)};
@@ -101,12 +104,12 @@ TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, con
 
     Vector3<T> force = push;
     Vector3<T> moment = cross(push_point, push); // about the base's centre at floor level
-    const T nominal_load = p.base_mass * T(gravity_mps2) / T(wheel_count);
-    for (int i = 0; i < wheel_count; ++i) {
+    const T nominal_load = p.base_mass * T(gravity_mps2) / T(Wheels);
+    for (int i = 0; i < Wheels; ++i) {
         const Footing<T> f = footing(x, p, s, i);
         e.wheel_speed[i] = f.wheel_speed;
         e.sensed_torque[i] =
-            sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
+            sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], f.wheel_speed);
         e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
         const auto floor =
             stop_force(m.on_floor[i], p.wheel_floor_stiffness, p.wheel_floor_damping, f.depth, f.depth_rate);
@@ -118,11 +121,12 @@ TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, con
         const T share = floor.force / nominal_load;
         const T axial_speed = dot(f.radial, f.velocity);
         const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
-        const auto roller = roller_force(p, i, axial_speed, x[bristle + i]);
+        const auto roller = roller_force(p, i, axial_speed, x[At::bristle + i]);
         const T grip_rate =
-            bristle_rate(slip, x[grip + i], p.wheel_grip_stiffness, p.wheel_grip_friction * nominal_load,
+            bristle_rate(slip, x[At::grip + i], p.wheel_grip_stiffness, p.wheel_grip_friction * nominal_load,
                          p.roller_elastic_fraction, d.roller_plastic_fraction);
-        const T traction = T(-1.0) * share * (p.wheel_grip_stiffness * x[grip + i] + p.wheel_grip_damping * grip_rate);
+        const T traction =
+            T(-1.0) * share * (p.wheel_grip_stiffness * x[At::grip + i] + p.wheel_grip_damping * grip_rate);
         e.roller_force[i] = share * roller.force;
         const Vector3<T> at_floor =
             traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
@@ -131,25 +135,26 @@ TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, con
         const T spinning_up = e.sensed_torque[i] - p.wheel_radius * traction;
         force = force + at_floor;
         moment = moment + cross(f.point, at_floor) + spinning_up * f.axle +
-                 (p.wheel_inertia * x[wheel_spin + i]) * cross(s.turning, f.axle);
+                 (p.wheel_inertia * x[At::wheel_spin + i]) * cross(s.turning, f.axle);
 
         const T direction = m.gear_direction[i];
-        e.rate[motor_angle + i] = x[motor_speed + i];
-        e.rate[motor_speed + i] = motor_acceleration(p, direction, e.net_torque[i], x[motor_speed + i]);
-        e.rate[wheel_angle + i] = f.wheel_speed;
-        e.rate[wheel_spin + i] = spinning_up / p.wheel_inertia;
-        e.rate[bristle + i] = m.on_floor[i] * roller.deflection_rate;
-        e.rate[grip + i] = m.on_floor[i] * grip_rate;
-        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[motor_speed + i];
-        loss = loss + gear_dissipation(p, direction, x[motor_speed + i]) +
-               p.drivetrain_damping * math::square(x[motor_speed + i] - f.wheel_speed) + floor.dissipation -
+        e.rate[At::motor_angle + i] = x[At::motor_speed + i];
+        e.rate[At::motor_speed + i] = motor_acceleration(p, direction, e.net_torque[i], x[At::motor_speed + i]);
+        e.rate[At::wheel_angle + i] = f.wheel_speed;
+        e.rate[At::wheel_spin + i] = spinning_up / p.wheel_inertia;
+        e.rate[At::bristle + i] = m.on_floor[i] * roller.deflection_rate;
+        e.rate[At::grip + i] = m.on_floor[i] * grip_rate;
+        work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[At::motor_speed + i];
+        loss = loss + gear_dissipation(p, direction, x[At::motor_speed + i]) +
+               p.drivetrain_damping * math::square(x[At::motor_speed + i] - f.wheel_speed) + floor.dissipation -
                traction * slip + e.roller_force[i] * axial_speed;
     }
 
     const Vector3<T> axis_point = p.contact_height * s.up;
-    const T omega = x[base_omega];
-    const auto touching = touch(p, d, detail::nose_at_height(x, p, d, e.heading, s), s.velocity_of(axis_point).plan(),
-                                omega, x[compression], x[compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
+    const T omega = x[At::base_omega];
+    const auto touching =
+        touch(p, d, detail::nose_at_height(x, p, d, e.heading, s), s.velocity_of(axis_point).plan(), omega,
+              x[At::compression], x[At::compression_rate], p.slider_present != 0 ? m.contact : T(0.0));
     e.contact = touching.contact;
     e.contact_force = touching.force;
     e.contact_offset = axis_point.plan();
@@ -164,9 +169,9 @@ TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, con
     // Newton and Euler at the centre of mass. A wheel's own spin is accounted for by itself.
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector3<T> torque = moment - cross(mass_centre, force);
-    const T tilting = p.base_tilt_inertia - T(0.5 * wheel_count) * p.wheel_inertia;
-    const T roll_rate = x[body_roll_rate];
-    const T pitch_rate = x[body_pitch_rate];
+    const T tilting = p.base_tilt_inertia - T(0.5 * Wheels) * p.wheel_inertia;
+    const T roll_rate = x[At::body_roll_rate];
+    const T pitch_rate = x[At::body_pitch_rate];
     const T roll_acceleration =
         (dot(torque, s.forward) + (tilting - p.base_yaw_inertia) * pitch_rate * s.yaw_rate) / tilting;
     const T pitch_acceleration =
@@ -179,98 +184,106 @@ TippingEvaluation<T> evaluate(const TippingVector<T> &x, const Inputs<T> &u, con
                                     cross(s.turning, cross(s.turning, mass_centre));
 
     const Vector2<T> acceleration_world = to_world(e.heading, acceleration.plan());
-    e.rate[base_x] = x[base_vx];
-    e.rate[base_y] = x[base_vy];
-    e.rate[base_theta] = omega;
-    e.rate[base_vx] = acceleration_world.x;
-    e.rate[base_vy] = acceleration_world.y;
+    e.rate[At::base_x] = x[At::base_vx];
+    e.rate[At::base_y] = x[At::base_vy];
+    e.rate[At::base_theta] = omega;
+    e.rate[At::base_vx] = acceleration_world.x;
+    e.rate[At::base_vy] = acceleration_world.y;
     // The heading's rate is (left.z pitch_rate + up.z yaw_rate) / cos(pitch)^2, differentiated.
     const T pitch_cos = s.forward.x;
     const T pitch_sin = T(-1.0) * s.forward.z;
     const T roll_sin = s.left.z / pitch_cos;
     const T roll_cos = s.left.y;
-    e.rate[base_omega] = (pitch_acceleration * roll_sin + yaw_acceleration * roll_cos + s.roll_rate * s.pitch_rate +
-                          omega * pitch_sin * s.pitch_rate) /
-                         pitch_cos;
-    e.rate[base_heave] = x[heave_rate];
-    e.rate[base_roll] = s.roll_rate;
-    e.rate[base_pitch] = s.pitch_rate;
-    e.rate[heave_rate] = acceleration.z;
-    e.rate[body_roll_rate] = roll_acceleration;
-    e.rate[body_pitch_rate] = pitch_acceleration;
-    e.rate[work_in] = work;
-    e.rate[dissipated] = loss;
-    e.rate[impulse_x] = force_world.x;
-    e.rate[impulse_y] = force_world.y;
+    e.rate[At::base_omega] = (pitch_acceleration * roll_sin + yaw_acceleration * roll_cos + s.roll_rate * s.pitch_rate +
+                              omega * pitch_sin * s.pitch_rate) /
+                             pitch_cos;
+    e.rate[At::base_heave] = x[At::heave_rate];
+    e.rate[At::base_roll] = s.roll_rate;
+    e.rate[At::base_pitch] = s.pitch_rate;
+    e.rate[At::heave_rate] = acceleration.z;
+    e.rate[At::body_roll_rate] = roll_acceleration;
+    e.rate[At::body_pitch_rate] = pitch_acceleration;
+    e.rate[At::work_in] = work;
+    e.rate[At::dissipated] = loss;
+    e.rate[At::impulse_x] = force_world.x;
+    e.rate[At::impulse_y] = force_world.y;
     return e;
 }
 
-template <class T>
-TippingVector<T> rhs(const TippingVector<T> &x, const Inputs<T> &u, const Modes<T> &m, const Parameters<T> &p,
-                     const Derived<T> &d) {
+template <class T, int Wheels>
+TippingVector<T, Wheels> rhs(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, const Modes<T, Wheels> &m,
+                             const Parameters<T, Wheels> &p, const Derived<T> &d) {
     return evaluate(x, u, m, p, d).rate;
 }
 
-template <class T>
-TippingEvents<T> event_indicators(const TippingVector<T> &x, const Inputs<T> &u, const Modes<T> &m,
-                                  const Parameters<T> &p, const Derived<T> &d) {
-    TippingEvents<T> g{};
-    const auto heading = math::sincos(x[base_theta]);
-    const Stance<T> s = stance(x, to_base(heading, Vector2<T>{x[base_vx], x[base_vy]}));
-    for (int i = 0; i < wheel_count; ++i) {
+template <class T, int Wheels>
+TippingEvents<T, Wheels> event_indicators(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
+                                          const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p,
+                                          const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    TippingEvents<T, Wheels> g{};
+    const auto heading = math::sincos(x[At::base_theta]);
+    const Stance<T> s = stance<Wheels>(x, to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]}));
+    for (int i = 0; i < Wheels; ++i) {
         const Footing<T> f = footing(x, p, s, i);
-        const T sensed = sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], f.wheel_speed);
-        g[event_gear + i] =
-            gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed), x[motor_speed + i]);
-        g[event_floor + i] = f.depth;
+        const T sensed =
+            sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], f.wheel_speed);
+        g[At::event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed),
+                                               x[At::motor_speed + i]);
+        g[At::event_floor + i] = f.depth;
     }
-    g[event_tilt] = s.up.z - T(cos_greatest_tilt);
-    const T depth = p.slider_present != 0 ? locate_contact(p, d, detail::nose_at_height(x, p, d, heading, s),
-                                                           s.velocity_of(p.contact_height * s.up).plan(), x[base_omega],
-                                                           x[compression], x[compression_rate])
-                                                .depth
-                                          : T(-1.0);
+    g[At::event_tilt] = s.up.z - T(cos_greatest_tilt);
+    const T depth = p.slider_present != 0
+                        ? locate_contact(p, d, detail::nose_at_height(x, p, d, heading, s),
+                                         s.velocity_of(p.contact_height * s.up).plan(), x[At::base_omega],
+                                         x[At::compression], x[At::compression_rate])
+                              .depth
+                        : T(-1.0);
     slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
     return g;
 }
 
-template <class T>
-void transition(TippingVector<T> &x, const Inputs<T> &u, Modes<T> &m, const TippingEvents<T> &fired,
-                const Parameters<T> &p, const Derived<T> &d) {
-    for (int i = 0; i < wheel_count; ++i) {
-        const auto landed = math::less(T(0.0), fired[event_floor + i]);
-        const auto lifted = math::less(fired[event_floor + i], T(0.0));
+template <class T, int Wheels>
+void transition(TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
+                const TippingEvents<T, Wheels> &fired, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    for (int i = 0; i < Wheels; ++i) {
+        const auto landed = math::less(T(0.0), fired[At::event_floor + i]);
+        const auto lifted = math::less(fired[At::event_floor + i], T(0.0));
         m.on_floor[i] = math::select(landed, T(1.0), math::select(lifted, T(0.0), m.on_floor[i]));
         // In the air the bristles straighten; without load they held nothing any more.
-        x[bristle + i] = math::select(lifted, T(0.0), x[bristle + i]);
-        x[grip + i] = math::select(lifted, T(0.0), x[grip + i]);
+        x[At::bristle + i] = math::select(lifted, T(0.0), x[At::bristle + i]);
+        x[At::grip + i] = math::select(lifted, T(0.0), x[At::grip + i]);
     }
-    m.overturned = math::select(math::less(fired[event_tilt], T(0.0)), T(1.0), m.overturned);
+    m.overturned = math::select(math::less(fired[At::event_tilt], T(0.0)), T(1.0), m.overturned);
     planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
 }
 
-template <class T>
-void accept_inputs(const TippingVector<T> &x, const Inputs<T> &u, Modes<T> &m, const Parameters<T> &p,
-                   const Derived<T> &) {
-    const auto heading = math::sincos(x[base_theta]);
-    const Stance<T> s = stance(x, to_base(heading, Vector2<T>{x[base_vx], x[base_vy]}));
-    for (int i = 0; i < wheel_count; ++i) {
+template <class T, int Wheels>
+void accept_inputs(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
+                   const Parameters<T, Wheels> &p, const Derived<T> &) {
+    using At = Layout<Wheels>;
+    const auto heading = math::sincos(x[At::base_theta]);
+    const Stance<T> s = stance<Wheels>(x, to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]}));
+    for (int i = 0; i < Wheels; ++i) {
         const T speed = footing(x, p, s, i).wheel_speed;
-        break_away(u, m, p, i, sensed_torque(p, x[motor_angle + i], x[motor_speed + i], x[wheel_angle + i], speed));
+        break_away(u, m, p, i,
+                   sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], speed));
     }
 }
 
 // What is left, of all of it, before the base goes over if nothing but its weight acts from now on: 1 level and at
 // rest, 0 at the point of no return. Over the line between two wheels the base is an inverted pendulum; of its motion
 // the part that grows, tilt + rate / d.tip_rate, decides.
-template <class T> T tip_margin(const Stance<T> &s, const Parameters<T> &p, const Derived<T> &d) {
+template <class T, int Wheels> T tip_margin(const Stance<T> &s, const Parameters<T, Wheels> &p, const Derived<T> &d) {
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector2<T> bound = mass_centre.plan() + (T(1.0) / d.tip_rate) * cross(s.turning, mass_centre).plan();
     T farthest = T(-1e300);
-    for (int i = 0; i < wheel_count; ++i) { // over the line that is opposite to wheel i
-        farthest = math::max(farthest, T(-wheel_cos[i]) * bound.x - T(wheel_sin[i]) * bound.y);
+    for (int i = 0; i < Wheels; ++i) {
+        const Side side = side_after<Wheels>(i);
+        farthest = math::max(farthest, T(side.cos) * bound.x + T(side.sin) * bound.y);
     }
-    return T(1.0) - T(2.0) * farthest / p.wheel_distance;
+    return T(1.0) - T(1.0 / Azimuths<Wheels>::side_distance) * farthest / p.wheel_distance;
 }
 
 } // namespace giveway::plant

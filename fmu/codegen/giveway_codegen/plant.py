@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from .errors import TableError
 from .table import Group, Table
 
 __all__ = ["parameters_header", "reader_header"]
 
-_TYPES = {"number": "T", "divisor": "math::Divisor<T>", "whole": "std::int32_t"}
+_TYPES = {"number": "T", "wheels": "T", "divisor": "math::Divisor<T>", "whole": "std::int32_t"}
 
 
 def _member(group: Group) -> str:
     element = _TYPES.get(group.plant or "", group.plant)
-    kind = element if group.count is None else f"std::array<{element}, {group.count}>"
+    count = "Wheels" if group.plant == "wheels" else group.count
+    kind = element if count is None else f"std::array<{element}, {count}>"
     unit = f" [{group.unit}]" if group.unit else ""
     return f"    {kind} {group.identifier}; // {group.description}{unit}"
 
@@ -26,6 +28,9 @@ def parameters_header(table: Table) -> str:
     groups = table.plant_parameters
     enumerations = "\n".join(_enumeration(group) for group in groups if group.choices)
     members = "\n".join(_member(group) for group in groups)
+    wheels = {group.count or 0 for group in groups if group.plant == "wheels"}
+    if len(wheels) > 1:
+        raise TableError(f'{table.name}: plant = "wheels" with counts {sorted(wheels)}: a robot has one')
     visits = "\n".join(f'    visit("{group.identifier}", structs.{group.identifier}...);' for group in groups)
     return f"""// Generated from the variable table of {table.name}; do not edit.
 #pragma once
@@ -39,8 +44,11 @@ namespace giveway::plant {{
 
 {enumerations}
 
+// Of the robot that the table describes.
+inline constexpr int table_wheels = {max(wheels, default=0)};
+
 // SI units.
-template <class T> struct TableParameters {{
+template <class T, int Wheels = table_wheels> struct TableParameters {{
 {members}
 }};
 

@@ -46,7 +46,7 @@ _VARIABLE_KEYS = {
     "choices",
 }  # fmt: skip
 # Types of plant parameters by the types of their variables; an integer may also be an enumeration.
-_PLANT_TYPES = {"real": ("number", "divisor"), "integer": ("whole",), "boolean": ("whole",)}
+_PLANT_TYPES = {"real": ("number", "divisor", "wheels"), "integer": ("whole",), "boolean": ("whole",)}
 _ENUMERATION = re.compile(r"[A-Z][A-Za-z]*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
 
@@ -284,6 +284,8 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
 def _plant(entry: _Entry, kind: str, causality: str, maximum: Value | None) -> tuple[str | None, tuple[str, ...]]:
     """Type of the plant's parameter, and the names of its choices if that is an enumeration."""
     plant, choices = entry.raw.get("plant"), entry.raw.get("choices")
+    if plant == "wheels" and "count" not in entry.raw:
+        raise entry.fail("plant", "'wheels' is a number for each wheel: it has a count")
     if plant is None and choices is None:
         return None, ()
     known = _PLANT_TYPES[kind]

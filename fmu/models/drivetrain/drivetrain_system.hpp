@@ -33,7 +33,7 @@ public:
         parameters_ = parameters;
         parameters_.roller_model = plant::RollerModel::tanh;
         parameters_.roller_radius = 1.0;
-        parameters_.wheel_load = {1.0, 1.0, 1.0};
+        parameters_.wheel_load.fill(1.0);
         load_ = load;
         torques_ = {};
         direction_ = math::sign(state[motor_speed]);

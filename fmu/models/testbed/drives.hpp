@@ -1,4 +1,5 @@
-// The drive electronics of Fig. 3: three 2 kHz joint servos, sensor sampling, and the bus with its delay each way.
+// The drive electronics of Fig. 3: a 2 kHz joint servo for each wheel, sensor sampling, and the bus with its delay each
+// way.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ inline constexpr int servo_ticks_per_cycle = 2;
 inline constexpr double bus_period_s = 1e-3;
 
 struct Command {
-    std::array<double, 3> wheel_angle_rad, wheel_speed_radps;
+    PerWheel<double> wheel_angle_rad, wheel_speed_radps;
     bool enable;
 };
 
@@ -29,9 +30,8 @@ class Drives {
 public:
     // The drives have been holding their reference: earlier cycles moved at the start's wheel speeds. Returns what the
     // servo refuses, empty if nothing.
-    gw_config_error_t start(const DriveOptions &options, const std::array<double, 3> &motor_angle_rad,
-                            const std::array<double, 3> &wheel_speed_radps, const std::array<double, 3> &torque_nm,
-                            bool enable) {
+    gw_config_error_t start(const DriveOptions &options, const PerWheel<double> &motor_angle_rad,
+                            const PerWheel<double> &wheel_speed_radps, const PerWheel<double> &torque_nm, bool enable) {
         options_ = options;
         cycle_ = 0;
         gw_servo_config_t config{};
@@ -53,14 +53,14 @@ public:
         }
         commands_.start(options.command_delay_cycles, [&](int cycles_ago) {
             Command command{{}, wheel_speed_radps, enable};
-            for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t i = 0; i < wheel_count; ++i) {
                 command.wheel_angle_rad[i] = -wheel_speed_radps[i] * bus_period_s * static_cast<double>(cycles_ago);
             }
             return command;
         });
         samples_.start(options.sensor_delay_cycles, [&](int cycles_ago) {
             auto earlier = motor_angle_rad;
-            for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t i = 0; i < wheel_count; ++i) {
                 earlier[i] -= wheel_speed_radps[i] * bus_period_s * static_cast<double>(cycles_ago);
             }
             return take_sample(earlier, torque_nm, -cycles_ago, deviates(options_.sensors, -cycles_ago));
@@ -69,11 +69,11 @@ public:
     }
 
     // Once per bus cycle, when its time is reached: samples the sensors and returns what the controller gets now.
-    SensorSample sample(const std::array<double, 3> &motor_angle_rad, const std::array<double, 3> &torque_nm) {
+    SensorSample sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm) {
         return sample(motor_angle_rad, torque_nm, deviates(options_.sensors, cycle_));
     }
     // With deviates() of the coming cycle that were drawn elsewhere.
-    SensorSample sample(const std::array<double, 3> &motor_angle_rad, const std::array<double, 3> &torque_nm,
+    SensorSample sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm,
                         const Deviates &drawn) {
         const SensorSample now = take_sample(motor_angle_rad, torque_nm, cycle_, drawn);
         ++cycle_;
@@ -87,9 +87,9 @@ public:
     }
 
     // Every servo tick: motor torques, from the drives' own undelayed encoders.
-    std::array<double, 3> regulate(const std::array<double, 3> &motor_angle_rad) {
-        std::array<double, 3> torque{};
-        for (std::size_t i = 0; i < 3; ++i) {
+    PerWheel<double> regulate(const PerWheel<double> &motor_angle_rad) {
+        PerWheel<double> torque{};
+        for (std::size_t i = 0; i < wheel_count; ++i) {
             gw_servo_input_t input{};
             input.angle_rad = static_cast<gw_real_t>(active_.wheel_angle_rad[i]);
             input.speed_radps = static_cast<gw_real_t>(active_.wheel_speed_radps[i]);
@@ -109,11 +109,10 @@ public:
 private:
     static constexpr std::uint32_t stale_ticks = 20; // 10 ms without a command: hold
 
-    [[nodiscard]] SensorSample take_sample(const std::array<double, 3> &motor_angle_rad,
-                                           const std::array<double, 3> &torque_nm, std::int64_t cycle,
-                                           const Deviates &drawn) const {
+    [[nodiscard]] SensorSample take_sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm,
+                                           std::int64_t cycle, const Deviates &drawn) const {
         SensorSample sample{};
-        for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t i = 0; i < wheel_count; ++i) {
             sample.torque_nm[i] = measured_torque(options_.sensors, i, torque_nm[i], drawn[i]);
             sample.encoder_counts[i] = encoder_count(options_.sensors, motor_angle_rad[i]);
         }
@@ -122,7 +121,7 @@ private:
     }
 
     DriveOptions options_{};
-    std::array<gw_servo_t, 3> servos_{};
+    PerWheel<gw_servo_t> servos_{};
     DelayLine<Command> commands_;
     DelayLine<SensorSample> samples_;
     Command active_{};

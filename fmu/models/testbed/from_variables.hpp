@@ -15,8 +15,8 @@ namespace giveway::testbed {
 inline plant::Parameters<double> plant_parameters(const Variables &v) {
     plant::Parameters<double> p{};
     read_plant_parameters(v, p);
-    p.wheel_load = {1.0, 1.0, 1.0};
-    p.wheel_traction = {1.0, 1.0, 1.0};
+    p.wheel_load.fill(1.0);
+    p.wheel_traction.fill(1.0);
     // What a cut at the contact's height goes through; without wheels the body reaches to the floor.
     p.outline_body = !v.outline_wheels || v.contact_height >= v.outline_clearance ? 1 : 0;
     p.outline_wheels = v.outline_wheels && v.contact_height < 2.0 * v.wheel_radius ? 1 : 0;
@@ -30,7 +30,7 @@ inline DriveOptions drive_options(const Variables &v) {
     o.sensors.torque_noise_nm = v.electronics_torque_noise;
     o.sensors.torque_resolution_nm = v.electronics_torque_resolution;
     o.sensors.torque_range_nm = v.electronics_torque_range;
-    std::copy_n(v.electronics_torque_offset, 3, o.sensors.torque_offset_nm.begin());
+    o.sensors.torque_offset_nm = std::to_array(v.electronics_torque_offset);
     o.kp_nm_per_rad = v.servo_kp;
     o.kd_nms_per_rad = v.servo_kd;
     o.torque_limit_nm = v.drivetrain_torque_limit;
@@ -61,10 +61,11 @@ inline bool check_relations(const Variables &v, Message &message) {
     if (v.base_tipping && v.bumper_kind != 0 && v.bumper_mount != 0) {
         return refuse("bumper.mount", v.bumper_mount, "0, on the slider, where the base can tip: base.tipping =", 1.0);
     }
-    const double wheels_tilt_inertia = 1.5 * v.wheel_inertia;
+    const double wheels_tilt_inertia = 0.5 * wheel_count * v.wheel_inertia;
     if (v.base_tilt_inertia <= wheels_tilt_inertia) {
-        return refuse("base.tilt_inertia", v.base_tilt_inertia,
-                      "greater than that of the wheels about their axles, 1.5 wheel.inertia =", wheels_tilt_inertia);
+        return refuse(
+            "base.tilt_inertia", v.base_tilt_inertia,
+            "greater than that of the wheels about their axles, half of wheel.inertia for each =", wheels_tilt_inertia);
     }
     if (v.outline_wheels && v.outline_clearance > 2.0 * v.wheel_radius) {
         return refuse("outline.clearance", v.outline_clearance,

@@ -10,11 +10,13 @@
 
 namespace giveway::testbed {
 
-class PlantSystem final : public ExchangeableSystem {
+template <int Wheels> class PlantSystemOf final : public ExchangeableSystem {
+    using At = plant::Layout<Wheels>;
+
 public:
     // `state` has room for the states of a base that tips; without tipping the rest of it is zero.
-    void start(const plant::Parameters<double> &parameters, const plant::InitialMotion<double> &motion,
-               const plant::Inputs<double> &inputs, plant::TippingVector<double> &state) {
+    void start(const plant::Parameters<double, Wheels> &parameters, const plant::InitialMotion<double, Wheels> &motion,
+               const plant::Inputs<double, Wheels> &inputs, plant::TippingVector<double, Wheels> &state) {
         parameters_ = parameters;
         derive();
         inputs_ = inputs;
@@ -22,7 +24,7 @@ public:
         if (tips()) {
             plant::initial_state(motion, inputs_, parameters_, derived_, state, modes_);
         } else {
-            plant::StateVector<double> planar{};
+            plant::StateVector<double, Wheels> planar{};
             plant::initial_state(motion, inputs_, parameters_, derived_, planar, modes_);
             std::copy(planar.begin(), planar.end(), state.begin());
         }
@@ -41,29 +43,29 @@ public:
         jacobian_.set_parameters(parameters_, derived_);
     }
 
-    void set_inputs(const plant::Inputs<double> &inputs, const double *state) {
+    void set_inputs(const plant::Inputs<double, Wheels> &inputs, const double *state) {
         inputs_ = inputs;
         with_state(state, [&](const auto &x) { plant::accept_inputs(x, inputs_, modes_, parameters_, derived_); });
     }
 
     // In continuous time: a gear that breaks away is left to the event that follows.
-    void follow_inputs(const plant::Inputs<double> &inputs) { inputs_ = inputs; }
+    void follow_inputs(const plant::Inputs<double, Wheels> &inputs) { inputs_ = inputs; }
 
     [[nodiscard]] bool tips() const { return parameters_.base_tipping != 0; }
     // The model does not go further: the base is about to lie down.
     [[nodiscard]] bool overturned() const { return modes_.overturned > 0.5; }
-    [[nodiscard]] const plant::Modes<double> &modes() const { return modes_; }
-    [[nodiscard]] const plant::Parameters<double> &parameters() const { return parameters_; }
-    [[nodiscard]] const plant::Inputs<double> &inputs() const { return inputs_; }
+    [[nodiscard]] const plant::Modes<double, Wheels> &modes() const { return modes_; }
+    [[nodiscard]] const plant::Parameters<double, Wheels> &parameters() const { return parameters_; }
+    [[nodiscard]] const plant::Inputs<double, Wheels> &inputs() const { return inputs_; }
     [[nodiscard]] double first_contact_time() const { return first_contact_time_s_; }
-    [[nodiscard]] plant::Outputs<double> outputs(const double *state) const {
-        plant::Outputs<double> result{};
+    [[nodiscard]] plant::Outputs<double, Wheels> outputs(const double *state) const {
+        plant::Outputs<double, Wheels> result{};
         with_state(state, [&](const auto &x) { result = plant::outputs(x, inputs_, modes_, parameters_, derived_); });
         return result;
     }
 
-    [[nodiscard]] int state_count() const override { return tips() ? plant::tipping_state_count : plant::state_count; }
-    [[nodiscard]] int event_count() const override { return tips() ? plant::tipping_event_count : plant::event_count; }
+    [[nodiscard]] int state_count() const override { return tips() ? At::tipping_state_count : At::state_count; }
+    [[nodiscard]] int event_count() const override { return tips() ? At::tipping_event_count : At::event_count; }
 
     void rhs(double, const double *state, double *rate) override {
         with_state(state, [&](const auto &x) {
@@ -98,24 +100,23 @@ public:
     }
 
     [[nodiscard]] int side(int event) const override {
+        if (of_wheels(At::event_floor, event)) {
+            return above(modes_.on_floor[static_cast<std::size_t>(event - At::event_floor)]);
+        }
         switch (event) {
-        case plant::event_contact:
+        case At::event_contact:
             return above(modes_.contact);
-        case plant::event_rope:
+        case At::event_rope:
             return above(modes_.rope_taut);
-        case plant::event_end_stop:
+        case At::event_end_stop:
             return plant::bumper_holds(parameters_) ? 1 : -above(modes_.end_stop);
-        case plant::event_bottom_stop:
+        case At::event_bottom_stop:
             return above(modes_.bottom_stop);
-        case plant::event_landing:
+        case At::event_landing:
             return above(modes_.landed);
-        case plant::event_wall:
+        case At::event_wall:
             return above(modes_.walled);
-        case plant::event_floor:
-        case plant::event_floor + 1:
-        case plant::event_floor + 2:
-            return above(modes_.on_floor[static_cast<std::size_t>(event - plant::event_floor)]);
-        case plant::event_tilt:
+        case At::event_tilt:
             return -above(modes_.overturned);
         default:
             return 1;
@@ -123,40 +124,38 @@ public:
     }
 
     [[nodiscard]] double hysteresis(int event) const override {
-        if (event < plant::event_gear + plant::wheel_count) {
+        if (of_wheels(At::event_gear, event)) {
             const bool stuck = math::abs(modes_.gear_direction[static_cast<std::size_t>(event)]) < 0.5;
             return stuck ? 1e-8  // N m
                          : 1e-7; // rad/s
         }
-        if (event == plant::event_tilt) {
+        if (event == At::event_tilt) {
             return 1e-9; // of the cosine of the tilt
         }
-        return event == plant::event_end_stop && modes_.latched > 0.5 ? 1e-6  // N
-                                                                      : 1e-9; // m
+        return event == At::event_end_stop && modes_.latched > 0.5 ? 1e-6  // N
+                                                                   : 1e-9; // m
     }
 
     [[nodiscard]] double absolute_tolerance(int state) const override {
+        constexpr double speed = 1e-8; // m/s, rad/s
+        if (of_wheels(At::motor_speed, state) || of_wheels(At::wheel_spin, state)) {
+            return speed;
+        }
         switch (state) {
-        case plant::base_vx:
-        case plant::base_vy:
-        case plant::base_omega:
-        case plant::motor_speed:
-        case plant::motor_speed + 1:
-        case plant::motor_speed + 2:
-        case plant::slider_speed:
-        case plant::weight_speed:
-        case plant::compression_rate:
-        case plant::heave_rate:
-        case plant::body_roll_rate:
-        case plant::body_pitch_rate:
-        case plant::wheel_spin:
-        case plant::wheel_spin + 1:
-        case plant::wheel_spin + 2:
-            return 1e-8; // m/s, rad/s
-        case plant::work_in:
-        case plant::dissipated:
-        case plant::impulse_x:
-        case plant::impulse_y:
+        case At::base_vx:
+        case At::base_vy:
+        case At::base_omega:
+        case At::slider_speed:
+        case At::weight_speed:
+        case At::compression_rate:
+        case At::heave_rate:
+        case At::body_roll_rate:
+        case At::body_pitch_rate:
+            return speed;
+        case At::work_in:
+        case At::dissipated:
+        case At::impulse_x:
+        case At::impulse_y:
             return 1e-7; // J, N s: accounts, which nothing else depends on
         default:
             return 1e-9; // m, rad
@@ -164,23 +163,27 @@ public:
     }
 
 private:
+    // Whether it is one of those that each wheel has from `first` on.
+    static bool of_wheels(int first, int index) { return index >= first && index < first + Wheels; }
     static int above(double mode) { return mode > 0.5 ? 1 : -1; }
 
     // `state`: state_count() doubles. Calls use(x) with the plant's own type of them.
     template <class Use> void with_state(const double *state, Use use) const {
         if (tips()) {
-            use(*reinterpret_cast<const plant::TippingVector<double> *>(state));
+            use(*reinterpret_cast<const plant::TippingVector<double, Wheels> *>(state));
         } else {
-            use(*reinterpret_cast<const plant::StateVector<double> *>(state));
+            use(*reinterpret_cast<const plant::StateVector<double, Wheels> *>(state));
         }
     }
 
-    plant::Parameters<double> parameters_{};
+    plant::Parameters<double, Wheels> parameters_{};
     plant::Derived<double> derived_{};
-    plant::Jacobian jacobian_;
-    plant::Inputs<double> inputs_{};
-    plant::Modes<double> modes_{};
+    plant::Jacobian<Wheels> jacobian_;
+    plant::Inputs<double, Wheels> inputs_{};
+    plant::Modes<double, Wheels> modes_{};
     double first_contact_time_s_ = -1.0;
 };
+
+using PlantSystem = PlantSystemOf<plant::table_wheels>;
 
 } // namespace giveway::testbed

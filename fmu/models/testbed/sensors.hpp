@@ -5,19 +5,23 @@
 #include <cstdint>
 
 #include "noise.hpp"
+#include "plant_parameters.hpp"
 
 namespace giveway::testbed {
+
+inline constexpr int wheel_count = plant::table_wheels;
+template <class Value> using PerWheel = std::array<Value, wheel_count>;
 
 struct SensorOptions {
     std::int32_t encoder_counts; // per turn of the wheel axle
     std::uint32_t seed;
     double torque_noise_nm, torque_resolution_nm, torque_range_nm;
-    std::array<double, 3> torque_offset_nm;
+    PerWheel<double> torque_offset_nm;
 };
 
 struct SensorSample {
-    std::array<double, 3> torque_nm;
-    std::array<std::int32_t, 3> encoder_counts;
+    PerWheel<double> torque_nm;
+    PerWheel<std::int32_t> encoder_counts;
     std::int32_t counter;
 };
 
@@ -31,10 +35,10 @@ inline std::int32_t encoder_count(const SensorOptions &options, double angle_rad
 }
 
 // What the noise of a sample is made of, one standard normal deviate per torque sensor.
-using Deviates = std::array<double, 3>;
+using Deviates = PerWheel<double>;
 inline Deviates deviates(const SensorOptions &options, std::int64_t cycle) {
     Deviates found{};
-    for (std::uint32_t wheel = 0; options.torque_noise_nm > 0.0 && wheel < 3U; ++wheel) {
+    for (std::uint32_t wheel = 0; options.torque_noise_nm > 0.0 && wheel < found.size(); ++wheel) {
         found[wheel] = math::normal(options.seed, wheel, static_cast<std::uint64_t>(cycle));
     }
     return found;

@@ -8,25 +8,23 @@
 
 namespace giveway::testbed {
 
-inline std::array<double, 3> motor_angles(const double *state) {
-    return {state[plant::motor_angle], state[plant::motor_angle + 1], state[plant::motor_angle + 2]};
+inline PerWheel<double> motor_angles(const double *state) {
+    PerWheel<double> angles;
+    std::copy_n(state + plant::Layout<>::motor_angle, angles.size(), angles.begin());
+    return angles;
 }
 
-inline plant::Inputs<double> plant_inputs(const Variables &v, const std::array<double, 3> &motor_torque_nm) {
+inline plant::Inputs<double> plant_inputs(const Variables &v, const PerWheel<double> &motor_torque_nm) {
     return {motor_torque_nm, v.push_force_x, v.push_force_y, v.push_point_x, v.push_point_y};
 }
 
 inline Command bus_command(const Variables &v) {
-    Command command{};
-    std::copy_n(v.command_wheel_angle, 3, command.wheel_angle_rad.begin());
-    std::copy_n(v.command_wheel_speed, 3, command.wheel_speed_radps.begin());
-    command.enable = v.command_enable;
-    return command;
+    return {std::to_array(v.command_wheel_angle), std::to_array(v.command_wheel_speed), v.command_enable};
 }
 
 inline void write_sensors(Variables &v, const SensorSample &sample) {
-    std::copy_n(sample.torque_nm.begin(), 3, v.sensor_torque);
-    std::copy_n(sample.encoder_counts.begin(), 3, v.sensor_encoder);
+    std::copy_n(sample.torque_nm.begin(), wheel_count, v.sensor_torque);
+    std::copy_n(sample.encoder_counts.begin(), wheel_count, v.sensor_encoder);
     v.sensor_counter = sample.counter;
     v.sensor_present = true;
 }
@@ -39,7 +37,7 @@ inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVec
     }
     const plant::InitialMotion<double> motion{
         v.start_x,  v.start_y,     v.start_theta,  v.start_vx,
-        v.start_vy, v.start_omega, v.slider_speed, {v.start_bristle[0], v.start_bristle[1], v.start_bristle[2]}};
+        v.start_vy, v.start_omega, v.slider_speed, std::to_array(v.start_bristle)};
     state = {};
     system.start(plant_parameters(v), motion, plant_inputs(v, {}), state);
     const auto truth = system.outputs(state.data());

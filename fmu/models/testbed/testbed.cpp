@@ -139,13 +139,13 @@ public:
 
     void derivatives(double *values) override {
         follow_push();
-        std::fill_n(values, plant::tipping_state_count, 0.0);
+        std::fill_n(values, plant::Layout<>::tipping_state_count, 0.0);
         system_.rhs(now_s_, state(), values);
     }
 
     void indicators(double *values) override {
         follow_push();
-        std::fill_n(values, plant::tipping_event_count, 1.0);
+        std::fill_n(values, plant::Layout<>::tipping_event_count, 1.0);
         margins(system_, now_s_, state(), values);
     }
 

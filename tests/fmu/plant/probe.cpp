@@ -21,6 +21,7 @@
 namespace {
 
 namespace plant = giveway::plant;
+using At = plant::Layout<>;
 
 using Parameters = plant::Parameters<double>;
 using Modes = plant::Modes<double>;
@@ -83,8 +84,8 @@ public:
     explicit RecordedPlant(const Probe &probe, const Modes &modes, double absolute_tolerance)
         : modes(modes), probe_(probe), absolute_tolerance_(absolute_tolerance) {}
 
-    [[nodiscard]] int state_count() const override { return plant::state_count; }
-    [[nodiscard]] int event_count() const override { return plant::event_count; }
+    [[nodiscard]] int state_count() const override { return At::state_count; }
+    [[nodiscard]] int event_count() const override { return At::event_count; }
     [[nodiscard]] double absolute_tolerance(int) const override { return absolute_tolerance_; }
 
     void rhs(double, const double *state, double *rate) override {
@@ -97,7 +98,7 @@ public:
     }
     void transition(double time_s, double *state, const int *fired) override {
         plant::EventVector<double> direction = {};
-        for (int i = 0; i < plant::event_count; ++i) {
+        for (int i = 0; i < At::event_count; ++i) {
             direction[i] = fired[i];
             if (fired[i] != 0) {
                 events.push_back({time_s, i});
@@ -211,7 +212,7 @@ EXPORT void probe_accept_inputs(void *handle, const double *x, const double *u, 
 EXPORT void probe_outputs(void *handle, const double *x, const double *u, const double *m, double *out) {
     const auto *probe = static_cast<const Probe *>(handle);
     const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
-    for (int i = 0; i < plant::wheel_count; ++i) {
+    for (int i = 0; i < plant::table_wheels; ++i) {
         out[i] = o.wheel_speed[i];
         out[3 + i] = o.wheel_torque[i];
         out[6 + i] = o.roller_force[i];
@@ -247,7 +248,7 @@ EXPORT int probe_simulate(void *handle, const double *x0, const double *m0, int 
             ++next_input;
         }
         good = good && integrator.advance(times[k]);
-        std::copy_n(integrator.state(), plant::state_count, states + k * plant::state_count);
+        std::copy_n(integrator.state(), At::state_count, states + k * At::state_count);
         modes_to(system.modes, modes + k * mode_count);
     }
     if (!good) {

@@ -12,6 +12,7 @@
 namespace {
 
 namespace plant = giveway::plant;
+using At = plant::Layout<>;
 using Modes = plant::Modes<double>;
 
 plant::TippingVector<double> state_from(const double *x) {
@@ -41,8 +42,8 @@ void modes_to(const Modes &m, double *out) {
 class Tipping final : public giveway::solver::HybridSystem {
 public:
     Tipping(const Probe &probe, const Modes &start) : modes(start), probe_(probe) {}
-    [[nodiscard]] int state_count() const override { return plant::tipping_state_count; }
-    [[nodiscard]] int event_count() const override { return plant::tipping_event_count; }
+    [[nodiscard]] int state_count() const override { return At::tipping_state_count; }
+    [[nodiscard]] int event_count() const override { return At::tipping_event_count; }
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-12; }
     void rhs(double, const double *state, double *rate) override {
         const auto result = plant::rhs(state_from(state), inputs, modes, probe_.p, probe_.d);
@@ -55,7 +56,7 @@ public:
     void transition(double time_s, double *state, const int *fired) override {
         plant::TippingEvents<double> direction = {};
         std::copy_n(fired, direction.size(), direction.begin());
-        for (int i = 0; i < plant::tipping_event_count; ++i) {
+        for (int i = 0; i < At::tipping_event_count; ++i) {
             if (fired[i] != 0) {
                 events.push_back({time_s, i});
             }
@@ -145,7 +146,7 @@ EXPORT int tipping_simulate(void *handle, const double *x0, const double *m0, in
             ++next;
         }
         good = good && integrator.advance(times[k]);
-        std::copy_n(integrator.state(), plant::tipping_state_count, states + k * plant::tipping_state_count);
+        std::copy_n(integrator.state(), At::tipping_state_count, states + k * At::tipping_state_count);
         modes_to(system.modes, modes + k * 8);
     }
     if (!good) {

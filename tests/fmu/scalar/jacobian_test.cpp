@@ -11,6 +11,7 @@
 namespace {
 
 using namespace giveway::plant;
+using At = Layout<>;
 using giveway::plant::random_cases::Case;
 using giveway::plant::random_cases::random_case;
 using giveway::plant::random_cases::random_tipping_case;
@@ -20,15 +21,15 @@ using giveway::plant::random_cases::random_tipping_case;
 Case<double> working_case(unsigned seed) {
     auto c = random_case<double>(seed);
     if (seed % 4U != 0U) {
-        for (int i = 0; i < wheel_count; ++i) {
-            c.x[bristle + i] *= 0.01;
+        for (int i = 0; i < table_wheels; ++i) {
+            c.x[At::bristle + i] *= 0.01;
         }
     }
     if (seed % 3U == 0U) {
-        for (const int speed : {base_vx, base_vy, base_omega, slider_speed, compression_rate}) {
+        for (const int speed : {At::base_vx, At::base_vy, At::base_omega, At::slider_speed, At::compression_rate}) {
             c.x[speed] *= 0.02;
         }
-        c.x[compression] *= 0.01;
+        c.x[At::compression] *= 0.01;
     }
     c.p.roller_model = seed % 5U == 0U ? RollerModel::tanh : RollerModel::bristle;
     c.p.slider_present = seed % 17U == 0U ? 0 : 1;
@@ -51,11 +52,11 @@ struct Differences {
 } // namespace
 
 TEST(PlantInDuals, HasTheBitsOfDouble) {
-    using Scalar = Jacobian::Scalar;
+    using Scalar = Jacobian<>::Scalar;
     for (unsigned seed = 0; seed < 2000U; ++seed) {
         const auto c = working_case(seed);
         StateVector<Scalar> x;
-        for (int i = 0; i < state_count; ++i) {
+        for (int i = 0; i < At::state_count; ++i) {
             x[i] = Scalar::variable(c.x[i], i % jacobian_chunk);
         }
         // Through convert(): a parameter that got lost there would show.
@@ -65,13 +66,13 @@ TEST(PlantInDuals, HasTheBitsOfDouble) {
         const auto m = convert<Scalar>(c.m);
         const auto rate_of_double = rate(c, c.x);
         const auto rate_of_dual = rhs(x, u, m, p, d);
-        for (int i = 0; i < state_count; ++i) {
+        for (int i = 0; i < At::state_count; ++i) {
             EXPECT_EQ(std::memcmp(&rate_of_double[i], &rate_of_dual[i].value, sizeof(double)), 0)
                 << "case " << seed << ", rate " << i;
         }
         const auto indicators_of_double = event_indicators(c.x, c.u, c.m, c.p, c.d);
         const auto indicators_of_dual = event_indicators(x, u, m, p, d);
-        for (int i = 0; i < event_count; ++i) {
+        for (int i = 0; i < At::event_count; ++i) {
             EXPECT_EQ(std::memcmp(&indicators_of_double[i], &indicators_of_dual[i].value, sizeof(double)), 0)
                 << "case " << seed << ", indicator " << i;
         }
@@ -86,23 +87,23 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
     long sharp = 0;
     for (unsigned seed = 0; seed < cases; ++seed) {
         const auto c = working_case(seed);
-        Jacobian jacobian;
+        Jacobian<> jacobian;
         jacobian.set_parameters(c.p, c.d);
-        std::array<double, state_count * state_count> matrix{};
+        std::array<double, At::state_count * At::state_count> matrix{};
         jacobian.evaluate(c.x, c.u, c.m, matrix.data());
         // Rounding of a rate: of the terms that it is the sum of, which may cancel. The largest, a stop that presses,
         // is of this size.
-        std::array<double, state_count> magnitude{};
+        std::array<double, At::state_count> magnitude{};
         const auto centre = rate(c, c.x);
-        for (int row = 0; row < state_count; ++row) {
+        for (int row = 0; row < At::state_count; ++row) {
             magnitude[row] = std::fabs(centre[row]);
-            for (int column = 0; column < state_count; ++column) {
-                magnitude[row] += std::fabs(matrix[column * state_count + row] * c.x[column]);
+            for (int column = 0; column < At::state_count; ++column) {
+                magnitude[row] += std::fabs(matrix[column * At::state_count + row] * c.x[column]);
             }
         }
         // A force that is turned into base axes and back brings the rounding of its whole to both components.
-        magnitude[impulse_x] = magnitude[impulse_y] = magnitude[impulse_x] + magnitude[impulse_y];
-        for (int column = 0; column < state_count; ++column) {
+        magnitude[At::impulse_x] = magnitude[At::impulse_y] = magnitude[At::impulse_x] + magnitude[At::impulse_y];
+        for (int column = 0; column < At::state_count; ++column) {
             const auto differences = [&](double h) {
                 auto above = c.x;
                 auto below = c.x;
@@ -112,8 +113,8 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
             };
             const auto coarse = differences(step);
             const auto fine = differences(0.5 * step);
-            for (int row = 0; row < state_count; ++row) {
-                const double exact = matrix[column * state_count + row];
+            for (int row = 0; row < At::state_count; ++row) {
+                const double exact = matrix[column * At::state_count + row];
                 const double extrapolated = (4.0 * fine.slope(row) - coarse.slope(row)) / 3.0;
                 // What the differences know of their own error. Curvature and a kink between the points show in the
                 // disagreement of the two steps; a kink right at the centre shows in the second differences, which are
@@ -142,9 +143,9 @@ TEST(PlantJacobian, IsFiniteOnKinks) {
         auto c = random_case<double>(seed);
         c.x = {};
         c.m = {{0.0, 1.0, -1.0}, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0};
-        Jacobian jacobian;
+        Jacobian<> jacobian;
         jacobian.set_parameters(c.p, c.d);
-        std::array<double, state_count * state_count> matrix{};
+        std::array<double, At::state_count * At::state_count> matrix{};
         jacobian.evaluate(c.x, c.u, c.m, matrix.data());
         for (const double entry : matrix) {
             EXPECT_TRUE(std::isfinite(entry)) << "case " << seed;
@@ -157,20 +158,20 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFindWhereTheBaseTips) {
     long compared = 0;
     for (unsigned seed = 0; seed < 500U; ++seed) {
         const auto [c, x, fired] = random_tipping_case<double>(seed);
-        Jacobian jacobian;
+        Jacobian<> jacobian;
         jacobian.set_parameters(c.p, c.d);
-        std::array<double, tipping_state_count * tipping_state_count> matrix{};
+        std::array<double, At::tipping_state_count * At::tipping_state_count> matrix{};
         jacobian.evaluate(x, c.u, c.m, matrix.data());
         const auto centre = rhs(x, c.u, c.m, c.p, c.d);
-        for (int column = 0; column < tipping_state_count; ++column) {
+        for (int column = 0; column < At::tipping_state_count; ++column) {
             auto above = x;
             auto below = x;
             above[column] += step;
             below[column] -= step;
             const auto high = rhs(above, c.u, c.m, c.p, c.d);
             const auto low = rhs(below, c.u, c.m, c.p, c.d);
-            for (int row = 0; row < tipping_state_count; ++row) {
-                const double exact = matrix[column * tipping_state_count + row];
+            for (int row = 0; row < At::tipping_state_count; ++row) {
+                const double exact = matrix[column * At::tipping_state_count + row];
                 const double slope = (high[row] - low[row]) / (above[column] - below[column]);
                 // Curvature and kinks show in the second difference; rounding is that of forces up to 1e5 N on a
                 // wheel's inertia, 1e-3 kg m2.

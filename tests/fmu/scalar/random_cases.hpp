@@ -9,12 +9,12 @@
 
 namespace giveway::plant::random_cases {
 
-template <class T> Parameters<T> random_parameters(unsigned seed) {
+template <class T, int Wheels = table_wheels> Parameters<T, Wheels> random_parameters(unsigned seed) {
     std::mt19937 generator(seed);
     const auto draw = [&](double low, double high) {
         return T(std::uniform_real_distribution<double>(low, high)(generator));
     };
-    Parameters<T> p{};
+    Parameters<T, Wheels> p{};
     p.base_mass = draw(10.0, 60.0);
     p.base_yaw_inertia = draw(0.5, 3.0);
     p.wheel_radius = draw(0.05, 0.15);
@@ -22,7 +22,7 @@ template <class T> Parameters<T> random_parameters(unsigned seed) {
     p.wheel_inertia = draw(0.001, 0.01);
     p.roller_radius = draw(0.005, 0.02);
     p.roller_inertia = draw(1e-7, 1e-5);
-    for (int i = 0; i < wheel_count; ++i) {
+    for (int i = 0; i < Wheels; ++i) {
         p.wheel_load[i] = draw(0.5, 1.5);
         p.wheel_traction[i] = T(1.0);
         p.roller_presliding_stiffness[i] = draw(1e4, 5e4);
@@ -102,18 +102,18 @@ template <class T> Parameters<T> random_parameters(unsigned seed) {
     return p;
 }
 
-template <class T> struct Case {
-    Parameters<T> p;
+template <class T, int Wheels = table_wheels> struct Case {
+    Parameters<T, Wheels> p;
     Derived<T> d;
-    StateVector<T> x;
-    Inputs<T> u;
-    Modes<T> m;
-    EventVector<T> fired;
+    StateVector<T, Wheels> x;
+    Inputs<T, Wheels> u;
+    Modes<T, Wheels> m;
+    EventVector<T, Wheels> fired;
 };
 
-template <class T> Case<T> random_case(unsigned seed) {
-    Case<T> c{};
-    c.p = random_parameters<T>(seed);
+template <class T, int Wheels = table_wheels> Case<T, Wheels> random_case(unsigned seed) {
+    Case<T, Wheels> c{};
+    c.p = random_parameters<T, Wheels>(seed);
     c.d = derive(c.p);
     std::mt19937 generator(seed + 1'000'000U);
     const auto draw = [&](double low, double high) {
@@ -124,11 +124,13 @@ template <class T> Case<T> random_case(unsigned seed) {
     for (auto &value : c.x) {
         value = draw(-0.2, 0.2);
     }
-    c.u = {{draw(-9.0, 9.0), draw(-9.0, 9.0), draw(-9.0, 9.0)},
-           draw(-50.0, 50.0),
-           draw(-50.0, 50.0),
-           draw(-0.3, 0.3),
-           draw(-0.3, 0.3)};
+    for (auto &torque : c.u.motor_torque) {
+        torque = draw(-9.0, 9.0);
+    }
+    c.u.push_force_x = draw(-50.0, 50.0);
+    c.u.push_force_y = draw(-50.0, 50.0);
+    c.u.push_point_x = draw(-0.3, 0.3);
+    c.u.push_point_y = draw(-0.3, 0.3);
     for (auto &direction : c.m.gear_direction) {
         direction = three_way();
     }
@@ -147,14 +149,15 @@ template <class T> Case<T> random_case(unsigned seed) {
 
 // The same robot on wheels that it can lift: near the floor, leaning by up to 11 deg, bristles of a tenth of a
 // millimetre.
-template <class T> struct TippingCase {
-    Case<T> planar;
-    TippingVector<T> x;
-    TippingEvents<T> fired;
+template <class T, int Wheels = table_wheels> struct TippingCase {
+    Case<T, Wheels> planar;
+    TippingVector<T, Wheels> x;
+    TippingEvents<T, Wheels> fired;
 };
 
-template <class T> TippingCase<T> random_tipping_case(unsigned seed) {
-    TippingCase<T> c{random_case<T>(seed), {}, {}};
+template <class T, int Wheels = table_wheels> TippingCase<T, Wheels> random_tipping_case(unsigned seed) {
+    using At = Layout<Wheels>;
+    TippingCase<T, Wheels> c{random_case<T, Wheels>(seed), {}, {}};
     c.planar.p.base_tipping = 1;
     c.planar.p.bumper_mount = BumperMount::slider;
     c.planar.d = derive(c.planar.p);
@@ -162,17 +165,17 @@ template <class T> TippingCase<T> random_tipping_case(unsigned seed) {
     const auto draw = [&](double low, double high) {
         return T(std::uniform_real_distribution<double>(low, high)(generator));
     };
-    for (int i = 0; i < state_count; ++i) {
+    for (int i = 0; i < At::state_count; ++i) {
         c.x[i] = c.planar.x[i];
     }
-    c.x[base_heave] = draw(-0.002, 0.005);
-    for (const int i : {base_roll, base_pitch, heave_rate, body_roll_rate, body_pitch_rate}) {
+    c.x[At::base_heave] = draw(-0.002, 0.005);
+    for (const int i : {At::base_roll, At::base_pitch, At::heave_rate, At::body_roll_rate, At::body_pitch_rate}) {
         c.x[i] = draw(-0.2, 0.2);
     }
-    for (int i = 0; i < wheel_count; ++i) {
-        c.x[wheel_spin + i] = draw(-2.0, 2.0);
-        c.x[bristle + i] = draw(-1e-3, 1e-3);
-        c.x[grip + i] = draw(-5e-5, 5e-5);
+    for (int i = 0; i < Wheels; ++i) {
+        c.x[At::wheel_spin + i] = draw(-2.0, 2.0);
+        c.x[At::bristle + i] = draw(-1e-3, 1e-3);
+        c.x[At::grip + i] = draw(-5e-5, 5e-5);
         c.planar.m.on_floor[i] = T(std::uniform_int_distribution<int>(0, 1)(generator));
     }
     for (auto &f : c.fired) {

@@ -187,14 +187,15 @@ def plant_header(folder: Path) -> str:
 
 def test_a_plant_parameter_has_its_variables_name_and_the_type_that_the_table_states(tmp_path: Path) -> None:
     text = table(variable(plant='"divisor"', description='"Speed"')) + "[[variable]]\n"
-    text += variable(name='"group.sides"', reference="20", count="3", plant='"number"') + "\n[[variable]]\n"
+    text += variable(name='"group.sides"', reference="20", count="3", plant='"wheels"') + "\n[[variable]]\n"
     choice = {"type": '"integer"', "unit": None, "start": "1", "minimum": "0", "maximum": "2"}
     choice["choices"] = '["none", "spring", "foam"]'
     text += variable(name='"group.kind"', reference="30", plant='"BumperKind"', **choice)
     assert generate(tmp_path, text).returncode == 0
     header = plant_header(tmp_path)
     assert "math::Divisor<T> group_second; // Speed [m/s]" in header
-    assert "std::array<T, 3> group_sides;" in header
+    assert "std::array<T, Wheels> group_sides;" in header
+    assert "inline constexpr int table_wheels = 3;" in header
     assert "BumperKind group_kind;" in header
     assert "enum class BumperKind : std::uint8_t { none = 0, spring = 1, foam = 2 };" in header
     assert header.count("    visit(") == 3
@@ -208,7 +209,7 @@ def test_a_plant_parameter_has_its_variables_name_and_the_type_that_the_table_st
 def test_a_plant_parameters_type_has_to_fit_the_variables(tmp_path: Path, plant: str) -> None:
     result = generate(tmp_path, table(variable(plant=plant)))
     assert "variable group.second: plant: " in result.stderr
-    assert "must be number or divisor, and of a parameter" in result.stderr
+    assert "must be number or divisor or wheels, and of a parameter" in result.stderr
 
 
 def test_choices_are_a_word_for_each_value(tmp_path: Path) -> None:

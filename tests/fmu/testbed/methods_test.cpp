@@ -17,6 +17,7 @@ using giveway::solver::Method;
 using giveway::testbed::PlantSystem;
 using giveway::testbed::Variables;
 namespace plant = giveway::plant;
+using At = plant::Layout<>;
 
 struct Event {
     int index, direction;
@@ -34,7 +35,7 @@ public:
     bool jacobian(double t, const double *x, double *matrix) override { return system.jacobian(t, x, matrix); }
     void indicators(double t, const double *x, double *value) override { system.indicators(t, x, value); }
     void transition(double t, double *x, const int *fired) override {
-        for (int i = 0; i < plant::event_count; ++i) {
+        for (int i = 0; i < At::event_count; ++i) {
             if (fired[i] != 0) {
                 events.push_back({i, fired[i], t});
             }
@@ -69,8 +70,8 @@ Collision collide(Method method, int bumper, int latch_model, double stiffness, 
         {.relative_tolerance = tolerance, .absolute_tolerance_scale = tolerance / 1e-6, .method = method}));
     EXPECT_TRUE(integrator.advance(0.5)) << integrator.error();
     Collision run{recorder.events, {}, 0.0};
-    std::copy_n(integrator.state(), plant::state_count, run.state.begin());
-    run.residual_j = run.state[plant::work_in] - run.state[plant::dissipated] -
+    std::copy_n(integrator.state(), At::state_count, run.state.begin());
+    run.residual_j = run.state[At::work_in] - run.state[At::dissipated] -
                      (recorder.system.outputs(integrator.state()).stored_energy - stored);
     return run;
 }
@@ -89,10 +90,10 @@ TEST(Methods, AgreeOnEveryEventAndTheEnd) {
     for (const double stiffness : {1.0, 30.0}) {
         for (const Bumper bumper : {Bumper{0, 0}, Bumper{1, 0}, Bumper{2, 0}, Bumper{2, 1}}) {
             const Collision erk = collide(Method::erk, bumper.kind, bumper.latch_model, stiffness, 1e-8);
-            EXPECT_TRUE(happened(erk, plant::event_contact, 1));
-            EXPECT_TRUE(happened(erk, plant::event_contact, -1));
-            EXPECT_TRUE(happened(erk, plant::event_gear, -1)); // it breaks away
-            EXPECT_EQ(happened(erk, plant::event_end_stop, 1) || happened(erk, plant::event_end_stop, -1),
+            EXPECT_TRUE(happened(erk, At::event_contact, 1));
+            EXPECT_TRUE(happened(erk, At::event_contact, -1));
+            EXPECT_TRUE(happened(erk, At::event_gear, -1)); // it breaks away
+            EXPECT_EQ(happened(erk, At::event_end_stop, 1) || happened(erk, At::event_end_stop, -1),
                       bumper.kind != 0); // the plate moves
             for (const Method method : {Method::erk, Method::adams, Method::bdf}) {
                 SCOPED_TRACE(testing::Message()
@@ -110,7 +111,7 @@ TEST(Methods, AgreeOnEveryEventAndTheEnd) {
                     // take 10 ms.
                     EXPECT_NEAR(run.events[i].time_s, erk.events[i].time_s, 2e-6) << "event " << i;
                 }
-                for (int i = 0; i < plant::state_count; ++i) {
+                for (int i = 0; i < At::state_count; ++i) {
                     EXPECT_NEAR(run.state[static_cast<std::size_t>(i)], erk.state[static_cast<std::size_t>(i)], 2e-5)
                         << "state " << i; // 1e-8 in 2000 steps at most
                 }
