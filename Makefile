@@ -10,15 +10,16 @@ BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms
+.PHONY: product compile-product compile-all
 .DEFAULT_GOAL := help
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
-demo: build ## the paper's collision experiment as a co-simulation; table, report and summary in out/demo
+demo: product ## the paper's collision experiment as a co-simulation; table, report and summary in out/demo
 	$(BIN)/giveway demo --out out/demo
 
-reproduce: build ## every experiment of the paper: table, table.json and report in out/reproduce
+reproduce: product ## every experiment of the paper: table, table.json and report in out/reproduce
 	$(BIN)/giveway reproduce --out out/reproduce --threads $(JOBS)
 
 test: build lint ## every test
@@ -35,7 +36,7 @@ mutate: build build/verify/tools-installed ## every mutant of c_core (`make veri
 	$(BIN)/python -m verify.mutation
 	$(BIN)/python -m verify.mutation.rooms
 
-importers: build build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
+importers: product build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	$(BIN)/python -m importers
 
@@ -44,72 +45,115 @@ bench: build build/bench/tools-installed build/importers/tools-installed ## how 
 	$(BIN)/python -m verify.step_cost
 	$(BIN)/python -m importers.bench
 
-bench-scale: build ## does the cost of a batch grow with its designs, up to a million? (minutes)
+bench-scale: product ## does the cost of a batch grow with its designs, up to a million? (minutes)
 	$(BIN)/giveway bench --scale
 
-fit: build ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
+fit: product ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json
 	$(BIN)/giveway fit --robot robots/trikey.toml --out robots/trikey.toml
 
 # One build tree for each platform, compiled by zig: cmake/FmuPlatforms.cmake.
-fmus: build ## the FMUs, with tables, robot file, batch library and the SSP, in out/fmus; ALL=1: for every platform
+fmus: product ## the FMUs, with tables, robot file, batch library and the SSP, in out/fmus; ALL=1: for every platform
 	@mkdir -p out/fmus && cp -p cosim/giveway/native/* out/fmus/
 ifdef ALL
-	@$(BIN)/cmake --build build --target fmus_all -- --quiet
+	@$(COMPILE) --target fmus_all
 	@cp -p build/fmus_all/* out/fmus/
 endif
 	@$(BIN)/giveway ssp --out out/fmus/giveway.ssp
 	@ls -l out/fmus/*.fmu
 
-platforms: build ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
+platforms: product ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	bash fmu/platforms/system_packages.sh
 	$(BIN)/python -m fmu.platforms
 
-# Ninja does nothing when nothing changed; the install step copies what the Python package needs beside it.
-build: build/CMakeCache.txt .venv/package-installed ## compile everything and prepare .venv/bin/giveway
-	@$(BIN)/cmake --build build -j $(JOBS) -- --quiet
-	@$(BIN)/cmake --install build --component native --prefix cosim > build/install.log
+# What users get: FMUs, tables, robot file, batch library, and .venv/bin/giveway. Python packages are installed while it
+# compiles; the install step copies what the Python package needs beside it. Ninja does nothing when nothing changed.
+product: build/CMakeCache.txt
+	@$(MAKE) --no-print-directory -j 2 compile-product .venv/package-installed
+	@$(INSTALL)
+
+build: build/CMakeCache.txt .venv/test-system-packages ## compile everything, tests too, and prepare .venv/bin/giveway
+	@$(MAKE) --no-print-directory -j 2 compile-all .venv/test-packages-installed
+	@$(INSTALL)
+
+COMPILE = MAKEFLAGS= $(BIN)/python cmake/progress.py compiling $(BIN)/cmake --build build -j $(JOBS)
+INSTALL = $(BIN)/cmake --install build --component native --prefix cosim > build/install.log
+CONFIGURE = log=build/configure.log; $(BIN)/cmake -B build > $$log 2>&1
+
+compile-product:
+	@$(COMPILE) --target fmus giveway_batch
+
+compile-all:
+	@grep -q '^GIVEWAY_BUILD_TESTS:BOOL=ON' build/CMakeCache.txt || { $(CONFIGURE) -DGIVEWAY_BUILD_TESTS=ON || { cat $$log; exit 1; } }
+	@$(COMPILE)
 
 C_SOURCES = $$(git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 
-lint: .venv/packages-installed ## ruff, mypy, clang-format
+lint: .venv/test-packages-installed ## ruff, mypy, clang-format
 	$(BIN)/ruff check --quiet .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/clang-format --dry-run -Werror $(C_SOURCES)
 
-format: .venv/packages-installed ## format C, C++ and Python in place
+format: .venv/test-packages-installed ## format C, C++ and Python in place
 	$(BIN)/ruff format --quiet .
 	$(BIN)/clang-format -i $(C_SOURCES)
 
-LOCKS := requirements verify/requirements verify/modelica/requirements bench/requirements importers/requirements
+# The first one is the others' yardstick: what stands in several has one version.
+LOCKS := requirements cmake/requirements tests/requirements
+OTHER_LOCKS := verify/requirements verify/modelica/requirements bench/requirements importers/requirements
 
-lock: $(LOCKS:=.in) ## new requirements.lock files (needs uv)
-	@for name in $(LOCKS); do \
-	    case $$name in verify/modelica/*) python=3.12;; *) python=3.11;; esac; \
+lock: $(LOCKS:=.in) $(OTHER_LOCKS:=.in) ## new requirements.lock files (needs uv)
+	@for name in $(LOCKS) $(OTHER_LOCKS); do \
+	    python=3.11; options=; \
+	    case $$name in \
+	        verify/modelica/*) python=3.12;; \
+	        cmake/*) options="--no-deps --constraint requirements.lock";; \
+	        tests/*) options="--constraint requirements.lock";; \
+	    esac; \
 	    uv pip compile --universal --python-version $$python --generate-hashes --no-annotate --no-header --upgrade \
-	        --no-emit-index-url --no-emit-find-links --quiet $$name.in --output-file $$name.lock && \
+	        --no-emit-index-url --no-emit-find-links --quiet $$options $$name.in --output-file $$name.lock && \
 	    sed -i "1i # Made by \`make lock\` from $$name.in; do not edit." $$name.lock || exit 1; \
 	done
 
 clean: ## remove everything that was built or installed here
 	rm -rf .venv build out cosim/giveway/native
 
-build/CMakeCache.txt: .venv/packages-installed
-	$(BIN)/cmake -G Ninja -S . -B build -DGIVEWAY_BUILD_TESTS=ON -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python3 \
-	    -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja
+build/CMakeCache.txt: .venv/build-packages-installed
+	@mkdir -p build
+	@$(CONFIGURE) -G Ninja -S . -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python3 -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja || \
+	    { cat $$log; exit 1; }
+	@touch $@
+
+# Python packages come in three parts: what compiles, what runs, what tests. Nothing is compiled to bytecode before it
+# is imported: that takes as long as the rest.
+PIP_INSTALL = $(BIN)/pip install --quiet --no-compile
+
+.venv/build-packages-installed: cmake/requirements.lock cmake/system_packages.sh cmake/packages.sh
+	@PYTHON="$(PYTHON)" bash cmake/system_packages.sh
+	@echo "installing Python packages: CMake, Ninja, zig"
+	@$(PYTHON) -m venv .venv
+	@$(PIP_INSTALL) --require-hashes --no-deps -r cmake/requirements.lock
+	@touch $@
+
+.venv/packages-installed: requirements.lock .venv/build-packages-installed
+	@echo "installing Python packages: $$(grep -c == requirements.lock) of requirements.lock"
+	@$(PIP_INSTALL) --require-hashes -r requirements.lock
 	@touch $@
 
 # In place: the sources under cosim/ are the package, so that edits need no new install.
 .venv/package-installed: .venv/packages-installed pyproject.toml
-	$(BIN)/pip install --quiet --no-build-isolation --no-deps --config-settings wheel.cmake=false \
+	@$(PIP_INSTALL) --no-build-isolation --no-deps --config-settings wheel.cmake=false \
 	    --config-settings editable.mode=inplace --editable .
 	@touch $@
 
-.venv/packages-installed: requirements.lock cmake/system_packages.sh cmake/packages.sh
-	PYTHON="$(PYTHON)" bash cmake/system_packages.sh
-	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --require-hashes -r requirements.lock
+.venv/test-system-packages: tests/system_packages.sh cmake/packages.sh .venv/build-packages-installed
+	@bash tests/system_packages.sh
+	@touch $@
+
+.venv/test-packages-installed: tests/requirements.lock .venv/package-installed
+	@echo "installing Python packages: $$(grep -c == tests/requirements.lock) of tests/requirements.lock"
+	@$(PIP_INSTALL) --require-hashes -r tests/requirements.lock
 	@touch $@
 
 build/bench/tools-installed: bench/requirements.lock bench/system_packages.sh cmake/packages.sh

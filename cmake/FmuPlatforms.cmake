@@ -14,7 +14,7 @@ if(NOT GIVEWAY_NATIVE_FMUS)
             "import importlib.util, pathlib; print(pathlib.Path(importlib.util.find_spec('ziglang').origin).parent / 'zig')"
     OUTPUT_VARIABLE GIVEWAY_ZIG OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   if(NOT EXISTS "${GIVEWAY_ZIG}")
-    message(FATAL_ERROR "zig was not found: ${Python3_EXECUTABLE} has no package ziglang (requirements.lock names the version). "
+    message(FATAL_ERROR "zig was not found: ${Python3_EXECUTABLE} has no package ziglang (cmake/requirements.lock names the version). "
                         "-DGIVEWAY_NATIVE_FMUS=ON does without it.")
   endif()
 endif()
@@ -27,10 +27,6 @@ endfunction()
 
 # The build trees, as targets platform_PLATFORM; one is built when a file from it is wanted. MODULE...: all FMUs.
 function(giveway_add_platforms)
-  set(_quiet "")
-  if(CMAKE_GENERATOR STREQUAL "Ninja")
-    set(_quiet -- --quiet)
-  endif()
   set(_folder "${CMAKE_BINARY_DIR}/platforms")
   foreach(_platform IN LISTS GIVEWAY_PLATFORMS)
     set(_libraries "")
@@ -49,7 +45,7 @@ function(giveway_add_platforms)
                  "-DGIVEWAY_ZIG=${GIVEWAY_ZIG}" "-DGIVEWAY_SUNDIALS_VENDOR=${GIVEWAY_SUNDIALS_VENDOR}"
                  "-DPython3_EXECUTABLE=${Python3_EXECUTABLE}" "-DCMAKE_MAKE_PROGRAM=${CMAKE_MAKE_PROGRAM}"
       BUILD_COMMAND "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_folder}/zig-cache" "ZIG_LOCAL_CACHE_DIR=${_folder}/zig-cache"
-                    "${CMAKE_COMMAND}" --build <BINARY_DIR> --target fmu_binaries ${_quiet}
+                    "NINJA_STATUS=[FMUs %f/%t] " "${CMAKE_COMMAND}" --build <BINARY_DIR> --target fmu_binaries
       BUILD_ALWAYS ON # that tree knows what has changed
       USES_TERMINAL_BUILD ON # one after the other: each takes all processors
       BUILD_BYPRODUCTS ${_libraries}

@@ -17,7 +17,7 @@ install_missing() {
         echo "On Debian 12: sudo apt-get install ${missing[*]}" >&2
         return 1
     fi
-    echo "Installing ${missing[*]}"
+    echo "installing Debian packages: ${missing[*]}"
     export DEBIAN_FRONTEND=noninteractive
     apt-get update -qq
     apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null
