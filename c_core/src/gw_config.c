@@ -3,8 +3,8 @@
 #include "giveway/gw_math.h"
 
 /* Two arrays from one table: a linker drops the names from programs that do not print them. */
-#define LIMIT_OF_ROW(field, name, minimum, maximum) {(gw_real_t)(minimum), (gw_real_t)(maximum)},
-#define NAME_OF_ROW(field, name, minimum, maximum) (name),
+#define LIMIT_OF_ROW(kind, field, name, member, minimum, maximum) {(gw_real_t)(minimum), (gw_real_t)(maximum)},
+#define NAME_OF_ROW(kind, field, name, member, minimum, maximum) (name),
 
 /* Anything that is no field stands for GW_FIELD_NONE. */
 static uint32_t row_of(gw_config_field_t field)

@@ -1,4 +1,7 @@
-"""One table of configuration fields: what headers, checks and the controller's FMU say of them is what it says."""
+"""One table of configuration fields: what headers, checks and the controller's FMU say of them is what it says.
+
+That each member is checked as the row's kind and field say, at both ends of the range, unit/config_test.c tests.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 CORE = ROOT / "c_core"
 HEADERS = CORE / "include" / "giveway"
-ROW = re.compile(r'ROW\((GW_FIELD_\w+), "([^"]+)", ([^,]+), (.+?)\)(?: \\)?$', re.MULTILINE)
+# Kind, field, name, member, minimum, maximum.
+ROW = re.compile(r'ROW\([A-Z_]+, (GW_FIELD_\w+), "([^"]+)", OF [\w.\[\]]+, ([^,]+), (.+?)\)$', re.MULTILINE)
 CHECK = re.compile(
     r"gw_config_check_(?:real|count|element)\(\s*&?error, (GW_FIELD_\w+),(?: \w+,)?\s*(?:\(gw_real_t\))?config->(\w+)"
 )
@@ -37,11 +41,8 @@ def number(expression: str) -> float:
 
 def rows() -> dict[str, tuple[str, float, float]]:
     """Field to name, minimum, maximum."""
-    return {
-        field: (name, number(low), number(high))
-        for field, name, low, high in ROW.findall(text("gw_config.h"))
-        if field != "GW_FIELD_NONE"
-    }
+    lines = re.sub(r",\s*\\\n\s+", ", ", text("gw_config.h")).replace(" \\\n", "\n")  # one line per row
+    return {field: (name, number(low), number(high)) for field, name, low, high in ROW.findall(lines)}
 
 
 def described() -> dict[tuple[str, str], tuple[float, float]]:
@@ -72,7 +73,7 @@ def checked() -> dict[str, tuple[str, str]]:
 
 
 def test_every_row_is_read() -> None:
-    assert len(rows()) == text("gw_config.h").count("    ROW(GW_FIELD_") - 1
+    assert len(rows()) == text("gw_config.h").count("    ROW(") - 1  # that of no field
 
 
 # The convexity of the outline has no number; coordinates are checked member by member of a vertex.

@@ -19,6 +19,24 @@ static uint32_t highest_count(gw_config_field_t field)
 #define PI_ROUNDED ((gw_real_t)3.1415928)
 #define EXCESS ((gw_real_t)1024.0)
 
+/* The rows of the tables in gw_config.h. */
+#define SETTING_OF_ROW(kind, field, name, member, minimum, maximum) SETTING_OF_##kind(member, field)
+#define SETTING_OF_REAL(member, field) SETTING(member, field);
+#define SETTING_OF_COUNT(member, field) COUNT_SETTING(member, field);
+#define SETTING_OF_WHEEL_REAL(member, field) \
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) { \
+        SETTING(member, field); \
+    }
+#define SETTING_OF_WHEEL_COUNT(member, field) \
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) { \
+        COUNT_SETTING(member, field); \
+    }
+#define SETTING_OF_VERTEX_REAL(member, field) \
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) { \
+        SETTING(member, field); \
+    }
+#define SETTING_OF_RULE(member, field)
+
 #define VISIT(name) draw_##name
 #define REAL(place, low, high) ((place) = draw_real((low), (high)))
 #define COUNT(place, low, high) ((place) = draw_count((low), (high)))

@@ -82,6 +82,22 @@ static inline uint32_t take_count_setting(bytes_t *bytes, gw_config_field_t fiel
     return ((bits & 0xFFU) == 0xFFU) ? bits : ((uint32_t)limit.minimum + ((bits >> 8U) % span));
 }
 
+/* The settings of one table of gw_config.h; the slots of the wheels stay, or few configurations would be accepted. A
+ * variable `bytes` is in scope. */
+#define TAKE(kind, field, name, member, minimum, maximum) TAKE_##kind(member, field)
+#define TAKE_REAL(member, field) (member) = take_setting(&bytes, (field));
+#define TAKE_COUNT(member, field) (member) = take_count_setting(&bytes, (field));
+#define TAKE_WHEEL_REAL(member, field) \
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) { \
+        (member) = take_setting(&bytes, (field)); \
+    }
+#define TAKE_WHEEL_COUNT(member, field)
+#define TAKE_VERTEX_REAL(member, field) \
+    for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) { \
+        (member) = take_setting(&bytes, (field)); \
+    }
+#define TAKE_RULE(member, field)
+
 /* Mostly within the scale of what is usual, so that sensors are good for a while; now and then any bits. */
 static inline gw_real_t take_value(bytes_t *bytes, gw_real_t scale)
 {

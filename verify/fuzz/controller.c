@@ -1,9 +1,6 @@
 /* Settings of the paper's robot replaced one by one, then any inputs: samples, plans, requests. */
 #include "bytes.h"
 
-#define REPLACE(place, field) ((place) = take_setting(&bytes, (field)))
-#define REPLACE_COUNT(place, field) ((place) = take_count_setting(&bytes, (field)))
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static gw_controller_config_t take_config(bytes_t *from)
@@ -13,23 +10,34 @@ static gw_controller_config_t take_config(bytes_t *from)
     gw_controller_config_trikey(&config);
     const uint32_t replaced = take_count(&bytes);
     if ((replaced & 1U) != 0U) {
-        REPLACE(config.period_s, GW_FIELD_CONTROLLER_PERIOD);
-        REPLACE(config.geometry.wheel_radius_m, GW_FIELD_GEOMETRY_WHEEL_RADIUS);
-        REPLACE(config.geometry.roller_radius_m, GW_FIELD_GEOMETRY_ROLLER_RADIUS);
-        REPLACE(config.geometry.wheel_distance_m, GW_FIELD_GEOMETRY_WHEEL_DISTANCE);
-        REPLACE(config.geometry.azimuth_rad, GW_FIELD_GEOMETRY_AZIMUTH);
+        GW_CONTROLLER_FIELDS(TAKE, config.)
+        GW_GEOMETRY_FIELDS(TAKE, config.geometry.)
     }
     if ((replaced & 2U) != 0U) {
-        REPLACE(config.base.mass_kg, GW_FIELD_BASE_MASS);
-        REPLACE(config.base.wheel_inertia_kgm2, GW_FIELD_BASE_WHEEL_INERTIA);
-        REPLACE(config.friction.coulomb_torque_nm, GW_FIELD_FRICTION_COULOMB_TORQUE);
-        REPLACE(config.friction.tanh_slope_s_per_rad, GW_FIELD_FRICTION_TANH_SLOPE);
+        GW_INERTIA_FIELDS(TAKE, config.base.)
+        GW_FRICTION_FIELDS(TAKE, config.friction.)
     }
     if ((replaced & 4U) != 0U) {
-        REPLACE(config.sensor_check.torque_limit_nm, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT);
-        REPLACE_COUNT(config.sensor_check.stale_ticks_max, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX);
-        REPLACE_COUNT(config.sensor_check.encoder_jump_counts, GW_FIELD_SENSOR_CHECK_ENCODER_JUMP);
+        GW_SENSOR_CHECK_FIELDS(TAKE, config.sensor_check.)
     }
+    if ((replaced & 8U) != 0U) {
+        GW_ESTIMATOR_FIELDS(TAKE, config.estimator.)
+        GW_PRESLIDING_FIELDS(TAKE, config.estimator.presliding.)
+    }
+    if ((replaced & 16U) != 0U) {
+        GW_ADMITTANCE_FIELDS(TAKE, config.admittance.)
+    }
+    if ((replaced & 32U) != 0U) {
+        GW_CONTACT_FIELDS(TAKE, config.contact.)
+    }
+    if ((replaced & 128U) != 0U) {
+        GW_DETECTOR_FIELDS(TAKE, config.detector.)
+    }
+    if ((replaced & 256U) != 0U) {
+        GW_REFERENCE_FIELDS(TAKE, config.reference.)
+        GW_SUPERVISOR_FIELDS(TAKE, config.supervisor.)
+    }
+    /* Few ticks each, so that an input of some 60 sees all modes. */
     config.sensor_check.recover_ticks = 1U + (replaced >> 28U);
     config.estimator.tare_ticks = (replaced >> 24U) & 3U;
     config.estimator.rest_ticks = 1U + ((replaced >> 20U) & 15U);
@@ -39,29 +47,6 @@ static gw_controller_config_t take_config(bytes_t *from)
     config.estimator.friction_model = (replaced >> 11U) & 1U;
     config.admittance.kind = (replaced >> 10U) & 1U;
     config.detector.kind = (replaced >> 9U) & 1U;
-    if ((replaced & 8U) != 0U) {
-        REPLACE_COUNT(config.estimator.velocity_source, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE);
-        REPLACE_COUNT(config.estimator.acceleration_source, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE);
-        REPLACE(config.estimator.rate_cutoff_radps, GW_FIELD_ESTIMATOR_RATE_CUTOFF);
-        REPLACE_COUNT(config.estimator.average_window, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW);
-        REPLACE(config.estimator.tare_variation_nm, GW_FIELD_ESTIMATOR_TARE_VARIATION);
-        REPLACE(config.estimator.presliding.stiffness_n_per_m[0], GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS);
-        REPLACE(config.estimator.presliding.elastic_fraction, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION);
-    }
-    if ((replaced & 16U) != 0U) {
-        REPLACE(config.admittance.mass_kg, GW_FIELD_ADMITTANCE_MASS);
-        REPLACE(config.admittance.damping_newton_s_per_m, GW_FIELD_ADMITTANCE_DAMPING);
-        REPLACE(config.admittance.escape_impulse_newton_s, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE);
-        REPLACE(config.admittance.speed_limit_mps, GW_FIELD_ADMITTANCE_SPEED_LIMIT);
-        REPLACE(config.admittance.acceleration_limit_mps2, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT);
-    }
-    if ((replaced & 32U) != 0U) {
-        REPLACE_COUNT(config.contact.vertex_count, GW_FIELD_OUTLINE_COUNT);
-        for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
-            REPLACE(config.contact.vertex_m[i].x, GW_FIELD_OUTLINE_X);
-            REPLACE(config.contact.vertex_m[i].y, GW_FIELD_OUTLINE_Y);
-        }
-    }
     config.drives_enabled = (replaced & 64U) == 0U;
     *from = bytes;
     return config;

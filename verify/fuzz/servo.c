@@ -7,16 +7,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     bytes_t bytes = {data, size};
     gw_servo_t servo;
-    const gw_servo_config_t config = {
-        take_setting(&bytes, GW_FIELD_SERVO_PERIOD),
-        take_setting(&bytes, GW_FIELD_SERVO_KP),
-        take_setting(&bytes, GW_FIELD_SERVO_KD),
-        take_setting(&bytes, GW_FIELD_SERVO_TORQUE_LIMIT),
-        take_setting(&bytes, GW_FIELD_SERVO_TORQUE_RATE_LIMIT),
-        take_count_setting(&bytes, GW_FIELD_SERVO_ENCODER_COUNTS),
-        take_setting(&bytes, GW_FIELD_SERVO_DERIVATIVE_CUTOFF),
-        take_count_setting(&bytes, GW_FIELD_SERVO_STALE_TICKS_MAX),
-    };
+    gw_servo_config_t config;
+    GW_SERVO_FIELDS(TAKE, config.)
     if (gw_servo_init(&servo, &config) != GW_STATUS_OK) {
         return 0;
     }

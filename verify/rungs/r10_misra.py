@@ -12,7 +12,9 @@ from verify.rung import Figure, Rung, RungFailed, Value, planted
 CPPCHECK = Tool("cppcheck", package="verify/requirements.lock")
 
 # A deviation names its rule and its anchor on the line before: /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 why */
-DEVIATION = re.compile(r"cppcheck-suppress (misra-c2012-[\d.]+) ; (DEV-\d\d) \S")
+# Many lines stand between cppcheck-suppress-begin with the same text and cppcheck-suppress-end.
+DEVIATION = re.compile(r"cppcheck-suppress(?:-begin)? (misra-c2012-[\d.]+) ; (DEV-\d\d) \S")
+END = re.compile(r"cppcheck-suppress-end misra-c2012-[\d.]+ \*/")
 SUPPRESSION = re.compile(r"cppcheck-suppress")
 ANCHOR = re.compile(r"^### (DEV-\d\d): rule ([\d.]+) \((?:mandatory|required|advisory)\)$", re.MULTILINE)
 PLACES = re.compile(r"^Places: (.*)$", re.MULTILINE)
@@ -90,7 +92,7 @@ def _deviations(core: Path) -> list[tuple[str, str]]:
             place = f"{path.relative_to(core)}:{number}"
             if UNCOVERED.search(line):
                 wrong.append(f"{place}: neither // (rule 3.2) nor sizeof (rule 12.5): the checker does not cover them")
-            if not SUPPRESSION.search(line):
+            if not SUPPRESSION.search(line) or END.search(line):
                 continue
             match = DEVIATION.search(line)
             if match is None:

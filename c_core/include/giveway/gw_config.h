@@ -1,5 +1,6 @@
-/* Every configuration field: its name, and the inclusive range that init checks. One table, from which everything else
- * follows: the enumeration below, gw_config_limit, gw_config_name, and what the tests walk through.
+/* Every configuration field: its name, where it is kept, and the inclusive range that init checks. One table, from
+ * which everything else follows: the enumeration below, gw_config_limit, gw_config_name, and what tests, proofs and
+ * fuzzers walk through.
  */
 #ifndef GW_CONFIG_H
 #define GW_CONFIG_H
@@ -10,91 +11,149 @@
 extern "C" {
 #endif
 
-/* Field, name, minimum, maximum; the units are in the headers of the modules. The names are those of the FMU's
- * parameters, whose ranges a test compares with these. No maximum of a count exceeds 2^24, so that float holds every
- * count exactly.
+/* Kind, field, name, member, minimum, maximum; the units are in the headers of the modules. The names are those of the
+ * FMU's parameters, whose ranges a test compares with these. No maximum of a count exceeds 2^24, so that float holds
+ * every count exactly.
+ *
+ * One table per module. ROW is the name of a macro of six parameters, OF what stands before a member:
+ * GW_DETECTOR_FIELDS(ROW, config->) writes config->kind. Kinds: REAL, COUNT (uint32_t), of each wheel WHEEL_REAL and
+ * WHEEL_COUNT, of each vertex VERTEX_REAL (i counts the elements), and RULE, which relates several members.
  *
  * A field stands here, in the configuration of its module, and in that module's source: Trikey's value, the check, the
  * use. */
-/* cppcheck-suppress misra-c2012-20.7 ; DEV-02 ROW is the name of a macro */
-#define GW_CONFIG_FIELDS(ROW) \
-    ROW(GW_FIELD_NONE, "none", 0, 0) \
-    ROW(GW_FIELD_CONTROLLER_PERIOD, "controller.period", 0.0001, 0.1) \
-    ROW(GW_FIELD_GEOMETRY_WHEEL_RADIUS, "geometry.wheel_radius", 0.005, 1) \
-    ROW(GW_FIELD_GEOMETRY_ROLLER_RADIUS, "geometry.roller_radius", 0.001, 0.5) \
-    ROW(GW_FIELD_GEOMETRY_WHEEL_DISTANCE, "geometry.wheel_distance", 0.01, 5) \
-    ROW(GW_FIELD_GEOMETRY_WHEEL_SLOT, "geometry.wheel_slot", 0, GW_WHEELS - (gw_real_t)1) \
-    ROW(GW_FIELD_GEOMETRY_AZIMUTH, "geometry.azimuth", -3.2, 3.2) \
-    ROW(GW_FIELD_BASE_MASS, "base.mass", 0.1, 2000) \
-    ROW(GW_FIELD_BASE_YAW_INERTIA, "base.yaw_inertia", 0.0001, 10000) \
-    ROW(GW_FIELD_BASE_WHEEL_INERTIA, "base.wheel_inertia", 0, 10) \
-    ROW(GW_FIELD_BASE_ROLLER_INERTIA, "base.roller_inertia", 0, 1) \
-    ROW(GW_FIELD_FRICTION_COULOMB_TORQUE, "friction.coulomb_torque", 0, 100) \
-    ROW(GW_FIELD_FRICTION_TANH_SLOPE, "friction.tanh_slope", 0, 1000) \
-    ROW(GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, "sensor_check.torque_limit", 0.1, 10000) \
-    ROW(GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, "sensor_check.stale_ticks_max", 1, 1000) \
-    ROW(GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, "sensor_check.encoder_jump", 1, 1000000) \
-    ROW(GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, "sensor_check.recover_ticks", 1, 100000) \
-    ROW(GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, "estimator.velocity_source", 0, 1) \
-    ROW(GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, "estimator.acceleration_source", 0, 2) \
-    ROW(GW_FIELD_ESTIMATOR_TORQUE_NOISE, "estimator.torque_noise", 0, 100) \
-    ROW(GW_FIELD_ESTIMATOR_RATE_CUTOFF, "estimator.rate_cutoff", 0.1, 10000) \
-    ROW(GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, "estimator.drivetrain_stiffness", 0, 10000000) \
-    ROW(GW_FIELD_ESTIMATOR_ENCODER_COUNTS, "estimator.encoder_counts", 4, 1000000) \
-    ROW(GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, "estimator.average_window", 1, GW_MOVING_AVERAGE_CAPACITY) \
-    ROW(GW_FIELD_ESTIMATOR_REST_SPEED, "estimator.rest_speed", 0, 1) \
-    ROW(GW_FIELD_ESTIMATOR_CREEP_SPEED, "estimator.creep_speed", 0, 1) \
-    ROW(GW_FIELD_ESTIMATOR_REST_TICKS, "estimator.rest_ticks", 1, 100000) \
-    ROW(GW_FIELD_ESTIMATOR_TARE_TICKS, "estimator.tare_ticks", 0, 100000) \
-    ROW(GW_FIELD_ESTIMATOR_RETARE_TICKS, "estimator.retare_ticks", 1, 100000) \
-    ROW(GW_FIELD_ESTIMATOR_TARE_VARIATION, "estimator.tare_variation", 0, 100) \
-    ROW(GW_FIELD_ESTIMATOR_FRICTION_MODEL, "estimator.friction_model", 0, 1) \
-    ROW(GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, "estimator.presliding_stiffness", 10, 10000000) \
-    ROW(GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, "estimator.presliding_damping", 0, 100000) \
-    ROW(GW_FIELD_ESTIMATOR_STRIBECK_SPEED, "estimator.stribeck_speed", 0.000001, 1) \
-    ROW(GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, "estimator.elastic_fraction", 0, 0.99) \
-    ROW(GW_FIELD_CONTACT_MINIMUM_FORCE, "contact.minimum_force", 0.001, 1000) \
-    ROW(GW_FIELD_OUTLINE_COUNT, "outline.count", 3, GW_OUTLINE_VERTEX_MAX) \
-    ROW(GW_FIELD_OUTLINE_X, "outline.x", -10, 10) \
-    ROW(GW_FIELD_OUTLINE_Y, "outline.y", -10, 10) \
-    ROW(GW_FIELD_OUTLINE_CONVEX, "outline (counter-clockwise, strictly convex)", 0, 0) \
-    ROW(GW_FIELD_DETECTOR_KIND, "detector.kind", 0, 1) \
-    ROW(GW_FIELD_DETECTOR_FORCE_THRESHOLD, "detector.force_threshold", 0.01, 10000) \
-    ROW(GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, "detector.impulse_threshold", 0.001, 1000) \
-    ROW(GW_FIELD_DETECTOR_LEAK_REST, "detector.leak_rest", 0, 1000) \
-    ROW(GW_FIELD_DETECTOR_LEAK_CREEP, "detector.leak_creep", 0, 1000) \
-    ROW(GW_FIELD_DETECTOR_LEAK_MOTION, "detector.leak_motion", 0, 1000) \
-    ROW(GW_FIELD_DETECTOR_RELEASE_FORCE, "detector.release_force", 0, 10000) \
-    ROW(GW_FIELD_DETECTOR_BLANKING_TICKS, "detector.blanking_ticks", 0, 100000) \
-    ROW(GW_FIELD_ADMITTANCE_KIND, "admittance.kind", 0, 1) \
-    ROW(GW_FIELD_ADMITTANCE_MASS, "admittance.mass", 0.01, 10000) \
-    ROW(GW_FIELD_ADMITTANCE_DAMPING, "admittance.damping", 0.01, 10000) \
-    ROW(GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, "admittance.escape_impulse", 0, 1000) \
-    ROW(GW_FIELD_ADMITTANCE_SPEED_LIMIT, "admittance.speed_limit", 0.001, 10) \
-    ROW(GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, "admittance.acceleration_limit", 0.001, 1000) \
-    ROW(GW_FIELD_ADMITTANCE_FINISH_SPEED, "admittance.finish_speed", 0, 1) \
-    ROW(GW_FIELD_REFERENCE_FOLLOW_GAIN, "reference.follow_gain", 0, 100) \
-    ROW(GW_FIELD_REFERENCE_SPEED_LIMIT, "reference.speed_limit", 0.001, 10) \
-    ROW(GW_FIELD_REFERENCE_ACCELERATION_LIMIT, "reference.acceleration_limit", 0.001, 1000) \
-    ROW(GW_FIELD_REFERENCE_YAW_RATE_LIMIT, "reference.yaw_rate_limit", 0.001, 100) \
-    ROW(GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, "reference.yaw_acceleration_limit", 0.001, 10000) \
-    ROW(GW_FIELD_REFERENCE_REJOIN_SPEED, "reference.rejoin_speed", 0.001, 10) \
-    ROW(GW_FIELD_REFERENCE_FINISH_SPEED, "reference.finish_speed", 0, 1) \
-    ROW(GW_FIELD_SUPERVISOR_SETTLED_SPEED, "supervisor.settled_speed", 0.000001, 1) \
-    ROW(GW_FIELD_SUPERVISOR_SETTLED_TICKS, "supervisor.settled_ticks", 1, 100000) \
-    ROW(GW_FIELD_SUPERVISOR_AFTER_SETTLED, "supervisor.after_settled", 0, 1) \
-    ROW(GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, "supervisor.rejoin_distance", 0.00001, 1) \
-    ROW(GW_FIELD_SUPERVISOR_REJOIN_ANGLE, "supervisor.rejoin_angle", 0.0001, 1) \
-    ROW(GW_FIELD_SERVO_PERIOD, "servo.period", 0.00001, 0.1) \
-    ROW(GW_FIELD_SERVO_KP, "servo.kp", 0, 1000000) \
-    ROW(GW_FIELD_SERVO_KD, "servo.kd", 0, 100000) \
-    ROW(GW_FIELD_SERVO_TORQUE_LIMIT, "servo.torque_limit", 0.01, 10000) \
-    ROW(GW_FIELD_SERVO_TORQUE_RATE_LIMIT, "servo.torque_rate_limit", 0, 10000000) \
-    ROW(GW_FIELD_SERVO_ENCODER_COUNTS, "servo.encoder_counts", 4, 1000000) \
-    ROW(GW_FIELD_SERVO_DERIVATIVE_CUTOFF, "servo.derivative_cutoff", 0.1, 10000) \
-    ROW(GW_FIELD_SERVO_STALE_TICKS_MAX, "servo.stale_ticks_max", 1, 100000)
+/* cppcheck-suppress-begin misra-c2012-20.7 ; DEV-02 ROW is the name of a macro, OF begins an expression */
+#define GW_CONTROLLER_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_CONTROLLER_PERIOD, "controller.period", OF period_s, 0.0001, 0.1)
 
-#define GW_CONFIG_FIELD_OF_ROW(field, name, minimum, maximum) field,
+#define GW_GEOMETRY_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_GEOMETRY_WHEEL_RADIUS, "geometry.wheel_radius", OF wheel_radius_m, 0.005, 1) \
+    ROW(REAL, GW_FIELD_GEOMETRY_ROLLER_RADIUS, "geometry.roller_radius", OF roller_radius_m, 0.001, 0.5) \
+    ROW(REAL, GW_FIELD_GEOMETRY_WHEEL_DISTANCE, "geometry.wheel_distance", OF wheel_distance_m, 0.01, 5) \
+    ROW(WHEEL_COUNT, GW_FIELD_GEOMETRY_WHEEL_SLOT, "geometry.wheel_slot", OF wheel_slot[i], 0, \
+        GW_WHEELS - (gw_real_t)1) \
+    ROW(REAL, GW_FIELD_GEOMETRY_AZIMUTH, "geometry.azimuth", OF azimuth_rad, -3.2, 3.2)
+
+#define GW_INERTIA_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_BASE_MASS, "base.mass", OF mass_kg, 0.1, 2000) \
+    ROW(REAL, GW_FIELD_BASE_YAW_INERTIA, "base.yaw_inertia", OF yaw_inertia_kgm2, 0.0001, 10000) \
+    ROW(REAL, GW_FIELD_BASE_WHEEL_INERTIA, "base.wheel_inertia", OF wheel_inertia_kgm2, 0, 10) \
+    ROW(REAL, GW_FIELD_BASE_ROLLER_INERTIA, "base.roller_inertia", OF roller_inertia_kgm2, 0, 1)
+
+#define GW_FRICTION_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_FRICTION_COULOMB_TORQUE, "friction.coulomb_torque", OF coulomb_torque_nm, 0, 100) \
+    ROW(REAL, GW_FIELD_FRICTION_TANH_SLOPE, "friction.tanh_slope", OF tanh_slope_s_per_rad, 0, 1000)
+
+#define GW_SENSOR_CHECK_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_SENSOR_CHECK_TORQUE_LIMIT, "sensor_check.torque_limit", OF torque_limit_nm, 0.1, 10000) \
+    ROW(COUNT, GW_FIELD_SENSOR_CHECK_STALE_TICKS_MAX, "sensor_check.stale_ticks_max", OF stale_ticks_max, 1, 1000) \
+    ROW(COUNT, GW_FIELD_SENSOR_CHECK_ENCODER_JUMP, "sensor_check.encoder_jump", OF encoder_jump_counts, 1, 1000000) \
+    ROW(COUNT, GW_FIELD_SENSOR_CHECK_RECOVER_TICKS, "sensor_check.recover_ticks", OF recover_ticks, 1, 100000)
+
+#define GW_ESTIMATOR_FIELDS(ROW, OF) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, "estimator.velocity_source", OF velocity_source, 0, 1) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, "estimator.acceleration_source", OF acceleration_source, 0, 2) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_TORQUE_NOISE, "estimator.torque_noise", OF torque_noise_nm, 0, 100) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_RATE_CUTOFF, "estimator.rate_cutoff", OF rate_cutoff_radps, 0.1, 10000) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, "estimator.drivetrain_stiffness", \
+        OF drivetrain_stiffness_nm_per_rad, 0, 10000000) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_ENCODER_COUNTS, "estimator.encoder_counts", OF encoder_counts, 4, 1000000) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_AVERAGE_WINDOW, "estimator.average_window", OF average_window, 1, \
+        GW_MOVING_AVERAGE_CAPACITY) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_REST_SPEED, "estimator.rest_speed", OF rest_speed_mps, 0, 1) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_CREEP_SPEED, "estimator.creep_speed", OF creep_speed_mps, 0, 1) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_REST_TICKS, "estimator.rest_ticks", OF rest_ticks, 1, 100000) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_TARE_TICKS, "estimator.tare_ticks", OF tare_ticks, 0, 100000) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_RETARE_TICKS, "estimator.retare_ticks", OF retare_ticks, 1, 100000) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_TARE_VARIATION, "estimator.tare_variation", OF tare_variation_nm, 0, 100) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_FRICTION_MODEL, "estimator.friction_model", OF friction_model, 0, 1)
+
+#define GW_PRESLIDING_FIELDS(ROW, OF) \
+    ROW(WHEEL_REAL, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, "estimator.presliding_stiffness", \
+        OF stiffness_n_per_m[i], 10, 10000000) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_PRESLIDING_DAMPING, "estimator.presliding_damping", OF damping_newton_s_per_m, 0, \
+        100000) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_STRIBECK_SPEED, "estimator.stribeck_speed", OF stribeck_speed_mps, 0.000001, 1) \
+    ROW(REAL, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, "estimator.elastic_fraction", OF elastic_fraction, 0, 0.99)
+
+#define GW_CONTACT_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_CONTACT_MINIMUM_FORCE, "contact.minimum_force", OF minimum_force_n, 0.001, 1000) \
+    ROW(COUNT, GW_FIELD_OUTLINE_COUNT, "outline.count", OF vertex_count, 3, GW_OUTLINE_VERTEX_MAX) \
+    ROW(VERTEX_REAL, GW_FIELD_OUTLINE_X, "outline.x", OF vertex_m[i].x, -10, 10) \
+    ROW(VERTEX_REAL, GW_FIELD_OUTLINE_Y, "outline.y", OF vertex_m[i].y, -10, 10) \
+    ROW(RULE, GW_FIELD_OUTLINE_CONVEX, "outline (counter-clockwise, strictly convex)", OF vertex_m, 0, 0)
+
+#define GW_DETECTOR_FIELDS(ROW, OF) \
+    ROW(COUNT, GW_FIELD_DETECTOR_KIND, "detector.kind", OF kind, 0, 1) \
+    ROW(REAL, GW_FIELD_DETECTOR_FORCE_THRESHOLD, "detector.force_threshold", OF force_threshold_n, 0.01, 10000) \
+    ROW(REAL, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, "detector.impulse_threshold", OF impulse_threshold_newton_s, 0.001, \
+        1000) \
+    ROW(REAL, GW_FIELD_DETECTOR_LEAK_REST, "detector.leak_rest", OF leak_rest_n, 0, 1000) \
+    ROW(REAL, GW_FIELD_DETECTOR_LEAK_CREEP, "detector.leak_creep", OF leak_creep_n, 0, 1000) \
+    ROW(REAL, GW_FIELD_DETECTOR_LEAK_MOTION, "detector.leak_motion", OF leak_motion_n, 0, 1000) \
+    ROW(REAL, GW_FIELD_DETECTOR_RELEASE_FORCE, "detector.release_force", OF release_force_n, 0, 10000) \
+    ROW(COUNT, GW_FIELD_DETECTOR_BLANKING_TICKS, "detector.blanking_ticks", OF blanking_ticks, 0, 100000)
+
+#define GW_ADMITTANCE_FIELDS(ROW, OF) \
+    ROW(COUNT, GW_FIELD_ADMITTANCE_KIND, "admittance.kind", OF kind, 0, 1) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_MASS, "admittance.mass", OF mass_kg, 0.01, 10000) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_DAMPING, "admittance.damping", OF damping_newton_s_per_m, 0.01, 10000) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, "admittance.escape_impulse", OF escape_impulse_newton_s, 0, 1000) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_SPEED_LIMIT, "admittance.speed_limit", OF speed_limit_mps, 0.001, 10) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, "admittance.acceleration_limit", OF acceleration_limit_mps2, \
+        0.001, 1000) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_FINISH_SPEED, "admittance.finish_speed", OF finish_speed_mps, 0, 1)
+
+#define GW_REFERENCE_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_REFERENCE_FOLLOW_GAIN, "reference.follow_gain", OF follow_gain_per_s, 0, 100) \
+    ROW(REAL, GW_FIELD_REFERENCE_SPEED_LIMIT, "reference.speed_limit", OF speed_limit_mps, 0.001, 10) \
+    ROW(REAL, GW_FIELD_REFERENCE_ACCELERATION_LIMIT, "reference.acceleration_limit", OF acceleration_limit_mps2, \
+        0.001, 1000) \
+    ROW(REAL, GW_FIELD_REFERENCE_YAW_RATE_LIMIT, "reference.yaw_rate_limit", OF yaw_rate_limit_radps, 0.001, 100) \
+    ROW(REAL, GW_FIELD_REFERENCE_YAW_ACCELERATION_LIMIT, "reference.yaw_acceleration_limit", \
+        OF yaw_acceleration_limit_radps2, 0.001, 10000) \
+    ROW(REAL, GW_FIELD_REFERENCE_REJOIN_SPEED, "reference.rejoin_speed", OF rejoin_speed_mps, 0.001, 10) \
+    ROW(REAL, GW_FIELD_REFERENCE_FINISH_SPEED, "reference.finish_speed", OF finish_speed_mps, 0, 1)
+
+#define GW_SUPERVISOR_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_SUPERVISOR_SETTLED_SPEED, "supervisor.settled_speed", OF settled_speed_mps, 0.000001, 1) \
+    ROW(COUNT, GW_FIELD_SUPERVISOR_SETTLED_TICKS, "supervisor.settled_ticks", OF settled_ticks, 1, 100000) \
+    ROW(COUNT, GW_FIELD_SUPERVISOR_AFTER_SETTLED, "supervisor.after_settled", OF after_settled, 0, 1) \
+    ROW(REAL, GW_FIELD_SUPERVISOR_REJOIN_DISTANCE, "supervisor.rejoin_distance", OF rejoin_distance_m, 0.00001, 1) \
+    ROW(REAL, GW_FIELD_SUPERVISOR_REJOIN_ANGLE, "supervisor.rejoin_angle", OF rejoin_angle_rad, 0.0001, 1)
+
+#define GW_SERVO_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_SERVO_PERIOD, "servo.period", OF period_s, 0.00001, 0.1) \
+    ROW(REAL, GW_FIELD_SERVO_KP, "servo.kp", OF kp_nm_per_rad, 0, 1000000) \
+    ROW(REAL, GW_FIELD_SERVO_KD, "servo.kd", OF kd_nms_per_rad, 0, 100000) \
+    ROW(REAL, GW_FIELD_SERVO_TORQUE_LIMIT, "servo.torque_limit", OF torque_limit_nm, 0.01, 10000) \
+    ROW(REAL, GW_FIELD_SERVO_TORQUE_RATE_LIMIT, "servo.torque_rate_limit", OF torque_rate_limit_nm_per_s, 0, 10000000) \
+    ROW(COUNT, GW_FIELD_SERVO_ENCODER_COUNTS, "servo.encoder_counts", OF encoder_counts, 4, 1000000) \
+    ROW(REAL, GW_FIELD_SERVO_DERIVATIVE_CUTOFF, "servo.derivative_cutoff", OF derivative_cutoff_hz, 0.1, 10000) \
+    ROW(COUNT, GW_FIELD_SERVO_STALE_TICKS_MAX, "servo.stale_ticks_max", OF stale_ticks_max, 1, 100000)
+
+/* All fields of gw_controller_config_t. */
+#define GW_CONTROLLER_CONFIG_FIELDS(ROW, OF) \
+    GW_CONTROLLER_FIELDS(ROW, OF) \
+    GW_GEOMETRY_FIELDS(ROW, OF geometry.) \
+    GW_INERTIA_FIELDS(ROW, OF base.) \
+    GW_FRICTION_FIELDS(ROW, OF friction.) \
+    GW_SENSOR_CHECK_FIELDS(ROW, OF sensor_check.) \
+    GW_ESTIMATOR_FIELDS(ROW, OF estimator.) \
+    GW_PRESLIDING_FIELDS(ROW, OF estimator.presliding.) \
+    GW_CONTACT_FIELDS(ROW, OF contact.) \
+    GW_DETECTOR_FIELDS(ROW, OF detector.) \
+    GW_ADMITTANCE_FIELDS(ROW, OF admittance.) \
+    GW_REFERENCE_FIELDS(ROW, OF reference.) \
+    GW_SUPERVISOR_FIELDS(ROW, OF supervisor.)
+
+/* All there are. */
+#define GW_CONFIG_FIELDS(ROW) \
+    ROW(NONE, GW_FIELD_NONE, "none", none, 0, 0) \
+    GW_CONTROLLER_CONFIG_FIELDS(ROW, controller.) \
+    GW_SERVO_FIELDS(ROW, servo.)
+/* cppcheck-suppress-end misra-c2012-20.7 */
+
+#define GW_CONFIG_FIELD_OF_ROW(kind, field, name, member, minimum, maximum) field,
 
 /* The fields, in the order of the table. */
 typedef enum { GW_CONFIG_FIELDS(GW_CONFIG_FIELD_OF_ROW) GW_FIELD_COUNT } gw_config_field_t;
