@@ -15,7 +15,8 @@ ROOT = Path(__file__).parents[2]
 CORE = ROOT / "c_core"
 HEADERS = CORE / "include" / "giveway"
 # Kind, field, name, member, minimum, maximum.
-ROW = re.compile(r'ROW\([A-Z_]+, (GW_FIELD_\w+), "([^"]+)", OF [\w.\[\]]+, ([^,]+), (.+?)\)$', re.MULTILINE)
+ROW = re.compile(r'ROW\([A-Z_]+, (GW_FIELD_\w+), "([^"]+)", OF ([\w.\[\]]+), ([^,]+), (.+?)\)$', re.MULTILINE)
+TABLE = re.compile(r"^#define (GW_\w+_FIELDS)\(ROW, OF\)\n((?: .*\n)+)", re.MULTILINE)
 CHECK = re.compile(
     r"gw_config_check_(?:real|count|element)\(\s*&?error, (GW_FIELD_\w+),(?: \w+,)?\s*(?:\(gw_real_t\))?config->(\w+)"
 )
@@ -39,10 +40,21 @@ def number(expression: str) -> float:
     return float(known.get(expression, expression))
 
 
+def lines() -> str:
+    """gw_config.h with one line per row."""
+    return re.sub(r",\s*\\\n\s+", ", ", text("gw_config.h")).replace(" \\\n", "\n")
+
+
 def rows() -> dict[str, tuple[str, float, float]]:
     """Field to name, minimum, maximum."""
-    lines = re.sub(r",\s*\\\n\s+", ", ", text("gw_config.h")).replace(" \\\n", "\n")  # one line per row
-    return {field: (name, number(low), number(high)) for field, name, low, high in ROW.findall(lines)}
+    return {field: (name, number(low), number(high)) for field, name, _, low, high in ROW.findall(lines())}
+
+
+def members() -> dict[str, str]:
+    """Name of a field of the controller to the member of gw_controller_config_t."""
+    tables = dict(TABLE.findall(lines()))
+    places = re.findall(r"(GW_\w+)\(ROW, OF ?([\w.]*)\)", tables["GW_CONTROLLER_CONFIG_FIELDS"])
+    return {name: place + member for table, place in places for _, name, member, *_ in ROW.findall(tables[table])}
 
 
 def described() -> dict[tuple[str, str], tuple[float, float]]:
@@ -98,3 +110,4 @@ def test_parameters_of_the_fmu_are_the_fields() -> None:
     assert own - set(parameters) == set()
     for name in own:
         assert [parameters[name]["minimum"], parameters[name]["maximum"]] == fields[name], name
+        assert parameters[name]["c_core"] == members()[name]

@@ -7,7 +7,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from . import cpp, documentation, fmi, icon, plant, source_code, toml
+from . import c_core, cpp, documentation, fmi, icon, plant, source_code, toml
 from .errors import TableError
 from .package import PLATFORMS, write_fmu
 from .table import Table, expanded, read_table
@@ -36,9 +36,8 @@ def _shipped(table: Table, files: list[Path], generated: dict[str, str]) -> dict
                 # c_core includes its headers by their folder.
                 name = f"giveway/{path.name}" if path.parent.name == "giveway" else path.name
                 contents[f"{folder}/{name}"] = path.read_bytes()
-        for suffix in ("variables.hpp", "variables.cpp", "fmu.cpp"):
-            name = f"{table.name}_{suffix}"
-            contents[f"{folder}/{name}"] = generated[name].encode()
+        for name, text in generated.items():
+            contents[f"{folder}/{name}"] = text.encode()
         contents[f"{folder}/giveway_{table.name}_fmi{version}.cpp"] = source_code.entry(table, version).encode()
     contents["fmi3/sources/buildDescription.xml"] = source_code.build_description(table, files).encode()
     return contents
@@ -54,6 +53,8 @@ def _write_sources(arguments: argparse.Namespace) -> None:
         f"{table.name}_variables.cpp": cpp.source(table),
         f"{table.name}_fmu.cpp": cpp.fmu_entry(table),
     }
+    if table.c_core is not None:
+        code[f"{table.name}_members.hpp"] = c_core.members_header(table)
     compiled = source_code.source_names(table, shipped, 2) if shipped else []
     texts = {
         "fmi2/modelDescription.xml": fmi.fmi2_model_description(table, arguments.version, compiled),

@@ -15,7 +15,7 @@ from .errors import TableError
 from .types import Quantity, quantity_of
 from .units import DISPLAY_UNITS, base_units, default_display_unit
 
-__all__ = ["Group", "Table", "Variable", "expanded", "read_table"]
+__all__ = ["RETURNED", "Group", "Table", "Variable", "expanded", "read_table"]
 
 SCHEMA_VERSION = 1
 TIME_REFERENCE = 0  # the independent variable of FMI 3
@@ -23,7 +23,7 @@ INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
 
 Value = float | int | bool
 
-_MODEL_KEYS = {"name", "description", "step_size_s", "shares"}
+_MODEL_KEYS = {"name", "description", "step_size_s", "shares", "c_core"}
 # What a shared entry may say for itself; the rest is that of the other table's entry.
 _SHARED_KEYS = {"reference", "shared", "description", "minimum", "maximum", "dependencies"}
 _STATE_KEYS = {"reference", "name", "count", "unit", "display_unit", "nominal", "dependencies", "description"}
@@ -43,12 +43,15 @@ _DISCONTINUITIES = {
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
     "allow_nonfinite", "dependencies", "description", "display_unit", "plant",
-    "choices",
+    "choices", "c_core",
 }  # fmt: skip
 # Types of plant parameters by the types of their variables; an integer may also be an enumeration.
 _PLANT_TYPES = {"real": ("number", "divisor", "wheels"), "integer": ("whole",), "boolean": ("whole",)}
 _ENUMERATION = re.compile(r"[A-Z][A-Za-z]*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
+# A member of a struct of c_core; `[i]` is the element of a variable with a count.
+_MEMBER = re.compile(r"[a-z]\w*(\[i\])?(\.[a-z]\w*(\[i\])?)*")
+RETURNED = "()"  # instead of a member: what a step returns
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,7 @@ class Group:
     # Type of the plant's parameter of this name, if it is one; nothing that an importer sees, so not in the token.
     plant: str | None = field(default=None, repr=False)
     choices: tuple[str, ...] = field(default=(), repr=False)  # names of the values 0, 1, ... of an enumeration
+    c_core: str | None = field(default=None, repr=False)  # member of the module's configuration, input or output
 
     @property
     def quantity(self) -> Quantity | None:
@@ -107,6 +111,8 @@ class Table:
     description: str
     step_size: float
     groups: tuple[Group, ...]
+    # The module of c_core whose configuration, input and output the variables are.
+    c_core: str | None = field(default=None, repr=False)
 
     @property
     def scalars(self) -> list[tuple[Group, Variable]]:
@@ -277,8 +283,18 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
     return Group(
         name, name.replace(".", "_"), count, causality, kind, unit, minimum, maximum, nominal, allow_nonfinite,
         dependencies, " ".join(description.split()), variables, display_unit=_display_unit(entry, unit),
-        plant=plant, choices=choices,
+        plant=plant, choices=choices, c_core=_c_core(entry, causality, count),
     )  # fmt: skip
+
+
+def _c_core(entry: _Entry, causality: str, count: int | None) -> str | None:
+    """The member of a struct of c_core that the variable is."""
+    member = entry.raw.get("c_core")
+    if member is None or (member == RETURNED and causality == "output"):
+        return member
+    if not isinstance(member, str) or not _MEMBER.fullmatch(member) or ("[i]" in member) != (count is not None):
+        raise entry.fail("c_core", f"{member!r}, but must be a member, with [i] if the variable has a count")
+    return member
 
 
 def _plant(entry: _Entry, kind: str, causality: str, maximum: Value | None) -> tuple[str | None, tuple[str, ...]]:
@@ -503,9 +519,15 @@ def read_table(table_file: Path, robot_file: Path) -> Table:
             if dependency not in known:
                 label = f"{table_file}: variable {group.name}"
                 raise TableError(f"{label}: dependencies: there is no input or state {dependency!r}")
+    module = model.get("c_core")
+    if module is not None and (not isinstance(module, str) or not re.fullmatch(r"gw_[a-z_]+", module)):
+        raise TableError(f"{table_file}: model: c_core: {module!r}, but must be the name of a header without .h")
+    for entry, group in parsed:
+        if (group.c_core is None) == (module is not None):
+            raise entry.fail("c_core", "missing" if module else "only if [model] names a module with `c_core`")
     groups.sort(key=lambda group: group.variables[0].reference)
     states = [group.name for group in groups if group.role == "state"]
     if states and states[-1] != _DISCONTINUITIES["name"]:
         last = _DISCONTINUITIES["reference"]
         raise TableError(f"{table_file}: variable {states[-1]}: reference: states must have references below {last}")
-    return Table(name, " ".join(description.split()), step_size, tuple(groups))
+    return Table(name, " ".join(description.split()), step_size, tuple(groups), module)

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <new>
 
+#include "controller_members.hpp"
 #include "controller_variables.hpp"
-#include "from_variables.hpp"
 #include "model.hpp"
 #include "state_archive.hpp"
 #include "times.hpp"
@@ -55,7 +55,8 @@ public:
         gw_controller_output_t output{};
         gw_controller_safe_output(&output);
         output.mode = GW_MODE_TARING;
-        write_outputs(output, GW_STATUS_NOT_INITIALISED, v_);
+        write_outputs(output, v_);
+        assign(v_.status, GW_STATUS_NOT_INITIALISED);
         return Status::ok;
     }
 
@@ -66,8 +67,8 @@ public:
         const gw_controller_input_t in = inputs(v_);
         while (static_cast<double>(ticks_) < end_ticks) {
             gw_controller_output_t output{};
-            const gw_status_t status = gw_controller_step(&controller_, &in, &output);
-            write_outputs(output, status, v_);
+            assign(v_.status, gw_controller_step(&controller_, &in, &output));
+            write_outputs(output, v_);
             ++ticks_;
         }
         return Status::ok;

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "controller_members.hpp"
 #include "controller_variables.hpp"
-#include "from_variables.hpp"
 #include "giveway/gw_config.h"
 #include "model.hpp"
 

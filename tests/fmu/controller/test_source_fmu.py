@@ -152,10 +152,10 @@ def test_an_importer_builds_a_binary_from_the_sources(
 def test_another_source_would_be_noticed(shipped: str, tmp_path: Path) -> None:
     """The planted fault: torques that are one part in ten million off."""
     sources = unpacked(3, tmp_path)
-    values = sources / "from_variables.hpp"
-    right = "rounded(v.sensor_torque[i])"
+    values = sources / "controller_members.hpp"
+    right = "torque_nm[i], v.sensor_torque[i]"
     assert right in values.read_text()
-    values.write_text(values.read_text().replace(right, "rounded(1.0000001 * v.sensor_torque[i])"))
+    values.write_text(values.read_text().replace(right, "torque_nm[i], 1.0000001 * v.sensor_torque[i]"))
     assert printed(plan(), linked(["gcc"], sources, tmp_path), "linked") != shipped
 
 

@@ -222,6 +222,49 @@ def test_choices_are_a_word_for_each_value(tmp_path: Path) -> None:
     assert "variable group.second: choices: only an enumeration of the plant has them" in result.stderr
 
 
+def of_c_core(**changes: str | None) -> str:
+    """A table whose input and second variable are members of the structs of a module."""
+    text = table(variable(**changes)).replace("step_size_s = 0.01", 'step_size_s = 0.01\nc_core = "gw_lag"')
+    return text.replace("start = 0.0", 'start = 0.0\nc_core = "push.force_n"', 1)
+
+
+def test_variables_of_c_core_are_copied_to_and_from_the_members_that_the_table_states(tmp_path: Path) -> None:
+    text = of_c_core(count="3", c_core='"group.speed_mps[i]"') + "[[variable]]\n"
+    output = {"causality": '"output"', "start": None, "minimum": None, "maximum": None}
+    text += variable(name='"tripped"', reference="30", c_core='"detection.tripped"', **output)
+    text += "\n[[variable]]\n" + variable(name='"status"', reference="31", c_core='"()"', **output)
+    assert generate(tmp_path, text).stderr == ""
+    header = (tmp_path / "out" / "lag_members.hpp").read_text()
+    assert '#include "giveway/gw_lag.h"' in header
+    configuration, inputs, outputs = header.split("\ninline ")[1:]
+    assert configuration.startswith("gw_lag_config_t")
+    assert "i < 3; ++i) {\n        assign(c.group.speed_mps[i], v.group_second[i]);" in configuration
+    assert "    assign(c.push.force_n, v.first);" in inputs
+    assert "    assign(v.tripped, c.detection.tripped);" in outputs
+    assert header.count("assign(") == 4  # the function itself, and no status
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({}, "c_core: missing"),
+        ({"c_core": '"()"'}, "c_core: '()', but must be a member, with [i] if the variable has a count"),
+        ({"c_core": '"speed[i]"'}, "c_core: 'speed[i]', but must be a member"),
+        ({"c_core": '"speed"', "count": "3"}, "c_core: 'speed', but must be a member"),
+        ({"c_core": '"speed; x"'}, "c_core: 'speed; x', but must be a member"),
+    ],
+)
+def test_a_wrong_member_of_c_core_is_named(tmp_path: Path, changes: dict[str, str], message: str) -> None:
+    assert f"variable group.second: {message}" in generate(tmp_path, of_c_core(**changes)).stderr
+
+
+def test_a_member_of_c_core_needs_a_module(tmp_path: Path) -> None:
+    result = generate(tmp_path, table(variable(c_core='"speed"')))
+    assert "variable group.second: c_core: only if [model] names a module with `c_core`" in result.stderr
+    result = generate(tmp_path, of_c_core(c_core='"speed"').replace('"gw_lag"', '"Lag"'))
+    assert "model: c_core: 'Lag', but must be the name of a header without .h" in result.stderr
+
+
 def test_wrong_files_and_models_are_named(tmp_path: Path) -> None:
     good = table(variable())
     cases = [
