@@ -11,6 +11,7 @@
 
 #include "evaluation.hpp"
 #include "giveway_batch.h"
+#include "gravity.hpp"
 #include "lane_group.hpp"
 #include "metrics.hpp"
 #include "models.hpp"
@@ -189,6 +190,8 @@ struct gwb_batch final : batch::RunDone {
 extern "C" {
 
 const char *gwb_version(void) { return GWB_VERSION; }
+
+double gwb_gravity(void) { return giveway::plant::gravity_mps2; }
 
 const char *gwb_token(uint32_t model) { return model < GWB_MODEL_COUNT ? batch::info_of(model).token : nullptr; }
 

@@ -257,6 +257,9 @@ GWB_API const char *gwb_version(void);
 /* Hash of the model's variable table, the FMUs' instantiation token; null for an unknown model. */
 GWB_API const char *gwb_token(uint32_t model);
 
+/* The plant's gravity, m/s2. */
+GWB_API double gwb_gravity(void);
+
 /* Number of variables of a model; 0 for an unknown model. */
 GWB_API size_t gwb_variable_count(uint32_t model);
 

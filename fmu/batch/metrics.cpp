@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "elementary.hpp"
+#include "gravity.hpp"
 #include "scalar.hpp"
+#include "wheels.hpp"
 
 namespace giveway::batch {
 
@@ -14,10 +16,7 @@ namespace {
 constexpr double loaded_share = 0.5; // of the torque that an impact makes at the wheel it loads most
 constexpr int mode_tracking = 1;
 constexpr int mode_fault = 6;
-constexpr double gravity_mps2 = 9.81;
 constexpr double pi = 3.14159265358979323846;
-constexpr double wheel_cos[] = {1.0, -0.5, -0.5};
-constexpr double wheel_sin[] = {0.0, 0.8660254037844386, -0.8660254037844386};
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
 struct Vector {
@@ -196,17 +195,17 @@ private:
         const auto reach = [&](double push, double force_a, double force_b, double va, double vb) {
             const double moment = p.contact_height_m * 0.5 * (force_a + force_b) + p.push_height_m * push -
                                   p.com_height_m * p.mass_kg * (vb - va) / step_s;
-            return moment / (p.mass_kg * gravity_mps2);
+            return moment / (p.mass_kg * plant::gravity_mps2);
         };
         const Vector pressure = to_base({reach(a.push_force_x, a.contact_force_x, b.contact_force_x, a.vx, b.vx),
                                          reach(a.push_force_y, a.contact_force_y, b.contact_force_y, a.vy, b.vy)},
                                         b.theta);
-        // The lines between wheels lie R/2 from the centre, opposite to the wheels.
         double farthest = 0.0;
-        for (int wheel = 0; wheel < 3; ++wheel) {
-            farthest = std::max(farthest, -(wheel_cos[wheel] * pressure.x + wheel_sin[wheel] * pressure.y));
+        for (int wheel = 0; wheel < wheel_count; ++wheel) {
+            const plant::Side side = plant::side_after<wheel_count>(wheel);
+            farthest = std::max(farthest, side.cos * pressure.x + side.sin * pressure.y);
         }
-        return 1.0 - farthest / (0.5 * p.wheel_distance_m);
+        return 1.0 - farthest / (plant::Azimuths<wheel_count>::side_distance * p.wheel_distance_m);
     }
 
     // How many contacts there were, the largest force of the first and the speed after it.
@@ -254,7 +253,7 @@ private:
         bool reacted = false;
         for (std::size_t i = 0; i < count_; ++i) {
             const Sample &s = s_[i];
-            for (int wheel = 0; wheel < 3; ++wheel) {
+            for (int wheel = 0; wheel < wheel_count; ++wheel) {
                 sensed = std::max(sensed, std::fabs(s.sensed_torque[wheel]));
                 motor = std::max(motor, std::fabs(s.motor_torque[wheel]));
             }
@@ -327,12 +326,12 @@ private:
 
     void peak_torques() {
         double any = 0.0;
-        double positive[3];
-        double negative[3];
-        std::fill_n(positive, 3, -std::numeric_limits<double>::infinity());
-        std::fill_n(negative, 3, -std::numeric_limits<double>::infinity());
+        double positive[wheel_count];
+        double negative[wheel_count];
+        std::fill_n(positive, wheel_count, -std::numeric_limits<double>::infinity());
+        std::fill_n(negative, wheel_count, -std::numeric_limits<double>::infinity());
         for (std::size_t i = start_; i < count_; ++i) {
-            for (int wheel = 0; wheel < 3; ++wheel) {
+            for (int wheel = 0; wheel < wheel_count; ++wheel) {
                 const double torque = s_[i].wheel_torque[wheel];
                 any = std::max(any, std::fabs(torque));
                 if (s_[i].time_s <= contact_s_ + GWB_PEAK_TORQUE_WINDOW_S) {
@@ -349,17 +348,15 @@ private:
         // The torque that the impact makes at a resting wheel: T = -J^-T F.
         const Vector force = true_impulse();
         const double moment = point.x * force.y - point.y * force.x;
-        double torque[3];
+        double torque[wheel_count];
         double largest = 0.0;
-        for (int wheel = 0; wheel < 3; ++wheel) {
-            const auto azimuth = math::sincos(static_cast<double>(wheel) * 2.0 * pi / 3.0);
-            const double rolling = -azimuth.sin * force.x + azimuth.cos * force.y;
-            torque[wheel] =
-                -parameters_.wheel_radius_m * (2.0 / 3.0 * rolling + moment / (3.0 * parameters_.wheel_distance_m));
+        for (int wheel = 0; wheel < wheel_count; ++wheel) {
+            torque[wheel] = -plant::balancing_torque<wheel_count>(
+                wheel, parameters_.wheel_radius_m, parameters_.wheel_distance_m, force.x, force.y, moment);
             largest = std::max(largest, std::fabs(torque[wheel]));
         }
         double peak = -std::numeric_limits<double>::infinity();
-        for (int wheel = 0; wheel < 3; ++wheel) {
+        for (int wheel = 0; wheel < wheel_count; ++wheel) {
             if (std::fabs(torque[wheel]) >= loaded_share * largest) {
                 peak = std::max(peak, torque[wheel] > 0.0 ? positive[wheel] : negative[wheel]);
             }

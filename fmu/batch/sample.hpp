@@ -6,16 +6,19 @@
 #include <type_traits>
 
 #include "controller_variables.hpp"
+#include "plant_parameters.hpp"
 #include "testbed_variables.hpp"
 
 namespace giveway::batch {
+
+inline constexpr int wheel_count = plant::table_wheels;
 
 // Names as in the variable tables, SI units.
 struct Sample {
     double time_s;
     // testbed.truth
     double x, y, theta, vx, vy;
-    double wheel_torque[3], motor_torque[3];
+    double wheel_torque[wheel_count], motor_torque[wheel_count];
     double contact_force, contact_force_x, contact_force_y;
     double contact_base_x, contact_base_y;
     double contact_impulse_x, contact_impulse_y;
@@ -24,7 +27,7 @@ struct Sample {
     double bumper_compression;
     double tip_margin;
     // testbed
-    double sensed_torque[3];
+    double sensed_torque[wheel_count];
     double push_force_x, push_force_y;
     double energy_stored, energy_work_in, energy_dissipated, energy_residual;
     // controller

@@ -50,6 +50,7 @@ static int refused(const gwb_spec_t *spec, const char *text) {
 
 static void test_tables(void) {
     CHECK(strlen(gwb_version()) > 0);
+    CHECK(gwb_gravity() == 9.81);
     CHECK(strlen(gwb_token(GWB_CONTROLLER)) > 0);
     CHECK(strcmp(gwb_token(GWB_CONTROLLER), gwb_token(GWB_TESTBED)) != 0);
     CHECK(gwb_token(GWB_MODEL_COUNT) == NULL);
