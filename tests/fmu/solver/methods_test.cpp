@@ -27,6 +27,7 @@ struct Smooth : HybridSystem {
 struct Pendulum final : HybridSystem {
     int impacts = 0;
     double last_impact_s = 0.0;
+    double last_event_s = -1.0; // an impact, or the way back out of it
     [[nodiscard]] int state_count() const override { return 2; }
     [[nodiscard]] int event_count() const override { return 1; }
     void rhs(double, const double *x, double *rate) override {
@@ -42,6 +43,7 @@ struct Pendulum final : HybridSystem {
     }
     void indicators(double, const double *x, double *value) override { value[0] = x[0]; }
     void transition(double time_s, double *x, const int *fired) override {
+        last_event_s = time_s;
         if (fired[0] < 0) {
             x[0] = 0.0;
             x[1] *= -0.5;
@@ -121,6 +123,43 @@ TEST_P(EveryMethod, LocatesEventsAndStartsFreshThere) {
     EXPECT_NEAR(integrator.state()[0], 0.125 * std::sin(10.0 - 2.5 * M_PI), 1e-7);
     EXPECT_EQ(integrator.time(), 10.0);
     EXPECT_GE(integrator.statistics().events, 3);
+}
+
+TEST_P(EveryMethod, CountsOnFromACheckpointAndTellsTheLastEvent) {
+    Pendulum pendulum;
+    const double start[2] = {1.0, 0.0};
+    HybridIntegrator integrator;
+    ASSERT_TRUE(integrator.create(pendulum, 0.0, start, options(1e-6)));
+    constexpr int rows = 100;
+    for (int row = 1; row <= rows; ++row) {
+        EXPECT_EQ(integrator.last_event_time(), pendulum.last_event_s);
+        ASSERT_TRUE(integrator.advance(0.1 * row));
+    }
+    EXPECT_EQ(pendulum.impacts, 3);
+    const auto counted = integrator.statistics();
+    // Each row takes a step, and each step asks for the rate.
+    EXPECT_GE(counted.steps, rows);
+    EXPECT_LE(counted.steps, counted.rhs_calls);
+    EXPECT_GE(counted.events, 3);
+
+    const double state[2] = {integrator.state()[0], integrator.state()[1]};
+    HybridIntegrator again;
+    ASSERT_TRUE(again.resume(pendulum, integrator.checkpoint(), state, options(1e-6)));
+    EXPECT_EQ(again.time(), integrator.time());
+    EXPECT_EQ(again.last_event_time(), integrator.last_event_time());
+    const auto resumed = again.statistics();
+    EXPECT_EQ(resumed.steps, counted.steps);
+    EXPECT_EQ(resumed.rhs_calls, counted.rhs_calls);
+    EXPECT_EQ(resumed.jacobian_calls, counted.jacobian_calls);
+    EXPECT_EQ(resumed.events, counted.events);
+    ASSERT_TRUE(again.advance(20.0));
+    const auto more = again.statistics();
+    EXPECT_GT(more.steps, counted.steps);
+    EXPECT_GT(more.rhs_calls, counted.rhs_calls);
+    EXPECT_GT(more.events, counted.events);
+    const bool has_jacobian = GetParam() == Method::bdf;
+    EXPECT_EQ(counted.jacobian_calls > 0, has_jacobian);
+    EXPECT_EQ(more.jacobian_calls > counted.jacobian_calls, has_jacobian);
 }
 
 TEST_P(EveryMethod, ConvergesWithItsTolerance) {
