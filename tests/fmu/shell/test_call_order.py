@@ -87,6 +87,19 @@ def test_times_of_any_size_are_accepted(lag: Fmu, start: float, added_up: bool) 
     assert len(set(re.findall(r"(-?[\d.e+]+) s\b", lag.last_message))) == 2, lag.last_message
 
 
+@pytest.mark.parametrize(("share", "status"), [(0.9e-6, OK), (-0.9e-6, OK), (1.1e-6, ERROR), (-1.1e-6, ERROR)])
+def test_a_communication_point_may_be_off_by_a_millionth_of_the_step(lag: Fmu, share: float, status: int) -> None:
+    lag.start()
+    assert lag.step(0.0, 1e-3) == OK
+    assert lag.step(1e-3 + share * 1e-3, 1e-3) == status
+
+
+def test_times_that_differ_in_the_last_bit_are_told_apart(lag: Fmu) -> None:
+    assert lag.instantiate()
+    assert lag.setup(math.nextafter(1.0, 2.0), 1.0) == ERROR
+    assert "stop time is 1 s, but must not be before the start time, 1.0000000000000002 s" in lag.last_message
+
+
 def test_steps_that_get_lost_in_rounding_are_refused(lag: Fmu) -> None:
     assert lag.instantiate()
     assert lag.setup(1e9) == OK

@@ -154,3 +154,22 @@ def test_reset_gives_every_variable_its_start_value_back(model: str, version: in
     assert fmu.setup() == OK, fmu.last_message
     assert fmu.snapshot() == fresh
     fmu.free()
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("model", MODELS)
+def test_a_run_after_a_reset_is_the_first_once_more(model: str, version: int, tmp_path: Path) -> None:
+    """Also where the run before ended between two ticks."""
+    step_s = 1e-3 if model == "controller" else 7e-4
+    fmu = Fmu(fmu_path(model, version), version, tmp_path / "fmu")
+    assert fmu.instantiate()
+    ends = []
+    for _ in range(2):
+        assert fmu.setup() == OK, fmu.last_message
+        assert fmu.exit_initialisation() == OK, fmu.last_message
+        for k in range(24):
+            assert fmu.step(k * step_s, step_s) == OK, fmu.last_message
+        ends.append(fmu.snapshot())
+        assert fmu.call("Reset") == OK
+    assert ends[0] == ends[1]
+    fmu.free()
