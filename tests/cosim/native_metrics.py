@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import xarray
-from giveway import batch
 from giveway.base import native
 from giveway.robot.variables import table
 from giveway.scenario.body_regions import BodyRegion
+from giveway.simulation import batch_library
 
 DTYPES = {"real": np.float64, "integer": np.int32, "boolean": np.bool_}
 
@@ -57,7 +57,7 @@ def evaluate(
             elif variable.name in parameters[name]:
                 settings.append(Setting(model, variable.reference, float(parameters[name][variable.name])))
     column_array, setting_array = (Column * len(columns))(*columns), (Setting * len(settings))(*settings)
-    result = np.zeros(1, dtype=batch._library().result)
+    result = np.zeros(1, dtype=batch_library.library().result)
     one = Traces(
         time_s.ctypes.data,
         ctypes.addressof(column_array),
@@ -70,6 +70,6 @@ def evaluate(
         0.0 if region is None else region.lasting_limit_n,
     )
     status = _library().gwb_evaluate(ctypes.byref(one), ctypes.c_void_p(result.ctypes.data))
-    assert status == batch.OK, result["message"][0].decode()
+    assert status == batch_library.OK, result["message"][0].decode()
     numbers = zip(result["metric"][0].tolist(), result["truth"][0].tolist(), strict=True)
-    return dict(zip((metric.name for metric in batch.native_metrics()), numbers, strict=True))
+    return dict(zip((metric.name for metric in batch_library.native_metrics()), numbers, strict=True))

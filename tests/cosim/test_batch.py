@@ -21,7 +21,8 @@ from giveway.base import native
 from giveway.base.errors import FileError, GivewayError, SimulationError, UnknownNameError
 from giveway.scenario.body_regions import body_region
 from giveway.scenario.scenario import BUMPERS
-from giveway.simulation import metrics
+from giveway.simulation import batch_library, metrics
+from giveway.simulation.native_engine import NativeRuns
 from numpy.typing import NDArray
 
 FORCE, TICK = "testbed.truth.contact_force", "controller.detection.tick"
@@ -91,7 +92,7 @@ def bits(table: xarray.Dataset) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("case", CASES)
 def test_every_trace_has_the_bits_of_the_co_simulation(case: str) -> None:
-    fmus, native_run = giveway.run(CASES[case]), batch.run(CASES[case])
+    fmus, native_run = giveway.run(CASES[case]), giveway.run(CASES[case], engine="native")
     assert native_run.traces.identical(fmus.traces)  # names, types, labels, times
     assert bits(native_run.traces) == bits(fmus.traces)
     assert native_run.metrics == fmus.metrics
@@ -319,7 +320,7 @@ def test_a_library_of_another_table_is_refused(monkeypatch: pytest.MonkeyPatch, 
     changed = tmp_path / "testbed.variables.toml"
     changed.write_text(text.replace('name = "slider.mass"', 'name = "slider.weight"'), encoding="utf-8")
     monkeypatch.setattr(native, "variables", lambda model: changed if model == "testbed" else controller)
-    batch._load.cache_clear()  # as in a new process
+    batch_library._load.cache_clear()  # as in a new process
     with pytest.raises(FileError, match=r"another variable table: testbed\.slider\.weight differs"):
         batch.run(short())
 
@@ -405,14 +406,14 @@ def endless() -> giveway.Scenario:
 
 def test_ctrl_c_keeps_every_row_of_a_run_that_was_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     ended: list[tuple[int, float]] = []
-    execute = batch._Batch.execute
+    execute = NativeRuns.execute
 
-    def observed(self: batch._Batch, *arguments: Any) -> bool:
+    def observed(self: NativeRuns, *arguments: Any) -> bool:
         interrupted = execute(self, *arguments)
         ended.append((int(self.results["rows"][0]), float(self.results["time_s"][0])))
         return interrupted
 
-    monkeypatch.setattr(batch._Batch, "execute", observed)
+    monkeypatch.setattr(NativeRuns, "execute", observed)
     scenario = short(duration_s=250.0)
     result = batch.run(scenario, interrupt_once())
     ((rows, at_s),) = ended

@@ -158,7 +158,7 @@ def faulty(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     def broken(*_: object) -> None:
         raise RuntimeError("first line\nsecond line")
 
-    monkeypatch.setattr("giveway.run", broken)
+    monkeypatch.setattr("giveway.simulation.runner.run", broken)
     return ["run", "motionless", "--out", str(tmp_path / "out")]
 
 
@@ -200,7 +200,7 @@ def test_an_error_of_the_system_names_the_file(faulty: list[str], monkeypatch: p
     def unplugged(*_: object) -> None:
         raise FileNotFoundError(2, "…", "/media/stick/table")
 
-    monkeypatch.setattr("giveway.run", unplugged)
+    monkeypatch.setattr("giveway.simulation.runner.run", unplugged)
     code, error = run_quietly(faulty)
     assert code == 1
     assert error.startswith("giveway: /media/stick/table: No such file or directory; details: ")

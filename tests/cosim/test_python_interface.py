@@ -31,12 +31,14 @@ answers: giveway.Answers = study.run("out/latch", threads=2, progress=False)
 for one in answers.sensitivities():
     print(one.goal, one.quantity, one.main)
 table = giveway.batch.run(giveway.read_scenario("case.toml")).traces
+again = giveway.run(giveway.read_scenario("case.toml"), engine="native")
 """
 WRONG_LINES = {
     'study.collision("front", sped=0.5)': "sped",
     'study.vary("bumper", low="a")': "low",
     'giveway.Study("latch", bumper="rubber", duration=1.0)': "bumper",
     'study.designs("sobool")': "designs",
+    'giveway.run(giveway.read_scenario("case.toml"), engine="fast")': "engine",
     'study.objective("detection time", goal="smaller")': "goal",
 }
 

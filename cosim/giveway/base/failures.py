@@ -12,8 +12,8 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
-import giveway
 from giveway.base.errors import one_line, system_words
+from giveway.base.version import VERSION
 
 __all__ = ["DEBUG_VARIABLE", "unforeseen"]
 
@@ -38,7 +38,7 @@ def _words(error: Exception) -> str:
 def _write_details(error: Exception, arguments: Sequence[str]) -> Path | None:
     """The file with what helps to find the cause; None if there is no place for it."""
     text = "\n".join([
-        f"giveway {giveway.__version__}, Python {sys.version}, {platform.platform()}",
+        f"giveway {VERSION}, Python {sys.version}, {platform.platform()}",
         f"giveway {shlex.join(arguments)}",
         "",
         "".join(traceback.format_exception(error)),

@@ -21,16 +21,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import giveway
 from giveway import batch, experiments
 from giveway.base import native
 from giveway.base.errors import FileError
 from giveway.robot.variables import table
 from giveway.scenario.random_collisions import random_collisions
+from giveway.simulation.runner import run
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
+
+    from giveway.scenario.scenario import Scenario
 
 __all__ = [
     "ACCURACY_HEADER",
@@ -78,7 +80,7 @@ class _Way:
         self.rates.append(self.runs / (time.perf_counter() - started))
 
 
-def collision() -> giveway.Scenario:
+def collision() -> Scenario:
     """The collision that is run over and over."""
     scenario = experiments.get("motionless").scenario("magnetic")
     return dataclasses.replace(scenario, duration_s=SIMULATED_S)
@@ -87,7 +89,7 @@ def collision() -> giveway.Scenario:
 def measure(repeats: int) -> list[tuple[str, ...]]:
     """Rows of `HEADER`: runs per second with all metrics and no traces, best and median of ``repeats``."""
     scenario = collision()
-    giveway.run(scenario)  # unpacks the FMUs, imports FMPy
+    run(scenario)  # unpacks the FMUs, imports FMPy
     ways = [
         _Way("FMPy loop", FMPY_RUNS, functools.partial(_fmpy_loop, scenario)),
         *(_fixed_or_exact(scenario, "event-exact", None, threads) for threads in (1, 2)),
@@ -114,14 +116,14 @@ def measure(repeats: int) -> list[tuple[str, ...]]:
     return rows
 
 
-def _fmpy_loop(scenario: giveway.Scenario) -> tuple[float, float]:
+def _fmpy_loop(scenario: Scenario) -> tuple[float, float]:
     for _ in range(FMPY_RUNS):
-        result = giveway.run(scenario)
+        result = run(scenario)
     peak_n = result.metric("peak force of the run").value
     return np.nan if peak_n is None else peak_n, 0.0
 
 
-def _fixed_or_exact(scenario: giveway.Scenario, method: str, lanes: int | None, threads: int) -> _Way:
+def _fixed_or_exact(scenario: Scenario, method: str, lanes: int | None, threads: int) -> _Way:
     runs = EXACT_RUNS if method == "event-exact" else FIXED_RUNS
     prepared = batch.Prepared([scenario] * runs)
     name = method if lanes is None else f"{method}, {lanes} lane{'s' if lanes > 1 else ''}"

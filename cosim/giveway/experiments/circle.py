@@ -211,19 +211,19 @@ def _mismatched(
 
 def reproduce(effort: Effort) -> Findings:
     """The paper's 5.4: a round with pushes, random pushes, an hour undisturbed, and rollers unlike the model."""
-    from giveway import batch
     from giveway.report import circle as drawn
     from giveway.simulation.push_response import responses
+    from giveway.simulation.runner import run
 
     pushes = effort.pick(len(BY_HAND), 2)
-    runs = {name: batch.run(scenario(estimator=name, pushes=pushes)) for name in (FULL, PAPER)}
+    runs = {name: run(scenario(estimator=name, pushes=pushes), engine="native") for name in (FULL, PAPER)}
     schedule = scenario(pushes=pushes).push
     assert isinstance(schedule, Pushes)
     found = {
         name: responses(schedule.pushes, run.traces["time"].values, _trace_of(run.traces)) for name, run in runs.items()
     }
     effort.progress(0.1)
-    undisturbed = batch.run(dataclasses.replace(scenario(pushes=1), push=None, duration_s=ROUND_S))
+    undisturbed = run(dataclasses.replace(scenario(pushes=1), push=None, duration_s=ROUND_S), engine="native")
     lag_m = float(_off_path(undisturbed.traces, "testbed.truth").max())
     reference_m = float(_off_path(runs[FULL].traces, "controller.reference")[-1])
     rows = _rows_of_the_round(found, lag_m, reference_m)

@@ -52,16 +52,16 @@ def scenario(bumper: str, duration_s: float = DURATION_S, *, robot: Path | None 
 
 def reproduce(effort: Effort) -> Findings:
     """5.2's rows and Fig. 10."""
-    from giveway import batch
     from giveway.experiments.figures.impact_response import draw
     from giveway.experiments.noise_range import noise_note
     from giveway.report import BUMPER_LABELS
+    from giveway.simulation.runner import run
 
     results: dict[str, Result] = {}
     notes = []
     for number, (bumper, label) in enumerate(LABELS.items()):
         effort.progress(number / len(LABELS))
-        results[bumper] = batch.run(scenario(bumper))
+        results[bumper] = run(scenario(bumper), engine="native")
         seeds = effort.pick(SEEDS, FEW_SEEDS)
         notes.append(
             noise_note(f"Detection time, {label}", scenario(bumper, IMPACT_S), "detection time", seeds, effort)

@@ -51,15 +51,15 @@ def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | No
 
 def reproduce(effort: Effort) -> Findings:
     """5.3's rows and Fig. 11."""
-    from giveway import batch
     from giveway.experiments.figures.reversal import draw
     from giveway.experiments.noise_range import noise_note
     from giveway.report import BUMPER_LABELS
+    from giveway.simulation.runner import run
 
     bumpers = ("spring", "magnetic")
-    while_still = [batch.run(motionless.scenario(bumper, motionless.IMPACT_S)) for bumper in bumpers]
+    while_still = [run(motionless.scenario(bumper, motionless.IMPACT_S), engine="native") for bumper in bumpers]
     effort.progress(0.2)
-    result = batch.run(scenario(PAPER_BUMPER))
+    result = run(scenario(PAPER_BUMPER), engine="native")
     effort.progress(0.5)
     seeds = effort.pick(motionless.SEEDS, motionless.FEW_SEEDS)
     note = noise_note("Detection time", scenario(PAPER_BUMPER, REVERSAL_S), "detection time", seeds, effort)

@@ -207,14 +207,14 @@ def _reach(testbed: Mapping[str, Value], scene: Scene, ahead: NDArray[np.float64
 
 def reproduce(effort: Effort) -> Findings:
     """Detection, location and force of each scene, and the scenes from above."""
-    from giveway import batch
     from giveway.experiments.figures.scene_view import scenes_figure
+    from giveway.simulation.runner import run
 
     found: dict[str, Result] = {}
     rows: list[Row] = []
     for index, name in enumerate(SCENES):
-        found[name] = batch.run(scenario(name))
-        changed = {variant: batch.run(_varied(scenario(name), variant)) for variant in VARIANTS}
+        found[name] = run(scenario(name), engine="native")
+        changed = {variant: run(_varied(scenario(name), variant), engine="native") for variant in VARIANTS}
         rows += _rows(name, found[name], changed)
         effort.progress((index + 1) / len(SCENES))
     picture = Picture(

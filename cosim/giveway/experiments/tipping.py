@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway import batch
 from giveway.experiments import Experiment, motionless
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.simulation.runner import run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ class _Run:
     """A run from its first contact to `WINDOW_S` later."""
 
     def __init__(self, case: Scenario) -> None:
-        self.result: Result = batch.run(case)
+        self.result: Result = run(case, engine="native")
         time = self.result.traces["time"].to_numpy()
         contact = float(self._all("truth.first_contact_time")[-1])
         self._rows = (time >= contact) & (time <= contact + WINDOW_S)

@@ -8,17 +8,18 @@ import hashlib
 import importlib.metadata
 import platform
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import xarray
 
-import giveway
 from giveway.base import native
+from giveway.base.errors import UnknownNameError
+from giveway.base.version import VERSION
 from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Pushes, TimedPush
 from giveway.scenario.plan_limits import check_plan_of
-from giveway.simulation import metrics
-from giveway.simulation.master import Progress, Record, simulate
+from giveway.simulation import master, metrics, native_engine
+from giveway.simulation.master import Progress, Record
 from giveway.simulation.push_response import push_metrics, responses_of
 from giveway.simulation.result import SCHEMA_VERSION, Result
 from giveway.simulation.run_warnings import RunWarning, warnings_of
@@ -26,16 +27,20 @@ from giveway.simulation.run_warnings import RunWarning, warnings_of
 if TYPE_CHECKING:
     from giveway.scenario.scenario import Scenario
 
-__all__ = ["judge", "run"]
+__all__ = ["ENGINES", "Engine", "judge", "run"]
 
 _LIBRARIES = ("fmpy", "numpy", "xarray", "pyarrow")
+Engine = Literal["fmu", "native"]
+ENGINES = {"fmu": master.simulate, "native": native_engine.simulate}
 EXCHANGE_ORDER = "sequential: sensors, controller, plant"
 
 
-def run(scenario: Scenario, progress: Progress | None = None) -> Result:
-    """Co-simulate ``scenario``; see `giveway.run`."""
+def run(scenario: Scenario, progress: Progress | None = None, engine: Engine = "fmu") -> Result:
+    """Run ``scenario``; see `giveway.run`."""
+    if engine not in ENGINES:
+        raise UnknownNameError("engine", engine, ENGINES)
     check_plan_of(scenario)
-    return judge(scenario, simulate(scenario, progress))
+    return judge(scenario, ENGINES[engine](scenario, progress))
 
 
 def judge(scenario: Scenario, record: Record) -> Result:
@@ -113,7 +118,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
         "seed": effective["testbed"]["electronics.seed"],
         "solver": _group(effective["testbed"], "solver."),
         "versions": {
-            "giveway": giveway.__version__,
+            "giveway": VERSION,
             "python": platform.python_version(),
             **{name: importlib.metadata.version(name) for name in _LIBRARIES},
         },

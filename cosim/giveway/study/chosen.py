@@ -84,12 +84,12 @@ def simulate(setup: Setup, table: RunTable, folder: Path, design: int) -> dict[s
 
     Returns the results by the collision's name.
     """
-    from giveway import batch
     from giveway.base.files import replace_folder
+    from giveway.simulation.runner import run
 
     results: dict[str, Result] = {}
     for number, case in enumerate(setup.cases):
-        results[case.name] = batch.run(scenario_of_run(setup, table, design, 0, number))
+        results[case.name] = run(scenario_of_run(setup, table, design, 0, number), engine="native")
     for name, result in results.items():
         with replace_folder(folder / CHOSEN / f"design-{design}" / name.replace("/", "-").replace(" ", "-")) as into:
             result.write_into(into)

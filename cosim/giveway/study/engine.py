@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.base.version import VERSION
+from giveway.simulation.batch_library import library
 from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
@@ -313,15 +315,11 @@ class _Runner:
 
 def _shared(setup: Setup) -> dict[str, Any]:
     """What decides every run, besides its own numbers: the code and the method."""
-    import giveway
-    from giveway import batch
-
-    library = batch._library()
-    model = next(iter(library.models.values()))
+    models = library().models
     return {
-        "giveway": giveway.__version__,
-        "library_sha256": model.sha256,
-        "tokens": {name: one.token for name, one in library.models.items()},
+        "giveway": VERSION,
+        "library_sha256": next(iter(models.values())).sha256,
+        "tokens": {name: one.token for name, one in models.items()},
         "method": setup.method,
         "plant_step_s": setup.plant_step_s,
         "metrics": [name for name, _ in result_columns()],

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway import batch
 from giveway.base.errors import SimulationError
+from giveway.simulation.batch_library import MESSAGE_SIZE, SETTING, SPEC, THREADS_MAX, ProgressCounts, library, options
 from giveway.study.runs import RunTable
 
 if TYPE_CHECKING:
@@ -20,20 +20,20 @@ __all__ = ["NativePart", "default_threads"]
 
 def default_threads() -> int:
     """One per processor that this process may use."""
-    return min(len(os.sched_getaffinity(0)), batch.THREADS_MAX)
+    return min(len(os.sched_getaffinity(0)), THREADS_MAX)
 
 
 class NativePart:
     """Runs of one part. ``values`` has shape (runs, columns), ``case`` shape (runs,)."""
 
     def __init__(self, table: RunTable, values: NDArray[np.float64], case: NDArray[np.int64]) -> None:
-        self._library = batch._library()
+        self._library = library()
         count, used = len(values), table.used
-        self._settings = np.zeros((count, len(used)), dtype=batch._SETTING)
+        self._settings = np.zeros((count, len(used)), dtype=SETTING)
         self._settings["model"] = table.columns.model[used]
         self._settings["reference"] = table.columns.reference[used]
         self._settings["value"] = values[:, used]
-        self._specs = np.zeros(count, dtype=batch._SPEC)
+        self._specs = np.zeros(count, dtype=SPEC)
         self._specs["setting_count"] = len(used)
         self._specs["settings"] = self._settings.ctypes.data + np.arange(count) * self._settings.strides[0]
         for index, one in enumerate(table.cases):
@@ -53,12 +53,12 @@ class NativePart:
 
     def start(self, threads: int, method: str, plant_step_s: float | None) -> None:
         """Begin; `finish` must follow, whatever happens. A call of its own, so that Ctrl-C cannot lose the handle."""
-        message = ctypes.create_string_buffer(batch.MESSAGE_SIZE)
-        options = ctypes.byref(batch._options(threads, method, None, plant_step_s))
+        message = ctypes.create_string_buffer(MESSAGE_SIZE)
+        chosen = ctypes.byref(options(threads, method, None, plant_step_s))
         started = self._library.start(
             self._specs.ctypes.data,
             len(self._specs),
-            options,
+            chosen,
             self.results.ctypes.data,
             ctypes.byref(self._handle),
             message,
@@ -68,7 +68,7 @@ class NativePart:
 
     def wait(self, timeout_s: float) -> tuple[bool, int]:
         """Whether all is done after at most ``timeout_s``, and how many runs are."""
-        progress: Any = batch._Progress()
+        progress: Any = ProgressCounts()
         done = bool(self._library.wait(self._handle, timeout_s, ctypes.byref(progress)))
         return done, int(progress.runs_done)
 

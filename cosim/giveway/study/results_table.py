@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway import batch
 from giveway.base.errors import FileError
+from giveway.simulation.batch_library import STATUSES, native_metrics
 from giveway.simulation.metric_names import former_name
 from giveway.simulation.run_warnings import codes_of
 
@@ -29,7 +29,7 @@ def result_columns() -> list[tuple[str, str]]:
     A plant step of 0: that run was done event-exact, whatever the study's method.
     """
     found = [("simulated", "s"), ("plant step", "s")]
-    for metric in batch.native_metrics():
+    for metric in native_metrics():
         found.append((metric.name, metric.unit))
         if metric.has_truth:
             found.append((f"{metric.name} (true)", metric.unit))
@@ -58,13 +58,13 @@ class Outcomes:
     def take_native(self, where: NDArray[np.int64], results: NDArray[Any]) -> None:
         """Results of the library belong to the runs ``where``."""
         columns = [results["time_s"], results["plant_step_s"]]
-        for index, metric in enumerate(batch.native_metrics()):
+        for index, metric in enumerate(native_metrics()):
             columns.append(results["metric"][:, index])
             if metric.has_truth:
                 columns.append(results["truth"][:, index])
         self.numbers[where] = np.stack(columns, axis=1)
         for index, status, message in zip(where, results["status"].tolist(), results["message"].tolist(), strict=True):
-            self.status[index], self.message[index] = batch.STATUSES[status], message.decode()
+            self.status[index], self.message[index] = STATUSES[status], message.decode()
 
     def take_stored(self, where: NDArray[np.int64], path: Path, rows: NDArray[np.int64]) -> None:
         """Rows of a stored part belong to the runs ``where``."""

@@ -19,11 +19,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import giveway
 from giveway import experiments
 from giveway.base import native
 from giveway.base.errors import GivewayError, UnknownNameError, one_line
 from giveway.base.files import write_text
+from giveway.base.version import VERSION
 from giveway.experiments.reproduction.findings import Effort, Findings, Row
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def _manifest(full: bool, threads: int) -> dict[str, Any]:
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "effort": "full" if full else "reduced",
         "threads": threads,
-        "versions": {"giveway": giveway.__version__, "python": platform.python_version()},
+        "versions": {"giveway": VERSION, "python": platform.python_version()},
         "platform": platform.platform(),
         "robot": sha256(native.robot()),
         "library": sha256(native.batch_library()),
