@@ -63,3 +63,18 @@ def test_progress_ends_with_the_run(chosen: Engine) -> None:
     seen: list[tuple[float, float]] = []
     giveway.run(short(duration_s=0.3), lambda now_s, end_s: seen.append((now_s, end_s)), engine=chosen)
     assert seen[-1] == pytest.approx((0.3, 0.3))
+
+
+def test_the_command_line_has_both(cli: Cli, tmp_path: Path) -> None:
+    for name in ("fmu", "native"):
+        cli("run", "motionless", "--duration", "0.3", "--engine", name, "--out", name)
+    results = {name: giveway.load(tmp_path / name) for name in ("fmu", "native")}
+    assert_same(results["fmu"], results["native"])
+    assert results["native"].manifest["fmus"]["testbed"]["file"] == "giveway_batch.so"
+    assert results["fmu"].manifest["fmus"]["testbed"]["file"] == "giveway_testbed_fmi3.fmu"
+
+
+def test_the_command_line_refuses_another(cli: Cli, tmp_path: Path) -> None:
+    done = cli("run", "motionless", "--engine", "fast", "--out", "run", code=2)
+    assert done.stderr == "giveway: --engine: fast is unknown; allowed: fmu, native\n"
+    assert not (tmp_path / "run").exists()

@@ -19,6 +19,7 @@ FORMER_NAMES = MappingProxyType({
     "bench_solvers": "bench.solvers",
     "body_regions": "scenario.body_regions",
     "calibration": "identification",
+    "calibration.command": "identification.calibrated_robot",
     "checks": "base.checks",
     "drivetrain_analysis": "drivetrain.analysis",
     "drivetrain_record": "drivetrain.record",

@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import typer
 
-if TYPE_CHECKING:
-    from giveway.simulation.master import Progress
-    from giveway.simulation.result import Result
-
 __all__ = [
+    "FAILED",
     "INTERRUPTED",
+    "WRONG_INPUT",
     "print_columns",
-    "print_results",
     "print_warnings",
     "progress_bar",
     "progress_bars",
     "working",
 ]
 
-INTERRUPTED = 130  # exit code of a command that Ctrl-C ended
+FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130  # exit codes; the last: Ctrl-C ended it
 
 
 def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
@@ -45,22 +41,6 @@ def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str,
     console.print(table)
 
 
-def print_results(name: str, results: Mapping[str, Result]) -> None:
-    """The metrics of ``results``, a column for each bumper, with pushes above and warnings below."""
-    from giveway.simulation.summary import false_detection_line, push_rows, table_rows, warning_lines
-
-    for result in results.values():
-        pushes = push_rows(result)
-        if pushes:
-            print_columns(f"{name}: how each push was felt (true)", pushes[0], pushes[1:])
-            line = false_detection_line(result)
-            if line:
-                typer.echo(f"{line}\n")
-    header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
-    print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
-    print_warnings(warning_lines(results))
-
-
 def print_warnings(lines: Sequence[str]) -> None:
     """What happened otherwise than asked, one line each below "Warnings"; nothing if nothing did."""
     if lines:
@@ -72,7 +52,7 @@ def print_warnings(lines: Sequence[str]) -> None:
 
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Progress | None]:
+def progress_bar(title: str) -> Iterator[Callable[[float, float], None] | None]:
     """A bar on stderr at a terminal, for (simulated time, duration) in s; nothing elsewhere."""
     if not sys.stderr.isatty():
         yield None

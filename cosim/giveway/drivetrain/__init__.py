@@ -3,22 +3,28 @@
 `record` and `pictures` are what the command writes.
 """
 
-from giveway.drivetrain.model import (
-    ENVIRONMENT,
-    LOADS,
-    MOTOR,
-    SERVO_PERIOD_S,
-    Drivetrain,
-    Servo,
-    closed_loop,
-    describe,
-    gear_friction,
-    loop_gain,
-    plant,
-    read,
-    response,
-    sampled_plant,
-)
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from giveway.drivetrain.model import (
+        ENVIRONMENT,
+        LOADS,
+        MOTOR,
+        SERVO_PERIOD_S,
+        Drivetrain,
+        Servo,
+        closed_loop,
+        describe,
+        gear_friction,
+        loop_gain,
+        plant,
+        read,
+        response,
+        sampled_plant,
+    )
 
 __all__ = [
     "ENVIRONMENT",
@@ -36,3 +42,10 @@ __all__ = [
     "response",
     "sampled_plant",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Handed on when asked for: `command` is imported at every start, and has to be light."""
+    if name in __all__:
+        return getattr(importlib.import_module(f"{__name__}.model"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""The commands `giveway fmu check`, `info` and `run`: for any FMU, not only ours."""
+"""The commands `giveway fmu check`, `info` and `run`, for any FMU, and `giveway ssp`, for ours."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Annotated
 import typer
 
 from giveway.base.errors import GivewayError
-from giveway.base.terminal import print_columns, progress_bar
+from giveway.base.options import RobotOption
+from giveway.base.terminal import FAILED, print_columns, progress_bar
 from giveway.fmu_tools.limits import Limits
 
-__all__ = ["fmu_app"]
+__all__ = ["fmu_app", "ssp"]
 
-FAILED = 1  # exit code of a check that found a fault, and of a run that failed on its way
 LONGEST_TABLE = 2000  # rows
 SCHEMA_VERSION = 1  # of `fmu check --json`
 
@@ -167,3 +167,18 @@ def run(
 def _failed(message: GivewayError | str) -> typer.Exit:
     typer.echo(f"giveway: {message}", err=True)
     return typer.Exit(FAILED)
+
+
+def ssp(
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.ssp", help="File to write.")],
+    robot: RobotOption = None,
+    sequential: Annotated[
+        bool, typer.Option("--sequential", help="For a tool that exchanges in our order: keeps the command delay.")
+    ] = False,
+) -> None:
+    """Write controller and testbed as a System Structure Package (SSP 1.0), with a parameter set for each bumper."""
+    from giveway.fmu_tools.ssp import write_ssp
+    from giveway.robot.robot_file import read_robot
+
+    write_ssp(out, None if robot is None else read_robot(robot), sequential=sequential)
+    typer.echo(f"Written: {out}")

@@ -1,80 +1,28 @@
-"""`giveway calibrate`: from log files to a new robot file with a residual plot beside it."""
+"""The command `giveway calibrate`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
-from giveway.base.errors import GivewayError
-from giveway.base.files import check_file, replace_files
-from giveway.identification.motion_log import MotionLog, read_log
-from giveway.identification.roller_friction import Calibration, Estimate
-from giveway.identification.roller_friction import calibrate as calibrate_rollers
-from giveway.robot.changes import NewValue, changed_robot
-from giveway.robot.robot_file import read_robot
+import typer
 
-__all__ = ["calibrate_robot", "table_rows"]
+from giveway.base.terminal import print_columns
 
-COULOMB, SLOPE = "roller.coulomb_torque", "roller.tanh_slope"
-HASH_DIGITS = 12  # of sha256: enough to tell logs apart
-DIGITS = 5  # more than any log can tell
+__all__ = ["calibrate"]
 
 
-def calibrate_robot(logs: Sequence[Path], robot: Path, out: Path) -> tuple[Calibration, tuple[Path, Path]]:
-    """Fit the roller friction of ``robot`` to ``logs``; returns it and the two files that were written.
+def calibrate(
+    logs: Annotated[
+        list[Path], typer.Argument(metavar="LOG.csv...", help="Logs of free motion: arcs, without contact.")
+    ],
+    robot: Annotated[Path, typer.Option("--robot", metavar="FILE", help="Robot file (TOML) of the robot of the logs.")],
+    out: Annotated[Path, typer.Option("--out", metavar="NEW.toml", help="The new robot file; NEW.png lies beside it.")],
+) -> None:
+    """Fit the roller friction to logs of wheel angles and torques; write a new robot file and a residual plot."""
+    from giveway.identification.calibrated_robot import calibrate_robot, table_rows
 
-    Everything is read, checked and fitted before anything is written: ``out``, the robot file with B_r and alpha
-    replaced and everything else as it was, and the residual plot under the same name with the ending .png.
-    """
-    if out.suffix != ".toml":
-        raise GivewayError("--out", out, "a file that ends with .toml")
-    if out.resolve() == robot.resolve():
-        raise GivewayError("--out", out, "another file than --robot: the old values are worth keeping")
-    picture = out.with_suffix(".png")
-    for path in (out, picture):
-        check_file(path)
-    parameters = read_robot(robot)
-    read = [read_log(path, parameters) for path in logs]
-    calibration = calibrate_rollers(read, parameters)
-    text = changed_robot(robot, _new_values(calibration, read))
-    from giveway.identification.figures import write_residuals
-
-    with replace_files(picture, out) as (new_picture, new_robot):
-        write_residuals(new_picture, calibration)
-        new_robot.write_text(text, encoding="utf-8")
-    return calibration, (out, picture)
-
-
-def table_rows(calibration: Calibration) -> list[tuple[str, str, str, str]]:
-    """The found numbers as text: name, value, interval, unit."""
-    rows = [
-        _row("B_r", calibration.coulomb_torque_nm, "N m"),
-        _row("alpha", calibration.tanh_slope_s_rad, "s/rad"),
-    ]
-    for log in calibration.logs:
-        offsets = " ".join(f"{offset:.3f}" for offset in log.offset_nm)
-        rows.append((f"tare, {log.name}", offsets, "", "N m"))
-    rows.append(("variance explained", f"{100.0 * calibration.explained:.2f}", "", "%"))
-    return rows
-
-
-def _row(name: str, estimate: Estimate, unit: str) -> tuple[str, str, str, str]:
-    return name, f"{estimate.value:.4g}", f"{estimate.low:.4g} to {estimate.high:.4g}", unit
-
-
-def _new_values(calibration: Calibration, logs: Sequence[MotionLog]) -> dict[str, NewValue]:
-    names = ", ".join(f"{log.name} (sha256 {log.sha256[:HASH_DIGITS]})" for log in logs)
-    symbols = {
-        COULOMB: ("B_r", calibration.coulomb_torque_nm, "N m"),
-        SLOPE: ("alpha", calibration.tanh_slope_s_rad, "s/rad"),
-    }
-    return {
-        key: NewValue(
-            value=float(f"{estimate.value:.{DIGITS}g}"),
-            source=f"giveway calibrate: free motion in {names}",
-            confidence="high",
-            provenance="fitted",
-            note=f"{symbol} of (28); 95 % interval {estimate.low:.4g} to {estimate.high:.4g} {unit}",
-        )
-        for key, (symbol, estimate, unit) in symbols.items()
-    }
+    calibration, written = calibrate_robot(logs, robot, out)
+    title = f"Roller friction (28) from {', '.join(log.name for log in calibration.logs)}"
+    print_columns(title, ("", "value", "95 % interval", "unit"), table_rows(calibration))
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")

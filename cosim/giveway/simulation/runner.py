@@ -7,6 +7,7 @@ import datetime
 import hashlib
 import importlib.metadata
 import platform
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -31,7 +32,10 @@ __all__ = ["ENGINES", "Engine", "judge", "run"]
 
 _LIBRARIES = ("fmpy", "numpy", "xarray", "pyarrow")
 Engine = Literal["fmu", "native"]
-ENGINES = {"fmu": master.simulate, "native": native_engine.simulate}
+ENGINES: Mapping[Engine, Callable[[Scenario, Progress | None], Record]] = {
+    "fmu": master.simulate,
+    "native": native_engine.simulate,
+}
 EXCHANGE_ORDER = "sequential: sensors, controller, plant"
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from giveway.base.terminal import INTERRUPTED, print_columns, print_results, progress_bars, working
+from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, working
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
@@ -83,6 +83,7 @@ def study_run(
     design: Annotated[int, typer.Option("--design", metavar="N", help="Number of the design.")],
 ) -> None:
     """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
+    from giveway.report.console import print_results
     from giveway.study.chosen import CHOSEN, simulate
 
     found = _load(folder)

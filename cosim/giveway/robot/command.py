@@ -1,0 +1,27 @@
+"""The command `giveway variables`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from giveway.base.terminal import print_columns
+
+__all__ = ["variables"]
+
+
+def variables(
+    model: Annotated[str, typer.Argument(help="controller, testbed, drivetrain or bumper.")],
+    grep: Annotated[str, typer.Option("--grep", metavar="TEXT", help="Only names or descriptions with TEXT.")] = "",
+) -> None:
+    """List the variables of an FMU: what can be set, its range and unit, and what comes out."""
+    from giveway.base.words import counted
+    from giveway.robot.variables import table
+
+    wanted = grep.lower()
+    chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
+    rows = [(v.name, v.causality, "" if v.start is None else f"{v.start}", v.allowed, v.description) for v in chosen]
+    print_columns(
+        f"{counted(len(chosen), 'variable')} of {model}", ("name", "kind", "start", "allowed", "meaning"), rows
+    )
