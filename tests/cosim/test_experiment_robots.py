@@ -10,8 +10,8 @@ import pytest
 from cosim_helpers import Cli, folder_content
 from giveway import batch
 from giveway.base import native
-from giveway.cli import _scenario
 from giveway.experiments import all_experiments, get
+from giveway.experiments.command import _scenario
 from giveway.experiments.placement import outline_of_robot
 from giveway.fmu_tools.ssp import parameter_set
 from giveway.robot.robot_file import read_robot
