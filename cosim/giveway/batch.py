@@ -15,10 +15,7 @@ import numpy as np
 from giveway.base import native
 from giveway.base.checks import whole
 from giveway.base.errors import GivewayError, UnknownNameError
-from giveway.robot.variables import Value, table
-from giveway.scenario.plan import Rest
-from giveway.scenario.plan_limits import check_plan, limits_of
-from giveway.simulation.batch_library import (
+from giveway.library.batch_library import (
     LANES,
     METHODS,
     OK,
@@ -29,6 +26,9 @@ from giveway.simulation.batch_library import (
     options,
     widest_lanes,
 )
+from giveway.robot.variables import Value, table
+from giveway.scenario.plan import Rest
+from giveway.scenario.plan_limits import check_plan, limits_of
 from giveway.simulation.native_engine import NativeRuns, Trace
 from giveway.simulation.run_warnings import METRICS, codes_of
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from giveway.base import native
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.robot.variables import Value, table
 from giveway.simulation.fmu import Instance, open_fmu
 
@@ -27,7 +28,6 @@ ROBOT = Path(__file__).parents[2] / "robots" / "trikey.toml"
 FACES = ("carrier.position", "carrier.velocity", "plate.position", "plate.velocity")
 FMU_STEP_S = 1e-6  # the FMU moves its faces on by one step: they start behind where they shall be
 TOLERANCE = 1e-8
-GRAVITY_MPS2 = 9.81
 CLOSED_M = 1e-3  # the magnet and the preload rest on an end stop that is much stiffer than this asks
 
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import xarray
 from giveway.base import native
+from giveway.library import batch_library
 from giveway.robot.variables import table
 from giveway.scenario.body_regions import BodyRegion
-from giveway.simulation import batch_library
 
 DTYPES = {"real": np.float64, "integer": np.int32, "boolean": np.bool_}
 

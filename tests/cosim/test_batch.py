@@ -19,9 +19,10 @@ from cosim_helpers import short
 from giveway import batch
 from giveway.base import native
 from giveway.base.errors import FileError, GivewayError, SimulationError, UnknownNameError
+from giveway.library import batch_library
 from giveway.scenario.body_regions import body_region
 from giveway.scenario.scenario import BUMPERS
-from giveway.simulation import batch_library, metrics
+from giveway.simulation import metrics
 from giveway.simulation.native_engine import NativeRuns
 from numpy.typing import NDArray
 

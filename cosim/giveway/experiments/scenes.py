@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from giveway.base.errors import UnknownNameError
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.robot.footprint import controller_outline, hull, wheel_corners
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
 AFTER_S = 6.0  # most of the escape, whose time constant is 1.25 s
-GRAVITY = 9.81
 SIDE_RAD = math.pi / 3.0  # the robot drives with the side between wheels 0 and 1 ahead
 ROLLER_RUBBER_NPM = 1e5  # estimate: the rollers' tread
 FRICTION_ON_FLOOR = 0.5  # estimate: cloth, skin and tyres, sideways
@@ -84,7 +84,7 @@ def _person(region: str, **rest: float | bool | str) -> Scene:
     defaults: dict[str, float | bool | str] = {
         "mass_kg": body.mass_kg,
         "stiffness_npm": body.stiffness_npm,
-        "friction_n": FRICTION_ON_FLOOR * body.mass_kg * GRAVITY,
+        "friction_n": FRICTION_ON_FLOOR * body.mass_kg * GRAVITY_MPS2,
         "region": region,
     }
     return Scene(**(defaults | rest))  # type: ignore[arg-type]
@@ -98,7 +98,7 @@ SCENES: Mapping[str, Scene] = {
         height_m=0.15,
         mass_kg=15.0,
         stiffness_npm=5e4,
-        friction_n=FRICTION_ON_FLOOR * 15.0 * GRAVITY,
+        friction_n=FRICTION_ON_FLOOR * 15.0 * GRAVITY_MPS2,
         edge_rad=math.radians(12.0),
     ),
     "hand": _person(

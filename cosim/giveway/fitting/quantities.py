@@ -17,6 +17,7 @@ import numpy as np
 
 from giveway.base import native
 from giveway.base.errors import GivewayError
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.batch import run_many
 from giveway.experiments import motionless, moving
 from giveway.experiments.placement import has_default_outline
@@ -33,7 +34,7 @@ __all__ = ["QUANTITIES", "Bench", "Quantity", "Values"]
 Values = Mapping[str, float]
 """Values by their path in the robot file."""
 
-PUSH_N = 9.81  # the 1 kg of 5.1
+PUSH_N = 1.0 * GRAVITY_MPS2  # the 1 kg of 5.1
 PUSH_S = (0.2, 0.5, 0.8)  # it comes on after the tare, is there in full, and is read
 STATISTIC, CONTACT_TIME = "controller.detection.statistic", "testbed.truth.first_contact_time"
 SLIDER_SPEED, COUNT = "testbed.truth.slider_speed", "controller.detection.count"

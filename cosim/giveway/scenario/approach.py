@@ -17,6 +17,7 @@ import numpy as np
 
 from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.robot.variables import Value
 from giveway.scenario.plan import Plan, Rest
 from giveway.scenario.stated_contact import StatedContact
@@ -39,7 +40,6 @@ __all__ = [
     "outward_normals",
 ]
 
-GRAVITY = 9.81  # the plant's
 ON_OUTLINE_M = 1e-3  # robot files state corners to micrometres; users state points to millimetres
 STILL_MPS = 1e-6
 SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes for 4 mm goes 0.1 mm deep
@@ -330,13 +330,13 @@ def _pulled(packed: bytes, count: int) -> tuple[Numbers, Numbers, dict[int, Give
     ``packed`` holds speed, slider mass, friction, damping and `ROPE`, shape (count, 9).
     """
     speed, slider, friction, viscous, weight, stiffness, damping, drop = np.frombuffer(packed).reshape(count, -1).T
-    pull = weight * GRAVITY
+    pull = weight * GRAVITY_MPS2
 
     def rate(state: Numbers) -> Numbers:
         s, s_rate, h, h_rate = state
         tension = np.maximum(0.0, pull + stiffness * (h - s) + damping * (h_rate - s_rate))
         return np.stack([
-            s_rate, (tension - friction - viscous * s_rate) / slider, h_rate, GRAVITY - tension / weight,
+            s_rate, (tension - friction - viscous * s_rate) / slider, h_rate, GRAVITY_MPS2 - tension / weight,
         ])  # fmt: skip
 
     # Small against the rope's fastest motion, for the classical Runge-Kutta method.

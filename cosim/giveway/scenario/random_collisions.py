@@ -13,8 +13,9 @@ from types import MappingProxyType
 import numpy as np
 
 from giveway.base.checks import whole
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.robot.variables import Value, table
-from giveway.scenario.approach import GRAVITY, Approach, edge_middle, meet, outline_of
+from giveway.scenario.approach import Approach, edge_middle, meet, outline_of
 from giveway.scenario.plan import Rest
 from giveway.scenario.scenario import BUMPERS, Scenario
 
@@ -99,7 +100,7 @@ def _approach(rng: np.random.Generator, testbed: Mapping[str, Value]) -> dict[st
     approach = Approach(point, speed, direction, time_s)
     if rng.uniform() < 0.5:  # pulled from rest, in about that time
         weight, slider = float(testbed["rope.hanging_mass"]), float(testbed["slider.mass"])
-        pull_mps2 = 0.9 * GRAVITY * weight / (weight + slider)
+        pull_mps2 = 0.9 * GRAVITY_MPS2 * weight / (weight + slider)
         speed = min(pull_mps2 * time_s, math.sqrt(2.0 * pull_mps2 * LONGEST_FALL_M))
         approach = Approach(point, speed, direction, rope=True)
     return meet(approach, testbed, Rest())

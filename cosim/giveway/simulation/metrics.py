@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.scenario.body_regions import TRANSIENT_S, BodyRegion, body_regions, judge
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ TRACKING, FAULT = 1, 6  # controller.mode
 FIRST_PEAK = "peak force of the first contact"
 PUSH_FORCES = ("testbed.push.force_x", "testbed.push.force_y")
 WHEELS = 3
-GRAVITY_MPS2 = 9.81  # the plant's
 
 
 @dataclass(frozen=True)

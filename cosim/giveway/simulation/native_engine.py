@@ -13,9 +13,7 @@ import numpy as np
 
 from giveway.base import native
 from giveway.base.errors import GivewayError, SimulationError
-from giveway.robot.variables import Value, Variable, table
-from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
-from giveway.simulation.batch_library import (
+from giveway.library.batch_library import (
     CANCELLED,
     COLUMN,
     MESSAGE_SIZE,
@@ -28,6 +26,8 @@ from giveway.simulation.batch_library import (
     ProgressCounts,
     library,
 )
+from giveway.robot.variables import Value, Variable, table
+from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS, Rest
 from giveway.simulation.master import Progress, Record, plan_table, push_table
 from giveway.simulation.run_warnings import Stated
 

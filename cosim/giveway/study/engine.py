@@ -16,7 +16,7 @@ import numpy as np
 
 from giveway.base.errors import FileError, GivewayError, InputFileError
 from giveway.base.version import VERSION
-from giveway.simulation.batch_library import library
+from giveway.library.batch_library import library
 from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns

@@ -47,7 +47,7 @@ class Metric:
 
 def all_metrics() -> dict[str, Metric]:
     """Everything the library measures, by name; ``NAME (true)`` and ``NAME (error)`` where there is a truth."""
-    from giveway.simulation.batch_library import native_metrics
+    from giveway.library.batch_library import native_metrics
 
     found = {}
     for metric in native_metrics():

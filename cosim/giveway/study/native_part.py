@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import SimulationError
-from giveway.simulation.batch_library import MESSAGE_SIZE, SETTING, SPEC, THREADS_MAX, ProgressCounts, library, options
+from giveway.library.batch_library import MESSAGE_SIZE, SETTING, SPEC, THREADS_MAX, ProgressCounts, library, options
 from giveway.study.runs import RunTable
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import FileError
-from giveway.simulation.batch_library import STATUSES, native_metrics
+from giveway.library.batch_library import STATUSES, native_metrics
 from giveway.simulation.metric_names import former_name
 from giveway.simulation.run_warnings import codes_of
 

@@ -19,10 +19,10 @@ from giveway.base.checks import finite, whole
 from giveway.base.errors import FileError, GivewayError, InputFileError, UnknownNameError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.base.units import WrittenUnit, factor
+from giveway.library.batch_library import METHODS, PLANT_STEP_RANGE_S
 from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan_of
 from giveway.scenario.scenario import Scenario
 from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
-from giveway.simulation.batch_library import METHODS, PLANT_STEP_RANGE_S
 from giveway.simulation.run_warnings import plan_speed
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan

@@ -15,6 +15,7 @@ import numpy as np
 
 from giveway import batch
 from giveway.base.errors import SimulationError
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ WHEELS = 3
 TARE_S, RISE_S, SETTLE_S, READ_S = 0.13, 0.3, 0.07, 0.1
 DURATION_S = TARE_S + RISE_S + SETTLE_S + READ_S
 STEP_S = 1e-3
-WEIGHT_N = 9.81
+WEIGHT_N = 1.0 * GRAVITY_MPS2
 """The push: the weight of 1 kg. The paper calls it 10 N."""
 # Unpowered, as in 5.1. A detection would change the plan that the estimate is made against, so there is none; the
 # estimate is averaged over the time in which it is read.
