@@ -6,12 +6,17 @@ import dataclasses
 import math
 import subprocess
 import sys
+import tomllib
+import typing
 
 import giveway
 import pytest
+from giveway.base import native
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.variables import parse_assignments, table
+from giveway.scenario import BUMPERS
 from giveway.scenario.plan import Rest
+from giveway.study import Study
 
 
 @pytest.mark.parametrize(
@@ -134,6 +139,21 @@ def test_importing_the_package_is_light() -> None:
     modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "giveway" in modules
     assert not heavy & set(modules)
+    # Every room's command is imported at every start; Typer itself may draw with rich.
+    code = "import sys, giveway.cli; print(' '.join(sys.modules))"
+    modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "giveway.bench.command" in modules
+    assert not (heavy - {"rich"}) & set(modules)
+
+
+def test_the_names_of_the_bumpers_are_those_of_the_table() -> None:
+    with native.variables("testbed").open("rb") as file:
+        entries = {entry["name"]: entry for entry in tomllib.load(file)["variable"]}
+    assert list(BUMPERS) == entries["bumper.kind"]["choices"]
+    assert list(BUMPERS.values()) == list(range(len(BUMPERS)))
+    # What an editor offers is written down, since a type checker reads no tables.
+    hints = typing.get_type_hints(Study.__init__, vars(giveway.study))
+    assert set(typing.get_args(typing.get_args(hints["bumper"])[0])) == set(BUMPERS)
 
 
 def test_a_long_run_is_allowed_where_its_traces_fit() -> None:

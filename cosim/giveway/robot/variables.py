@@ -14,7 +14,7 @@ from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.robot_file import Robot, read_robot
 from giveway.robot.table_files import entry_unit, read_table_file
 
-__all__ = ["Value", "Variable", "VariableTable", "parse_assignments", "table"]
+__all__ = ["Choices", "Value", "Variable", "VariableTable", "parse_assignments", "table"]
 
 Value = float | int | bool
 _TRUE, _FALSE = {"true", "1", "yes", "on"}, {"false", "0", "no", "off"}
@@ -117,6 +117,28 @@ class VariableTable:
         if "outline.count" in self:  # the one number that a robot file states by the length of a list
             values["outline.count"] = self.check("outline.count", robot.count("outline.x"))
         return values
+
+
+class Choices(Mapping[str, int]):
+    """The names of a parameter's values and their numbers, from its variable table; read when first asked for."""
+
+    def __init__(self, model: str, name: str) -> None:
+        self._model, self._name = model, name
+
+    def __getitem__(self, choice: str) -> int:
+        return self._numbers[choice]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._numbers)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    @functools.cached_property
+    def _numbers(self) -> dict[str, int]:
+        entries = read_table_file(native.variables(self._model))["variable"]
+        (choices,) = (entry["choices"] for entry in entries if entry["name"] == self._name)
+        return {choice: number for number, choice in enumerate(choices)}
 
 
 def _convert(variable: Variable, value: object) -> Value | None:

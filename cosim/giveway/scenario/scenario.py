@@ -10,14 +10,14 @@ from types import MappingProxyType
 from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.robot_file import read_robot
-from giveway.robot.variables import Value, table
+from giveway.robot.variables import Choices, Value, table
 from giveway.scenario.body_regions import BodyRegion, body_region, body_regions, check_contact_area
 from giveway.scenario.plan import Plan, Push, Rest
 from giveway.scenario.stated_contact import StatedContact
 
 __all__ = ["BUMPERS", "FMI_VERSIONS", "Scenario"]
 
-BUMPERS: Mapping[str, int] = MappingProxyType({"none": 0, "spring": 1, "magnetic": 2})
+BUMPERS = Choices("testbed", "bumper.kind")
 FMI_VERSIONS = (3, 2)
 MAXIMUM_DURATION_S = 3600.0
 MINIMUM_STEP_S, MAXIMUM_STEP_S = 1e-4, 0.1
