@@ -104,7 +104,7 @@ bool RecordedRun::pass(const Links &links, std::uint32_t receiver) {
     return refused == nullptr || refuse_value(GWB_FAILED, "", receiver, *refused, value);
 }
 
-// The exchange order is part of the definition of a run: see fmu/README.md and cosim/giveway/master.py.
+// The exchange order is part of the definition of a run: see fmu/README.md and cosim/giveway/simulation/master.py.
 bool RecordedRun::exchange(std::uint32_t step) {
     const double now_s = time_s(step);
     result_.time_s = now_s;
