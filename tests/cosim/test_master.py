@@ -15,7 +15,7 @@ from cosim_helpers import short
 from giveway.base import native
 from giveway.base.errors import FileError, GivewayError, SimulationError
 from giveway.robot.variables import table
-from giveway.simulation.fmu import open_fmu
+from giveway.simulation.fmu import _unpack, open_fmu
 from giveway.simulation.master import simulate
 from giveway.simulation.result import Result
 from numpy.typing import NDArray
@@ -134,11 +134,16 @@ def test_progress_reports_up_to_the_end() -> None:
     assert [now for now, _ in seen] == sorted(now for now, _ in seen)
 
 
-def test_an_fmu_is_unpacked_once_per_process() -> None:
+def test_an_fmu_is_unpacked_once_per_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    _unpack.cache_clear()
     simulate(short())
-    before = set(Path(tempfile.gettempdir()).glob("giveway-fmu-*"))
+    unpacked = set(tmp_path.iterdir())
+    assert len(unpacked) == 2  # controller and testbed
     simulate(short())
-    assert set(Path(tempfile.gettempdir()).glob("giveway-fmu-*")) == before
+    assert set(tmp_path.iterdir()) == unpacked
+    monkeypatch.undo()
+    _unpack.cache_clear()  # the next test's are not below this one's folder
 
 
 def test_an_fmu_of_another_table_is_refused() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -113,9 +114,21 @@ def test_more_runs_than_the_disk_holds_are_refused_before_any(tmp_path: Path) ->
         "relative = 0.1", "relative = 0.1\n\n[tolerances]\nsamples = 1000000\n"
     )
     path = written(tmp_path, text)
-    with pytest.raises(GivewayError, match=r"wrong\.toml:15: designs\.count: .* runs .* GB of free space"):
+    with pytest.raises(
+        GivewayError, match=r"wrong\.toml:15: designs\.count: .* runs \([\d,]+ TB\).* [GT]B of free space"
+    ):
         sweep(study_file.read(path), tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_small_disk_is_spoken_of_in_a_unit_that_suits_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from giveway.study import engine
+
+    monkeypatch.setattr(engine.shutil, "disk_usage", lambda _: SimpleNamespace(free=900))
+    with pytest.raises(
+        GivewayError, match=r"designs\.count: \d+ runs \([\d.]+ kB\) .* as many as fit into \d+ bytes of free"
+    ):
+        engine.sweep(study_file.read(written(tmp_path, GOOD)), tmp_path / "out")
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)

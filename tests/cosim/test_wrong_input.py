@@ -15,6 +15,10 @@ WRONG = {
     "unknown bumper": ((*RUN, "--bumper", "magnetc"), ("--bumper", "magnetc", "none, spring", "magnetic")),
     "negative mass": ((*RUN, "--set", "testbed.base.mass=-3"), ("testbed.base.mass", "-3", "kg")),
     "unknown variable": ((*RUN, "--set", "testbed.base.mas=3"), ("base.mas", "did you mean base.mass")),
+    "plan too fast for a limit that is set": (
+        (*("run", "moving", "--out", "out/run"), "--set", "controller.reference.speed_limit=0.1"),
+        ("giveway: plan.speed: 0.22 is not allowed", "at most 0.1 m/s, controller.reference.speed_limit"),
+    ),
     "unknown model": ((*RUN, "--set", "testbd.base.mass=3"), ("testbd", "did you mean testbed?")),
     "output set": ((*RUN, "--set", "testbed.truth.x=1"), ("testbed.truth.x", "is an output")),
     "not a number": ((*RUN, "--set", "testbed.base.mass=heavy"), ("testbed.base.mass", "heavy", "number")),

@@ -199,7 +199,10 @@ def _changed(
     """``scenario`` with the command line's changes, all of it checked before anything runs."""
     import dataclasses
 
+    from giveway.base.toml_sections import renamed
     from giveway.robot.variables import parse_assignments
+    from giveway.scenario.plan_limits import check_plan_of
+    from giveway.scenario.scenario_file import PLAN_KEYS
 
     overrides = parse_assignments(assignments or [])
     scenario = dataclasses.replace(
@@ -212,6 +215,8 @@ def _changed(
     )
     for model in overrides:
         scenario.parameters(model)
+    with renamed("plan", **PLAN_KEYS):
+        check_plan_of(scenario)
     return scenario
 
 

@@ -6,14 +6,11 @@ more than the FMUs themselves, so `Instance` makes its own prototypes of the sam
 
 from __future__ import annotations
 
-import atexit
 import ctypes
 import functools
 import hashlib
 import itertools
 import logging
-import shutil
-import tempfile
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import FileError, SimulationError, WriteError
+from giveway.base.temporary import temporary_folder
 from giveway.simulation.fmi2_callbacks import fmi2_callbacks
 
 if TYPE_CHECKING:
@@ -89,11 +87,7 @@ def open_fmu(path: Path) -> FmuFile:
 def _unpack(path: Path, _modified_ns: int) -> FmuFile:
     import fmpy
 
-    try:
-        folder = Path(tempfile.mkdtemp(prefix="giveway-fmu-"))
-    except OSError as error:
-        raise WriteError(tempfile.gettempdir(), error) from error
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    folder = temporary_folder()
     try:
         fmpy.extract(str(path), unzipdir=str(folder))
         # Our own build validates the description; doing so in every process would cost more than a run.

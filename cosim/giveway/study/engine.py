@@ -16,6 +16,7 @@ import numpy as np
 
 from giveway.base.errors import FileError, GivewayError, InputFileError
 from giveway.base.version import VERSION
+from giveway.base.words import memory
 from giveway.library.batch_library import library
 from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
@@ -100,8 +101,8 @@ def check_disk(setup: Setup, count: int, folder: Path) -> None:
     free = shutil.disk_usage(parent).free
     if needed > DISK_SHARE * free:
         key = "designs.count" if setup.plan.count else "designs"
-        allowed = f"as many as fit into {DISK_SHARE * free / 1e9:.3g} GB of free space on the disk of {folder}"
-        error = GivewayError(key, f"{count} runs ({needed / 1e9:.3g} GB)", allowed)
+        allowed = f"as many as fit into {memory(DISK_SHARE * free)} of free space on the disk of {folder}"
+        error = GivewayError(key, f"{count} runs ({memory(needed)})", allowed)
         if setup.text is not None and setup.path is not None:
             from giveway.base.toml_lines import line_of
 
