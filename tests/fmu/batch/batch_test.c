@@ -1,4 +1,4 @@
-/* The library from C: what the header promises, above all what it says about wrong input. */
+/* The library from C: the header's promises, above all those about wrong input. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -250,7 +250,7 @@ static void test_wrong_settings(void) {
     setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "slider.present").reference, 2.0};
     CHECK(refused(&spec, "testbed.slider.present = 2 is not allowed: a whole number and in [0, 1]"));
 
-    /* The neighbours of every parameter's bounds: outside is refused. */
+    /* The neighbours of every parameter's bounds: values outside are refused. */
     for (uint32_t model = 0; model < GWB_MODEL_COUNT; ++model) {
         for (size_t i = 0; i < gwb_variable_count(model); ++i) {
             gwb_variable_t v;
@@ -503,7 +503,7 @@ static void test_batches(void) {
     for (int i = 0; i < RUNS; ++i) {
         CHECK(results[i].status == GWB_CANCELLED);
         CHECK(says(&results[i], "cancelled"));
-        /* It ended where the next row would have been made. */
+        /* It ended where the next row would have been computed. */
         CHECK(fabs(results[i].time_s - results[i].rows * specs[i].step_s) < 1e-9);
     }
     CHECK(results[0].rows + results[1].rows > 0 && results[RUNS - 1].rows == 0);
