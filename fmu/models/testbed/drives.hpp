@@ -1,5 +1,5 @@
-// The drive electronics of Fig. 3: a 2 kHz joint servo for each wheel, sensor sampling, and the bus with its delay each
-// way.
+// The drive electronics of Fig. 3: a 2 kHz joint servo for each wheel, sensor sampling, and the bus with its latency in
+// both directions.
 #pragma once
 
 #include <array>
