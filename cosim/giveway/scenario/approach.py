@@ -1,8 +1,8 @@
-"""Where the collision dummy has to start so that it meets a chosen point of the robot, as fast as asked.
+"""The start of the collision dummy for a hit at a chosen point of the robot with a given speed.
 
 The slider's nose is a disc on a straight rail. `meet` gives the testbed's ``slider.*`` parameters for a contact point
-on the outline, a direction and a speed; a robot that moves along its plan is led. The robot itself lags its plan by a
-few millimetres (servo and drivetrain give), and so does the contact point.
+on the outline, a direction and a speed; for a moving robot its planned motion is taken into account. The robot itself
+lags its plan by a few millimetres (compliance of servo and drivetrain), and so does the contact point.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ __all__ = [
     "outward_normals",
 ]
 
-ON_OUTLINE_M = 1e-3  # robot files state corners to micrometres; users state points to millimetres
+ON_OUTLINE_M = 1e-3  # robot files give corners to micrometres; users give points to millimetres
 STILL_MPS = 1e-6
-SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes for 4 mm goes 0.1 mm deep
+SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes over 4 mm penetrates by 0.1 mm
 SAMPLES_AT_ONCE = 200_000
 LONGEST_RUN_UP_S = 60.0
 ROPE = ("hanging_mass", "stiffness", "damping", "drop_height")
@@ -51,15 +51,15 @@ _SURFACE = Callable[["Numbers"], "Numbers"]
 
 @dataclass(frozen=True)
 class Approach:
-    """How slider and robot meet.
+    """The contact of slider and robot.
 
     Attributes:
         point_m: contact point on the robot's outline, base frame, m.
-        speed_mps: speed of the slider along its rail at contact, m/s; 0: it stands, and the robot runs into it.
+        speed_mps: speed of the slider along its rail at contact, m/s; 0: it stands still, and the robot runs into it.
         direction_rad: direction in which the slider travels (or, at rest, points), world frame, rad; None: straight
             into the robot's side.
-        time_s: when they meet, s. With the rope, the run-up takes as long as it takes, and this must be None.
-        rope: the hanging weight pulls the slider from rest; else it slides freely from the start.
+        time_s: time of the contact, s. With the rope it follows from the run-up, and this must be None.
+        rope: the hanging weight pulls the slider from rest; otherwise it slides freely from the start.
     """
 
     point_m: tuple[float, float]
@@ -84,12 +84,12 @@ class Approach:
 
 @dataclass(frozen=True)
 class _RunUp:
-    """Ways along the rail that end at the asked speeds, one per run.
+    """Motions along the rail that end at the given speeds, one per run.
 
     Attributes:
         start_mps, length_m, duration_s: start speed, travel and time to contact, shape (n,).
         travel: times of shape (k, n) from the start to travel in m, shape (k, n).
-        refused: why a run cannot be met, by its index.
+        refused: why a contact is not possible, by index of the run.
     """
 
     start_mps: Numbers
@@ -145,14 +145,14 @@ def meet(
     """The testbed's ``slider.*`` and ``rope.attached`` for ``approach``.
 
     Args:
-        approach: where and how they shall meet.
-        testbed: all parameters of the testbed by name, outline, slider mass and rope among them.
+        approach: the intended contact.
+        testbed: all parameters of the testbed by name, including outline, slider mass and rope.
         plan: the robot's motion until then.
         path_start_s: when the plan's clock starts: after the controller's first tare, s.
 
     Raises:
-        GivewayError: naming the field of `Approach` that cannot be met: the point is not on the outline, slider and
-            robot do not approach there, the weight cannot make the slider so fast, or they would touch before.
+        GivewayError: naming the impossible field of `Approach`: the point is not on the outline, slider and robot do
+            not approach there, the weight cannot accelerate the slider to this speed, or they would touch earlier.
     """
     return meet_as_stated(approach, testbed, plan, path_start_s)[0]
 
@@ -160,7 +160,7 @@ def meet(
 def meet_as_stated(
     approach: Approach, testbed: Mapping[str, Value], plan: Plan, path_start_s: float = 0.0
 ) -> tuple[dict[str, float | bool], StatedContact, float]:
-    """What `meet` gives, the contact that it is meant to make, and when that will be, s (the rope decides, too)."""
+    """The result of `meet`, the intended contact, and its time, s (which also depends on the rope)."""
     direction_rad = math.nan if approach.direction_rad is None else approach.direction_rad
     many = Approaches(
         np.array([approach.point_m]),
@@ -198,13 +198,13 @@ class Approaches:
 
 @dataclass(frozen=True)
 class Meetings:
-    """How many runs meet.
+    """The contacts of many runs.
 
     Attributes:
-        slider: each of the testbed's ``slider.*`` that makes them meet, shape (n,).
+        slider: the testbed's ``slider.*`` for the contacts, each of shape (n,).
         contact_speed_mps: of the nose relative to the base, shape (n,).
         time_s: of the contacts, shape (n,).
-        refused: why a run cannot be met, by its index.
+        refused: why a contact is not possible, by index of the run.
     """
 
     slider: dict[str, Numbers]
@@ -250,7 +250,7 @@ def meet_many(
     radius = values["contact.nose_radius"]
     centre = pose[:, 0:2] + arm + radius[:, None] * outward  # of the nose, when it touches
     target = centre + radius[:, None] * along
-    if not isinstance(plan, Rest):  # onto a resting convex outline, a straight line comes only once
+    if not isinstance(plan, Rest):  # a straight line enters a resting convex outline only once
         motion = _Nose(run_up, centre, along, radius)
         for run, time_s in _earlier_contacts(motion, outline, plan, path_start_s):
             when = f"touches the robot elsewhere before, at {time_s:.3g} s"
@@ -285,7 +285,7 @@ def _off_outline(outline: Numbers, point: Numbers) -> GivewayError:
 
 
 def _free(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
-    """Without the rope: the start speeds that rail friction brings down to the asked ones at the asked times."""
+    """Without the rope: the start speeds that rail friction reduces to the given speeds at the given times."""
     assert approaches.time_s is not None
     mass = testbed["slider.mass"]
     end, duration = approaches.speed_mps, approaches.time_s
@@ -306,7 +306,7 @@ def _free(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
 
 
 def _with_rope(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
-    """With the rope: slider and weight integrated from rest until the slider is as fast as asked."""
+    """With the rope: slider and weight integrated from rest until the slider has the given speed."""
     names = ("slider.mass", "slider.friction", "slider.damping", *(f"rope.{name}" for name in ROPE))
     rows = np.stack([approaches.speed_mps, *(testbed[name] for name in names)], axis=1)
     # Most runs of a batch share theirs.
@@ -375,7 +375,7 @@ def _at(plan: Plan, path_s: Numbers) -> Numbers:
 
 @dataclass(frozen=True)
 class _Nose:
-    """Where the noses go: run-up, centre at the contact (n, 2), unit vector along the rail (n, 2), radius (n,)."""
+    """Paths of the noses: run-up, centre at the contact (n, 2), unit vector along the rail (n, 2), radius (n,)."""
 
     run_up: _RunUp
     centre: Numbers
@@ -384,7 +384,7 @@ class _Nose:
 
 
 def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: Numbers) -> Iterator[tuple[int, float]]:
-    """The runs in which the nose is not outside the robot from the start until it meets the point; and when."""
+    """The runs in which the nose touches the robot before it reaches the point, and the times."""
     duration = np.maximum(nose.run_up.duration_s - SAMPLE_S, 0.0)
     longest = float(duration.max(initial=0.0))
     way = _at(plan, np.arange(0.0, longest + SAMPLE_S, SAMPLE_S))[:, :3]
