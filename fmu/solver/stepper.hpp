@@ -16,7 +16,7 @@ public:
     // `first_step_s` is a guess for a good first step, 0: unknown.
     [[nodiscard]] virtual int restart(double time_s, double first_step_s) = 0;
     // Moves the problem's state and `time_s` to end_s exactly, or to the first event. After a failure both are those of
-    // the last accepted step, and code() tells the reason.
+    // the last accepted step, and code() is the reason.
     [[nodiscard]] virtual Outcome evolve(double end_s, double &time_s) = 0;
 
     // After an event: which indicator crossed zero, and in which direction.

@@ -173,7 +173,7 @@ class Library:
         return function  # type: ignore[no-any-return]
 
     def _check_matches(self, path: Path, number: int, model: str) -> None:
-        """Refuse a library that was built from another variable table: its references would mean other things."""
+        """Refuse a library that was built from another variable table: its references would have other meanings."""
         for variable in table(model):
             found = _Variable()
             known = self._dll.gwb_find_variable(number, variable.name.encode(), ctypes.byref(found))
@@ -198,12 +198,12 @@ def _load(path: Path, _modified_ns: int) -> Library:
 
 
 def native_metrics() -> list[_NativeMetric]:
-    """What the library measures, with units, in the order of its results."""
+    """The library's metrics with units, in the order of its results."""
     return library().metrics
 
 
 def widest_lanes() -> int:
-    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, else 1."""
+    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, otherwise 1."""
     return int(library().widest_lanes())
 
 
