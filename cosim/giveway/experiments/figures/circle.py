@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["alarm"]
 
 LESS, MORE = "#0b64a8", "#c8500a"
-BIN = 100  # samples, of which the highest is drawn
+BIN = 100  # samples per drawn point, which is their maximum
 
 
 def alarm(studies: Mapping[str, tuple[Sequence[float], xarray.Dataset]], threshold_newton_s: float) -> Figure:
