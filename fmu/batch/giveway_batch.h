@@ -313,6 +313,34 @@ typedef struct gwb_force {
 GWB_API int gwb_judge_force(const double *time_s, const double *force_n, size_t rows, double touch_n,
                             gwb_force_t *judged);
 
+/* Where a slider starts that is to have a speed when it meets the robot: the testbed's own equations of slider, rail
+ * friction, rope and weight up to the contact, before any bumper gives way.
+ *
+ * With the rope it is pulled from rest until it is so fast. Without, it slides for a given time against the rail's
+ * friction. */
+#define GWB_RUN_UP_LONGEST_S 60.0
+typedef struct gwb_run_up {
+    double end_speed_mps; /* asked: [0, 20], with the rope above 0 */
+    double duration_s;    /* without the rope asked, [0, GWB_RUN_UP_LONGEST_S]; with it found */
+    /* The testbed's variables of these names, in their ranges. */
+    double slider_mass, slider_friction, slider_friction_speed, slider_damping;
+    double rope_hanging_mass, rope_stiffness, rope_damping, rope_drop_height;
+    uint32_t rope_attached; /* 0 or 1 */
+    uint32_t status; /* found: GWB_OK; GWB_WRONG_SPEC; GWB_FAILED, the integrator's; GWB_NO_MEMORY; GWB_REFUSED: the
+                        weight has landed, or the longest time is over, at reached_mps (duration_s and travel_m are
+                        those of that moment), or without the rope the start would have to be faster than 1000 m/s */
+    /* Found. */
+    double start_speed_mps, travel_m, reached_mps;
+    /* Where it is in between, if GWB_OK: its travel from the start at `time_count` times, ascending and not negative;
+     * after duration_s that of the end. */
+    size_t time_count;
+    const double *times_s;
+    double *travels_m;
+} gwb_run_up_t;
+
+/* Answers `count` of them; returns how many are GWB_OK. */
+GWB_API size_t gwb_run_up(gwb_run_up_t *run_ups, size_t count);
+
 /* Many runs on threads of their own. There are no callbacks: whoever waits asks for progress as often as it likes,
  * on its own thread.
  *

@@ -300,8 +300,8 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
     for (int i = 0; i < Wheels; ++i) {
         const auto now = math::less(fired[At::event_gear + i], T(0.0));
         const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
-        // At the located break-away the net torque equals the stiction up to rounding: the gear slides in the direction
-        // of the torque.
+        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the
+        // torque.
         const T from_stuck = math::sign(e.net_torque[i]);
         const T from_sliding = gear_direction_from_rest(p, e.net_torque[i]);
         x[At::motor_speed + i] = math::select(now, T(0.0), x[At::motor_speed + i]);

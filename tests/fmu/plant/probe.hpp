@@ -1,4 +1,4 @@
-// The types that the C functions of this folder's library pass around.
+// What the C functions of this folder's library hand around.
 #pragma once
 
 #include "parameters.hpp"
