@@ -35,7 +35,7 @@ def install(folder: Path) -> Path:
 
 
 def check(jar: Path, fmu: Path) -> str:
-    """Its findings about ``fmu``; empty if there are none."""
+    """What it has to say of ``fmu``; nothing if all is well."""
     command = ["java", "-jar", str(jar), str(fmu)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=TIMEOUT_S)

@@ -1,5 +1,4 @@
-/* Replays a recorded collision through the controller and prints when it noticed the hit, and a digest of all its
- * outputs.
+/* Replays a recorded collision through the controller and prints when it noticed, and a digest of all it put out.
  *
  * On a robot, the input of each millisecond comes from the bus instead of the recording, and output.command goes to
  * the drives. */

@@ -1,4 +1,4 @@
-"""All C constants of Trikey equal the numbers of the robot file."""
+"""The C constants of Trikey are the numbers of the robot file, every one of them."""
 
 from __future__ import annotations
 

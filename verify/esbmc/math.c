@@ -1,4 +1,4 @@
-/* The guards on which all other proofs rely, for arbitrary bits. */
+/* The guards on which everything else rests, for any bits whatever. */
 #include "nondet.h"
 
 int main(void)

@@ -1,4 +1,4 @@
-/* Arbitrary bits, including NaN and infinities. */
+/* Any bits at all, NaN and the infinities included. */
 #ifndef ESBMC_NONDET_H
 #define ESBMC_NONDET_H
 

@@ -1,4 +1,4 @@
-"""Faults planted in the commands; a trial has to see each of them."""
+"""Faults planted in the commands, each of which a trial has to see."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _replace_check(name: str, function: Callable[[Any], Any]) -> None:
 
 
 def _writes_outside() -> None:
-    """A check unpacks archive members under their own names."""
+    """A check unpacks what is in the archive under its own name."""
 
     def unpacks(file: Any) -> Iterator[Any]:
         with tempfile.TemporaryDirectory() as folder:
@@ -42,17 +42,17 @@ def _leaves_behind() -> None:
 
 def _no_limits() -> None:
     """XML of any size is held in memory."""
-    from giveway.fmu_tools import xml_files
+    from giveway.fmu_tools import xml_files as fmu_xml
 
     kept: list[bytes] = []
-    xml_files.Budget.add_element = lambda _self: kept.append(bytes(1000))  # type: ignore[method-assign,assignment]
+    fmu_xml.Budget.add_element = lambda _self: kept.append(bytes(1000))  # type: ignore[method-assign,assignment]
 
 
 def _traceback() -> None:
-    """A text is converted to a number without a check."""
-    from giveway.fmu_tools import description
+    """A number is taken for one without a look."""
+    from giveway.fmu_tools import description as fmu_description
 
-    description._Reader._number = lambda _self, text, *_: int(text)  # type: ignore[method-assign]
+    fmu_description._Reader._number = lambda _self, text, *_: int(text)  # type: ignore[method-assign]
 
 
 def _has_long_text(file: Any) -> bool:
@@ -60,7 +60,7 @@ def _has_long_text(file: Any) -> bool:
 
 
 def _hangs() -> None:
-    """A check of a long text never ends."""
+    """A check does not end for a long text."""
 
     def slow(file: Any) -> Iterator[Any]:
         if _has_long_text(file):
@@ -84,7 +84,7 @@ def _crashes() -> None:
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault: how it is planted, which kind of file shows it, and what the trial reports."""
+    """A fault: how it is planted, files of which kind show it, and what a trial says of it."""
 
     plant: Callable[[], None]
     kind: str

@@ -1,5 +1,5 @@
-// Right-hand sides from Modelica against those of fmu/plant, at random states: prints the largest difference of each,
-// relative to its largest term.
+// Right-hand sides from Modelica against those of fmu/plant, at random states: prints the worst difference of each,
+// over the largest of its terms.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

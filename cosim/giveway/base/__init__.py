@@ -1,4 +1,4 @@
-"""Common to all rooms: errors and checks, units, atomic files, words and tables for a terminal.
+"""What every room stands on: errors and checks, units, files that appear whole, words and tables for a terminal.
 
-Nothing here depends on robots or FMUs; `native` locates the native parts.
+Nothing here knows robots or FMUs; `native` says where the native parts lie.
 """

@@ -1,4 +1,4 @@
-"""Module names of earlier versions: importing one gives the module that now has its content, and a FutureWarning."""
+"""Module names of earlier versions: importing one gives the module that has its content now, and a FutureWarning."""
 
 from __future__ import annotations
 
@@ -55,7 +55,6 @@ FORMER_NAMES = MappingProxyType({
     "presliding": "identification.presliding",
     "push_response": "simulation.push_response",
     "random_collisions": "scenario.random_collisions",
-    "report.circle": "report.push_path",
     "report.calibration": "identification.figures",
     "report.drivetrain": "drivetrain.pictures",
     "report.impact_response": "experiments.figures.impact_response",
@@ -88,7 +87,7 @@ FORMER_NAMES = MappingProxyType({
 
 
 def name_now(name: str) -> str | None:
-    """The present full name of the module formerly called ``name``; None if that is not a former name."""
+    """The full name now of the module whose full name was ``name``; None if that is no former name."""
     package, _, inside = name.partition(".")
     if package != PACKAGE:
         return None
@@ -102,9 +101,9 @@ def name_now(name: str) -> str | None:
 
 
 def forward_former_names() -> None:
-    """Make former names importable."""
+    """From now on former names can be imported."""
     if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())  # first: the folder of the native files has the name of a former module
+        sys.meta_path.insert(0, _Finder())  # first: the folder of the native files is called as a module was
 
 
 class _Finder(MetaPathFinder):

@@ -1,4 +1,4 @@
-"""Benchmarks (`giveway bench`): one co-simulated second, collisions per second, integration methods."""
+"""What things cost (`giveway bench`): one co-simulated second, collisions per second, integration methods."""
 
 from __future__ import annotations
 

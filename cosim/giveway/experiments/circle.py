@@ -1,14 +1,14 @@
 """The robot goes around a circle of 1.5 m at 0.16 m/s and is pushed from all sides (Kim, Llado, Sentis 2016, 5.4).
 
-Each push is noticed; the robot escapes by 0.5 m, settles, and returns to its circle. The paper shows the path (Fig. 12)
-and prints no numbers; pushes, start and return are chosen here: pushes by hand of 30 to 60 N for 0.4 to 0.8 s, a
-quarter of it to rise and a quarter to fall; a start from rest at 0.1 m/s2.
+Each push is noticed, the robot gives way along it by 0.5 m, settles, and goes back to its circle. The paper shows the
+path (Fig. 12) and prints no numbers; pushes, start and way back are chosen here: pushes by hand of 30 to 60 N for 0.4
+to 0.8 s, a quarter of it to rise and a quarter to fall; a start from rest at 0.1 m/s2.
 
-The heading is constant, so every roller turns forwards, stops, and turns backwards twice a round: the hard case for a
-friction model. The estimator is the full one: bristles per roller and measured acceleration. Its force is averaged over
-50 ms instead of 20 ms, because at rest the noise of the measured acceleration would otherwise keep the force from
-looking quiet for the 0.5 s that end a reaction. The paper's own estimator is shown for comparison, with a return as
-gentle as the start: it assumes that the real acceleration is the planned one, and mistakes every jolt for a push.
+The heading stays as it is, so every roller turns forwards, stands, and turns backwards twice a round: the hard case for
+a friction model. The estimator is the full one: bristles per roller and measured acceleration. Its force is averaged
+over 50 ms instead of 20 ms, because at rest the noise of the measured acceleration would otherwise keep the force from
+looking quiet for the 0.5 s that end a reaction. What the paper's own estimator does here stands beside it, on a way
+back that is as gentle as the start: it takes planned for real acceleration, and every jolt for a push.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 DIAMETER_M, SPEED_MPS = 1.5, 0.16  # the paper's
 START_MPS2 = 0.1
 ROUND_S = 33.0  # a whole round takes 29.5 s, and 2.6 s more with tare and start
-BUMPERS = ("none",)  # only pushes by hand
+BUMPERS = ("none",)  # nothing but hands
 
 TANH, BRISTLES = 0, 1
 PLANNED, MEASURED = 0, 1
@@ -72,13 +72,13 @@ BY_HAND = (
     (2, 0.10, 10.0, 45.0, 0.5),
 )
 FIRST_PUSH_S, BETWEEN_PUSHES_S = 7.0, 18.0
-LAST_LOOK_S = 24.0  # after the last push: 7 s of escape, 7 s of return, and time to catch up with the plan
+LAST_LOOK_S = 24.0  # after the last push: 7 s of escape, 7 s back, and the plan caught up with
 RAMP_SHARE = 0.25
 OBLIQUE_DEG = 45.0
 
 PAPERS_DIRECTION_DEG = 12.0  # the largest error of a direction in 5.1
 FALSE_ALARMS_PER_HOUR = 3.0
-FORGIVEN_N = 9.0  # 20 % of three rollers' 2 x 21 N, and a margin
+FORGIVEN_N = 9.0  # what 20 % of three rollers' 2 x 21 N asks for, and a little
 
 
 def scenario(
@@ -120,7 +120,7 @@ def _push(
     force_n: float,
     duration_s: float,
 ) -> TimedPush:
-    """A push on a side of the robot, whose heading is that of the plan."""
+    """A push on a side of the robot, which keeps the heading of its plan."""
     from giveway.scenario.approach import edge_middle, outward_normal
 
     point = edge_middle(outline, side, offset_m)
@@ -135,7 +135,7 @@ def _random_pushes(count: int, oblique: bool, estimator: str) -> list[tuple[Scen
     import numpy as np
 
     outline = outline_of_robot(None)
-    random = np.random.default_rng(20160325)  # arbitrary; fixed, so that the rows are reproducible
+    random = np.random.default_rng(20160325)  # any number will do; fixed, so that the rows are the same every time
     runs = []
     for seed in range(count):
         plan = Circle(DIAMETER_M, SPEED_MPS, start_rad=random.uniform(-3.0, 3.0), acceleration_mps2=START_MPS2)
@@ -179,7 +179,7 @@ def _refuse_failures(data: xarray.Dataset) -> None:
 
 
 def _false_alarms(estimator: str, hours: float, effort: Effort) -> int:
-    """Detections during undisturbed rounds, in several runs with different noise."""
+    """Detections while the robot goes around undisturbed, in several runs with noise of their own."""
     from giveway import batch
 
     runs = effort.pick(6, 2)
@@ -193,7 +193,7 @@ def _false_alarms(estimator: str, hours: float, effort: Effort) -> int:
 def _mismatched(
     estimator: str, shares: Sequence[float], effort: Effort, controller: Mapping[str, Value] = MappingProxyType({})
 ) -> xarray.Dataset:
-    """An undisturbed round, with roller friction larger by ``shares`` than the estimator assumes."""
+    """A round undisturbed, with rollers that rub by ``shares`` more than the estimator believes."""
     from giveway import batch
 
     plan = Circle(DIAMETER_M, SPEED_MPS, acceleration_mps2=START_MPS2)
@@ -211,8 +211,7 @@ def _mismatched(
 
 def reproduce(effort: Effort) -> Findings:
     """The paper's 5.4: a round with pushes, random pushes, an hour undisturbed, and rollers unlike the model."""
-    from giveway.experiments.figures.circle import alarm
-    from giveway.report import push_path
+    from giveway.report import circle as drawn
     from giveway.simulation.push_response import responses
     from giveway.simulation.runner import run
 
@@ -260,7 +259,7 @@ def reproduce(effort: Effort) -> Findings:
             "The path around the circle, pushed",
             "Motion of the base as the testbed knows it. Arrows: pushes; the robot is drawn as it stood when it felt "
             "them. It gives way along the push and comes back to where it left its path.",
-            push_path.path({name: (run.traces, found[name]) for name, run in runs.items()}),
+            drawn.path({name: (run.traces, found[name]) for name, run in runs.items()}),
             (("circle", f"{DIAMETER_M:g} m"), ("speed", f"{SPEED_MPS:g} m/s"), ("figure", "12")),
         ),
         Picture(
@@ -268,7 +267,7 @@ def reproduce(effort: Effort) -> Findings:
             "How far from a false alarm",
             "What the detector compares with its threshold (dashed) in one undisturbed round, with rollers that rub "
             "more or less than the estimator believes.",
-            alarm(
+            drawn.alarm(
                 {name: (shares, data) for name, data in mismatched.items()},
                 float(table("controller")["detector.impulse_threshold"].start or 0.0),
             ),
@@ -361,7 +360,7 @@ def _rows_of_false_alarms(estimator: str, count: int, hours: float) -> list[Row]
             "1/h",
             "assumed",
             None,
-            target if hours >= 1.0 else None,  # a shorter time cannot show it
+            target if hours >= 1.0 else None,  # less than an hour cannot show it
             decimals=3,
         ),
     ]

@@ -1,10 +1,9 @@
 """A leg between robot and wall: quasi-static clamping (the future work of Kim, Llado, Sentis 2016, first step).
 
 The robot drives at the speed of 5.3 into the paper's slider, which stands in front of a wall and cannot get out of the
-way. It keeps pushing until it notices, then escapes. The slider represents a body region: its effective stiffness is in
-series with the cover in front, and acts again between the slider and the wall behind. The force on it, the larger one
-of both sides, is judged against the region's limits: the peak within 0.5 s of the contact, and the lasting force after
-that.
+way. It pushes on until it notices, then gives way. The slider stands for a body region: its effective stiffness lies in
+series with the cover in front, and again between the slider and the wall behind. What it feels, the larger one of both
+sides, is judged against the region's limits: the peak within 0.5 s of the contact, and the lasting force after that.
 """
 
 from __future__ import annotations
@@ -14,12 +13,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.experiments import PAPER_BUMPERS, Experiment
+from giveway.experiments import Experiment
 from giveway.experiments.placement import before_resting, stated_contact, tare_s, testbed_of
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.robot.variables import table
 from giveway.scenario.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
-from giveway.scenario.scenario import Scenario
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
     import xarray
@@ -31,7 +30,7 @@ SPEEDS_MPS = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5)  # up to th
 SLIDER_KG = 13.62  # the paper's, of 5.3
 GAPS_M: Mapping[str, float] = {"at the wall": 0.001, "20 mm before the wall": 0.02}
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
-AFTER_S = 1.6  # of which 1.1 s count as lasting; a robot that keeps pushing for longer lags by half a wheel turn
+AFTER_S = 1.6  # of which 1.1 s count as lasting; a robot that pushes on for longer lags by half a wheel turn
 NO_REFLEX = {"detector.impulse_threshold": 1000.0, "detector.force_threshold": 10000.0}
 RECORDED = (
     *(f"testbed.truth.{name}" for name in ("contact_force", "wall_force", "first_contact_time", "contact")),
@@ -58,7 +57,7 @@ def scenario(
         speed_mps: of the robot, m/s.
         gap_m: between the slider and the wall, m, above 0.
         region: the body region.
-        reflex: False: the detector is off and the robot keeps pushing.
+        reflex: False: the detector is off and the robot pushes on.
         robot: another robot's file; it drives with its own side between corners 0 and 1 ahead.
     """
     body = body_region(region)
@@ -92,13 +91,13 @@ def reproduce(effort: Effort) -> Findings:
 
     speeds = effort.pick(SPEEDS_MPS, (0.1, 0.5))
     cases: dict[tuple[object, ...], Scenario] = {
-        (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in PAPER_BUMPERS
+        (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in BUMPERS
     }
     cases |= {("no reflex", place): scenario("none", gap_m=gap, reflex=False) for place, gap in GAPS_M.items()}
     cases |= {
         (bumper, place, speed): scenario(bumper, speed, gap)
         for place, gap in GAPS_M.items()
-        for bumper in PAPER_BUMPERS
+        for bumper in BUMPERS
         for speed in speeds
     }
     longest = max(case.duration_s for case in cases.values())  # traces need one duration
@@ -112,7 +111,7 @@ def reproduce(effort: Effort) -> Findings:
     safe = {
         (bumper, place): _safe_speed({speed: forces[bumper, place, speed] for speed in speeds})
         for place in GAPS_M
-        for bumper in PAPER_BUMPERS
+        for bumper in BUMPERS
     }
     rows = [row for case in safe for row in _rows(*case, forces[case], safe[case])]
     rows += [
@@ -130,11 +129,11 @@ def reproduce(effort: Effort) -> Findings:
 
 
 class Clamped:
-    """The force on the leg in one run of a batch that recorded `RECORDED`.
+    """What the leg felt in one run of a batch that recorded `RECORDED`.
 
     Attributes:
         time_s: since the first contact, shape (n,), s; from 0.2 s before.
-        force_n: the larger one of the robot's and the wall's force, shape (n,), N.
+        force_n: larger one of robot's and wall's force, shape (n,), N.
         judgement: of the force.
         detection_ms: from the first contact to the decision; None without one.
     """
@@ -181,7 +180,7 @@ def _rows(bumper: str, place: str, clamped: Clamped, safe_mps: float | None) -> 
 
 
 def _safe_speed(found: Mapping[float, Clamped]) -> float | None:
-    """The largest tried speed up to which all speeds keep both limits; None if not even the slowest does."""
+    """The largest speed up to which every tried one keeps both limits; None if not even the slowest does."""
     safe = None
     for speed, clamped in found.items():
         if not clamped.judgement.ok:
@@ -201,7 +200,7 @@ def _figure(forces: Mapping[tuple[object, ...], Clamped], speeds: Sequence[float
     with context(STYLE):
         figure = Figure(figsize=(9.6, 3.9), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
-        for bumper in PAPER_BUMPERS:
+        for bumper in BUMPERS:
             colour, label = COLOURS[LABELS[bumper]], LABELS[bumper]
             clamped = forces[bumper, place]
             left.plot(clamped.time_s, clamped.force_n, color=colour, label=label)
@@ -240,7 +239,7 @@ EXPERIMENT = Experiment(
     name="clamping",
     summary="The robot drives into a leg that stands in front of a wall; forces against ISO/TS 15066 limits.",
     section="",
-    bumpers=PAPER_BUMPERS,
+    bumpers=tuple(BUMPERS),
     scenario=scenario,
     reproduce=reproduce,
 )

@@ -188,11 +188,8 @@ def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenar
     chosen = experiments.get(what)
     if bumper is None:
         bumper = DEFAULT_BUMPER if DEFAULT_BUMPER in chosen.bumpers or not chosen.bumpers else chosen.bumpers[0]
-    elif chosen.bumpers:
-        # An experiment that has the paper's three can also be run with any other.
-        allowed = tuple(BUMPERS) if chosen.bumpers == experiments.PAPER_BUMPERS else chosen.bumpers
-        if bumper not in allowed:
-            raise UnknownNameError("--bumper", bumper, allowed)
+    elif chosen.bumpers and bumper not in chosen.bumpers:
+        raise UnknownNameError("--bumper", bumper, chosen.bumpers)
     return chosen.scenario(bumper, robot=robot), chosen.summary
 
 
@@ -224,5 +221,5 @@ def _changed(
 
 
 def _share_of(progress: Callable[[str, float], None], name: str) -> Progress:
-    """Converts a simulation's progress (simulated time and duration, s) to the share of the bar ``name``."""
+    """What a simulation reports (simulated time and duration, s) as the share of the bar ``name``."""
     return lambda now_s, duration_s: progress(name, now_s / duration_s)

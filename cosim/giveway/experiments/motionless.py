@@ -1,8 +1,8 @@
 """A slider hits the motionless robot (Kim, Llado, Sentis 2016, 5.2).
 
 A 9.08 kg slider, pulled by a hanging weight of 4.54 kg, reaches 0.5 m/s and hits the middle of one side of the body.
-The robot notices the hit from its wheel torques alone and escapes by 0.5 m. The escape decays with the time constant
-M_des/B_des = 1.25 s, so it settles within 1 mm in 8 s. Afterwards the robot holds its position.
+The robot notices through its wheel torques alone and gives way by 0.5 m: the escape decays with the time constant
+M_des/B_des = 1.25 s, so 8 s let it settle to within 1 mm. Afterwards it holds where it is.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.experiments import PAPER_BUMPERS, Experiment
+from giveway.experiments import Experiment
 from giveway.experiments.placement import pulled_by_weight, stated_contact
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
-from giveway.scenario.scenario import Scenario
+from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
     from giveway.simulation.result import Result
@@ -81,13 +81,13 @@ def reproduce(effort: Effort) -> Findings:
 
 
 def value(result: Result, metric: str) -> float:
-    """A metric's value, NaN if the event did not happen."""
+    """A metric's value, NaN for what did not happen."""
     found = result.metric(metric).value
     return float("nan") if found is None else found
 
 
 def peak_torque_ms(result: Result) -> float:
-    """Time of the impact's peak torque, ms since contact."""
+    """When the peak torque of the impact is reached, ms since contact."""
     import numpy as np
 
     from giveway.simulation.metrics import PEAK_WINDOW_S, Collision
@@ -101,7 +101,7 @@ def peak_torque_ms(result: Result) -> float:
 
 
 def _acceleration_ms(bumper: str, result: Result) -> float:
-    """Time of the robot's largest acceleration away from the slider, ms since contact."""
+    """When the robot's acceleration away from the slider is largest, ms since contact."""
     import numpy as np
 
     from giveway.report import BUMPER_LABELS
@@ -113,7 +113,7 @@ def _acceleration_ms(bumper: str, result: Result) -> float:
 
 
 def _compared(results: Mapping[str, Result]) -> Iterator[Row]:
-    """The paper's measurements and comparisons."""
+    """What the paper measured, and what it compares."""
     detection, torque, force = (
         {bumper: value(result, metric) for bumper, result in results.items()}
         for metric in ("detection time", "peak wheel torque", "peak force of the run")
@@ -144,7 +144,7 @@ def _masses(result: Result) -> str:
 
 
 def _each(results: Mapping[str, Result]) -> Iterator[Row]:
-    """The rows of each bumper."""
+    """Each bumper by itself."""
     for bumper, result in results.items():
         label, paper_ms = LABELS[bumper], PAPER_ACCELERATION_MS.get(bumper)
         force, torque, either, escape = (
@@ -162,7 +162,7 @@ def _each(results: Mapping[str, Result]) -> Iterator[Row]:
 
 
 def _remarks(results: Mapping[str, Result]) -> Iterator[str]:
-    """Deviations from the paper, with their numbers."""
+    """What does not fit, with its numbers."""
     import numpy as np
 
     for bumper in ("spring", "magnetic"):
@@ -186,7 +186,7 @@ EXPERIMENT = Experiment(
     name="motionless",
     summary="A pulled slider at 0.5 m/s hits the resting robot, which notices and gives way (paper, 5.2).",
     section="5.2",
-    bumpers=PAPER_BUMPERS,
+    bumpers=tuple(BUMPERS),
     scenario=scenario,
     reproduce=reproduce,
 )

@@ -1,4 +1,4 @@
-"""The effect of sensor noise on a metric: its range over seeds."""
+"""What sensor noise does to a number: the range of a metric over seeds."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ METHODS = ("event-exact", "fixed-step")
 LANES = (1, 4, 8)
 PLANT_STEP_RANGE_S = (1e-6, 5e-4)
 STATUSES = ("ok", "cancelled", "wrong", "refused", "failed", "no memory")
-OK, CANCELLED, WRONG = 0, 1, 2
+OK, CANCELLED, WRONG, REFUSED = 0, 1, 2, 3
 NONE = 2**32 - 1  # no model, no reference
 MESSAGE_SIZE = 512
 THREADS_MAX = 1024
@@ -140,6 +140,7 @@ class Library:
         self.cancel = self._function("gwb_cancel", None, pointer)
         self.widest_lanes = self._function("gwb_widest_lanes", number)
         self.finish = self._function("gwb_finish", None, pointer)
+        self.run_up = self._function("gwb_run_up", size, pointer, size)
         sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
         self.models: dict[str, _Model] = {}
         for number_of_model, model in enumerate(native.MODELS):
@@ -173,7 +174,7 @@ class Library:
         return function  # type: ignore[no-any-return]
 
     def _check_matches(self, path: Path, number: int, model: str) -> None:
-        """Refuse a library that was built from another variable table: its references would have other meanings."""
+        """Refuse a library that was built from another variable table: its references would mean other things."""
         for variable in table(model):
             found = _Variable()
             known = self._dll.gwb_find_variable(number, variable.name.encode(), ctypes.byref(found))
@@ -198,12 +199,12 @@ def _load(path: Path, _modified_ns: int) -> Library:
 
 
 def native_metrics() -> list[_NativeMetric]:
-    """The library's metrics with units, in the order of its results."""
+    """What the library measures, with units, in the order of its results."""
     return library().metrics
 
 
 def widest_lanes() -> int:
-    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, otherwise 1."""
+    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, else 1."""
     return int(library().widest_lanes())
 
 

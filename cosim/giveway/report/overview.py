@@ -1,4 +1,4 @@
-"""One picture of a collision: the robot from above before, at and after detection, and the forces."""
+"""One picture of a collision: the robot from above before, at and after detection, and the forces beside it."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def write_overview(path: Path, results: Mapping[str, Result]) -> None:
         _top_view(figure.add_subplot(grid[:, 0]), runs[-1])
         _forces(figure.add_subplot(grid[0, 1]), runs)
         _escapes(figure.add_subplot(grid[1, 1]), runs)
-        # The picture contains its numbers, so that an outdated copy can be recognised.
+        # The picture carries its numbers, so that a stale copy can be told from a fresh one.
         figure.savefig(path, dpi=130, metadata={"Software": None, "Description": numbers(results)})
 
 
 def numbers(results: Mapping[str, Result]) -> str:
-    """The table as text, without rounding noise."""
+    """The table as text, less what is rounding noise."""
     noise = {metric.name for metric in next(iter(results.values())).metrics if metric.decimals is None}
     return "\n".join(" | ".join(row) for row in table_rows(results) if row[0] not in noise)
 

@@ -1,4 +1,4 @@
-"""A result prepared for figures: time from contact, travel along the slider's rail."""
+"""A result as figures need it: time from contact, travel along the slider's rail."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ AROUND_PEAK_MS, LATEST_PEAK_MS = 120.0, 3000.0
 
 
 def force_window_ms(runs: list[Run]) -> tuple[float, float]:
-    """Range of times since contact that shows every peak of `Run.peaks` and its surroundings, ms."""
+    """Times since contact in which every peak of `Run.peaks` and what surrounds it can be seen, ms."""
     latest = max((time_ms for run in runs for time_ms, _, _ in run.peaks()), default=0.0)
     return IMPACT_MS[0], max(IMPACT_MS[1], min(latest, LATEST_PEAK_MS) + AROUND_PEAK_MS)
 
 
 class Run:
-    """One result, relative to its contact."""
+    """One result, seen from its contact."""
 
     def __init__(self, label: str, result: Result) -> None:
         self.hit = Collision(result.traces, result.manifest["parameters"])
@@ -54,7 +54,7 @@ class Run:
         return self.travel(np.stack([self.hit[f"{source}.x"], self.hit[f"{source}.y"]], axis=1))
 
     def peaks(self) -> list[tuple[float, float, str]]:
-        """Time (ms), force (N) and label of the peak of the first contact, and of the run's peak if that is higher."""
+        """Time (ms), force (N) and words of the peak of the first contact, and the run's if a later one is harder."""
         if self.hit.contact_s is None:
             return []
         first, most = (metric.value or 0.0 for metric in (self.hit.contacts()[1], self.hit.peak_force()))

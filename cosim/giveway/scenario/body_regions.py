@@ -1,9 +1,10 @@
-"""Judges a contact with a person by the force limits of a body region (ISO/TS 15066:2016, Annex A).
+"""What a contact does to a person, judged against the force limits of a body region (ISO/TS 15066:2016, Annex A).
 
-Two limits: the *peak* within the first 0.5 s of a contact (transient), and the *lasting* force after that, as in
-clamping (quasi-static); where the area of the contact is known, its mean pressure likewise. `contact_peak` and
-`speed_limit` are the standard's two-mass estimate of the first. The numbers are in `body_regions.toml`. They help to
-judge a design, but do not replace the standard: `NOTICE` says so in every output.
+Two limits: the *peak* within the first 0.5 s of a contact (transient), and the *lasting* force after them, which is
+what clamping does (quasi-static); where the area of the contact is known, its mean pressure likewise. `contact_peak`
+and `speed_limit` are the standard's two-mass estimate of the first.
+The numbers are in `body_regions.toml`. They judge a design; they do not replace the standard: `NOTICE` says so in every
+output.
 """
 
 from __future__ import annotations
@@ -45,11 +46,13 @@ class BodyRegion:
 
     Attributes:
         name: what scenario files call it ("lower leg").
-        covers: its parts.
+        covers: what belongs to it.
         lasting_limit_n: highest quasi-static force, N.
         peak_limit_n: highest force within the first 0.5 s of a contact, N; 0 where no transient contact is allowed.
-        lasting_pressure_limit, peak_pressure_limit: the same for the pressure, N/cm2, at the region's most sensitive
-        spot. stiffness_npm: effective stiffness, N/m. mass_kg: effective mass, kg. source: the tables of the standard.
+        lasting_pressure_limit, peak_pressure_limit: the same of the pressure, N/cm2, of the region's tenderest spot.
+        stiffness_npm: effective stiffness, N/m.
+        mass_kg: effective mass, kg.
+        source: the tables of the standard.
     """
 
     name: str
@@ -87,7 +90,7 @@ class Judgement:
         lasting_time_s: when; None if none lasted so long.
         longest_contact_s: length of the longest contact, s.
         contact_area_m2: area of the contact, m2; None if it is not known, and the pressure neither.
-        lasting_known: the trace continues for more than 0.5 s after the first touch, so the lasting force is known.
+        lasting_known: the trace goes on for more than 0.5 s after the first touch, so that what lasts can be told.
     """
 
     region: BodyRegion
@@ -125,8 +128,7 @@ class Judgement:
         return self.peak_ok and self.lasting_ok and self.lasting_known
 
     def __str__(self) -> str:
-        """One line with the verdict, both forces and mean pressures, their limits, and the notice about the
-        standard."""
+        """One line with the verdict, both forces and mean pressures, their limits, and who decides in the end."""
         region = self.region
         allowed = f"{region.peak_limit_n:g} N" if region.peak_limit_n else "no transient contact"
         known = "within" if self.peak_ok and self.lasting_ok else "above"
@@ -165,12 +167,12 @@ def body_region(name: str) -> BodyRegion:
 
 
 def check_contact_area(area_m2: object) -> float:
-    """``area_m2`` as a float, m2; GivewayError if it is not a number from 1e-6 to 1."""
+    """``area_m2`` as a float, m2; GivewayError if it is no number from 1e-6 to 1."""
     return finite("contact_area_m2", area_m2, *CONTACT_AREA_M2, "m2")
 
 
 def source() -> str:
-    """The source of the limits."""
+    """Where the limits come from."""
     return str(_read()[1]["source"])
 
 
@@ -184,9 +186,9 @@ def judge(
 ) -> Judgement:
     """Judge the magnitude of a contact force over time against the limits of ``region``.
 
-    A contact begins when the force rises above ``touch_n`` and ends when it stays at or below it for 0.5 s: an earlier
-    touch belongs to the same contact. So chatter is subject to the lower, lasting limit, and so is a second blow within
-    one contact, which is on the safe side.
+    A contact begins when the force rises above ``touch_n`` and ends when it stays at or below it for 0.5 s: what comes
+    back sooner belongs to the same contact. So chatter does not escape the lower, lasting limit, and a second blow
+    within one contact is judged by it too, which errs on the safe side.
 
     Args:
         time_s: shape (n,), s, strictly rising.
@@ -292,4 +294,4 @@ def _read() -> tuple[Mapping[str, BodyRegion], dict[str, Any]]:
 
 
 NOTICE: str = _read()[1]["notice"]
-"""The notice about the standard; part of every output that shows a limit."""
+"""Who decides in the end; part of every output that shows a limit."""

@@ -1,7 +1,7 @@
-"""Deviations of a run from the request: one line each, from the stated values and the metrics.
+"""What happened in a run otherwise than it was asked: one line each, from what was stated and from its metrics.
 
-`BOUNDS` has the thresholds of the warnings. Requests that are certainly impossible are refused before a run
-(`plan_limits`, `approach`, the variable tables); warnings cover the rest.
+`BOUNDS` says from where on something is worth a warning. Whatever can be told for certain before a run is refused
+there (`plan_limits`, `approach`, the variable tables); these are the rest.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ SEPARATOR = "; "  # of codes in a table
 
 @dataclass(frozen=True)
 class RunWarning:
-    """One deviation.
+    """One thing that was otherwise.
 
     Attributes:
         code: which one, for tables and scripts; one of `CODES`.
@@ -71,7 +71,7 @@ class RunWarning:
 
 @dataclass(frozen=True)
 class Stated:
-    """The requests of some runs, one number per run, shape (n,); NaN: not stated.
+    """What some runs were asked to do, each a number per run, shape (n,); NaN: not stated.
 
     Attributes:
         contact_speed_mps: of the nose relative to the base.
@@ -92,11 +92,11 @@ class Stated:
 
     @classmethod
     def nothing(cls, count: int) -> Stated:
-        """The requests of ``count`` runs without any statement; to be filled by `put`."""
+        """What ``count`` runs state that state nothing; to be filled by `put`."""
         return cls(*(np.full(count, math.nan) for _ in range(5)), *(np.zeros(count, dtype=np.bool_) for _ in range(2)))
 
     def put(self, where: NDArray[np.int64], other: Stated) -> None:
-        """Copy the requests of ``other`` to the runs ``where``."""
+        """The runs ``where`` state what ``other`` does."""
         for one in fields(self):
             getattr(self, one.name)[where] = getattr(other, one.name)
 
@@ -123,7 +123,7 @@ def _known(values: Sequence[float | None]) -> Numbers:
 
 
 def plan_speed(scenario: Scenario) -> float | None:
-    """The speed of the scenario's plan, m/s; None: no plan, or standing."""
+    """The speed that the scenario's plan states, m/s; None: none, or it stands."""
     plan = scenario.plan
     return abs(plan.speed_mps) or None if isinstance(plan, Straight | Circle) else None
 
@@ -272,18 +272,17 @@ _CHECKS: Sequence[_Check] = (
 )
 
 CODES = tuple(check.code for check in _CHECKS)
-"""All codes, in the order of lines and tables."""
+"""Every code there is, in the order of lines and tables."""
 
 MEANINGS = MappingProxyType({check.code: check.meaning for check in _CHECKS})
-"""The meaning of each code, without the numbers of a run."""
+"""What each code says, without the numbers of a run."""
 
 METRICS = tuple(dict.fromkeys(name for check in _CHECKS for name in check.metrics))
-"""The metrics on which the warnings are based."""
+"""The metrics that warnings follow from."""
 
 
 def masks(stated: Stated, metrics: _Metrics) -> dict[str, Masks]:
-    """The runs with each warning, by code, shape (n,); ``metrics`` holds `METRICS`, NaN for events that did not
-    happen."""
+    """Which runs have which warning, by code, each of shape (n,); ``metrics`` holds `METRICS`, NaN for what was not."""
     with np.errstate(invalid="ignore"):
         return {check.code: check.found(stated, metrics) for check in _CHECKS}
 
@@ -299,7 +298,7 @@ def codes_of(stated: Stated, metrics: _Metrics) -> list[str]:
 
 
 def warnings_of(scenario: Scenario, metrics: Sequence[Metric]) -> tuple[RunWarning, ...]:
-    """The warnings of a completed run of ``scenario``, in the order of `CODES`."""
+    """The warnings of a run of ``scenario`` that came to its end, in the order of `CODES`."""
     values = {metric.name: metric.value for metric in metrics}
     found = {name: _known([values[name]]) for name in METRICS}
     stated = Stated.of([scenario])

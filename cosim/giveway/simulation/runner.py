@@ -1,4 +1,4 @@
-"""From a scenario to a result: run, label, judge, and record the origin."""
+"""From a scenario to a result: run, label, judge, and record where it came from."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ def run(scenario: Scenario, progress: Progress | None = None, engine: Engine = "
 
 
 def judge(scenario: Scenario, record: Record) -> Result:
-    """``record`` with labels, metrics, warnings and manifest."""
+    """``record`` labelled, with its metrics, its warnings and where it came from."""
     traces = _label(record)
     manifest = _manifest(scenario, record)
     parameters = manifest["parameters"]
     found = metrics.collision(traces, parameters)
     warnings: tuple[RunWarning, ...] = ()
-    if not record.interrupted:  # otherwise the rest of the run is unknown
+    if not record.interrupted:  # else nobody knows what would have come
         warnings = warnings_of(scenario, (*found, *metrics.design(traces, parameters)))
     manifest["warnings"] = [warning.text for warning in warnings]
     felt = responses_of(traces, manifest).pushes
@@ -65,7 +65,7 @@ def judge(scenario: Scenario, record: Record) -> Result:
 
 
 def _stated(scenario: Scenario) -> dict[str, Any] | None:
-    """The stated contact as plain data for JSON."""
+    """The contact that is asked for, as JSON has it."""
     contact = scenario.contact
     if contact is None:
         return None

@@ -1,6 +1,5 @@
 /* Prints the inputs of the golden sequence "controller.trikey", one line per tick, for the controller's FMU: torques,
- * encoders, counter, present, plan, stop request, tare request. Reals are printed as C99 hexadecimal floats, which are
- * exact. */
+ * encoders, counter, present, plan, stop request, tare request. Reals as C99 hexadecimal floats, which lose nothing. */
 #include <inttypes.h>
 #include <stdio.h>
 

@@ -42,8 +42,7 @@ digest_t drive_controller_trikey(void)
     return play(&config, SCRIPT_TRIKEY_SEED, true);
 }
 
-/* Everything that the first drive does not cover: measured motion, live force, force average, odd geometry, non-finite
- * plans.
+/* All that the first one leaves: measured motion, live force, force average, odd geometry, plans that are not finite.
  */
 digest_t drive_controller_measuring(void)
 {

@@ -2,24 +2,12 @@
 
 #define PERIOD R(0.001)
 
-static gw_detector_config_t impulse_config(void)
-{
-    gw_detector_config_t config;
-    gw_detector_config_trikey(&config);
-    config.kind = GW_DETECTOR_IMPULSE;
-    config.force_threshold_n = R(10.0);
-    config.impulse_threshold_newton_s = R(0.5);
-    config.leak_rest_n = R(1.0);
-    config.leak_creep_n = R(40.0);
-    config.leak_motion_n = R(3.0);
-    config.release_force_n = R(6.0);
-    config.blanking_ticks = 5U;
-    return config;
-}
+static const gw_detector_config_t impulse_config = {
+    GW_DETECTOR_IMPULSE, R(10.0), R(0.5), R(1.0), R(40.0), R(3.0), R(6.0), 5U};
 
 static gw_detector_t made(uint32_t kind)
 {
-    gw_detector_config_t config = impulse_config();
+    gw_detector_config_t config = impulse_config;
     gw_detector_t detector;
     config.kind = kind;
     CHECK_STATUS(gw_detector_init(&detector, &config, PERIOD), GW_STATUS_OK);
@@ -46,21 +34,20 @@ static gw_detector_output_t step(gw_detector_t *detector, const gw_detector_inpu
 
 static void bad_arguments_are_refused(void)
 {
-    const gw_detector_config_t config = impulse_config();
     gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
     const gw_detector_input_t input = push(R(1.0), GW_REGIME_REST);
     gw_detector_output_t output;
-    CHECK_STATUS(gw_detector_init(NULL, &config, PERIOD), GW_STATUS_NULL_POINTER);
+    CHECK_STATUS(gw_detector_init(NULL, &impulse_config, PERIOD), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_init(&detector, NULL, PERIOD), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_step(&detector, &input, NULL), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_step(&detector, NULL, &output), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_step(NULL, &input, &output), GW_STATUS_NULL_POINTER);
-    CHECK_STATUS(gw_detector_init(&detector, &config, R(0.0)), GW_STATUS_CONFIG_INVALID);
+    CHECK_STATUS(gw_detector_init(&detector, &impulse_config, R(0.0)), GW_STATUS_CONFIG_INVALID);
     CHECK_STATUS(gw_detector_step(&detector, &input, &output), GW_STATUS_NOT_INITIALISED);
     CHECK(!output.tripped);
 }
 
-/* 51 N minus 1 N of leak is 0.05 N s per tick; the leak is part of the mean force. */
+/* 51 N less 1 N forgiven is 0.05 N s a tick, and what leaks away is part of the mean force. */
 static void the_impulse_trips_once_it_exceeds_the_threshold(void)
 {
     gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
@@ -79,7 +66,7 @@ static void the_impulse_trips_once_it_exceeds_the_threshold(void)
         CHECK_NEAR(output.mean_wrench.torque_nm, R(5.1), R(6.0) * ROUNDING);
         CHECK(output.samples == ticks);
     }
-    CHECK((ticks == 10U) || (ticks == 11U)); /* the tenth reaches 0.5 N s up to rounding */
+    CHECK((ticks == 10U) || (ticks == 11U)); /* the tenth reaches 0.5 N s but for rounding */
 }
 
 static void what_is_forgiven_depends_on_the_motion(void)

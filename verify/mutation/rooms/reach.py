@@ -1,6 +1,6 @@
-"""A pytest plugin: which mutants each test reaches, from the file that the mutants mark (GIVEWAY_MUTANTS_REACHED).
+"""A plugin of pytest: which mutants each test comes by, from the file that the mutants mark (GIVEWAY_MUTANTS_REACHED).
 
-Mutants reached by a fixture count for every test that uses it, those reached by a file's import for all its tests.
+What a fixture comes by counts for every test that uses it, and what a file's import comes by for every test in it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Reach:
         self.failed = False
 
     def _taken(self) -> set[int]:
-        """Reads and clears the marks."""
+        """The marks, which are wiped."""
         found = {at for at, mark in enumerate(self.marks[:]) if mark}
         self.marks[:] = bytes(len(self.marks))
         return found

@@ -1,4 +1,4 @@
-"""The paper's Fig. 10: one hit with each bumper; travel, forces and the torque of wheel 0 in common panels."""
+"""The paper's Fig. 10: one hit with each bumper; travel, forces and the torque of wheel 0, overlaid."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def _positions(axes: Axes, run: Run) -> None:
     slider = run.hit["testbed.truth.slider_position"]
     wheel = run.hit[f"testbed.truth.wheel_angle[{WHEEL}]"]
     turned = wheel - wheel[run.contact_row]
-    # A wheel at 30 deg to the direction of travel turns by cos(30 deg) of it.
+    # A wheel at 30 deg to the way turns by cos(30 deg) of it.
     sign = 1.0 if turned[run.contact_row - 1] < 0.0 else -1.0
     radius = float(run.parameters["testbed"]["wheel.radius"])
     _plot(axes, run, -1e3 * run.position("testbed.truth"), "robot", run.colour)

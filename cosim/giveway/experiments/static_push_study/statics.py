@@ -1,7 +1,6 @@
-"""Groups of four pushes in the static model alone: fast enough to search for the parameter values that would explain a
-number.
+"""Groups of four pushes in the static model alone: quick enough to ask which parameter would have to be what.
 
-No dynamics, noise, slipping or outline: magnitudes and directions only. `trials` runs the full simulation.
+No dynamics, noise, slipping or outline: magnitudes and directions only. `trials` runs the real thing.
 """
 
 from __future__ import annotations

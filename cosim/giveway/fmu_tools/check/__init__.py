@@ -1,7 +1,7 @@
-"""`giveway fmu check`: faults of an FMU, from the zip file to the libraries its binaries need.
+"""`giveway fmu check`: what is wrong with an FMU, from the zip file down to the libraries its binaries need.
 
-`severity` explains the severities. `refusals` is the part that `giveway fmu run` and `info` use: findings that make a
-file unsafe to unpack, or unreadable.
+What each finding means is in `severity`. `refusals` is the part of it that `giveway fmu run` and `info` ask for: what
+makes a file unsafe to unpack, or unreadable.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from pathlib import Path
 
 from giveway.base.errors import FileError
 from giveway.fmu_tools.archive import Archive, ArchiveError, OverLimitError, shown
-from giveway.fmu_tools.check import archive, binaries, description, documents, structure, unit_definitions
+from giveway.fmu_tools.check import archive, binaries, description, documents, structure
+from giveway.fmu_tools.check import unit_definitions as units
 from giveway.fmu_tools.check.common import DESCRIPTION, Found, TestedFile
 from giveway.fmu_tools.check.severity import Severity
 from giveway.fmu_tools.description import Description, VersionError, read_description
@@ -28,7 +29,7 @@ _FMI_XML = (DESCRIPTION, documents.BUILD_DESCRIPTION, documents.TERMINALS)
 
 @dataclass(frozen=True)
 class Finding:
-    """One finding of a check.
+    """One thing that a check found.
 
     Attributes:
         check: its name, a key of `CHECKS`, or "limits", "XML" or "FMI version".
@@ -51,7 +52,7 @@ class Check:
     """One check.
 
     Attributes:
-        needs_description: it is skipped without a readable model description.
+        needs_description: it is left out if there is no model description that can be read.
         refuses: its faults make a file unsafe to unpack or impossible to run: `giveway fmu run` refuses it.
     """
 
@@ -60,7 +61,7 @@ class Check:
     refuses: bool = False
 
     def findings(self, name: str, file: TestedFile) -> Iterator[Finding]:
-        """At most `MOST_OF_ONE_KIND` findings of each severity, and the number of the others."""
+        """Of each severity at most `MOST_OF_ONE_KIND`, and how many more there are."""
         count: Counter[Severity] = Counter()
         for severity, text in self.function(file):
             count[severity] += 1
@@ -109,7 +110,7 @@ def open_safely(path: Path, limits: Limits | None = None) -> tuple[Archive, Desc
 
 
 def _read(opened: Archive) -> tuple[TestedFile, list[Finding]]:
-    """FMI's own XML files as a stream, and their faults. No entity is expanded and nothing is fetched."""
+    """FMI's own XML files as a stream, and what is wrong with them. No entity is expanded and nothing is fetched."""
     file = TestedFile(opened)
     found: list[Finding] = []
     budget = Budget(opened.limits)
@@ -149,7 +150,7 @@ CHECKS: Mapping[str, Check] = {
     "names and references": Check(description.names_and_references),
     "start values": Check(description.start_values),
     "start presence": Check(description.start_presence),
-    "units": Check(unit_definitions.units),
+    "units": Check(units.units),
     "model structure": Check(structure.structure),
     "event indicators": Check(structure.event_indicators),
     "FMPy": Check(description.fmpy_validation),

@@ -1,4 +1,4 @@
-"""Severity of findings: the definition of the three words."""
+"""How bad a finding is: the one place that says what the three words mean."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ __all__ = ["Severity"]
 
 
 class Severity(Enum):
-    """From severe to harmless."""
+    """From bad to harmless."""
 
     FAULT = "fault"
-    """An importer may refuse the file or misread it."""
+    """An importer may refuse the file, or read something else than was meant."""
     WARNING = "warning"
-    """Legal, but some importers or machines cannot handle it."""
+    """Legal, but there are importers or machines that cannot take it."""
     NOTE = "note"
-    """Legal and usual, but worth a look."""
+    """Legal and usual, and worth a look."""
