@@ -15,7 +15,7 @@ def main(fmus: str, duration_s: float, repeats: int) -> None:
     connections = json.loads(sys.stdin.read())
     best, steps = float("inf"), round(duration_s / STEP_S)
     with EcosSimulationStructure() as structure:
-        # In this order a step passes the sensors on, then the controller and then the testbed step.
+        # In this order a step transfers the sensor values, then steps the controller and then the testbed.
         for model in ("controller", "testbed"):
             structure.add_model(model, f"{fmus}/giveway_{model}_fmi2.fmu")
         for kind, source, target in connections:

@@ -28,7 +28,7 @@ def main(duration_s: float, repeats: int) -> None:
         started = time.perf_counter()
         state, _ = rollout.rollout(model, data, states, control)
         best = min(best, time.perf_counter() - started)
-    # Where the slider is at the end, and how fast the base: that there was a collision can be seen.
+    # Position of the slider and speed of the base at the end, as evidence of the collision.
     positions = state[0, :, 1 : 1 + model.nq]
     slider, base = positions[:, 6], positions[:, 1]
     result = {

@@ -1,6 +1,6 @@
 """`python -m importers`: from the repository's root; `make importers` prepares what it needs.
 
-Writes importers/results.json and the table in fmu/README.md; exits with 1 if an importer did not do as expected.
+Writes importers/results.json and the table in fmu/README.md; exits with 1 if an importer did not behave as expected.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def main() -> int:
     parser.add_argument("--python", type=Path, default=ROOT / "build/importers/tools/bin/python")
     parser.add_argument("--dry", action="store_true", help="print the table; leave the README and the results alone")
     options = parser.parse_args()
-    work, fmus = ROOT / "build/importers/work", ROOT / "out/fmus"  # as `make fmus ALL=1` leaves them for users
+    work, fmus = ROOT / "build/importers/work", ROOT / "out/fmus"  # the files that `make fmus ALL=1` makes for users
     work.mkdir(parents=True, exist_ok=True)
     write_reference(work / "reference.npy")
     results: dict[str, dict[str, Any]] = {}

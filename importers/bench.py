@@ -26,7 +26,7 @@ TARGETS = {"C master": "100 runs/s (goal 150)", "testbed": "8 ms (goal 5)", "con
 
 
 def c_master(program: Path, repeats: int) -> dict[str, float]:
-    """Best times in ms: "run", "controller" and "testbed" (inside the FMUs' steps, from runs of their own)."""
+    """Best times in ms: "run", "controller" and "testbed" (time inside the FMUs' steps, from separate runs)."""
     folders = [open_fmu(native.fmu(model, 3)).folder for model in native.MODELS]
     words = [f"{name}={value}" for name, value in PARAMETERS.items()]
     found: dict[str, float] = {}

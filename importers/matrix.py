@@ -1,4 +1,4 @@
-"""Runs every probe on every kind of FMU, each in a process of its own, and judges what came out."""
+"""Runs every probe on every kind of FMU, each in its own process, and judges the result."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ RECORDED = ("truth.x", "truth.slider_position", "truth.contact_force", "truth.wh
 STEPS, STEP_S = 600, 1e-3
 TIMEOUT_S = 180.0
 PARAMETERS = {"testbed.bumper.kind": 2}
-# Co-Simulation gives the bits of our own run, or the importer did something else. In Model Exchange the probe
-# integrates with fixed steps of 50 us and follows an event that it went past: another method, off by 5e-4 here.
+# Co-Simulation has to give the bits of our own run. In Model Exchange the probe integrates with fixed steps of 50 us
+# and handles an event after the step that contains it: this method deviates by 5e-4 here.
 TOLERANCES = {"CS": 0.0, "ME": 2e-3}
 
 
@@ -33,9 +33,10 @@ class Importer:
     Attributes:
         name: as the table shows it, with its version.
         probe: file below probes/.
-        parallel: it exchanges both models at once, so a cycle of command delay is taken out of the testbed.
-        cannot: per (FMI version, interface), why it cannot; what is not named here has to work.
-        crashes: the same, where the reason has to be seen in a run: it must fail there.
+        parallel: it exchanges the values of both models at once, so one cycle of command delay is removed from the
+            testbed.
+        cannot: reasons by (FMI version, interface) why it cannot; all others have to work.
+        crashes: the same for combinations that are run and have to fail.
     """
 
     name: str
@@ -62,10 +63,11 @@ class Cell:
     """One importer with one kind of FMU.
 
     Attributes:
-        reached: the last stage that it came through, "" if none.
-        deviation: of the closed loop from our own run, the largest of any signal over its peak; None if there is none.
-        reason: why it went no further; "" if it did all.
-        met: it did what is expected of it.
+        reached: the last stage that it completed, "" if none.
+        deviation: of the closed loop from our own run, the largest of any signal relative to its peak; None if there is
+            none.
+        reason: why it stopped; "" if it completed all stages.
+        met: whether it behaved as expected.
     """
 
     reached: str
@@ -75,14 +77,14 @@ class Cell:
 
     @property
     def text(self) -> str:
-        """As the table shows it."""
+        """Text for the table."""
         if self.deviation is not None and not self.reason:
             return "all; same bits" if self.deviation == 0.0 else f"all; within {self.deviation:.0e}"
         return f"to {self.reached}; {self.reason}" if self.reached else f"no: {self.reason}"
 
 
 def write_reference(path: Path) -> None:
-    """Our own run, with our own master, as the probes write theirs."""
+    """A run with our own master, in the format of the probes."""
     import dataclasses
 
     from giveway import experiments
@@ -90,7 +92,7 @@ def write_reference(path: Path) -> None:
 
     scenario = experiments.get("motionless").scenario("magnetic")
     record = simulate(dataclasses.replace(scenario, duration_s=STEPS * STEP_S, controller={}))
-    # What the probes set; a slider is there by default.
+    # The parameters that the probes set; the slider is present by default.
     assert dict(scenario.parameters("testbed")) == {"slider.present": True, "bumper.kind": 2}
     columns = [record.time_s, *(record.traces[f"testbed.{name}"] for name in RECORDED)]
     np.save(path, np.column_stack(columns))
@@ -114,7 +116,7 @@ def _job(importer: Importer, version: int, interface: str, fmus: Path, work: Pat
 
 
 def environment(python: Path) -> dict[str, str]:
-    """ecos finds the threading library among the importers' packages."""
+    """The environment in which ecos finds the threading library of the importers' packages."""
     return {**os.environ, "LD_LIBRARY_PATH": str(python.parents[1] / "lib"), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
@@ -151,7 +153,7 @@ def run_cell(importer: Importer, version: int, interface: str, python: Path, fmu
 
 
 def _stages(output: str, code: int | None) -> tuple[str, str]:
-    """The last stage that was done, and why there is no later one."""
+    """The last completed stage, and why there is no later one."""
     reached = ""
     for line in output.splitlines():
         if not line.startswith('{"stage"'):
@@ -171,7 +173,7 @@ def _stages(output: str, code: int | None) -> tuple[str, str]:
 
 
 def _deviation(trace: Path, reference: NDArray[np.float64]) -> float:
-    """Largest deviation of any signal over its peak; rows are found by their times."""
+    """Largest deviation of any signal relative to its peak; rows are matched by time."""
     lines = trace.read_text(encoding="utf-8").split()[1:]
     rows = np.array([[float.fromhex(cell) for cell in line.split(",")] for line in lines])
     wanted = reference[np.rint(rows[:, 0] / STEP_S).astype(int)]

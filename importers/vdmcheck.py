@@ -35,7 +35,7 @@ def install(folder: Path) -> Path:
 
 
 def check(jar: Path, fmu: Path) -> str:
-    """What it has to say of ``fmu``; nothing if all is well."""
+    """Its findings about ``fmu``; empty if there are none."""
     command = ["java", "-jar", str(jar), str(fmu)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=TIMEOUT_S)

@@ -1,4 +1,4 @@
-"""What a rung works with: folders, and tools run within limits of memory and time."""
+"""The context of a rung: its folders, and tools run within limits of memory and time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from verify.failure import RungFailed
 
 __all__ = ["Context", "Finished", "Tool", "kill_all"]
 
-LAST_LINES = 60  # of a tool's output that are kept as evidence
+LAST_LINES = 60  # characters of a tool's output that are kept as evidence
 
 _running: set[subprocess.Popen[str]] = set()
 _running_lock = threading.Lock()
@@ -28,7 +28,7 @@ class Tool:
 
     name: str
     version: tuple[str, ...] = ("--version",)
-    package: str = ""  # what to install, if it is not called like the tool
+    package: str = ""  # the package to install, if its name is not that of the tool
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ __all__ = ["RungFailed"]
 
 
 class RungFailed(Exception):
-    """The evidence: what was found, where, and what would have been right."""
+    """The evidence: what was found, where, and what was expected."""
 
     def __init__(self, evidence: str) -> None:
         super().__init__(evidence)

@@ -36,13 +36,13 @@ OBJDUMP = Tool("arm-none-eabi-objdump", package="binutils-arm-none-eabi")
 MACHINES = tuple(TARGETS[name] for name in ("cortex-m3", "cortex-m4f", "cortex-m7"))
 ENTRIES = ("gw_controller_init", "gw_controller_step", "gw_servo_init", "gw_servo_step")
 SOURCES = "tests/c_core/footprint"
-# A firmware's usual flags: each function in a section of its own, so that the linker drops what nobody calls.
+# Usual firmware flags: one section per function, so that the linker drops functions that are not called.
 FLAGS = ("-O2", "-ffunction-sections", "-fdata-sections")
 
 
 @dataclass(frozen=True)
 class Footprint:
-    """Bytes and instructions; steps are the longest ones over the recorded collision and found by search."""
+    """Bytes and instructions; steps are the longest over the recorded collision and the longest found by search."""
 
     flash: int
     controller_ram: int  # without the window of the filter
@@ -80,7 +80,7 @@ ROWS = {
 }
 
 
-# What a program may call instead of all, with PART of parts.c; None: linked.c.
+# Subsets that a program may call, with their PART of parts.c; None: linked.c.
 PARTS = {
     "controller and servo": None,
     "the same, and the names of the configuration's fields": 1,
@@ -119,7 +119,7 @@ def check_parts(root: Path, parts: dict[str, tuple[int, int]]) -> None:
 
 
 def _link(context: Context, target: Target, part: int | None = None, flags: tuple[str, ...] = FLAGS) -> Path:
-    """A program that is nothing but c_core and what it calls of it; gcc's .su files beside it."""
+    """A program that contains only c_core and calls to it; gcc's .su files are next to it."""
     bare = replace(target, flags=tuple(flag for flag in target.flags if "specs" not in flag), support=())
     source = context.root / SOURCES / ("linked.c" if part is None else "parts.c")
     link = ("-nostartfiles", "-Wl,--gc-sections,-e,firmware", "-fstack-usage", f"-DPART={part or 0}")
@@ -173,7 +173,7 @@ def _stack(context: Context, linked: Path) -> int:
 def worst_stack(listing: str, usage: dict[str, int], entry: str) -> int:
     """Bytes of the deepest chain of calls from ``entry``; `RungFailed` on recursion and on calls through pointers.
 
-    ``usage``: what the compiler says of its functions; those of its libraries are read off their instructions.
+    ``usage``: the compiler's figures for its functions; those of library functions are read from their instructions.
     """
     frames: dict[str, int] = {}
     calls: dict[str, set[str]] = {}
@@ -226,7 +226,7 @@ def table(measured: dict[str, Footprint]) -> str:
 
 
 def check_table(root: Path, measured: dict[str, Footprint]) -> None:
-    """`RungFailed` unless c_core/README.md shows the measured numbers of these machines."""
+    """`RungFailed` unless c_core/README.md shows the numbers measured for these machines."""
     readme = (root / "c_core" / "README.md").read_text(encoding="utf-8")
     shown = [_cells(line) for line in readme.splitlines() if line.startswith("| ")]
     (heading, *rows) = [_cells(line) for line in table(measured).splitlines() if not line.startswith("|---")]

@@ -46,7 +46,7 @@ def build(context: Context, core: Path, name: str, real: str, flags: tuple[str, 
 
 
 def fuzz(context: Context, program: Path, corpus: Path, seconds: int) -> int:
-    """How many inputs were run; `RungFailed` with what the first bad one broke. ``corpus`` grows."""
+    """Number of inputs run; `RungFailed` with the finding of the first bad one. ``corpus`` grows."""
     corpus.mkdir(exist_ok=True)
     answer = context.run(
         program,
@@ -68,7 +68,7 @@ def fuzz(context: Context, program: Path, corpus: Path, seconds: int) -> int:
 
 
 def replay(context: Context, command: tuple[str | Path, ...], corpus: Path) -> int:
-    """Run every input of the corpus once; how many there were."""
+    """Run every input of the corpus once, and return their number."""
     inputs = sorted(corpus.iterdir())
     if not inputs:
         raise RungFailed(f"{corpus}: nothing to replay")

@@ -1,4 +1,4 @@
-"""The golden bits: a program that drives every module and prints a digest for each, and the table it has to print.
+"""The golden bits: a program that drives every module and prints a digest of each, and the table it has to match.
 
 After a change that is meant to change bits: .venv/bin/python -m verify.golden
 """
@@ -20,11 +20,11 @@ __all__ = ["TABLE", "TYPES", "build", "compare", "digests", "read_table"]
 TYPES = ("float", "double")
 TABLE = "tests/c_core/golden/golden.txt"
 SOURCES = "tests/c_core/golden"
-EXAMPLE = "examples/firmware_mps2_an386"  # whose recorded collision is played, and whose digest is used
+EXAMPLE = "examples/firmware_mps2_an386"  # its recorded collision is replayed, and its digest function is used
 
 HEADING = """\
-# What every module of c_core puts out for a fixed sequence of inputs, as a digest of its bits: the same with every
-# compiler and on every machine. Made by `python -m verify.golden`; a change of this table is a change of version.
+# What every module of c_core puts out for a fixed sequence of inputs, as a digest of its bits: the same with every #
+compiler and on every machine. Made by `python -m verify.golden`; a change of this table is a change of version.
 """
 
 

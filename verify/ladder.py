@@ -73,7 +73,7 @@ def _run(root: Path, name: str, rung: Rung, path: str) -> Outcome:
         figure = rung.check(context)
     except RungFailed as failure:
         evidence = failure.evidence
-    except Exception:  # a mistake in the rung itself must not hide the results of the others
+    except Exception:  # an error in the rung itself must not hide the results of the other rungs
         evidence = traceback.format_exc()
     return Outcome(name, figure, evidence, time.perf_counter() - start, versions)
 
@@ -112,8 +112,8 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str, seconds: fl
 def verified(root: Path, outcomes: list[Outcome], sources: str, order: Sequence[str]) -> Path:
     """c_core/VERIFIED.json: the sources that climbed every rung, with the figures. `make test` holds it current.
 
-    What other rungs found about the very same sources stays, so that a new rung can be climbed alone; one that failed
-    goes. ``order``: the names of all rungs.
+    Results of other rungs for the same sources are kept, so that a new rung can be climbed alone; a rung that failed is
+    removed. ``order``: the names of all rungs.
     """
     if core_hash(root) != sources:
         raise RungFailed("c_core changed while it was being verified: run `make verify` again")

@@ -24,8 +24,8 @@ Value = str | int | float | bool
 class Figure:
     """What a rung measured: one line for people, and the values for summary.json and VERIFIED.json.
 
-    ``varies``: more words, of what comes out otherwise each time, such as how much was done in a given time. They are
-    printed and stand in summary.json; VERIFIED.json is the same for the same sources.
+    ``varies``: text about results that differ between runs, such as how much was done in a given time. It is printed
+        and stored in summary.json, but not in VERIFIED.json, which is the same for the same sources.
     """
 
     text: str
@@ -42,7 +42,7 @@ class Figure:
 class Rung:
     """A check. ``check`` returns its figure or raises `RungFailed` with the evidence.
 
-    ``remeasure`` returns those of the values that are cheap: `make test` compares them with VERIFIED.json, so it may
+    ``remeasure`` returns the values that are cheap to measure: `make test` compares them with VERIFIED.json, so it may
     use only tools that `make test` has.
     """
 
@@ -54,7 +54,7 @@ class Rung:
 
 @contextmanager
 def planted(fault: str, *, shows: str) -> Iterator[None]:
-    """The block checks something with a planted fault: it has to fail with evidence that matches ``shows``."""
+    """The block runs a check on a planted fault: it has to fail with evidence that matches ``shows``."""
     try:
         yield
     except RungFailed as failure:

@@ -19,7 +19,7 @@ __all__ = ["Cost", "measure", "table"]
 VALGRIND = Tool("valgrind")
 PROGRAM = "build/tests/c_core/bench_step"
 TICKS = 800  # RECORDED_TICKS
-COLLISIONS = 500  # the best of so many counts: others use the machine as well
+COLLISIONS = 500  # number of repetitions; the best counts, as other processes use the machine as well
 WAYS = {"c_core": "run_c_core", "eigen": "run_eigen"}
 
 
@@ -32,7 +32,7 @@ class Cost:
 
 
 def measure(context: Context) -> dict[str, Cost]:
-    """Nanoseconds of both in one run, taken in turns; instructions as callgrind counts them."""
+    """Nanoseconds of both in one run, measured alternately; instructions counted by callgrind."""
     program = context.root / PROGRAM
     lines = context.run(program, str(COLLISIONS)).stdout.splitlines()
     times = {name: float(value) for name, value in (line.split() for line in lines)}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tools of `make verify`. Each rung names the ones it calls; a tool that is missing is a failure there.
+# The tools of `make verify`. Each rung names the tools it calls, and fails if one is missing.
 set -euo pipefail
 # shellcheck source=cmake/packages.sh
 source "$(dirname "$0")/../cmake/packages.sh"
@@ -8,7 +8,7 @@ has() { # has COMMAND: it can be called
     command -v "$1"
 }
 
-# What the build itself needs (cmake/system_packages.sh) is already there.
+# The packages that the build itself needs (cmake/system_packages.sh) are already installed.
 need clang-19 has clang-19
 need llvm-19 has llvm-cov-19
 need frama-c-base has frama-c

@@ -34,24 +34,24 @@ WINE = Tool("/usr/lib/wine/wine64", package="wine64")
 QEMU_USER = {name: Tool(f"qemu-{name}", package="qemu-user") for name in ("i386", "aarch64", "riscv64", "arm", "s390x")}
 
 STANDARD = ("-std=c99", "-ffp-contract=off")
-# The square root that any processor computes, not the one instruction of some.
+# The software square root for any processor, not the single instruction of some.
 PORTABLE = "-DGW_HARDWARE_SQRT=0"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
 
 
 @dataclass(frozen=True)
 class Target:
-    """A machine. ``emulator``: what runs its programs, before the program's name; empty: this machine runs them."""
+    """A machine. ``emulator``: the command that runs its programs; empty: they run directly on this machine."""
 
     name: str
     compiler: Tool
     flags: tuple[str, ...] = ()
     emulator: Tool | None = None
     emulator_arguments: tuple[str, ...] = ()
-    suffix: str = ""  # of a program's name
-    support: tuple[str, ...] = ()  # sources and linker script that a program needs, below the repository's root
-    # False: double is software there, and gcc 12's for Arm rounds some differences wrongly, such as
-    # 1 - 0x1.2f84f34dfab73p-33; tests/c_core/test_golden_bits.py tells when that is mended.
+    suffix: str = ""  # suffix of a program's name
+    support: tuple[str, ...] = ()  # sources and linker script that a program needs, relative to the repository's root
+    # False: double is emulated in software there, and gcc 12 for Arm rounds some differences wrongly, such as 1 -
+    # 0x1.2f84f34dfab73p-33; tests/c_core/test_golden_bits.py fails when this is fixed.
     double_rounds: bool = True
 
     @property
@@ -93,7 +93,7 @@ class Target:
 
 
 def _wine_home(context: Context) -> Path:
-    """wine keeps its registry there; made once, and not in the user's home."""
+    """Folder of wine's registry; made once, outside the user's home."""
     home = context.root / "build" / "verify" / "wine"
     os.makedirs(home, exist_ok=True)
     return home
@@ -132,13 +132,13 @@ CORTEX_M = (
 
 TARGETS = {target.name: target for target in (HOST, WIN64, *CORTEX_M)}
 
-# Where only the bits are compared.
+# Machines on which only the bits are compared.
 CROSS = (
     _linux("i686", "i686-linux-gnu", "i386", "-msse2", "-mfpmath=sse"),
     _linux("aarch64", "aarch64-linux-gnu", "aarch64"),
     _linux("riscv64", "riscv64-linux-gnu", "riscv64"),
     _linux("armhf", "arm-linux-gnueabihf", "arm"),
-    # Big-endian. There -std=c99 alone makes gcc compute float in double, which gw_types.h refuses.
+    # Big-endian. Here -std=c99 alone makes gcc compute float in double, which gw_types.h refuses.
     _linux("s390x", "s390x-linux-gnu", "s390x", "-fexcess-precision=fast"),
     _cortex_m("cortex-m55", "mps3-an547", "-mcpu=cortex-m55", "-mfloat-abi=hard", double_rounds=True),
 )

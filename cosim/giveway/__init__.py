@@ -55,8 +55,8 @@ def run(scenario: Scenario, progress: Progress | None = None, engine: Engine = "
     ``engine`` "fmu" steps the FMUs over FMPy; "native" gives the same bits from the batch library, several times as
     fast, and reads no FMU (``fmi_version`` says nothing then).
 
-    ``progress``, if given, is called now and then with the simulated time and the duration (both in s).
-    Ctrl-C ends the run cleanly; the result then holds what was computed and says so in its manifest.
+    ``progress``, if given, is called now and then with the simulated time and the duration (both in s). Ctrl-C ends the
+    run cleanly; the result then contains the part that was computed, and its manifest says so.
 
     Raises:
         GivewayError: ``scenario`` is no scenario, something in it is not allowed, or there is no such engine.

@@ -64,21 +64,21 @@ def run_many(
 ) -> xarray.Dataset:
     """Run ``scenarios`` in ``threads`` threads (None: one per processor) and return a table.
 
-    Over the dimension ``run``, in the order of ``scenarios``: every metric under its name with its unit, the truth it
-    is compared with as ``NAME (true)``, NaN for what did not happen; ``status`` ("ok", "cancelled", "refused",
-    "failed", ...), ``message`` (empty if ok), ``simulated`` (s, how far the run came) and ``warnings`` (codes of what
-    happened otherwise than asked, see `simulation.run_warnings`; empty if nothing did). A run that fails does not
-    stop the others. Over ``run`` and ``time``: the variables named in ``traces`` ("testbed.truth.contact_force"), zero
-    from where a run ended early; for these all scenarios need the same duration and step.
+    Over the dimension ``run``, in the order of ``scenarios``: every metric under its name with its unit, its true value
+    as ``NAME (true)``, NaN for events that did not happen; ``status`` ("ok", "cancelled", "refused", "failed", ...),
+    ``message`` (empty if ok), ``simulated`` (simulated time, s) and ``warnings`` (codes of deviations from the request,
+    see `simulation.run_warnings`; empty if there are none). A run that fails does not stop the others. Over ``run`` and
+    ``time``: the variables named in ``traces`` ("testbed.truth.contact_force"), zero after the end of a run that ended
+    early; for these all scenarios need the same duration and step.
 
     ``method`` "event-exact" gives the bits of `giveway.run`. "fixed-step" computes ``lanes`` designs side by side (1, 4
-    or 8; None: as many as the processor can) over fixed steps of ``plant_step_s`` (1e-6 to 5e-4 s; None: as each design
-    needs): several times as fast, with the errors that fmu/batch/README.md lists, and each design with the same bits
-    whatever the lanes, threads and other scenarios. Its table says per run how it was computed: ``method`` (what cannot
-    be done over fixed steps is done event-exact) and ``plant step`` (s, 0 if event-exact); the attributes ``method``
-    and ``lanes`` are those of the batch.
+    or 8; None: as many as the processor can) with fixed steps of ``plant_step_s`` (1e-6 to 5e-4 s; None: as each design
+    needs). It is several times faster, with the errors listed in fmu/batch/README.md, and each design has the same bits
+    with any lanes, threads and other scenarios. Its table tells for each run how it was computed: ``method`` (runs that
+    are not possible with fixed steps are event-exact) and ``plant step`` (s, 0 if event-exact); the attributes
+    ``method`` and ``lanes`` are those of the batch.
 
-    Wrong scenarios are refused before anything runs. Ctrl-C ends the batch; what is done is kept, the rest is
+    Wrong scenarios are refused before anything runs. Ctrl-C ends the batch; finished runs are kept, the rest is
     "cancelled", and the attribute ``interrupted`` is true.
     """
     prepared = Prepared(scenarios, traces=traces)
@@ -86,7 +86,7 @@ def run_many(
 
 
 class Prepared:
-    """Scenarios as the library takes them, checked once, to be run as often as wanted.
+    """Scenarios in the library's form, checked once, to be run any number of times.
 
     Args:
         scenarios, traces: as in `run_many`.
@@ -110,7 +110,7 @@ class Prepared:
         lanes: int | None = None,
         plant_step_s: float | None = None,
     ) -> xarray.Dataset:
-        """Run them all, as `run_many`; what the run before recorded in its traces is overwritten."""
+        """Run them all, as `run_many`; traces of the previous call are overwritten."""
         if threads is None:
             threads = min(len(os.sched_getaffinity(0)), THREADS_MAX)
         whole("threads", threads, 1, THREADS_MAX)

@@ -55,7 +55,7 @@ app.add_typer(fmu_app)
 
 @dataclass
 class _Settings:
-    """Options that stand before the command."""
+    """Options before the command."""
 
     debug: bool = False
 
@@ -83,14 +83,14 @@ def _options(
 
 
 def main() -> None:
-    """Entry point. Wrong input is one line on stderr and exit code 2; a run that fails on its way exits with 1."""
+    """Entry point. Wrong input gives one line on stderr and exit code 2; a run that fails exits with 1."""
     sys.exit(_main(sys.argv[1:]))
 
 
 def _main(arguments: list[str]) -> int:
     settings = _Settings()
     for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # a path may hold what the terminal cannot show
+        if isinstance(stream, io.TextIOWrapper):  # a path may contain characters that the terminal cannot show
             stream.reconfigure(errors="backslashreplace")
     try:
         with warnings.catch_warnings():
@@ -103,11 +103,11 @@ def _main(arguments: list[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         typer.echo("giveway: interrupted; nothing was written", err=True)
         return INTERRUPTED
-    except BrokenPipeError:  # whoever read the output has read enough
+    except BrokenPipeError:  # the reader of the output has closed the pipe
         _leave_stdout()
         return FAILED
     except Exception as error:
-        # Typer's usage errors (missing argument, unknown option or command) know how to say themselves.
+        # Typer's usage errors (missing argument, unknown option or command) print themselves.
         if hasattr(error, "format_message"):
             message = one_line(error.format_message())
             return _fail(message, WRONG_INPUT) if message else WRONG_INPUT  # none: the help was shown instead
@@ -118,7 +118,7 @@ def _main(arguments: list[str]) -> int:
 
 
 def _leave_stdout() -> None:
-    """Nothing more goes to a standard output that does not take it, at the end of the process neither."""
+    """Stop writing to a standard output that fails, also at the end of the process."""
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -131,7 +131,7 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """A warning as one line on stderr; what a user can do nothing about goes to the log."""
+    """A warning as one line on stderr; warnings that users cannot act on go to the log."""
     if issubclass(category, FutureWarning):
         typer.echo(f"giveway: {one_line(str(message))}", err=True)
     else:

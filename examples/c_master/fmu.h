@@ -1,4 +1,5 @@
-/* The few things a C program needs to run an FMI 3.0 Co-Simulation FMU that lies unzipped in a folder. POSIX (dlopen).
+/* The functions a C program needs to run an FMI 3.0 Co-Simulation FMU from a folder with its unzipped files. POSIX
+ * (dlopen).
  */
 #ifndef FMU_H
 #define FMU_H
@@ -27,7 +28,7 @@ typedef struct {
     fmi3SetBooleanTYPE *set_boolean;
 } Fmu;
 
-/* Each ends the program with a message when something is wrong; a real master would hand the error on. */
+/* Each ends the program with a message on an error; a real master would return the error. */
 void fmu_load(Fmu *fmu, const char *name, const char *folder);
 void fmu_instantiate(Fmu *fmu);
 void fmu_initialise(Fmu *fmu);

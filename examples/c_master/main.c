@@ -20,7 +20,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-/* What passes between the two, under the same names in both. */
+/* Variables exchanged between the two; the names are the same in both. */
 static const char *const sensed_reals[] = {"sensor.torque[0]", "sensor.torque[1]", "sensor.torque[2]"};
 static const char *const sensed_integers[] = {"sensor.encoder[0]", "sensor.encoder[1]", "sensor.encoder[2]",
                                               "sensor.counter"};
@@ -60,7 +60,7 @@ static Bundle commands_of(const Fmu *fmu)
     return bundle;
 }
 
-/* Hands a bundle of outputs of one FMU to the inputs of the other. */
+/* Copies a group of outputs of one FMU to the inputs of the other. */
 static void pass(const Fmu *from, const Bundle *outputs, const Fmu *to, const Bundle *inputs)
 {
     fmi3Float64 reals[8];
@@ -103,7 +103,7 @@ static double now_s(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* Adds what the step took to *spent_s, if that is wanted. */
+/* Adds the duration of the step to *spent_s, unless that is null. */
 static void step(Fmu *fmu, double time_s, double *spent_s)
 {
     const double started_s = spent_s == NULL ? 0.0 : now_s();

@@ -30,7 +30,7 @@ void digest_bool(digest_t *digest, bool truth)
     add_byte(digest, truth ? 1U : 0U);
 }
 
-/* The sign and payload of a NaN differ between processors and are nobody's business. */
+/* The sign and payload of a NaN differ between processors and do not matter. */
 #if (GW_REAL_DOUBLE == 1)
 void digest_real(digest_t *digest, gw_real_t x)
 {

@@ -1,4 +1,5 @@
-/* Replays a recorded collision through the controller and prints when it noticed, and a digest of all it put out.
+/* Replays a recorded collision through the controller and prints when it noticed the hit, and a digest of all its
+ * outputs.
  *
  * On a robot, the input of each millisecond comes from the bus instead of the recording, and output.command goes to
  * the drives. */

@@ -7,7 +7,7 @@
 #define RECORDED_TICKS 800U
 
 void recorded_collision_config(gw_controller_config_t *config);
-/* What the controller got in this tick, 0 to RECORDED_TICKS - 1. The robot was to stand still. */
+/* The controller's input of this tick, 0 to RECORDED_TICKS - 1. The plan was to stand still. */
 void recorded_collision_input(uint32_t tick, gw_controller_input_t *input);
 
 #endif

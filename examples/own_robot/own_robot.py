@@ -3,15 +3,15 @@
     python own_robot.py
 
 A slider of 9 kg with a magnetic bumper hits an unpowered base with three omni wheels. The same collision runs in the
-testbed FMU, which solves everything together; the table shows how far the pieces are off, over the coupling step.
+testbed FMU, which solves everything together; the table shows the error of the pieces for several coupling steps.
 
-What is cause and what is effect:
-- A drivetrain takes torques (motor, environment) and gives the motion of its load. A base that rolls without slip wants
-  the same: forces in, motion out. Both cannot be had, so the base has no motion of its own here: its velocity is that
-  of the three loads. Each load carries its share of the base's mass (`load.inertia`); what one wheel's acceleration
-  costs another goes through `environment.torque`, with the accelerations of the step before. That works while the
-  other wheels' share is the smaller one, as it is for three wheels at 120 degrees; it is what makes the coupling
-  explicit, and of first order.
+Inputs and outputs of the pieces:
+- A drivetrain takes torques (motor, environment) and gives the motion of its load. A base that rolls without slip would
+have the same causality: forces in, motion out. Both cannot determine the motion, so the base has no state here: its
+velocity follows from the three loads. Each load carries its share of the base's mass (`load.inertia`); the inertial
+coupling between the wheels goes through `environment.torque`, with the accelerations of the previous step. This works
+as long as the share of the other wheels is the smaller one, as for three wheels at 120 degrees, and it makes the
+coupling explicit and of first order.
 - The bumper takes the motion of its two faces and gives the force between them. Its neighbours, plate and carrier, are
   masses: forces in, motion out, as it should be.
 """
@@ -40,9 +40,9 @@ AZIMUTHS = np.array([0.0, 2 * np.pi / 3, 4 * np.pi / 3])
 ROLLER_RADIUS, ROLLER_TORQUE, ROLLER_SLOPE = 0.009525, 0.2, 0.4
 SLIDER_MASS, PLATE_MASS, RUN_UP = 9.08, 0.5, 0.0395
 CONTACT_STIFFNESS, CONTACT_DAMPING = 10100.0, 0.3
-# Latch and preload hold the bumper against its end stop, this far in.
+# Latch and preload press the bumper this far into its end stop.
 AT_REST = (45.8 + 2.0) / (200000.0 + 948.0)
-# The testbed without what this example leaves out: rope, rail friction, rollers with memory.
+# The testbed without the parts that this example leaves out: rope, rail friction, bristles of the rollers.
 TESTBED = {
     "rope.attached": False, "slider.speed": SLIDER_SPEED, "slider.friction": 0.0, "roller.model": 1,
     "roller.inertia": 0.0, "bumper.kind": 2, "command.enable": False,
@@ -88,16 +88,16 @@ def composed(step_s: float) -> NDArray[np.float64]:
     """`SIGNALS` every millisecond, shape (n, 4), from the pieces coupled every ``step_s`` seconds."""
     tangents = np.column_stack([-np.sin(AZIMUTHS), np.cos(AZIMUTHS)])
     normals = np.column_stack([np.cos(AZIMUTHS), np.sin(AZIMUTHS)])
-    # Wheel speeds from the base's twist (vx, vy, omega), and back.
+    # Wheel speeds from the base's twist (vx, vy, omega), and the inverse.
     to_wheels = np.column_stack([tangents, np.full(3, WHEEL_DISTANCE)]) / WHEEL_RADIUS
     to_base = np.linalg.inv(to_wheels)
-    inertia = to_base.T @ np.diag([MASS, MASS, YAW_INERTIA]) @ to_base  # the base's, as the wheels feel it
+    inertia = to_base.T @ np.diag([MASS, MASS, YAW_INERTIA]) @ to_base  # of the base, reflected to the wheels
     own, others = np.diag(inertia), inertia - np.diag(np.diag(inertia))
     drivetrains = [Piece("drivetrain", **{"load.inertia": WHEEL_INERTIA + share}) for share in own]
     speeds_at_start = {"carrier.velocity": SLIDER_SPEED, "plate.velocity": SLIDER_SPEED}
     bumper = Piece("bumper", **{"bumper.kind": 2, "plate.position": AT_REST, **speeds_at_start})
 
-    carrier, plate = np.array([0.0, SLIDER_SPEED]), np.array([AT_REST, SLIDER_SPEED])  # way and speed along E
+    carrier, plate = np.array([0.0, SLIDER_SPEED]), np.array([AT_REST, SLIDER_SPEED])  # travel and speed along E
     pose = np.zeros(3)
     accelerations, speeds = np.zeros(3), np.zeros(3)
     every, rows = round(REPORT_S / step_s), []
@@ -106,7 +106,7 @@ def composed(step_s: float) -> NDArray[np.float64]:
         if k % every == 0:
             (torque,) = drivetrains[1].get("sensor.torque")
             rows.append([E @ pose[:2], plate[0], carrier[0] - plate[0], torque])
-        # Forces of now: contact between plate and base, rollers at the floor, bumper between plate and carrier.
+        # Present forces: contact between plate and base, rollers at the floor, bumper between plate and carrier.
         depth, rate = plate[0] - RUN_UP - E @ pose[:2], plate[1] - E @ twist[:2]
         contact = max(0.0, CONTACT_STIFFNESS * depth * (1.0 + CONTACT_DAMPING * rate)) if depth > 0.0 else 0.0
         sideways = normals @ twist[:2]
@@ -132,7 +132,7 @@ def composed(step_s: float) -> NDArray[np.float64]:
 
 
 def _move(body: NDArray[np.float64], acceleration: float, step_s: float) -> None:
-    """Way and speed after a step of constant acceleration."""
+    """Travel and speed after a step of constant acceleration."""
     body += np.array([body[1] * step_s + 0.5 * acceleration * step_s**2, acceleration * step_s])
 
 
@@ -149,7 +149,7 @@ def monolithic() -> NDArray[np.float64]:
 
 
 def errors() -> dict[float, NDArray[np.float64]]:
-    """Per coupling step, the largest deviation of each signal over that signal's peak."""
+    """Per coupling step, the largest deviation of each signal relative to its peak."""
     reference = monolithic()
     peaks = np.abs(reference).max(axis=0)
     return {step_s: np.abs(composed(step_s) - reference).max(axis=0) / peaks for step_s in COUPLING_STEPS_S}

@@ -19,7 +19,8 @@ struct LaneStart {
     double first_contact_s; // negative: none yet
 };
 
-// The parameters that select code, that is every choice and count: designs side by side share them.
+// What decides which code a design runs through, every parameter that is a choice or a count: designs side by side
+// share it.
 class Structure {
 public:
     explicit Structure(const plant::Parameters<double> &p) {

@@ -1,4 +1,4 @@
-// The values exchanged between the models, and the inputs that tables drive.
+// What one model hands to the other, and the inputs that tables drive.
 #pragma once
 
 #include <array>

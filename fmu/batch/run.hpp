@@ -8,7 +8,7 @@
 
 namespace giveway::batch {
 
-// Progress and cancellation, shared by a run and the waiting thread.
+// What a run and those who wait for it tell each other.
 struct Monitor {
     std::atomic<bool> cancelled{false};
     std::atomic<std::uint64_t> steps_done{0};

@@ -1,5 +1,5 @@
-// A value with its derivatives in N directions: what a function of T becomes when its exact derivative is wanted.
-// The value goes through the very operations of double, so it has double's bits; the derivatives follow the chain rule.
+// A value with its derivatives in N directions: with this T a function also computes its exact derivative. The value
+// goes through the operations of double, so it has the same bits; the derivatives follow the chain rule.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ template <int N> struct Dual {
     Dual() : value(0.0), derivative{} {}
     explicit Dual(double constant) : value(constant), derivative{} {}
     Dual(double v, const std::array<double, N> &d) : value(v), derivative(d) {}
-    // The variable that direction `index` differentiates by.
+    // The variable of differentiation direction `index`.
     static Dual variable(double v, int index) {
         Dual a(v);
         a.derivative[static_cast<std::size_t>(index)] = 1.0;
@@ -75,13 +75,13 @@ template <int N> Mask less(const Dual<N> &a, const Dual<N> &b) { return a.value 
 template <int N> Dual<N> select(Mask mask, const Dual<N> &if_true, const Dual<N> &if_false) {
     return mask ? if_true : if_false;
 }
-// At a tie the second argument's derivative, as the value's.
+// At a tie the derivative is that of the second argument, like the value.
 template <int N> Dual<N> min(const Dual<N> &a, const Dual<N> &b) { return a.value < b.value ? a : b; }
 template <int N> Dual<N> max(const Dual<N> &a, const Dual<N> &b) { return a.value > b.value ? a : b; }
 // 0 has the derivative from the right.
 template <int N> Dual<N> abs(const Dual<N> &a) { return detail::chain(abs(a.value), a.value < 0.0 ? -1.0 : 1.0, a); }
-// At 0 the derivative is infinite. It is given as 0: a distance that vanishes stays usable, and infinity would turn
-// into NaN with the next product.
+// At 0 the derivative is infinite. It is set to 0, so that a vanishing distance stays usable: infinity would become NaN
+// in the next product.
 template <int N> Dual<N> sqrt(const Dual<N> &a) {
     const double root = sqrt(a.value);
     return detail::chain(root, root > 0.0 ? 0.5 / root : 0.0, a);

@@ -26,7 +26,7 @@ template <class T> T expm1_reduced(T r) {
     return r + r * r * p;
 }
 
-// Beyond these exp would overflow or lose bits to denormal numbers.
+// Beyond these limits exp would overflow or lose bits in denormal numbers.
 inline constexpr double exp_minimum = -708.0;
 inline constexpr double exp_maximum = 709.0;
 inline constexpr double log2_e = 1.4426950408889634;
@@ -99,7 +99,7 @@ template <class T> SinCos<T> sincos(T a) {
     return {sin_sign * select(odd, c, s), cos_sign * select(odd, s, c)};
 }
 
-// Of the base's heading, which lanes have their own for.
+// For the base's heading; lanes have their own version.
 template <class T> SinCos<T> heading(const T &a) { return sincos(a); }
 
 } // namespace giveway::math

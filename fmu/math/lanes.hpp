@@ -24,7 +24,7 @@ template <> struct LaneRegister<1> {
     static Numbers max(Numbers a, Numbers b) { return math::max(a, b); }
     static Numbers sqrt(Numbers a) { return math::sqrt(a); }
     static bool any(Bits a) { return a != 0; }
-    // Of the low halves; so for the others.
+    // Uses the low halves; likewise below.
     static Bits multiply_words(Bits a, Bits b) {
         return static_cast<Bits>((static_cast<std::uint64_t>(a) & 0xFFFFFFFFU) *
                                  (static_cast<std::uint64_t>(b) & 0xFFFFFFFFU));

@@ -1,5 +1,5 @@
-// exp and tanh of lanes, which the plant asks for nine times in every stage of a step: to 1e-11 in place of the last
-// place, a thousandth of what the steps themselves are off by, at half the operations and a quarter of the latency of
+// exp and tanh of lanes, which the plant calls nine times in every stage of a step. They are exact to 1e-11 instead of
+// the last place, a thousandth of the error of the steps, with half the operations and a quarter of the latency of
 // those in elementary.hpp.
 #pragma once
 
@@ -10,9 +10,9 @@ namespace giveway::math {
 
 namespace detail {
 
-// 2^a for |a| <= 1022: a whole number for the exponent, and a polynomial for what is left in [-1/2, 1/2], summed in
-// pairs because a long chain of operations is what such a function costs. (2^f - 1) / f through eight Chebyshev points:
-// exact at 0, elsewhere off by less than 3e-12.
+// 2^a for |a| <= 1022: an integer for the exponent, and a polynomial for the remainder in [-1/2, 1/2], summed in pairs
+// because a long chain of dependent operations is the main cost. (2^f - 1) / f through eight Chebyshev points: exact at
+// 0, elsewhere off by less than 3e-12.
 template <int N> Lanes<N> exp2(Lanes<N> a) {
     using L = Lanes<N>;
     const L shift(6755399441055744.0); // 1.5 * 2^52: the sum carries the whole number in its lowest bits
@@ -44,7 +44,7 @@ template <int N> Lanes<N> tanh(Lanes<N> a) {
     return select(less(a, L(0.0)), L(-1.0) * t, t);
 }
 
-// To 4e-13, for |a| < 1e5 rad; sincos() itself has to give noise the bits that it has for double.
+// To 4e-13, for |a| < 1e5 rad. sincos() itself has to give the noise the same bits as for double.
 template <int N> SinCos<Lanes<N>> heading(const Lanes<N> &a) {
     using L = Lanes<N>;
     using Bits = typename L::Bits;

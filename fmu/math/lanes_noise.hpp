@@ -8,7 +8,7 @@ namespace giveway::math {
 
 namespace detail {
 
-// A word is the low half of its lane; what the high half holds is never looked at.
+// A word is the low half of its lane; the high half is ignored.
 template <int N>
 std::array<typename Lanes<N>::Bits, 4> philox4x32_words(std::array<typename Lanes<N>::Bits, 4> counter,
                                                         std::array<typename Lanes<N>::Bits, 2> key) {

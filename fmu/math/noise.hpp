@@ -1,4 +1,4 @@
-// Counter-based noise: the value belongs to (seed, channel, tick), whatever was drawn before, on every platform.
+// Counter-based noise: the value depends only on (seed, channel, tick), not on earlier draws, on every platform.
 // Philox 4x32 with ten rounds (Salmon et al., SC11); normal deviates by Box and Muller.
 #pragma once
 

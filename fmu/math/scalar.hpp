@@ -40,7 +40,7 @@ inline Split<double> split(double a) {
             std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL)};
 }
 
-// What a constant that others are divided by is kept as: lanes keep its inverse, which costs a fraction.
+// A constant divisor: lanes store its inverse, as a multiplication is much cheaper.
 template <class T> struct DivisorOf {
     using Type = T;
 };
@@ -53,11 +53,12 @@ template <class T> T sign(T a) { return select(less(T(0.0), a), T(1.0), select(l
 
 template <class T> T square(T a) { return a * a; }
 
-// Whether a one-sided element (contact, stop, rope) acts, 1 or 0: by its mode, which an integrator with root finding
-// keeps on the right side of depth = 0. Lanes, which have no root finding, also ask the depth.
+// Whether a one-sided element (contact, stop, rope) acts, 1 or 0. Its mode decides, as an integrator with root finding
+// changes it at depth = 0. Lanes have no root finding and also check the depth.
 template <class T> T acting(T mode, T) { return mode; }
 
-// of(), which counts only where `needed`. Lanes leave it out where no design needs it, and have 0 where one does not.
+// of(), whose result is used only where `needed`. Lanes skip it if no design needs it, and give 0 where a design does
+// not.
 template <class M, class Of> auto where(M, Of of) { return of(); }
 
 } // namespace giveway::math

@@ -1,5 +1,4 @@
-// State events as an importer sees them in Model Exchange: with hysteresis, so that an event that just happened does
-// not happen again.
+// State events for an importer in Model Exchange: with hysteresis, so that an event does not happen twice.
 #pragma once
 
 #include <array>
@@ -10,10 +9,10 @@ namespace giveway {
 
 class ExchangeableSystem : public solver::HybridSystem {
 public:
-    // Where the indicator is while the present mode lasts: above zero (+1) or below (-1).
+    // Sign of the indicator in the present mode: above zero (+1) or below (-1).
     [[nodiscard]] virtual int side(int event) const = 0;
-    // How far past zero an importer meets the event, in the indicator's unit: small against what matters, large against
-    // rounding and the importer's tolerance.
+    // Distance beyond zero at which an importer sees the event, in the indicator's unit: small compared with relevant
+    // values, large compared with rounding and the importer's tolerance.
     [[nodiscard]] virtual double hysteresis(int event) const = 0;
 };
 
@@ -28,7 +27,7 @@ inline void margins(ExchangeableSystem &system, double time_s, const double *sta
     }
 }
 
-// Makes every transition that is due, and those that follow from them. Returns how many there were.
+// Makes all due transitions and those that follow from them. Returns their number.
 inline int settle(ExchangeableSystem &system, double time_s, double *state) {
     constexpr int max_rounds = 100; // more at one instant is chatter
     for (int round = 0; round < max_rounds; ++round) {

@@ -1,4 +1,4 @@
-// What every model that integrates does alike, over its generated Variables struct.
+// Common code of the models that integrate, over their generated Variables structs.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ template <class Variables>
     return Status::error;
 }
 
-// Makes every transition that is due now_s after the start. False if they follow each other without end.
+// Makes all transitions due at now_s after the start. False if they follow each other without end.
 [[nodiscard]] inline bool settle_events(ExchangeableSystem &system, double now_s, double *states, double start_time_s,
                                         ExchangedEvents &events, EventUpdate &update, Message &message) {
     const int count = settle(system, now_s, states);
@@ -56,7 +56,7 @@ template <class Variables>
 template <class Variables>
 void write_statistics(Variables &v, const solver::HybridIntegrator &integrator, const ExchangedEvents &events,
                       double start_time_s) {
-    const auto statistics = integrator.statistics(); // nothing in Model Exchange
+    const auto statistics = integrator.statistics(); // empty in Model Exchange
     const double last_event_s = events.count > 0 ? events.last_s : integrator.last_event_time();
     v.events = static_cast<std::int32_t>(statistics.events) + events.count;
     v.last_event_time = v.events == 0 ? -1.0 : start_time_s + last_event_s;

@@ -1,6 +1,6 @@
 // The one interface between an FMU's shell and the model inside it.
 //
-// The shell knows FMI and this header, nothing else; a model knows this header and nothing of FMI.
+// The shell knows only FMI and this header; a model knows this header but not FMI.
 // A new FMU is a model (NAME.cpp) and a variable table (variables.toml beside it); the generated code
 // supplies the Variables struct, its start values and the table of its variables.
 #pragma once
@@ -48,7 +48,7 @@ struct Message {
     char text[512];
 };
 
-// What an event update leaves to be known.
+// Results of an event update.
 struct EventUpdate {
     bool again;          // another update is needed, after outputs have been passed on
     bool discontinuity;  // the equations changed: a mode, or a torque that is held from tick to tick
@@ -58,20 +58,20 @@ struct EventUpdate {
 };
 
 // A model's equations, for an importer that integrates (Model Exchange). Valid from initialise() on.
-// In continuous time modes stay as they are; they change in update_events() alone, and discrete inputs
-// are read there alone (FMPy, unlike the standard, sets them between events too).
+// In continuous time modes are constant: only update_events() changes them, and only it reads discrete inputs (FMPy,
+// unlike the standard, also sets them between events).
 class Equations {
 public:
     virtual ~Equations() = default;
 
-    // The first call after initialise() says that the importer integrates and inputs act at once.
+    // The first call after initialise(); from then on the importer integrates and inputs act at once.
     virtual void set_time(double time_s) = 0;
-    // state_count - 1 numbers, the importer's to write in continuous time.
+    // state_count - 1 numbers, which the importer writes in continuous time.
     virtual double *states() = 0;
-    // At the time, states and inputs of now.
+    // At the present time, states and inputs.
     virtual void derivatives(double *values) = 0;
-    // Positive; an event where one falls to zero or below. After an event every one is positive again,
-    // by a hysteresis.
+    // Positive; an event occurs where one falls to zero or below. After an event all are positive again, by a
+    // hysteresis.
     virtual void indicators(double *values) = 0;
     virtual void write_outputs() = 0;
     virtual Status update_events(EventUpdate &update, Message &message) = 0;
@@ -86,8 +86,8 @@ public:
     // The generated Variables struct (plain data); the shell reads and writes it by offset.
     virtual void *variables() = 0;
 
-    // Parameters and start inputs are set; computes the outputs at the start time, from parameters
-    // alone. Called again, from scratch, when a value is set after a first look at the outputs.
+    // Parameters and start inputs are set; computes the outputs at the start time, from parameters alone. Called again,
+    // from scratch, when a value is set after the outputs were read.
     virtual Status initialise(double start_time_s, Message &message) = 0;
 
     // Inputs are held constant over the step; the outputs are valid at its end.
@@ -96,17 +96,17 @@ public:
     // Back to the start values, as if newly created.
     virtual void reset() = 0;
 
-    // The whole state between two calls, as bytes without pointers (state_archive.hpp): a model that loads them goes on
-    // bit for bit as the one that saved them, in another process too. save_state(nullptr) only counts.
+    // The whole state between two calls, as bytes without pointers (state_archive.hpp): a model that loads them
+    // continues bit for bit like the one that saved them, also in another process. save_state(nullptr) only counts.
     virtual std::size_t save_state(void *bytes) = 0;
     virtual Status load_state(const void *bytes, std::size_t size, Message &message) = 0;
 
-    // nullptr: the model steps by itself and offers nothing else.
+    // nullptr: the model offers Co-Simulation only.
     virtual Equations *equations() { return nullptr; }
 };
 
 // Every model has both in its own namespace (NAME_variables.hpp), so that several fit into one library.
-// These are of the one model of an FMU binary; generated code defines them there and nowhere else.
+// These refer to the one model of an FMU binary; generated code defines them only there.
 const ModelInfo &model_info();
 
 // nullptr when out of memory.

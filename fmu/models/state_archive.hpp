@@ -33,7 +33,7 @@ private:
     std::size_t size_ = 0;
 };
 
-// Reads; once the bytes do not suffice it leaves everything alone.
+// Reads; if the bytes do not suffice it changes nothing any more.
 class StateReader {
 public:
     StateReader(const void *bytes, std::size_t size) : bytes_(static_cast<const unsigned char *>(bytes)), left_(size) {}
@@ -60,7 +60,7 @@ private:
     bool sufficed_ = true;
 };
 
-// Message and status of a state that does not fit are the same for every model.
+// Message and status for an unsuitable state are the same for every model.
 template <class M> std::size_t save_archive(M &model, void *bytes) {
     StateWriter writer(bytes);
     model.archive(writer);

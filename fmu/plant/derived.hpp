@@ -1,4 +1,4 @@
-// Quantities that the equations need often and that are constant during a run.
+// What the equations need again and again and that never changes during a run.
 #pragma once
 
 #include "base.hpp"

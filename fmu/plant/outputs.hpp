@@ -1,4 +1,4 @@
-// The truth for an observer with perfect sensors, with which estimates are compared.
+// What an observer with perfect sensors sees: the truth that estimates are judged against.
 #pragma once
 
 #include "tipping.hpp"

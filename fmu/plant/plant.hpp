@@ -10,7 +10,7 @@
 
 namespace giveway::plant {
 
-// All intermediate results of the equations for the state's rate.
+// Everything that the equations produce on the way to the state's rate.
 template <class T, int Wheels = table_wheels, std::size_t N = Layout<Wheels>::state_count> struct Evaluation {
     std::array<T, N> rate;
     math::SinCos<T> heading;
@@ -57,7 +57,7 @@ Nose<T> find_nose(const std::array<T, N> &x, const Parameters<T, Wheels> &p, con
 
 } // namespace detail
 
-// Slider, weight and bumper; `decelerating`: the contact force against the slider along its rail. Adds their losses
+// Slider, weight and bumper; `decelerating`: what the contact takes from the slider along its rail. Adds their losses
 // to `loss`.
 template <class T, int Wheels, std::size_t N>
 void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const Modes<T, Wheels> &m,
@@ -98,7 +98,7 @@ void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const 
     }
 }
 
-// The quantities that depend on the motors' torques; new torques at the same state only need this function.
+// What the motors' torques act on: all of it, so new torques at the same state need no more than this.
 template <class T, int Wheels>
 void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
                   const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p) {
@@ -113,7 +113,7 @@ void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, con
     e.rate[At::work_in] = work;
 }
 
-// `e`: zero, or a previous result for the same elements; the members of absent elements are not written.
+// `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
 template <class T, int Wheels>
 void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
                    const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, const Derived<T> &d) {
@@ -128,7 +128,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     e.push_power = dot(push, e.velocity + omega * turned(push_point));
 
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
-    // First for all wheels, so that the processor can run independent chains of operations in parallel.
+    // Of all wheels first: chains of operations side by side in the processor.
     std::array<T, Wheels> steady;
     for (int i = 0; i < Wheels; ++i) {
         steady[i] = steady_friction(
@@ -169,7 +169,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     const Vector2<T> force = e.contact_force.on_robot;
     wrench = wrench + Planar3<T>{force.x, force.y, e.contact_force.moment};
     const Vector2<T> force_world = to_world(e.heading, force);
-    // Contact force against the slider along its rail.
+    // What the contact takes from the slider along its rail.
     const T decelerating = force_world.x * d.rail_x + force_world.y * d.rail_y;
 
     slider_rates(e, x, m, p, d, decelerating, loss);
@@ -229,8 +229,8 @@ StateVector<T, Wheels> rhs(const StateVector<T, Wheels> &x, const Inputs<T, Whee
     return evaluate(x, u, m, p, d).rate;
 }
 
-// Of slider, weight and bumper. Indicators of impossible events keep a constant sign. internal_force() is called only
-// for a bumper that holds.
+// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for a bumper that
+// holds only.
 template <class T, int Wheels, std::size_t N, std::size_t E, class InternalForce>
 void slider_indicators(std::array<T, E> &g, const std::array<T, N> &x, const Modes<T, Wheels> &m,
                        const Parameters<T, Wheels> &p, const Derived<T> &d, T depth, InternalForce internal_force) {
@@ -277,7 +277,7 @@ EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const I
     return g;
 }
 
-// The same with an existing evaluation.
+// The same where everything has been evaluated already.
 template <class T, int Wheels>
 EventVector<T, Wheels> event_indicators(const Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x,
                                         const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p,
@@ -300,8 +300,8 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
     for (int i = 0; i < Wheels; ++i) {
         const auto now = math::less(fired[At::event_gear + i], T(0.0));
         const auto was_stuck = math::less(math::abs(m.gear_direction[i]), T(0.5));
-        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the
-        // torque.
+        // At the located break-away the net torque equals the stiction up to rounding: the gear slides in the direction
+        // of the torque.
         const T from_stuck = math::sign(e.net_torque[i]);
         const T from_sliding = gear_direction_from_rest(p, e.net_torque[i]);
         x[At::motor_speed + i] = math::select(now, T(0.0), x[At::motor_speed + i]);
@@ -320,7 +320,7 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
         m.end_stop = T(1.0) - follow(At::event_end_stop, T(1.0) - m.end_stop);
         return;
     }
-    // In both cases the indicator falls: the latch releases, or the plate is back and latches in a plastic impact.
+    // Either way the indicator falls: the latch lets go, or the plate is back and latches in a plastic impact.
     const auto now = math::less(fired[At::event_end_stop], T(0.0));
     const T latching = math::select(now, T(1.0) - m.latched, T(0.0));
     const T rate = latching * x[At::compression_rate];

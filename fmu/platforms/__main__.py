@@ -1,9 +1,9 @@
 """`make platforms`: the FMUs of `make fmus ALL=1` on their platforms, against those that `make test` runs.
 
-Every library is read: exports, needs, oldest system. Those for Linux and Windows are run, under qemu and wine where
-they are not at home: a coupled collision, and each component by itself. Each is run twice in one process, the libraries
-unloaded between and after, and the process has to end with exit code 0. Prints a line for each platform and FMU, then
-shows each check failing on a planted fault, and ends with 1 if anything was wrong.
+Every library is read: exports, dependencies, oldest system. Those for Linux and Windows are run, if necessary under
+    qemu or wine: a coupled collision, and each component alone. Each run happens twice in one process, with the
+    libraries unloaded in between and afterwards, and the process has to end with exit code 0. Prints a line for each
+    platform and FMU, then shows that each check fails on a planted fault, and exits with 1 if anything was wrong.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ WORK = ROOT / "build" / "platforms" / "check"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 ZIG_CACHE = ROOT / "build" / "platforms" / "zig-cache"
 MODELS = ("controller", "testbed", "drivetrain", "bumper")
-# Platform -> what a program for it is started with; without an entry it cannot be run here.
+# Platform -> command that starts its programs; a platform without an entry cannot be run here.
 LAUNCHERS = {
     "x86_64-linux": [],
     "aarch64-linux": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"],
@@ -46,7 +46,7 @@ TARGETS = {
     "x86_64-darwin": "x86_64-macos.11.0",
     "aarch64-darwin": "aarch64-macos.11.0",
 }
-# The plant calls libm's pow in choosing step sizes, which may differ in its last bit from library to library.
+# SUNDIALS calls libm's pow when it chooses step sizes; its last bit may differ between C libraries.
 PLANT_TOLERANCE = 1e-9
 
 Outputs = Mapping[tuple[int, str], np.ndarray]
@@ -54,7 +54,7 @@ Outputs = Mapping[tuple[int, str], np.ndarray]
 
 @dataclass
 class Findings:
-    """What was wrong, in sentences."""
+    """The faults found, in sentences."""
 
     faults: list[str] = field(default_factory=list)
 
@@ -83,7 +83,7 @@ def _runner(platform: str) -> Path:
 def run(
     plan: Plan, name: str, platform: str, launcher: Sequence[str], runner: Path, others: Sequence[str] = ()
 ) -> Outputs:
-    """The outputs of a plan on a platform; ``others``: libraries that are loaded and unloaded beside the FMUs'.
+    """The outputs of a plan on a platform; ``others``: libraries that are loaded and unloaded with those of the FMUs.
 
     RuntimeError if the process does not end with exit code 0.
     """
@@ -110,7 +110,7 @@ def run(
 
 
 def deviation(found: Outputs, expected: Outputs, instances: Sequence[int]) -> tuple[float, str]:
-    """Largest difference of a real output over its peak, with its name; integers and booleans must be equal."""
+    """Largest difference of a real output relative to its peak, with its name; integers and booleans must be equal."""
     worst = (0.0, "")
     for (instance, name), values in expected.items():
         if instance not in instances:
@@ -130,7 +130,7 @@ def deviation(found: Outputs, expected: Outputs, instances: Sequence[int]) -> tu
 
 
 def different_bits(found: Outputs, expected: Outputs) -> list[str]:
-    """Names of outputs that are not the same to the bit."""
+    """Names of outputs whose bits differ."""
     return [name for key, values in expected.items() for name in [key[1]] if found[key].tobytes() != values.tobytes()]
 
 
@@ -143,7 +143,7 @@ def results(outputs: Outputs) -> Outputs:
 
 
 def check_runs(findings: Findings) -> None:
-    """Every run on every platform that runs here, against the FMUs that are tested."""
+    """Every run on every platform that can run here, against the tested FMUs."""
     runner = _runner(HOST)
     expected = {name: run(plan, f"tested_{name}", HOST, [], runner) for name, plan in all_runs(TESTED).items()}
     if expected["collision"][CONTROLLER, "detection.count"][-1] < 1:
@@ -168,7 +168,7 @@ def check_runs(findings: Findings) -> None:
 
 
 def plant_late_code(findings: Findings) -> None:
-    """A library that is called after it was unloaded must be seen in the exit code of every runner."""
+    """The exit code of every runner must show a library that is called after it was unloaded."""
     for platform, launcher in LAUNCHERS.items():
         library = WORK / platform / ("late.dll" if "windows" in platform else "late.so")
         source = library.with_suffix(".c")
@@ -183,7 +183,7 @@ def plant_late_code(findings: Findings) -> None:
 
 
 def plant_faults(findings: Findings, expected: Mapping[str, Outputs], controller: Outputs) -> None:
-    """The comparisons must see a stiffness that is 1e-6 off and a torque that is 0.1 N m off once."""
+    """The comparisons must see a stiffness with an error of 1e-6, and a single torque with an error of 0.1 N m."""
     launcher, runner = LAUNCHERS[HOST], _runner(HOST)
     for name, plan in all_runs(FMUS, 1.0 + 1e-6).items():
         error, _ = deviation(results(run(plan, "planted", HOST, launcher, runner)), results(expected[name]), range(2))
@@ -226,7 +226,7 @@ def check_libraries(findings: Findings) -> None:
         findings.say("platforms", "", [f"missing: {sorted(wanted - set(seen))}"])
 
 
-# Platform -> target, compiler options, what has to be said of the result.
+# Platform -> target, compiler options, expected findings.
 _PLANTED = {
     "x86_64-linux": (
         "x86_64-linux-gnu.2.34",
@@ -261,7 +261,7 @@ int planted(void) { return other() + pthread_detach(pthread_self()) + __cxa_atex
 #endif
 #endif
 """
-# Registers a function for the end of the process, as a static object with a destructor does. On Linux and Windows.
+# Registers a function for the end of the process, like a static object with a destructor. On Linux and Windows.
 _LATE_SOURCE = """
 static void late(void) {}
 #ifdef _WIN32
@@ -279,7 +279,7 @@ __attribute__((constructor)) static void start(void) { __cxa_atexit((void (*)(vo
 
 
 def plant_library_faults(findings: Findings) -> None:
-    """A library for each platform with everything wrong that the check looks for."""
+    """A library for each platform with all faults that the check looks for."""
     folder = WORK / "planted"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "planted.c").write_text(_PLANTED_SOURCE)
@@ -306,13 +306,13 @@ def plant_library_faults(findings: Findings) -> None:
 
 
 def check_reproduction(findings: Findings) -> None:
-    """A build from nothing in another folder gives the same files."""
+    """A clean build in another folder gives the same files."""
     elsewhere = ROOT / "build" / "platforms" / "again" / "elsewhere"
     wall_s = build_again(ROOT, elsewhere)
     odd = differing(FMUS, elsewhere / "build" / "fmus_all")
     faults = [f"other bytes: {', '.join(odd)}"] if odd else []
     findings.say("another folder, from nothing", f"the same bytes, after {wall_s:.0f} s", faults)
-    # The planted fault: a file name in a library, without the option that takes its folder away.
+    # The planted fault: a file name in a library, without the option that removes its folder.
     names = []
     for name in ("one", "two"):
         folder = WORK / "planted" / name

@@ -1,4 +1,4 @@
-"""What an FMU's shared libraries export, import, need and run on, read from the files."""
+"""Exports, imports, dependencies and oldest system of an FMU's shared libraries, read from the files."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ lief.logging.disable()
 
 GLIBC = (2, 17)
 MACOS = [11, 0, 0]
-# The C library of each system, by whatever name it comes in.
+# The C library of each system, by all its file names.
 C_LIBRARIES = {
     "linux": re.compile(r"libc\.so\.6|libm\.so\.6|ld-linux-(x86-64|aarch64)\.so\.[12]"),
     "windows": re.compile(r"api-ms-win-crt-[a-z]+-l1-1-0\.dll|KERNEL32\.dll|ntdll\.dll", re.IGNORECASE),
     "darwin": re.compile(r"/usr/lib/libSystem\.B\.dylib"),
 }
-# What zig's linker exports of every macOS library, for the library itself.
+# Symbols that zig's linker exports from every macOS library for its own use.
 LINKER_SYMBOLS = {"__dso_handle", "_mh_dylib_header"}
-# A function that is registered with one of these is called at the end of the process, or of a thread, when an importer
-# may long have unloaded the library: nothing of ours needs one. Windows' start files keep a table of the library's own
-# (_register_onexit_function), which they run when it is unloaded.
+# A function registered with one of these is called at the end of the process or thread, when the importer may already
+# have unloaded the library; our libraries need none. Windows' start files keep a table per library
+# (_register_onexit_function) and run it when the library is unloaded.
 AT_EXIT = {
     *("atexit", "on_exit", "at_quick_exit", "__cxa_atexit", "__cxa_at_quick_exit"),
     *("__cxa_thread_atexit", "__cxa_thread_atexit_impl", "_tlv_atexit"),
@@ -47,7 +47,7 @@ FMI2_FOLDERS = {
 
 
 def fmi_functions(headers: Path) -> set[str]:
-    """The names that FMI 2 and 3 want exported."""
+    """The names that FMI 2 and 3 require as exports."""
     names: set[str] = set()
     for name in ("fmi2Functions.h", "fmi3Functions.h"):
         names |= set(re.findall(r"FMI[23]_Export\s+fmi[23]\w+TYPE\s+(fmi[23]\w+);", (headers / name).read_text()))
@@ -157,7 +157,7 @@ def _libraries(fmu: Path) -> dict[str, bytes]:
 
 
 def inspected(fmus: Sequence[Path], headers: Path) -> Iterator[dict[str, Any]]:
-    """Of every library: FMU, folder, platform, figures and faults. ``headers``: folder of FMI's."""
+    """For every library: FMU, folder, platform, figures and faults. ``headers``: folder of FMI's headers."""
     wanted = fmi_functions(headers)
     for path in fmus:
         for folder, data in _libraries(path).items():

@@ -1,4 +1,4 @@
-"""Writes the plans that run_fmus.c runs, and reads what it prints."""
+"""Writes the plans that run_fmus.c runs, and reads its output."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _value(kind: str, value: float) -> str:
 
 @dataclass
 class Plan:
-    """One run of instances of FMUs; lines as run_fmus.c wants them."""
+    """One run of instances of FMUs, as lines for run_fmus.c."""
 
     fmus: Sequence[Fmu]
     steps: int
@@ -78,7 +78,7 @@ class Plan:
             self.lines.append(f"set {instance} {kind} {reference} {_value(kind, value)}")
 
     def connect(self, source: int, target: int, names: Sequence[str]) -> None:
-        """Outputs of one FMU to inputs of the same names of another."""
+        """Connects outputs of one FMU to the inputs of another with the same names."""
         for name in names:
             start, kind = self.fmus[source].ports[name]
             end, _ = self.fmus[target].ports[name]

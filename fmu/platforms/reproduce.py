@@ -1,4 +1,4 @@
-"""Builds the FMUs of all platforms once more, in another folder and from nothing, and compares the files."""
+"""Builds the FMUs of all platforms again, from scratch in another folder, and compares the files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 __all__ = ["build_again", "differing"]
 
-# What the build reads of the repository.
+# The files of the repository that the build reads.
 _SOURCES = (
     *("CMakeLists.txt", "LICENSE"),
     *("c_core", "cmake", "examples/c_master", "fmu", "robots"),
@@ -17,10 +17,10 @@ _SOURCES = (
 
 
 def build_again(root: Path, folder: Path) -> float:
-    """What ``make fmus ALL=1`` builds, in a copy of the repository ``root`` that is made in ``folder``; wall time in s.
+    """Run ``make fmus ALL=1`` in a copy of the repository ``root`` made in ``folder``; returns the wall time in s.
 
-    The FMUs are then in build/fmus_all of it. Only the Python environment with the compiler is shared; the compiler's
-    cache is not.
+    The FMUs are then in its build/fmus_all. The Python environment with the compiler is shared, the compiler's cache is
+    not.
     """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -42,7 +42,7 @@ def build_again(root: Path, folder: Path) -> float:
 
 
 def differing(first: Path, second: Path) -> list[str]:
-    """Names of the FMUs of two folders that are not the same bytes, or only in one of them."""
+    """Names of the FMUs that differ between two folders, or are only in one of them."""
     names = {path.name for folder in (first, second) for path in folder.glob("*.fmu")}
     same = {
         name

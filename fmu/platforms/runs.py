@@ -1,4 +1,4 @@
-"""What is run on every platform: a coupled collision, and each component by itself."""
+"""The runs on every platform: a coupled collision, and each component alone."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def _collision(folder: Path, changes: Mapping[str, float]) -> Plan:
 
 
 def replay(folder: Path, collision: Plan, outputs: Mapping[tuple[int, str], np.ndarray], nudge: float = 0.0) -> Plan:
-    """The controller alone with the sensor values of a collision that was run; ``nudge`` (N m) changes one of them."""
+    """The controller alone with the sensor values of a recorded collision; ``nudge`` (N m) changes one of them."""
     plan = Plan([_fmu(folder, "controller")], STEPS, STEP_S)
     plan.lines = [line for line in collision.lines if line.startswith(f"set {CONTROLLER} ")]
     for names in SENSORS.values():
         for name in names:
-            # What the controller read at t_k is what the testbed put out at the end of the step before.
+            # The controller's input at t_k is the testbed's output at the end of the previous step.
             values = outputs[TESTBED, name]
             start = [1.0 if name == "sensor.present" else 0.0]
             column = [*start, *values[:-1].tolist()]
@@ -56,7 +56,7 @@ def replay(folder: Path, collision: Plan, outputs: Mapping[tuple[int, str], np.n
 
 
 def _drivetrain(folder: Path, changes: Mapping[str, float]) -> Plan:
-    """Torques that jump, on motor and load."""
+    """Torques with jumps on motor and load."""
     plan = Plan([_fmu(folder, "drivetrain")], STEPS, STEP_S)
     plan.set(0, changes)
     time = np.arange(STEPS) * STEP_S
@@ -67,7 +67,7 @@ def _drivetrain(folder: Path, changes: Mapping[str, float]) -> Plan:
 
 
 def _bumper(folder: Path, changes: Mapping[str, float]) -> Plan:
-    """A plate that is pushed in, let out against its stop and past its latch."""
+    """A plate is pushed in and released to its stop, past the latch."""
     plan = Plan([_fmu(folder, "bumper")], STEPS, STEP_S)
     plan.set(0, {"bumper.kind": 2, **changes})
     time = np.arange(STEPS) * STEP_S
@@ -79,7 +79,7 @@ def _bumper(folder: Path, changes: Mapping[str, float]) -> Plan:
 
 
 def all_runs(folder: Path, scale: float = 1.0) -> dict[str, Plan]:
-    """Plans by name, for the FMUs of ``folder``; ``scale`` multiplies one stiffness of each: a planted fault."""
+    """Plans by name for the FMUs in ``folder``; ``scale`` multiplies one stiffness of each: a planted fault."""
     stiffness = {"testbed": "contact.stiffness", "drivetrain": "drivetrain.stiffness", "bumper": "bumper.spring_rate"}
     changes: dict[str, dict[str, float]] = {}
     for model, name in stiffness.items():

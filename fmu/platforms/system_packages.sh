@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What runs FMUs of other platforms: `make platforms`.
+# The programs that run FMUs of other platforms, for `make platforms`.
 set -euo pipefail
 # shellcheck source=cmake/packages.sh
 source "$(dirname "$0")/../../cmake/packages.sh"

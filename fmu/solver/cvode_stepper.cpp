@@ -45,7 +45,7 @@ public:
         const int events = problem.system().event_count();
         if (events > 0) {
             code = code != 0 ? code : CVodeRootInit(cvode_, events, Problem::roots);
-            // An indicator that starts at zero (a mode just entered) is watched from its first move on.
+            // An indicator that starts at zero (a mode just entered) is monitored from its first change on.
             code = code != 0 ? code : CVodeSetNoInactiveRootWarn(cvode_);
         }
         if (code != 0) {
@@ -64,7 +64,7 @@ public:
         long before = 0;
         long after = 0;
         (void)CVodeGetNumSteps(cvode_, &before);
-        // Step by step, to hear what CVODE thinks of the first one.
+        // Step by step, to learn CVODE's step size after the first one.
         do {
             code_ = CVode(cvode_, end_s, problem_->state(), &time_s, CV_ONE_STEP);
             (void)CVodeGetNumSteps(cvode_, &after);
@@ -87,8 +87,8 @@ public:
     }
 
     void fired(int *direction) const override { (void)CVodeGetRootInfo(cvode_, direction); }
-    // A fresh start is of first order, so the proposal that followed the last first step is the guess, less a margin: a
-    // first step that fails its error test costs more than it could have gained. CVODE's own estimate would cost two
+    // A fresh start is of first order, so the guess is the proposal after the previous first step, minus a margin: a
+    // first step that fails its error test costs more than a longer step gains. CVODE's own estimate would cost two
     // evaluations at every start.
     double first_step() const override { return 0.7 * step_after_first_s_; }
 
@@ -103,8 +103,8 @@ public:
     char *code_name(int code) const override { return CVodeGetReturnFlagName(code); }
 
 private:
-    // Contact is not stiff enough for a Newton iteration to pay in an Adams method: it made the testbed three to four
-    // times slower.
+    // Contact is not stiff enough for a Newton iteration to pay off in an Adams method: it made the testbed three to
+    // four times slower.
     int attach_fixed_point() {
         corrector_ = SUNNonlinSol_FixedPoint(problem_->state(), 0, problem_->context());
         return corrector_ == nullptr ? CV_MEM_FAIL : CVodeSetNonlinearSolver(cvode_, corrector_);

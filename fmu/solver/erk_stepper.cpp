@@ -28,7 +28,7 @@ public:
         code = code != 0 ? code : ERKStepSetTableNum(arkode_, ARKODE_DORMAND_PRINCE_7_4_5);
         code = code != 0 ? code : ARKodeSVtolerances(arkode_, options.relative_tolerance, problem.tolerance());
         code = code != 0 ? code : ARKodeSetMaxNumSteps(arkode_, max_steps_between_stops);
-        // A failed step leaves ARKODE's clock at one of its stages: the time that belongs to the state is noted here.
+        // A failed step leaves ARKODE's clock at one of its stages, so the time of the state is stored here.
         code = code != 0 ? code : ARKodeSetPostprocessStepFn(arkode_, Problem::accepted);
         if (options.maximum_step_s > 0.0) {
             code = code != 0 ? code : ARKodeSetMaxStep(arkode_, options.maximum_step_s);
@@ -36,7 +36,7 @@ public:
         const int events = problem.system().event_count();
         if (events > 0) {
             code = code != 0 ? code : ARKodeRootInit(arkode_, events, Problem::roots);
-            // An indicator that starts at zero (a mode just entered) is watched from its first move on.
+            // An indicator that starts at zero (a mode just entered) is monitored from its first change on.
             code = code != 0 ? code : ARKodeSetNoInactiveRootWarn(arkode_);
         }
         return code;
@@ -69,8 +69,8 @@ public:
 
     void fired(int *direction) const override { (void)ARKodeGetRootInfo(arkode_, direction); }
 
-    // A stop time cuts the last step short and hides ARKODE's own proposal: try twice as much; its error test corrects
-    // that.
+    // A stop time shortens the last step and hides ARKODE's own proposal: try twice the step; the error test corrects
+    // it.
     double first_step() const override { return 2.0 * last_step(); }
 
     double last_step() const override {

@@ -1,4 +1,4 @@
-// The event loop: from stop to stop, through transitions, whatever the method.
+// The event loop for any method: from stop to stop, through transitions.
 #include "hybrid_integrator.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace giveway::solver {
 
 namespace {
 
-// A system that fires this often without getting on is chattering: an answer would not mean anything.
+// A system with this many events at one instant is chattering: its result would be meaningless.
 constexpr int max_events_per_advance = 2000;
 constexpr int max_event_count = 32;
 
@@ -21,7 +21,7 @@ constexpr int max_event_count = 32;
 
 struct HybridIntegrator::Memory {
     Problem problem;
-    std::unique_ptr<Stepper> stepper; // freed before the problem whose vectors it uses
+    std::unique_ptr<Stepper> stepper; // freed before the problem, whose vectors it uses
 };
 
 HybridIntegrator::~HybridIntegrator() { delete memory_; }
@@ -35,7 +35,7 @@ bool HybridIntegrator::fail(const char *what, int code) {
         char bad_rate[64] = "";
         std::snprintf(bad_rate, sizeof bad_rate, "the rate of state %d is not a finite number", bad);
         char *code_name = stepper.code_name(code);
-        // A last step of no length means that the state came up against a singularity.
+        // A last step of zero length means that the state has reached a singularity.
         std::snprintf(why, sizeof why, ": %s (%s, last step %.3g s)", bad >= 0 ? bad_rate : reason(code),
                       code_name != nullptr ? code_name : "no code", stepper.last_step());
         std::free(code_name); // allocated by SUNDIALS
@@ -95,7 +95,7 @@ bool HybridIntegrator::advance(double end_s) {
             return true;
         }
         if (!fresh_) {
-            // A fresh start: the history before an event or an input change is another function's.
+            // A fresh start: the history before an event or an input change belongs to another function.
             const int code = stepper.restart(time_s_, std::min(step_hint_s_, end_s - time_s_));
             if (code != 0) {
                 return fail("cannot restart", code);

@@ -1,4 +1,4 @@
-// Adaptive integration with located events, by one of three methods of SUNDIALS. The only room that knows it.
+// Adaptive integration with located events, by one of three methods of SUNDIALS. Only this room uses SUNDIALS.
 #pragma once
 
 #include "hybrid_system.hpp"
@@ -22,11 +22,11 @@ public:
     // False when SUNDIALS refuses or memory is short; error() says why. `system` must outlive the integrator.
     [[nodiscard]] bool create(HybridSystem &system, double time_s, const double *state,
                               const IntegratorOptions &options);
-    // Goes on where another integrator of the same system and options stood when its checkpoint was taken.
+    // Continues from the checkpoint of another integrator with the same system and options.
     [[nodiscard]] bool resume(HybridSystem &system, const Checkpoint &checkpoint, const double *state,
                               const IntegratorOptions &options);
-    // Complete, together with the state, if restart() is called before the next advance(): a fresh start needs no
-    // history.
+    // Together with the state it is complete, provided that restart() is called before the next advance(): a fresh
+    // start needs no history.
     [[nodiscard]] Checkpoint checkpoint() const { return {time_s_, step_hint_s_, last_event_time_s_, statistics()}; }
     // The state, writable between advances; call restart() after writing or after an input changed.
     [[nodiscard]] double *state();

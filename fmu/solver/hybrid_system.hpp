@@ -1,5 +1,5 @@
-// What the solver knows of a model: a smooth right-hand side between events, indicators that cross zero at events, and
-// what happens there.
+// The solver's view of a model: a smooth right-hand side between events, indicators that cross zero at events, and
+// transitions there.
 #pragma once
 
 namespace giveway::solver {
@@ -10,8 +10,8 @@ public:
     [[nodiscard]] virtual int state_count() const = 0;
     [[nodiscard]] virtual int event_count() const = 0;
     virtual void rhs(double time_s, const double *state, double *rate) = 0;
-    // matrix[column * state_count + row] = d rate[row] / d state[column]. False: the system has none to offer, and an
-    // implicit method cannot be used on it.
+    // matrix[column * state_count + row] = d rate[row] / d state[column]. False: the system has none, so an implicit
+    // method cannot be used.
     virtual bool jacobian(double /*time_s*/, const double * /*state*/, double * /*matrix*/) { return false; }
     virtual void indicators(double time_s, const double *state, double *value) = 0;
     // fired[i]: +1 the indicator rose through zero, -1 it fell, 0 nothing.

@@ -1,4 +1,4 @@
-// What a user of the integrator chooses, and what it counts.
+// The options of the integrator, and its statistics.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ struct IntegratorOptions {
     double absolute_tolerance_scale = 1.0; // multiplies the system's absolute tolerances
     double maximum_step_s = 0.0;           // 0: no limit
     Method method = Method::erk;
-    double clock_start_s = 0.0; // added to the integrator's time in messages: what the caller's clock shows at its zero
+    double clock_start_s = 0.0; // added to the integrator's time in messages: the caller's time at the integrator's
+                                // zero
 };
 
 struct IntegratorStatistics {

@@ -1,4 +1,4 @@
-// A hybrid system as SUNDIALS sees it: context, vectors and callbacks that every method shares.
+// A hybrid system for SUNDIALS: context, vectors and callbacks shared by all methods.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] N_Vector tolerance() const { return tolerance_; }
     [[nodiscard]] std::int64_t rhs_calls() const { return rhs_calls_; }
     [[nodiscard]] std::int64_t jacobian_calls() const { return jacobian_calls_; }
-    // The first state whose rate came out infinite or not a number in the latest evaluation; -1: none.
+    // The first state whose rate was infinite or not a number in the latest evaluation; -1: none.
     [[nodiscard]] int bad_rate() const;
 
     // Time of the last step that ARKODE accepted.

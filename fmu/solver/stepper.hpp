@@ -1,4 +1,4 @@
-// One integration method, from a fresh start to the next: to a time, or to the first event before it.
+// One integration method between two fresh starts: integrates to a time, or to the first event before it.
 #pragma once
 
 #include "problem.hpp"
@@ -13,10 +13,10 @@ public:
     // Each returns SUNDIALS' code, 0 when all is well. `problem` outlives the stepper.
     [[nodiscard]] virtual int create(Problem &problem, double time_s, const IntegratorOptions &options) = 0;
     // The history belongs to another function: start again from the problem's state, which may have been written to.
-    // `first_step_s` is a guess at a good first step, 0: no idea.
+    // `first_step_s` is a guess for a good first step, 0: unknown.
     [[nodiscard]] virtual int restart(double time_s, double first_step_s) = 0;
     // Moves the problem's state and `time_s` to end_s exactly, or to the first event. After a failure both are those of
-    // the last accepted step, and code() tells the reason.
+    // the last accepted step, and code() is the reason.
     [[nodiscard]] virtual Outcome evolve(double end_s, double &time_s) = 0;
 
     // After an event: which indicator crossed zero, and in which direction.
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] virtual char *code_name(int code) const = 0;
 };
 
-// A system that needs more than this between two stops is stiffer than the method can bear.
+// A system that needs more steps than this between two stops is too stiff for the method.
 inline constexpr long max_steps_between_stops = 100'000;
 
 // The reason behind a code, in words.

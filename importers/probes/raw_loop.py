@@ -1,4 +1,4 @@
-"""A co-simulation loop of a few lines over any importer that hands out FMI's functions as they are.
+"""A short co-simulation loop over any importer that exposes the plain FMI functions.
 
 Exchange order as in fmu/README.md: sensors, controller, command, testbed.
 """
@@ -44,7 +44,7 @@ class Fmu(Protocol):
 
 
 def pass_on(source: Fmu, sink: Fmu, what: str) -> None:
-    """Outputs of one to the inputs of the other, under the same names."""
+    """Copies outputs of one FMU to the inputs of the other with the same names."""
     for kind, names in zip(KINDS, (REALS[what], INTEGERS[what], BOOLEANS[what]), strict=True):
         if names:
             values = source.get(kind, [source.references[name] for name in names])
@@ -106,14 +106,14 @@ def _answer(testbed: Fmu, controller: Fmu, k: int) -> None:
 
 
 class _Exchange:
-    """Runge-Kutta of fourth order at 50 us between time events; an event that a step went past comes after it."""
+    """Fourth-order Runge-Kutta at 50 us between time events; an event within a step is handled after the step."""
 
     def __init__(self, fmu: Fmu) -> None:
         self.fmu, self.time_s = fmu, 0.0
         self.in_events = True  # as the initialisation ends
 
     def update(self, between: Any) -> None:
-        """Event updates until none is asked for; ``between`` is called after the first."""
+        """Event updates until no further one is requested; ``between`` is called after the first."""
         if not self.in_events:
             self.fmu.enter("event")
         again, _ = self.fmu.update()

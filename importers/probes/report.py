@@ -1,4 +1,4 @@
-"""What every probe says, one line of JSON per stage that it came through, so that a crash shows how far it got."""
+"""Output of every probe: one line of JSON per completed stage, so that a crash shows how far it got."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def say(stage: str, **facts: Any) -> None:
 
 @contextmanager
 def stage(name: str) -> Iterator[dict[str, Any]]:
-    """Says that a stage is done when its block ends; an exception is said, too, and ends the probe."""
+    """Reports a stage as done when its block ends; an exception is reported, too, and ends the probe."""
     facts: dict[str, Any] = {}
     try:
         yield facts

@@ -1,6 +1,6 @@
 """fmu-manipulation-toolbox: both FMUs packed into one container FMU, which FMPy then runs.
 
-The container steps its FMUs one after the other in sequential mode and hands outputs over between container steps.
+In sequential mode the container steps its FMUs one after the other and transfers outputs between container steps.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """ecos: both FMUs and their connections, stepped together.
 
-It exchanges before each step, both models at once (Jacobi): a command reaches the testbed one cycle later than in our
-order. A command delay of none inside the testbed, instead of one cycle, makes it the same loop.
+It exchanges values before each step, for both models at once (Jacobi): a command reaches the testbed one cycle later
+than in our order. With a command delay of zero instead of one cycle in the testbed it is the same loop.
 """
 
 from __future__ import annotations

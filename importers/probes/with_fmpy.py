@@ -1,4 +1,4 @@
-"""FMPy: its classes that stand for FMI's functions one by one."""
+"""FMPy: its classes that wrap the FMI functions one by one."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""libcosim, its fixed-step algorithm, from our SSP: it exchanges between steps, both models at once.
+"""libcosim's fixed-step algorithm with our SSP: it exchanges values between steps, for both models at once.
 
-libcosimpy 0.0.6 cannot connect integer variables by itself (it looks for a function that its library does not have),
-so the connections come from the package.
+libcosimpy 0.0.6 cannot connect integer variables itself (it calls a function that its library does not have), so the
+connections come from the SSP.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from report import STEP_S, stage, write_trace
 def main(job: dict[str, Any]) -> None:
     step_ns = round(STEP_S * 1e9)
     with stage("load"):
-        # By itself first: where the package cannot be had (FMI 3), this is as far as it goes.
+        # Each FMU alone first: without an SSP (FMI 3) this is all that can be done.
         alone = CosimExecution.from_step_size(step_size=step_ns)
         alone.add_local_slave(CosimLocalSlave(fmu_path=job["testbed"], instance_name="testbed"))
         folder = Path(job["trace"]).with_suffix("")

@@ -1,5 +1,5 @@
 /* The kinematics of three wheels as the matrices that (15) to (34) print, and (28), (30) and (38) as functions of the
- * motion: what gw_kinematics and gw_nominal are compared with. The golden bits hold these, too. */
+ * motion: gw_kinematics and gw_nominal are compared with them. Their bits are part of the golden bits, too. */
 #ifndef MATRIX_FORMS_H
 #define MATRIX_FORMS_H
 

@@ -1,5 +1,5 @@
-// A controller in a robot that does exactly as it is told: torques are those of Eigen's evaluation of the corrected
-// model at the commanded motion, less what a push takes off, plus sensor offsets.
+// A controller in a robot that follows its commands exactly: torques are those of the corrected model, evaluated with
+// Eigen at the commanded motion, minus those of a push, plus sensor offsets.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ public:
         return raw_step();
     }
 
-    // One tick with whatever is in `input`.
+    // One tick with the present `input`.
     gw_status_t raw_step()
     {
         const gw_status_t status = gw_controller_step(controller.get(), &input, &output);

@@ -1,4 +1,4 @@
-// What the tests of c_core share: tolerances, random robots, and Eigen's view of the same quantities.
+// Shared by the tests of c_core: tolerances, random robots, and Eigen's view of the same quantities.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ inline constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 inline constexpr Real infinite = std::numeric_limits<Real>::infinity();
 inline constexpr double pi = std::numbers::pi;
 
-// Relative tolerance of a quantity that some twenty roundings go into: 1e-12 in double (4500 ulp) and 1e-5 in float
-// (84 ulp). To be multiplied by the size of the largest term.
+// Relative tolerance of a quantity computed with about twenty roundings: 1e-12 in double (4500 ulp) and 1e-5 in float
+// (84 ulp). To be multiplied by the magnitude of the largest term.
 inline constexpr double tolerance = is_double ? 1e-12 : 1e-5;
 
 inline Real real(double value)
@@ -159,7 +159,7 @@ inline Eigen::Matrix3d matrix(const matrix_t &m)
     return result;
 }
 
-// The vector as the real type rounds it: what the library really got.
+// The vector rounded to the real type: the library's actual input.
 inline Eigen::Vector3d rounded(const Eigen::Vector3d &v)
 {
     return {static_cast<double>(real(v(0))), static_cast<double>(real(v(1))), static_cast<double>(real(v(2)))};

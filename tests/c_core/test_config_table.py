@@ -24,7 +24,7 @@ CHECK = re.compile(
 DESCRIBED = re.compile(r"/\*((?:[^*]|\*(?!/))*)\*/\n((?:    (?:gw_real_t|uint32_t) \w+(?:\[\w+\])?;\n)+)")
 RANGE = re.compile(r"\[(-?[\d.]+), (-?[\d.]+)\]")
 CHOICE = re.compile(r"GW_\w+ \((\d)\)")  # a value that has a name
-# Parameters of the FMU that are no numbers of the configuration.
+# Parameters of the FMU that are not numbers of the configuration.
 OTHER_PARAMETERS = {"controller.drives_enabled"}
 
 
@@ -58,7 +58,7 @@ def members() -> dict[str, str]:
 
 
 def described() -> dict[tuple[str, str], tuple[float, float]]:
-    """(Module, member) to the range in the comment above it; a comment with one range speaks of all members below."""
+    """(Module, member) to the range in the comment above it; a comment with one range applies to all members below."""
     ranges = {}
     for header in sorted(HEADERS.glob("gw_*.h")):
         for structure in re.findall(r"typedef struct \{\n(.*?)\} gw_\w+_config_t;", header.read_text(), re.DOTALL):
@@ -80,7 +80,7 @@ def checked() -> dict[str, tuple[str, str]]:
         field: (source.stem, member)
         for source in sorted((CORE / "src").glob("*.c"))
         for field, member in CHECK.findall(source.read_text(encoding="utf-8"))
-        if source.stem != "gw_rate_filter"  # takes some of the estimator's again
+        if source.stem != "gw_rate_filter"  # uses some of the estimator's fields again
     }
 
 
@@ -95,7 +95,7 @@ def test_every_field_is_checked_and_described_as_in_the_table(field: str) -> Non
     assert field in checked(), f"{name} is checked nowhere"
     module, member = checked()[field]
     if (module, member) in {("gw_kinematics", "wheel_slot"), ("gw_contact", "vertex_m")}:
-        return  # said in words: "each of 0, 1, 2 once", "each in [-10, 10]" of both coordinates
+        return  # stated in words: "each of 0, 1, 2 once", "each in [-10, 10]" for both coordinates
     bounds = described().get((module, member))
     assert bounds is not None, f"{module}.h gives no range for {member}"
     assert bounds == (low, high)

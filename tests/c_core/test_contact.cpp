@@ -39,7 +39,8 @@ struct Hit {
     Point point;
 };
 
-// Brute force: walk finely along the outline, keep points near the line where the force enters; else the nearest.
+// Brute force: walk along the outline in fine steps and keep points near the line of action where the force enters;
+// otherwise the nearest.
 Hit brute_force(const std::vector<Point> &outline, const Point &u, double arm)
 {
     constexpr int steps = 4000;

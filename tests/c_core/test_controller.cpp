@@ -63,7 +63,7 @@ TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere)
                 ASSERT_EQ(robot.step(pushed ? wrench : Eigen::Vector3d(0, 0, 0)), GW_STATUS_OK);
                 ticks_to_hit += pushed ? 1 : 0;
                 const Eigen::Vector2d v = robot.commanded_twist().head<2>();
-                // Never towards the push; sideways only as far as the direction is rounded.
+                // Never towards the push; sideways only by the rounding of the direction.
                 ASSERT_GE(v.dot(along), 0.0) << i;
                 ASSERT_LE(std::fabs(v.x() * along.y() - v.y() * along.x()), (is_double ? 1e-9 : 2e-5)) << i;
                 distance += v.dot(along) * 1e-3;
@@ -72,7 +72,7 @@ TEST(Controller, GivesWayToPushesFromAllSidesAndSaysWhere)
                 }
             }
             ASSERT_EQ(robot.output.detection_count, 1U);
-            // Impulse minus leak reaches J: 20 samples were in before.
+            // Impulse minus leak reaches J; the average already held 20 samples.
             ASSERT_NEAR(ticks_to_hit + 20, std::floor(threshold / ((force - 1.0) * 1e-3)) + 1, 1.0);
             ASSERT_NEAR(robot.output.detection_wrench.force_x_n, wrench(0), is_double ? 1e-9 : 1e-3);
             ASSERT_NEAR(robot.output.detection_wrench.torque_nm, wrench(2), is_double ? 1e-9 : 1e-3);

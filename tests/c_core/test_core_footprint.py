@@ -40,7 +40,7 @@ LISTING = """
 def test_worst_stack_is_that_of_the_deepest_chain() -> None:
     # 3 registers and 20 bytes; 2 doubles; 16 bytes.
     assert footprint.worst_stack(LISTING, {}, "gw_top") == 32 + 16 + 16
-    # What the compiler says of its own functions counts.
+    # For the compiler's functions the compiler's figures count.
     assert footprint.worst_stack(LISTING, {"gw_top": 100, "gw_middle": 8}, "gw_top") == 100 + 8 + 16
 
 

@@ -88,7 +88,7 @@ TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait)
     EXPECT_EQ(rested.regime, GW_REGIME_REST);
     EXPECT_TRUE(rested.zero_changed);
     EXPECT_VECTOR_NEAR(vector(rested.wrench), Eigen::Vector3d(0, 0, 0), 100.0 * tolerance);
-    // In motion again, the zero is that of the run.
+    // In motion again, the zero of the run applies.
     const auto again = e.step(moving_at(0.2, run_zero));
     EXPECT_EQ(again.regime, GW_REGIME_MOTION);
     EXPECT_VECTOR_NEAR(vector(again.nominal_nm) - run_zero,
@@ -99,8 +99,8 @@ TEST(Estimator, RestIsDeclaredByAQuietTareAtTheEndOfTheWait)
 
 TEST(Estimator, MeasuredSourcesSeeARobotThatIsPushedAway)
 {
-    // Motors hold, the base accelerates by a push: the planned form sees only what the wheels carry, the measured one
-    // all of it.
+    // Motors hold, and a push accelerates the base: the planned form sees only the part that the wheels carry, the
+    // measured form sees all of it.
     auto config = trikey();
     config.estimator.encoder_counts = 1'000'000;
     config.estimator.drivetrain_stiffness_nm_per_rad = real(0);
@@ -185,8 +185,8 @@ Static static_push(const gw_controller_config_t &c, const Eigen::Vector3d &push)
 
 TEST(Estimator, WhatRollersCarryPastTheWheelsIsSeenWithBristles)
 {
-    // 5.1: a push on the unpowered robot, all sticks. Wheels alone see k_w/(k_w + sigma0) of the force and all of the
-    // moment (uniform bristles); with bristles, scattered ones too, all of both.
+    // 5.1: a push on the unpowered robot, all sticks. Wheels alone see k_w/(k_w + sigma0) of the force and the whole
+    // moment (uniform bristles); with the bristle model, also for unequal bristles, both are seen completely.
     Random random(123);
     for (int trial = 0; trial < 200; ++trial) {
         auto config = with_bristles();
@@ -258,8 +258,9 @@ TEST(Estimator, MotorsThatTurnMoveTheBristlesToo)
 
 TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold)
 {
-    // A stop leaves the rollers wound up. The tare of the stop takes that as zero; when the robot is planned to move
-    // again nothing has happened yet, and the estimate must not jump. The tanh law forgets the wind-up: it jumps.
+    // After a stop the rollers stay deflected, and the tare of the stop takes this as zero. When the plan starts to
+    // move again, nothing has happened yet, so the estimate must not jump. The tanh law forgets the deflection: it
+    // jumps.
     for (const std::uint32_t model : {GW_FRICTION_BRISTLE, GW_FRICTION_TANH}) {
         auto config = with_bristles();
         config.estimator.friction_model = model;
@@ -273,7 +274,7 @@ TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold)
             wound = static_push(config, pull * k / 50.0);
             (void)e.step(moving_at(0.1, offset + wound.torque));
         }
-        // What winds them up here is a push; it stays through the stop, and so it is zero.
+        // Here a push deflects them; it lasts through the stop, so it becomes the zero.
         gw_estimator_output_t out{};
         for (int k = 0; k < 300; ++k) {
             out = e.step(moving_at(0.0, offset + wound.torque));
@@ -285,7 +286,7 @@ TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold)
         const auto left = e.step(in);
         ASSERT_NE(left.regime, GW_REGIME_REST);
         if (model == GW_FRICTION_BRISTLE) {
-            // The run's zero knows nothing of the push that the stop's tare took in: it is there again, whole.
+            // The run's zero does not contain the push that the stop's tare included: the full push is seen again.
             EXPECT_VECTOR_NEAR(vector(left.wrench), pull, 100.0 * tolerance * 50.0);
         } else {
             EXPECT_LT(vector(left.wrench).norm(), 0.9 * pull.norm());
@@ -295,8 +296,8 @@ TEST(Estimator, LeavingRestKeepsWhatTheBristlesHold)
 
 TEST(Estimator, ANoisyEndOfATareIsNoPush)
 {
-    // The last sample of the tare is off by a tenth of a newton metre: 1.5 N at the rim. Without more ado the bristles
-    // would keep that for ever.
+    // The last sample of the tare is off by a tenth of a newton metre: 1.5 N at the rim. Without a correction the
+    // bristles would keep this error for ever.
     Random random(124);
     Estimated e(with_bristles());
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();

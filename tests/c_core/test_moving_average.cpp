@@ -20,13 +20,13 @@ TEST_P(MovingAverage, IsEigensMeanOverAMillionSamples)
     Eigen::MatrixXd history = Eigen::MatrixXd::Zero(3, window);
     constexpr int samples = 1'000'000;
     for (int i = 0; i < samples; ++i) {
-        // Bursts of large values in between, whose rounding must not stay.
+        // Bursts of large values in between, whose rounding errors must not persist.
         const double size = (i / 1000) % 50 == 7 ? 1e6 : 10.0;
         const Eigen::Vector3d sample = random_vector(random, size);
         history.col(i % static_cast<int>(window)) = sample;
         ASSERT_EQ(gw_moving_average_add(average.get(), wrench(sample)), GW_STATUS_OK);
         const bool looked_at = i < 3000 || i % 997 == 0 || i > samples - 3000;
-        // One window after a burst its rounding is gone; before, it is proportional to the burst.
+        // One window after a burst its rounding error is gone; until then it is proportional to the burst.
         if (looked_at) {
             const auto held = std::min<int>(i + 1, static_cast<int>(window));
             const Eigen::Vector3d truth = history.rowwise().sum() / held;

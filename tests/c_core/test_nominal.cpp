@@ -1,5 +1,5 @@
 // Nominal torque (27) and external wrench (40) against the multiplier system (20)-(24), (31), solved by Eigen with the
-// mended sign: A qdd + B + J_c^T lambda = U^T T + J_ext^T F, J_c qdd = -Jdot_c qd.
+// corrected sign: A qdd + B + J_c^T lambda = U^T T + J_ext^T F, J_c qdd = -Jdot_c qd.
 #include "support.hpp"
 
 namespace

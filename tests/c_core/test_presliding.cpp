@@ -1,5 +1,5 @@
 // Bristles of the rollers against the differential equation of their law, integrated finely in long double, and against
-// closed forms; then what must hold for any input.
+// closed forms; then properties that hold for any input.
 #include <memory>
 
 #include "support.hpp"
@@ -25,10 +25,11 @@ struct Bristles {
         gw_controller_config_trikey(&config);
         return config;
     }
-    // One tick in which the sensed torques change the drivetrains' twist so that the base moves by `way` (m, m, rad).
-    Eigen::Vector3d move(const Eigen::Vector3d &way, const Eigen::Vector3d &velocity)
+    // One tick in which the sensed torques change the drivetrains' twist so that the base moves by `travel` (m, m,
+    // rad).
+    Eigen::Vector3d move(const Eigen::Vector3d &travel, const Eigen::Vector3d &velocity)
     {
-        torque -= 668.0 * wheel_jacobian(geometry, 0.0) * way;
+        torque -= 668.0 * wheel_jacobian(geometry, 0.0) * travel;
         return at(torque, velocity);
     }
     Eigen::Vector3d at(const Eigen::Vector3d &sensed, const Eigen::Vector3d &velocity)
@@ -62,8 +63,8 @@ struct Bristles {
     Eigen::Vector3d torque = Eigen::Vector3d::Zero();
 };
 
-// z' = v (1 - A rho) of the header, written down once more: Heun in small steps of the way, so that it also holds
-// where v is what positions say and g belongs to another speed (the filtered one).
+// z' = v (1 - A rho) of the header, implemented again: Heun's method in small steps of travel, so that it also holds
+// where v comes from positions and g from another speed (the filtered one).
 struct Equation {
     Long sigma0, sigma1, stribeck, elastic, most, alpha_per_radius;
     Long z = 0;
@@ -73,7 +74,7 @@ struct Equation {
         const Long w = std::exp(-(speed / stribeck) * (speed / stribeck));
         return most * (w + (1 - w) * std::tanh(alpha_per_radius * std::fabs(speed)));
     }
-    // dz per way.
+    // dz per travel.
     [[nodiscard]] Long slope(Long deflection, Long direction, Long g) const
     {
         if (deflection * direction <= 0) {
@@ -83,13 +84,13 @@ struct Equation {
         const Long y = std::min(std::max((rho - elastic) / (1 - elastic), Long(0)), Long(1));
         return 1 - y * y * (3 - 2 * y) * rho;
     }
-    Long step(Long way, Long speed)
+    Long step(Long travel, Long speed)
     {
         const Long g = bears(speed);
         const Long rate = speed * slope(z, speed, g);
         constexpr int parts = 50;
         for (int i = 0; i < parts; ++i) {
-            const Long h = way / parts;
+            const Long h = travel / parts;
             const Long first = slope(z, h, g);
             z += h * (first + slope(z + h * first, h, g)) / 2;
         }
@@ -107,8 +108,8 @@ Equation equation_of(const Bristles &b, int wheel)
             static_cast<Long>(b.friction.tanh_slope_s_per_rad) / static_cast<Long>(b.geometry.roller_radius_m)};
 }
 
-// A walk of the base to and fro through sticking and sliding, the same for every number of ticks that the sliding
-// deflection takes. Returns the largest deviation of a force from the equation, relative to B_r/r_r.
+// A walk of the base back and forth through sticking and sliding, the same for every number of ticks per sliding
+// deflection. Returns the largest deviation of a force from the equation, relative to B_r/r_r.
 double worst_deviation(int ticks_per_deflection)
 {
     Random random(1);
@@ -125,15 +126,15 @@ double worst_deviation(int ticks_per_deflection)
         std::array<Equation, 3> truth = {equation_of(b, 0), equation_of(b, 1), equation_of(b, 2)};
         (void)b.move(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()); // the first sample: where everything starts
         for (int leg = 0; leg < 10; ++leg) {
-            Eigen::Vector3d way = random_vector(random, 1.0);
-            way *= b.most() / 3e4 / ticks_per_deflection / way.head<2>().norm();
-            way(2) *= 0.1;
-            const Eigen::Vector3d velocity = way / way.norm() * random.uniform(0.0, 0.05);
+            Eigen::Vector3d travel = random_vector(random, 1.0);
+            travel *= b.most() / 3e4 / ticks_per_deflection / travel.head<2>().norm();
+            travel(2) *= 0.1;
+            const Eigen::Vector3d velocity = travel / travel.norm() * random.uniform(0.0, 0.05);
             const int ticks = static_cast<int>(random.uniform(0.5, 3.0) * ticks_per_deflection);
             for (int k = 0; k < ticks; ++k) {
                 const gw_wheels_t before = wheels(b.torque);
-                const Eigen::Vector3d force = b.move(way, velocity);
-                // What the sensors told after rounding.
+                const Eigen::Vector3d force = b.move(travel, velocity);
+                // The sensor readings after rounding.
                 const Eigen::Vector3d told =
                     wheel_jacobian(b.geometry, 0.0).inverse() * (vector(before) - vector(wheels(b.torque))) / 668.0;
                 for (int i = 0; i < 3; ++i) {
@@ -150,8 +151,9 @@ double worst_deviation(int ticks_per_deflection)
 
 TEST(Presliding, FollowsItsEquation)
 {
-    // One step of Euler per tick: wrong by what 1 - A rho changes within a tick, so ten times less at a tenth of the
-    // way per tick. A collision takes some 20 ticks to the sliding deflection, a push by hand hundreds.
+    // One Euler step per tick: the error is the change of 1 - A rho within a tick, so it is ten times smaller at a
+    // tenth of the travel per tick. A collision reaches the sliding deflection after some 20 ticks, a push by hand
+    // after hundreds.
     const double fast = worst_deviation(20);
     const double slow = worst_deviation(200);
     EXPECT_LT(fast, 0.1);
@@ -228,7 +230,7 @@ TEST(Presliding, AStrideLongerThanTheBristleEndsAtItsLimit)
 
 TEST(Presliding, AHeldPushDoesNotCreepUnderNoise)
 {
-    // An hour at 1 kHz, at 0.6 of what the rollers bear, with the torque sensor's noise in its resolution of 14.3 mN m.
+    // An hour at 1 kHz, at 0.6 of the rollers' limit, with the torque sensor's noise in its resolution of 14.3 mN m.
     Bristles b;
     (void)b.move(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
     const Eigen::Vector3d held(0.6 * b.most() / b.sigma0(), 0.0, 0.0);
@@ -242,7 +244,7 @@ TEST(Presliding, AHeldPushDoesNotCreepUnderNoise)
         (void)b.at(torque + Eigen::Vector3d(noise[0], noise[1], noise[2]), Eigen::Vector3d::Zero());
     }
     const Eigen::Vector3d end = b.at(torque, Eigen::Vector3d::Zero());
-    // A walk of roundings: of deflections of 0.5 mm and ways of 10 um, sqrt(3.6e6) of them.
+    // A random walk of roundings of deflections of 0.5 mm and travels of 10 um: sqrt(3.6e6) of them.
     EXPECT_VECTOR_NEAR(end, start, 1900.0 * epsilon * 20.0);
 }
 

@@ -1,4 +1,4 @@
-"""The C constants of Trikey are the numbers of the robot file, every one of them."""
+"""All C constants of Trikey equal the numbers of the robot file."""
 
 from __future__ import annotations
 

@@ -14,13 +14,16 @@ from typing import Any
 import giveway
 import numpy as np
 import pytest
+import reference_metrics
 import xarray
 from cosim_helpers import short
 from giveway import batch
 from giveway.base import native
 from giveway.base.errors import FileError, GivewayError, SimulationError, UnknownNameError
-from giveway.library import batch_library
+from giveway.library import batch_library, recorded
+from giveway.robot import variables
 from giveway.scenario.body_regions import body_region
+from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS
 from giveway.scenario.scenario import BUMPERS
 from giveway.simulation import metrics
 from giveway.simulation.native_engine import NativeRuns
@@ -144,12 +147,13 @@ JUDGED: dict[str, giveway.Scenario] = {
 
 
 @pytest.mark.parametrize("case", JUDGED)
-def test_native_metrics_are_those_of_the_traces(case: str) -> None:
+def test_metrics_are_those_of_the_reference_s_formulas(case: str) -> None:
     scenario = JUDGED[case]
     table = batch.run_many([scenario])
     result = batch.run(scenario)
     region = scenario.judged
-    for metric in (*result.metrics, *metrics.design(result.traces, result.manifest["parameters"], region)):
+    of_traces = (result.traces, result.manifest["parameters"])
+    for metric in (*reference_metrics.collision(*of_traces), *reference_metrics.design(*of_traces, region)):
         value = float(table[metric.name][0])
         assert table[metric.name].attrs["units"] == metric.unit
         # Both follow the same definitions; sums in another order differ by some roundings. A direction error is a
@@ -161,6 +165,48 @@ def test_native_metrics_are_those_of_the_traces(case: str) -> None:
         assert value == pytest.approx(expected, nan_ok=True, **near), metric
         if metric.truth is not None:
             assert float(table[f"{metric.name} (true)"][0]) == pytest.approx(metric.truth, **near), metric
+
+
+def all_traces() -> list[str]:
+    """Every output, and the inputs that tables drive."""
+    return [
+        f"{model}.{variable.name}"
+        for model in native.MODELS
+        for variable in variables.table(model)
+        if variable.causality == "output" or variable.name in (*PLAN_INPUTS, *PUSH_INPUTS)
+    ]
+
+
+@pytest.mark.parametrize("method", batch.METHODS)
+@pytest.mark.parametrize("case", JUDGED)
+def test_recorded_traces_give_the_bits_of_the_run_s_own_metrics(case: str, method: str) -> None:
+    scenario = JUDGED[case]
+    table = batch.run_many([scenario], method=method, traces=all_traces())
+    traces = table[all_traces()].isel(run=0)
+    parameters = {model: scenario.parameters(model) for model in native.MODELS}
+    region = scenario.judged
+    limits = (0.0, 0.0) if region is None else (region.peak_limit_n, region.lasting_limit_n)
+    columns = {str(name): values.values for name, values in traces.data_vars.items()}
+    values, truth = recorded.evaluate(table["time"].values, columns, parameters, limits)
+    for index, metric in enumerate(batch_library.native_metrics()):
+        assert values[index].tobytes() == table[metric.name].values[0].tobytes(), metric
+        if metric.has_truth:
+            assert truth[index].tobytes() == table[f"{metric.name} (true)"].values[0].tobytes(), metric
+
+
+@pytest.mark.parametrize("rows", [1, 2, 150, 200, 300])
+def test_a_run_that_ended_early_is_judged_by_what_it_has(rows: int) -> None:
+    result = giveway.run(short("magnetic"))
+    parameters = result.manifest["parameters"]
+    traces = result.traces.isel(time=slice(0, rows))
+    expected = reference_metrics.collision(traces, parameters)
+    found = metrics.collision(traces, parameters)
+    assert [metric.name for metric in found] == [metric.name for metric in expected]
+    for one, other in zip(found, expected, strict=True):
+        numbers, known = ([np.nan if v is None else v for v in (m.value, m.truth)] for m in (one, other))
+        assert numbers == pytest.approx(known, nan_ok=True, rel=1e-9, abs=1e-11), one  # sums in another order
+        assert one.unit == other.unit
+        assert one.value is None or one.decimals == other.decimals
 
 
 def test_numbers_of_a_design() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import giveway
 import numpy as np
 import pytest
+import reference_metrics
 from giveway.base import native
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.variables import table
@@ -142,6 +144,21 @@ def test_noise_of_a_measured_trace_is_no_contact() -> None:
     noise = np.abs(np.random.default_rng(1).normal(0.0, 0.5, TIME_S.size))
     assert judge(TIME_S, noise + trace((1.0, 1.2, 50.0)), "hand", touch_n=5.0).longest_contact_s == pytest.approx(0.199)
     assert judge(TIME_S, noise, "face", touch_n=5.0).ok
+
+
+@pytest.mark.parametrize("touch_n", [0.0, 40.0])
+def test_any_trace_is_judged_as_by_the_reference(touch_n: float) -> None:
+    """Blows and pauses of all lengths on an uneven grid; no arithmetic but differences of times, so the bits agree."""
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        time_s = np.cumsum(rng.uniform(0.001, 0.2, 60))
+        force_n = np.repeat(rng.choice([0.0, 30.0, 60.0, 90.0], 20), 3) * rng.uniform(0.5, 1.0, 60)
+        found = judge(time_s, force_n, "hand", touch_n=touch_n)
+        reference = reference_metrics.judge_force(time_s, force_n, touch_n)
+        assert dataclasses.astuple(reference) == (
+            found.peak_n, found.peak_time_s, found.lasting_n, found.lasting_time_s, found.longest_contact_s,
+            found.lasting_known,
+        )  # fmt: skip
 
 
 def test_wrong_input_is_named() -> None:

@@ -7,7 +7,7 @@ import pytest
 from giveway import batch, experiments
 from giveway.base.errors import UnknownNameError
 from giveway.experiments.reproduction.findings import Effort, Findings
-from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, scenario
+from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, _judged_by, scenario
 from giveway.robot.footprint import hull, wheel_corners
 from giveway.scenario.body_regions import NOTICE
 from giveway.scenario.plan import Straight
@@ -36,7 +36,7 @@ def test_robot_is_steady_when_it_hits(name: str, results: dict[str, Result]) -> 
     tare_s = 0.1
     # The base lags its plan by what servo and drivetrain give, some millimetres: at most 20 mm.
     assert hit.contact_s == pytest.approx(tare_s + plan.ramp_s + STEADY_S, abs=0.02 / scene.speed_mps)
-    row = hit.until_detection().start - 1
+    row = hit.start - 1
     speed = np.hypot(hit["testbed.truth.vx"][row], hit["testbed.truth.vy"][row])
     assert speed == pytest.approx(scene.speed_mps, rel=0.02)
 
@@ -55,7 +55,7 @@ def test_hand_is_hit_by_the_wheel_itself(results: dict[str, Result]) -> None:
 def test_bicycle_meets_a_corner_and_person_the_body(results: dict[str, Result]) -> None:
     for name, corners in (("bicycle", True), ("person", False)):
         hit = collision(results[name])
-        row = hit.until_detection().start
+        row = hit.start
         point = np.array([hit[f"testbed.truth.contact_base_{axis}"][row] for axis in "xy"])
         parameters = results[name].manifest["parameters"]["testbed"]
         body = np.array([[parameters[f"outline.{axis}[{i}]"] for axis in "xy"] for i in range(3)])
@@ -96,6 +96,13 @@ def test_false_hits_are_explained_by_the_rollers(findings: Findings) -> None:
     for name in SCENES:
         explained = [note for note in findings.notes if note.startswith(f"{name}: ")]
         assert len(explained) == (rows[f"false detections, {name}"] != 0.0)
+
+
+def test_no_scene_may_detect_what_is_not_there() -> None:
+    _, target, _ = _judged_by("")["false detections"]
+    assert target is not None
+    assert target.met(0.0)
+    assert not target.met(1.0)
 
 
 def test_unknown_scene() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 from pathlib import Path
 
@@ -45,6 +46,15 @@ def test_it_is_what_the_fmu_does_by_itself() -> None:
     assert (run.interface, run.units["carrier.force"]) == ("CoSimulation", "N")
     steps = 0.2 * 0.001  # a step moves the face by its velocity, then it is where the input says
     np.testing.assert_allclose(run.traces["compression"][1:], steps, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("most_steps", "step_s"), [(100, 0.001), (99, 0.002), (10, 0.016)])
+def test_the_fmus_own_step_is_doubled_until_there_are_few_enough(most_steps: int, step_s: float) -> None:
+    run = run_fmu(native.fmu("bumper", 3), "cs", 0.1, most_steps=most_steps)
+    assert run.step_s == pytest.approx(step_s, rel=1e-12)
+    assert len(run.traces) == math.ceil(0.1 / step_s - 1e-9) + 1
+    said = f"steps of {step_s:g} s, not 0.001 s: those would be more than {most_steps} (--step, --max-steps)"
+    assert run.note == ("" if step_s == 0.001 else said)
 
 
 @pytest.mark.parametrize(

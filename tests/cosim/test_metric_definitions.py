@@ -1,4 +1,4 @@
-"""Where the window of each metric begins and ends, and the tip margin by statics: in Python and in the batch library.
+"""Where the window of each metric begins and ends, and the tip margin by statics: in the library and in the reference.
 
 The traces are those of synthetic_collision.py with single rows changed; every expected number follows by hand. Rows are
 1 ms apart, the contact begins at row 100 and ends after row 299, the detection is at row 150.
@@ -7,16 +7,16 @@ The traces are those of synthetic_collision.py with single rows changed; every e
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import pytest
+import reference_metrics
 import synthetic_collision as synthetic
 import xarray
 from giveway.scenario.body_regions import BodyRegion, body_region
 from giveway.simulation import metrics
-from native_metrics import evaluate as native
 
 CONTACT, DETECTED, LAST_TOUCH = 100, 150, 299
 PARAMETERS = {
@@ -30,14 +30,24 @@ Numbers = dict[str, tuple[float, float]]
 Evaluate = Callable[..., Numbers]
 
 
-def python(
+def library(
     traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]], region: BodyRegion | None = None
 ) -> Numbers:
-    found = (*metrics.collision(traces, parameters), *metrics.design(traces, parameters, region))
+    return numbers(metrics.evaluate(traces, parameters, region).values())
+
+
+def reference(
+    traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]], region: BodyRegion | None = None
+) -> Numbers:
+    found = reference_metrics.collision(traces, parameters), reference_metrics.design(traces, parameters, region)
+    return numbers((*found[0], *found[1]))
+
+
+def numbers(found: Iterable[metrics.Metric]) -> Numbers:
     return {m.name: tuple(math.nan if v is None else v for v in (m.value, m.truth)) for m in found}  # type: ignore[misc]
 
 
-@pytest.fixture(params=[python, native], ids=["python", "native"])
+@pytest.fixture(params=[library, reference], ids=["library", "reference"])
 def evaluate(request: pytest.FixtureRequest) -> Evaluate:
     found: Evaluate = request.param
     return found

@@ -85,6 +85,13 @@ def test_a_robot_that_does_not_come_back() -> None:
     assert judged({1.1: 10.0}, back=False).returned == 0
 
 
+def test_a_run_that_ends_while_the_robot_still_reacts() -> None:
+    late = TimedPush(40.0, math.radians(30.0), 0.1, 0.0, 3.3, 0.5)
+    found = judged({3.5: 10.0}, (late,))
+    assert found.pushes[0].escape_m == pytest.approx(0.25)  # what there is of it, until 4 s
+    assert found.returned == 0
+
+
 def test_each_push_has_its_own_detection() -> None:
     other = TimedPush(40.0, math.radians(30.0), 0.1, 0.0, 3.0, 0.3)
     found = judged({1.1: 10.0, 3.1: 10.0}, (PUSH, other))

@@ -1,6 +1,6 @@
-/* By their bounds instead of their code, which is beyond the solver: angles of gw_math, whose bounds rung `contracts`
- * checks on every float, and the remainder of a division, whose bounds are those of C (C99 6.5.5). To be included
- * before the sources under proof. */
+/* Functions whose code is too hard for the solver are replaced by their bounds: angles of gw_math (rung `contracts`
+ * checks these bounds on every float), and the remainder of a division (bounds of C99 6.5.5). Include it before the
+ * sources under proof. */
 #ifndef ESBMC_CONTRACTS_H
 #define ESBMC_CONTRACTS_H
 

@@ -1,5 +1,5 @@
-/* Any state within the invariant, any bits as geometry, displacement, yaw and speed: the invariant is kept, and what is
- * commanded are its angles. */
+/* Any state within the invariant, any bits as geometry, displacement, yaw and speed: the invariant is kept, and the
+ * commands are angles of that state. */
 #include "contracts.h"
 
 #include "gw_joint.c"

@@ -1,4 +1,4 @@
-/* The guards on which everything else rests, for any bits whatever. */
+/* The guards on which all other proofs rely, for arbitrary bits. */
 #include "nondet.h"
 
 int main(void)

@@ -1,4 +1,4 @@
-/* Any bits at all, NaN and the infinities included. */
+/* Arbitrary bits, including NaN and infinities. */
 #ifndef ESBMC_NONDET_H
 #define ESBMC_NONDET_H
 

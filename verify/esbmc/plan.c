@@ -1,4 +1,4 @@
-/* A plan of any bits becomes a valid one, the same if it was one. */
+/* A plan of arbitrary bits becomes a valid plan; a valid plan is not changed. */
 #include "nondet.h"
 
 int main(void)

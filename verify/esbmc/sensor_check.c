@@ -1,5 +1,5 @@
 /* Any configuration, any state within the invariant, any sample: the invariant is kept, and torques that are not finite
- * or beyond the limit are never called good. */
+ * or exceed the limit are never called good. */
 #include "nondet.h"
 
 int main(void)

@@ -31,7 +31,7 @@ int main(void)
         const gw_mode_t mode = gw_supervisor_step(&supervisor, &events);
         __ESBMC_assert(gw_supervisor_invariant_holds(&supervisor), "a step keeps the invariant");
         __ESBMC_assert(events.sensors_good || (mode == GW_MODE_FAULT), "bad sensors lead to FAULT");
-        __ESBMC_assert(mode == supervisor.mode, "the mode that is told is the mode");
+        __ESBMC_assert(mode == supervisor.mode, "the reported mode is the mode");
     }
     return 0;
 }

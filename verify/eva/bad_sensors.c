@@ -1,4 +1,4 @@
-/* Bad sensors never command motion: whenever the step says that the sensors are bad, all wheels have speed zero. */
+/* Bad sensors never cause motion: whenever the step reports bad sensors, all wheels are commanded speed zero. */
 #include "parts.h"
 
 static gw_controller_t controller;

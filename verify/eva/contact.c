@@ -35,6 +35,7 @@ static void part_refusals(void)
     contact.initialised = false;
     (void)gw_contact_locate(any_flag() ? &contact : NULL, wrench, sigma, any_flag() ? &estimate : NULL);
     disturb_contact(&contact);
-    contact.config.vertex_count = GW_OUTLINE_VERTEX_MAX; /* more is refused before they are read, but Eva cannot know */
+    /* a larger number is refused before the corners are read, but Eva cannot know this */
+    contact.config.vertex_count = GW_OUTLINE_VERTEX_MAX;
     (void)gw_contact_invariant_holds(any_flag() ? &contact : NULL);
 }

@@ -24,9 +24,10 @@ static void part_init(void)
     config.geometry.wheel_slot[1] = 2U;
     config.geometry.wheel_slot[2] = 0U;
     disturb_controller(&controller);
-    controller.estimator.average = empty; /* 1024 samples at once, so that Eva need not follow the loop over them */
-    /* Whether an outline is convex and a gain fits the period: the same answer twice, which Eva cannot know. What a
-     * successful init makes of these two is proved in contact.c and reference.c. */
+    /* 1024 samples at once, so that Eva does not have to follow the loop over them */
+    controller.estimator.average = empty;
+    /* Whether an outline is convex and a gain fits the period: both checks are called twice with the same answer, which
+     * Eva cannot know. contact.c and reference.c prove the results of a successful init of these two. */
     draw_contact(&controller.contact);
     draw_reference(&controller.reference);
     if (gw_controller_init(&controller, &config, any_flag() ? &error : NULL) == GW_STATUS_OK) {
@@ -61,7 +62,8 @@ static void hold_output(gw_controller_output_t *output)
 static void part_step(void)
 {
     static const gw_moving_average_t empty;
-    gw_controller_t controller;           /* no value at first: what no tick may read of the one before keeps none */
+    /* no initial value: Eva then sees if a tick reads what only the previous tick has written */
+    gw_controller_t controller;
     controller.estimator.average = empty; /* as in part_init */
     gw_controller_output_t output;
     const gw_controller_input_t input = any_input();

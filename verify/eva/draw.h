@@ -10,7 +10,7 @@ extern volatile float any_float; /* with -warn-special-float none: NaN and the i
 extern volatile int any_int;
 extern volatile unsigned int any_count;
 
-/* An input that nobody bounds. */
+/* An unbounded input. */
 static gw_real_t any_real(void)
 {
 #ifdef NONFINITE_INPUTS
@@ -40,7 +40,7 @@ static int32_t draw_integer(int32_t low, int32_t high)
     return Frama_C_interval(low, high);
 }
 
-/* A setting that init must refuse. */
+/* A setting that init has to refuse. */
 static gw_real_t draw_refused(gw_config_field_t field)
 {
     return draw_real(gw_config_limit(field).maximum + GW_ONE, GW_REAL_MAX);

@@ -1,4 +1,4 @@
-/* gw_rate_filter, gw_presliding, gw_moving_average, gw_tare and gw_sum: what has a memory inside gw_estimator. */
+/* gw_rate_filter, gw_presliding, gw_moving_average, gw_tare and gw_sum: the parts of gw_estimator that have a state. */
 #include "parts.h"
 
 static gw_kinematics_t kinematics;

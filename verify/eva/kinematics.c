@@ -1,4 +1,4 @@
-/* gw_kinematics, gw_nominal, gw_friction and gw_wrench: nothing recursive, so what they compute is bounded by their
+/* gw_kinematics, gw_nominal, gw_friction and gw_wrench: they have no state, so their results are bounded by their
  * arguments. */
 #include "parts.h"
 
@@ -8,7 +8,7 @@ static gw_geometry_config_t geometry;
 static gw_inertia_config_t inertia;
 static gw_friction_config_t friction;
 
-/* Of a robot's motion as far as gw_estimator lets it through. */
+/* Motion of a robot within the limits of gw_estimator. */
 static void draw_motion(gw_twist_t *twist, gw_acceleration_t *acceleration)
 {
     twist->vx_mps = draw_real((gw_real_t)-1.0e9, (gw_real_t)1.0e9);

@@ -1,4 +1,4 @@
-/* What gw_math does without a contract, and gw_config. */
+/* The functions of gw_math that have no contract, and gw_config. */
 #include "parts.h"
 
 static void part_init(void)

@@ -1,4 +1,4 @@
-/* What the proofs use of gw_math: bounds of its results. Each is checked on its own: contracts.c over every float,
+/* Bounds of gw_math's results that the proofs use. Each bound is checked separately: by contracts.c on every float, by
  * math.c against the code. */
 #ifndef EVA_MATH_CONTRACTS_H
 #define EVA_MATH_CONTRACTS_H

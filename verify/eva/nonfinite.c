@@ -1,6 +1,6 @@
 /* Infinite torques are never called good, and sensor_check keeps its invariant (NaN: esbmc/sensor_check.c; Eva takes
- * any comparison with it for undecided). And what finite numbers do not reach: every invariant of numbers that are
- * none. */
+ * any comparison with it for undecided). It also reaches the branches that finite numbers do not: every invariant,
+ * given NaN and infinities. */
 #include "parts.h"
 
 static void part_init(void)

@@ -1,4 +1,4 @@
-/* The parts of a driver, in any order and each on its own. */
+/* The parts of a driver: independent of each other, in any order. */
 #ifndef EVA_PARTS_H
 #define EVA_PARTS_H
 

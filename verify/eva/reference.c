@@ -34,7 +34,7 @@ static void part_step(void)
     } else if (kind == 2U) {
         gw_vector_t displacement_m;
         gw_vector_t velocity_mps;
-        draw_vector(&displacement_m, (gw_real_t)100.0); /* what an admittance gives */
+        draw_vector(&displacement_m, (gw_real_t)100.0); /* the outputs of an admittance */
         draw_vector(&velocity_mps, (gw_real_t)100.0);
         gw_reference_escape(&reference, displacement_m, velocity_mps);
     } else if (kind == 3U) {

@@ -43,9 +43,9 @@ static bool good_tanh(gw_real_t x)
     return unit(gw_tanh(x));
 }
 
-/* gw_atan2 is made of the angle of the smaller argument over the larger, a float in [0, 1]: this less from a quarter
- * turn, that from half a turn, and a sign. Differences are rounded monotonically, so they stay within [0, pi] if the
- * angle does within [0, pi/2]. */
+/* gw_atan2 takes the angle whose tangent is the smaller argument over the larger, a float in [0, 1], and possibly
+ * subtracts it from a quarter turn, then the result from half a turn, and negates it. Rounding of differences is
+ * monotonic, so they stay within [0, pi] if the angle is within [0, pi/2]. */
 static bool good_atan2(gw_real_t x)
 {
     const gw_real_t angle = gw_atan2(x, 1.0F);
@@ -75,10 +75,10 @@ static unsigned long broken_by(const contract_t *contract)
         bool good = contract->good(x);
         if (!isfinite(x)) {
             (void)feclearexcept(FE_ALL_EXCEPT);
-        } else if ((bits & 0xFFU) == 0xFFU) { /* flags stay up: a look at every 256th finds them */
+        } else if ((bits & 0xFFU) == 0xFFU) { /* flags stay raised, so checking after every 256th argument is enough */
             good = good && (fetestexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) == 0);
         } else {
-            /* the next look sees it */
+            /* the next check sees it */
         }
         if (!good) {
             (void)printf("%s: broken at or just below %a\n", contract->name, (double)x);

@@ -23,9 +23,9 @@ from verify.fmu_files.faults import FAULTS
 from verify.fmu_files.make import MAKERS, Base, bases
 from verify.fmu_files.trial import LONGEST_S, MOST_MB, Folders, Trial, try_seed
 
-BATCH = 100  # files of one process, so that what one leaves in memory does not pile up
-SILENCE_S = 12.0 * LONGEST_S  # of the wall: then the process hangs where no alarm clock reaches it
-MEMORY_BYTES = 4_000_000_000  # of address space: the end of what runs away
+BATCH = 100  # files per process, so that memory that a file leaves behind does not accumulate
+SILENCE_S = 12.0 * LONGEST_S  # wall time; after that the process hangs where the alarm clock cannot interrupt it
+MEMORY_BYTES = 4_000_000_000  # address space: stops a runaway process
 MOST_SHOWN = 20
 
 
@@ -34,7 +34,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--count", type=int, default=300, help="how many seeds")
     parser.add_argument("--kind", choices=list(MAKERS), default="", help="only files of this kind")
-    parser.add_argument("--fault", choices=list(FAULTS), help="plant it, and stop when it is seen")
+    parser.add_argument("--fault", choices=list(FAULTS), help="plant this fault, and stop when it is seen")
     arguments = parser.parse_args()
     healthy = _load()
     if arguments.fault:
@@ -87,7 +87,8 @@ def _load() -> list[Base]:
 
 
 def _trials(seeds: range, healthy: list[Base], folder: Path, kind: str) -> Iterator[Trial]:
-    """Batch by batch, each in a process of its own; a file that ends or stops it is a bad one, and the next goes on."""
+    """Runs each batch in a separate process; a file that kills or hangs it counts as bad, and the next process
+    continues."""
     at = seeds.start
     while at < seeds.stop:
         batch = range(at, min(at + BATCH, seeds.stop))
@@ -100,7 +101,7 @@ def _trials(seeds: range, healthy: list[Base], folder: Path, kind: str) -> Itera
 
 
 def _batch(seeds: range, healthy: list[Base], folders: Folders, kind: str) -> Iterator[dict[str, Any] | str]:
-    """The trials as they come, and if the process ends too early how it did."""
+    """Yields the trials as they finish; if the process ends too early, also how it ended."""
     receive, send = os.pipe()
     child = os.fork()
     if child == 0:

@@ -1,4 +1,4 @@
-"""Faults planted in the commands, each of which a trial has to see."""
+"""Faults planted in the commands; a trial has to see each of them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _replace_check(name: str, function: Callable[[Any], Any]) -> None:
 
 
 def _writes_outside() -> None:
-    """A check unpacks what is in the archive under its own name."""
+    """A check unpacks archive members under their own names."""
 
     def unpacks(file: Any) -> Iterator[Any]:
         with tempfile.TemporaryDirectory() as folder:
@@ -49,7 +49,7 @@ def _no_limits() -> None:
 
 
 def _traceback() -> None:
-    """A number is taken for one without a look."""
+    """A text is converted to a number without a check."""
     from giveway.fmu_tools import description as fmu_description
 
     fmu_description._Reader._number = lambda _self, text, *_: int(text)  # type: ignore[method-assign]
@@ -60,7 +60,7 @@ def _has_long_text(file: Any) -> bool:
 
 
 def _hangs() -> None:
-    """A check does not end for a long text."""
+    """A check of a long text never ends."""
 
     def slow(file: Any) -> Iterator[Any]:
         if _has_long_text(file):
@@ -84,7 +84,7 @@ def _crashes() -> None:
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault: how it is planted, files of which kind show it, and what a trial says of it."""
+    """A fault: how it is planted, which kind of file shows it, and what the trial reports."""
 
     plant: Callable[[], None]
     kind: str

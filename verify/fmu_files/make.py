@@ -58,10 +58,10 @@ class Base:
 
 @dataclass
 class Made:
-    """A file, and whether its library is the healthy one, so that it may be run.
+    """A file, and whether its library is the healthy one: only then it may be run.
 
     Attributes:
-        kind: which maker it is of.
+        kind: which maker made it.
     """
 
     kind: str
@@ -79,7 +79,7 @@ class _Draft:
     def pack(self) -> bytes:
         stream = io.BytesIO()
         with warnings.catch_warnings(), zipfile.ZipFile(stream, "w") as archive:
-            warnings.simplefilter("ignore")  # of names that are there twice
+            warnings.simplefilter("ignore")  # of duplicate names
             for name, content in self.files.items():
                 archive.writestr(_info(name, len(content) < 100_000), content)
             for info, content in self.more:
@@ -97,7 +97,7 @@ def bases(packed: list[bytes]) -> list[Base]:
 
 
 def hostile(seed: int, bases: list[Base], outside: str, kind: str = "") -> Made:
-    """The FMU of that seed, and of that kind if one is given. Absolute names in it lead to the folder ``outside``."""
+    """The FMU for a seed, of the given kind if any. Absolute names in it point to the folder ``outside``."""
     random_ = random.Random(f"fmu file {seed}")
     base = random_.choice(bases)
     kind = kind or random_.choices(list(MAKERS), [weight for _, weight in MAKERS.values()])[0]
@@ -108,7 +108,7 @@ def hostile(seed: int, bases: list[Base], outside: str, kind: str = "") -> Made:
 
 def _info(name: str, deflated: bool = True) -> zipfile.ZipInfo:
     info = zipfile.ZipInfo("x", EPOCH)
-    info.filename = info.orig_filename = name  # as it is: the constructor would cut and clean it
+    info.filename = info.orig_filename = name  # set afterwards, since the constructor would truncate and clean it
     info.compress_type = zipfile.ZIP_DEFLATED if deflated else zipfile.ZIP_STORED
     return info
 
@@ -117,7 +117,7 @@ def _info(name: str, deflated: bool = True) -> zipfile.ZipInfo:
 
 
 def _bytes(random_: random.Random, draft: _Draft, _outside: str) -> Made:
-    """Bytes changed, cut, repeated, put in; half of them in the directory at the end."""
+    """Bytes changed, removed, repeated, inserted; half of them in the directory at the end."""
     content = bytearray(draft.pack())
     directory = content.rfind(b"PK\x05\x06") - 1200
     for _ in range(random_.choice((1, 1, 2, 5, 30))):
@@ -155,12 +155,12 @@ def _entries(random_: random.Random, draft: _Draft, outside: str) -> Made:
     return Made("", draft.pack())
 
 
-# Offset in a directory record of 46 bytes, and what stands there.
+# Offset in a directory record of 46 bytes, and the field at this offset.
 _FIELDS = ((8, "<H"), (10, "<H"), (16, "<L"), (20, "<L"), (24, "<L"), (28, "<H"), (30, "<H"), (38, "<L"), (42, "<L"))
 
 
 def _directory(random_: random.Random, draft: _Draft, _outside: str) -> Made:
-    """A directory that lies: flags, method, checksum, sizes, lengths, attributes, places."""
+    """A directory with wrong entries: flags, method, checksum, sizes, lengths, attributes, offsets."""
     draft.more.append((_info("resources/zeros"), bytes(random_.choice((10, 100_000, 3_000_000)))))
     content = bytearray(draft.pack())
     records = [found.start() for found in re.finditer(b"PK\x01\x02", content)]
@@ -173,7 +173,7 @@ def _directory(random_: random.Random, draft: _Draft, _outside: str) -> Made:
 
 
 def _many(random_: random.Random, draft: _Draft, _outside: str) -> Made:
-    """Many entries, or one that unpacks to much."""
+    """Many entries, or one that unpacks to a huge size."""
     if random_.random() < 0.5:
         for number in range(random_.choice((200, 2_000, 12_000))):
             draft.more.append((_info(f"resources/{number}", deflated=False), b""))
@@ -203,7 +203,7 @@ def _changed_xml(random_: random.Random, text: str) -> bytes:
 
 
 def _attribute(random_: random.Random, text: str) -> str:
-    """Another value of some attribute: a nasty text, or that of another."""
+    """Another value for some attribute: a nasty text, or the value of another attribute."""
     found = list(re.finditer(r'="([^"]*)"', text))
     if not found:
         return text
@@ -213,7 +213,7 @@ def _attribute(random_: random.Random, text: str) -> str:
 
 
 def _name_of(random_: random.Random, text: str) -> str:
-    """A tag or an attribute with another name."""
+    """A tag or an attribute renamed."""
     found = list(re.finditer(r"(?<=[<\s])[A-Za-z]\w*", text))
     if not found:
         return text
@@ -238,7 +238,7 @@ def _line(random_: random.Random, text: str) -> str:
 
 
 def _put_in(random_: random.Random, text: str) -> str:
-    """Something that an XML parser has to look at, at any place."""
+    """XML that needs special treatment by a parser, inserted anywhere."""
     what = random_.choice((
         *DOCTYPES, "<![CDATA[x]]>", "<!-- x -->", "<?x y?>", "<a>", "</a>", "<a/>", "<", ">", "&", '"', "\0", "]]>",
         "<a>" * random_.choice((50, 200, 20_000)), "<a/>" * random_.choice((10, 5_000)), "<!--" + "x" * 100_000,
@@ -276,7 +276,7 @@ def _side_documents(random_: random.Random, draft: _Draft, _outside: str) -> Mad
 
 
 def _large_description(random_: random.Random, draft: _Draft, _outside: str) -> Made:
-    """Very many of something small; packed it is small again."""
+    """A small element repeated very often; compressed, the file is small again."""
     text = draft.files[DESCRIPTION].decode()
     count = random_.choice((20_000, 150_000, 400_000))
     what = random_.choice((
@@ -297,7 +297,7 @@ def _large_description(random_: random.Random, draft: _Draft, _outside: str) -> 
 
 
 def _binary(random_: random.Random, draft: _Draft, _outside: str) -> Made:
-    """Cut, changed, or of another machine: never to be run."""
+    """A library truncated, changed, or for another machine: never to be run."""
     name = next(n for n in draft.files if n.startswith("binaries/"))
     content = bytearray(draft.files[name])
     what = random_.randrange(4)
@@ -327,4 +327,4 @@ MAKERS: dict[str, tuple[Callable[[random.Random, _Draft, str], Made], float]] = 
     "many": (_many, 0.004),
     "large description": (_large_description, 0.003),
 }
-"""By name: how it is made, and how often."""
+"""By kind: its maker, and how often it is chosen."""

@@ -21,10 +21,10 @@ from verify.fmu_files.make import Base, hostile
 
 __all__ = ["LONGEST_S", "MOST_MB", "Folders", "Trial", "try_seed"]
 
-LONGEST_S, MOST_MB = 10.0, 500.0  # what is promised of any file; of processor time, which others do not change
-RUN_EVERY = 60  # of the files that may be run, one in so many is: it takes a second
-INFO_EVERY = 3  # it reads as `check` does
-LIST_EVERY = 9  # tables take longer than reading
+LONGEST_S, MOST_MB = 10.0, 500.0  # the promise for any file; processor time, which does not depend on other processes
+RUN_EVERY = 60  # one in this many of the files that may be run is run: a run takes a second
+INFO_EVERY = 3  # as slow as `check`
+LIST_EVERY = 9  # printing tables takes longer than reading
 RUN_LIMIT_S = 8.0
 ALLOWED_CODES = {"check": (0, 1, 2), "info": (0, 2), "run": (0, 1, 2)}
 
@@ -38,8 +38,8 @@ class Folders:
     """Where files are tried.
 
     Attributes:
-        cage: everything that the commands may touch, and nothing else of it than `temporary` is theirs.
-        outside: where absolute names lead to; has to stay empty.
+        cage: the commands can touch nothing outside of it, and may write only to `temporary` in it.
+        outside: where absolute names point to; has to stay empty.
     """
 
     cage: Path
@@ -60,11 +60,11 @@ class Folders:
 
 @dataclass
 class Trial:
-    """What happened with one file.
+    """The outcome of one file.
 
     Attributes:
         codes: exit code by command.
-        bad: what must not be, in words; empty if all is well.
+        bad: what went wrong, in words; empty if nothing did.
     """
 
     seed: int
@@ -76,7 +76,7 @@ class Trial:
 
 
 def try_seed(seed: int, bases: list[Base], folders: Folders, kind: str = "") -> Trial:
-    """Make the file, give it to `check` and to `info` or `run`, and look at what is left."""
+    """Make the file, pass it to `check` and to `info` or `run`, and check what they leave behind."""
     made = hostile(seed, bases, str(folders.outside), kind)
     folders.file.write_bytes(made.content)
     trial = Trial(seed, made.kind)
@@ -131,7 +131,7 @@ def _try(trial: Trial, command: str, arguments: list[str], folders: Folders) -> 
 
 
 def _call(arguments: list[str]) -> int:
-    """The command line without its handler of last resort: what nobody foresaw comes through."""
+    """The command line without its last exception handler, so that unexpected exceptions come through."""
     from giveway.base.errors import GivewayError
 
     try:
@@ -144,7 +144,7 @@ def _call(arguments: list[str]) -> int:
 
 @functools.cache
 def _commands() -> Callable[..., object]:
-    """Made once: that takes Typer longer than most files do."""
+    """Made once: for Typer this takes longer than most files."""
     from giveway.fmu_tools.command import fmu_app
     from typer.main import get_command
 

@@ -1,4 +1,4 @@
-/* Values from a fuzzer's bytes; zero when they are used up. */
+/* Values from a fuzzer's bytes; zeros when the bytes are used up. */
 #ifndef FUZZ_BYTES_H
 #define FUZZ_BYTES_H
 
@@ -61,7 +61,7 @@ static inline gw_real_t take_real(bytes_t *bytes)
     return value;
 }
 
-/* A setting: mostly within its range, both ends included, now and then any bits. */
+/* A setting: mostly within its range, including both ends, now and then arbitrary bits. */
 static inline gw_real_t take_setting(bytes_t *bytes, gw_config_field_t field)
 {
     const gw_config_limit_t limit = gw_config_limit(field);
@@ -98,7 +98,7 @@ static inline uint32_t take_count_setting(bytes_t *bytes, gw_config_field_t fiel
     }
 #define TAKE_RULE(member, field)
 
-/* Mostly within the scale of what is usual, so that sensors are good for a while; now and then any bits. */
+/* Mostly of the usual size, so that the sensors are good for a while; now and then arbitrary bits. */
 static inline gw_real_t take_value(bytes_t *bytes, gw_real_t scale)
 {
     const uint32_t bits = take_count(bytes);

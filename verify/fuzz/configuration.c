@@ -1,6 +1,7 @@
-/* A configuration of any bits, its outline among them: refused as gw_controller.h says, or accepted and good for a few
- * steps with any input. The bytes say what differs from the paper's robot, bit by bit: none is its configuration, and
- * any other can be reached, with NaN, infinities, subnormals and unordered corners. */
+/* A configuration of arbitrary bits, including its outline: init refuses it as gw_controller.h says, or accepts it, and
+ * then a few steps with any input succeed. The bytes are the difference from the paper's robot, bit by bit: no bytes
+ * give its configuration, and every other one can be reached, with NaN, infinities, subnormals and unordered corners.
+ */
 #include "bytes.h"
 
 #define STEPS 8U
@@ -8,7 +9,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Corners around the origin, mostly of a convex outline: random bits alone would never find sixteen. */
+/* Corners around the origin, mostly of a convex outline: random bits alone would never give sixteen valid corners. */
 static void take_outline(bytes_t *bytes, gw_contact_config_t *contact)
 {
     gw_real_t angle = take_value(bytes, GW_PI);
@@ -43,7 +44,7 @@ static gw_controller_config_t take_config(bytes_t *bytes)
             bytes->data++;
             bytes->left--;
         }
-        enabled = (choices & 2U) == 0U; /* a bool of any bits is no value of C */
+        enabled = (choices & 2U) == 0U; /* arbitrary bits are not a valid bool in C */
     }
     (void)memcpy(place + offsetof(gw_controller_config_t, drives_enabled), &enabled, sizeof(enabled));
     return config;
@@ -76,7 +77,7 @@ static void check_refused(gw_controller_t *controller, const gw_controller_confi
     }
 }
 
-/* Wherever a force pushes, it meets the box around the corners. */
+/* Every line of action of a force meets the box around the corners. */
 static void check_located(const gw_contact_config_t *config, gw_wrench_t wrench)
 {
     const gw_wrench_sigma_t sigma = {GW_ONE, GW_ONE};

@@ -1,5 +1,5 @@
-// Right-hand sides from Modelica against those of fmu/plant, at random states: prints the worst difference of each,
-// over the largest of its terms.
+// Right-hand sides from Modelica against those of fmu/plant, at random states: prints the largest difference of each,
+// relative to its largest term.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 """`python3.12 emit.py FOLDER FILE.mo...`: each model as C by the emitter of the PyPI package modelica, in FOLDER.
 
-Beside NAME.c comes NAME.h: where its states, parameters and rates are in the emitter's arrays.
+NAME.h next to NAME.c has the indices of its states, parameters and rates in the emitter's arrays.
 """
 
 import re

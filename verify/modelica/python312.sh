@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints the path of a Python 3.12: the one called so, uv's, or pyenv's.
+# Prints the path of a Python 3.12: the command python3.12, uv's, or pyenv's.
 set -euo pipefail
 for candidate in python3.12 "$(uv python find 3.12 2> /dev/null || true)" \
     $(ls -d "$(pyenv root 2> /dev/null || echo "$HOME/.pyenv")"/versions/3.12*/bin/python3.12 2> /dev/null); do

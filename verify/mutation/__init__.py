@@ -1,1 +1,2 @@
-"""Mutation testing of c_core: small faults, one at a time, that its tests have to see. See verify/README.md."""
+"""Mutation testing of c_core: small faults are planted one at a time, and the tests have to see them. See
+verify/README.md."""

@@ -1,5 +1,5 @@
-"""Which mutants c_core's tests see: the unit tests in C, with every invariant asserted, then the golden bits, then the
-unit tests again with traps for undefined behaviour, such as an index beyond its array."""
+"""Which mutants c_core's tests see: first the unit tests in C with every invariant asserted, then the golden bits, then
+the unit tests with traps for undefined behaviour such as an index beyond its array."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from verify.targets import GCC, PORTABLE, STANDARD, core_sources
 __all__ = ["AT_A_TIME", "UNIT", "Fate", "Killers"]
 
 AT_A_TIME = 2
-OPTIMISED: tuple[str, ...] = ("-O2", PORTABLE)  # at which an equivalent mutant gives the same object
+OPTIMISED: tuple[str, ...] = ("-O2", PORTABLE)  # at this level an equivalent mutant gives the same object code
 TRAPPING: tuple[str, ...] = (
     *("-O1", PORTABLE, "-fsanitize=undefined", "-fsanitize-undefined-trap-on-error"),
-    "-ftrivial-auto-var-init=pattern",  # what a mutant no longer writes has the same value in every build
+    "-ftrivial-auto-var-init=pattern",  # a variable that a mutant no longer writes has the same value in every build
 )
-# Some sixty times what a program takes; a mutant may print without end, too.
+# Some sixty times the normal processor time; the output is limited as a mutant may print endlessly.
 CPU_S = 4
 MEMORY_GIB = 1.0
 OUTPUT_KIB = 1024
@@ -47,7 +47,7 @@ class Fate(enum.Enum):
 
 @dataclass(frozen=True)
 class _Program:
-    """A killer: its own objects, and what it prints when all is well (None: anything, it says so by its exit code)."""
+    """A killer: its objects, and its output if no fault is seen (None: any output, the exit code decides)."""
 
     fate: Fate
     sources: tuple[Path, ...]  # beside c_core's
@@ -57,7 +57,7 @@ class _Program:
 
 
 class Killers:
-    """``sources``: of the unit tests, if other than the committed ones. Everything is built below ``context.work``."""
+    """``sources``: of the unit tests, if not the committed ones. Everything is built below ``context.work``."""
 
     def __init__(self, context: Context, unit_sources: Sequence[Path] | None = None) -> None:
         self.context = context
@@ -90,7 +90,7 @@ class Killers:
             return list(pool.map(self.fate, mutants))
 
     def fate(self, mutant: Mutant) -> Fate:
-        """In a folder of its own, removed afterwards; the sources are only read."""
+        """Runs in a temporary folder; the sources are only read."""
         with tempfile.TemporaryDirectory(dir=self.context.work) as folder:
             return self._fate(mutant, Path(folder))
 
@@ -121,7 +121,7 @@ class Killers:
     def _mutated(
         self, original: dict[str, Path], changed: dict[str, Path], folder: Path, *flags: str
     ) -> dict[str, Path] | None:
-        """The objects, those of the changed sources compiled anew; None if one does not compile."""
+        """The objects, with those of changed sources recompiled; None if one does not compile."""
         objects = dict(original)
         for name in original.keys() & changed.keys():
             target = folder / f"{name}{flags[0]}.o"
@@ -135,7 +135,7 @@ class Killers:
         return {source.name: self._compiled(source, name, *OPTIMISED, program.include) for source in program.sources}
 
     def _includers(self) -> dict[str, list[Path]]:
-        """Which sources, c_core's and the programs', include a header of c_core, by its name."""
+        """By name of a header of c_core: the sources of c_core and the programs that include it."""
         sources = dict.fromkeys(self.sources, "")
         sources |= {source: program.include for program in self.programs for source in program.sources}
         found: dict[str, list[Path]] = {path.name: [] for path in self.context.core.glob("include/giveway/*.h")}
@@ -147,7 +147,7 @@ class Killers:
         return found
 
     def _sees(self, program: _Program, objects: Sequence[Path], folder: Path) -> bool:
-        """It ends otherwise than it should: failed tests, wrong output, a crash, or out of time or memory."""
+        """Whether the program fails: failed tests, wrong output, a crash, or out of time or memory."""
         built = folder / program.fate.name.lower()
         self.context.run(self.context.which(GCC), *objects, "-o", built)
         printed = built.with_suffix(".txt")
@@ -163,6 +163,6 @@ class Killers:
         return target
 
     def _compile(self, source: Path, target: Path, *flags: str) -> Finished:
-        """Never by way of a compiler cache: it would be filled with what nobody asks for again."""
+        """Without a compiler cache: it would be filled with objects that are never needed again."""
         words = ("-w", f"-I{self.context.core / 'include'}", "-c", source, "-o", target)
         return self.context.run(self.context.which(GCC), *STANDARD, *flags, *words, expect=None)

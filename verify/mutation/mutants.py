@@ -47,7 +47,7 @@ CONSTANTS = {
     "true": ("false",),
     "false": ("true",),
 }
-# One of a kind for any other of its kind.
+# Each member of a group is replaced by any other member of it.
 KINDS = (
     ("GW_STATUS_", "GW_STATUS_OK", "GW_STATUS_NULL_POINTER"),
     ("GW_MODE_", "GW_MODE_FAULT", "GW_MODE_TRACKING"),
@@ -61,7 +61,7 @@ INTEGER = re.compile(r"(\d+)([uU]?)")
 
 @dataclass(frozen=True, order=True)
 class Key:
-    """What a mutant is known by, also after lines above it came or went; ``nth`` of its likes in the same line."""
+    """Identifies a mutant, also after lines above it were added or removed; ``nth`` of equal changes in the line."""
 
     file: str
     function: str
@@ -89,12 +89,12 @@ class Mutant:
 
 
 def every(root: Path) -> list[Mutant]:
-    """Of all sources, and of the inline functions of the headers; their macros are an interface, which tests share."""
+    """Mutants of all sources and of the headers' inline functions; header macros are an interface that tests share."""
     return [mutant for path in core_files(root) for mutant in mutants_of(path)]
 
 
 def shuffled(mutants: list[Mutant], seed: int) -> list[Mutant]:
-    """The same order for the same seed on every machine; what happens to one mutant does not move the others."""
+    """The same order for the same seed on every machine; adding or removing a mutant does not move the others."""
 
     def lot(mutant: Mutant) -> str:
         key = mutant.key
@@ -123,11 +123,11 @@ def mutants_of(path: Path) -> list[Mutant]:
     return found
 
 
-Fault = tuple[int, int, str, str]  # from, to, what instead, and what that is called if it does not show
+Fault = tuple[int, int, str, str]  # from, to, replacement, and its name if the replacement alone does not tell
 
 
 def _type_returned(text: str, opening: Token) -> str:
-    """The first words of the function whose body opens there."""
+    """The first words of the function whose body opens here."""
     head = re.search(rf"^([^\n#]*?)\b{opening.function}\([^;{{]*\)\s*\Z", text[: opening.start], re.MULTILINE)
     return head[1].split()[-1] if head and head[1].split() else ""
 
@@ -174,7 +174,7 @@ def _other_of_a_kind(name: str) -> Iterator[str]:
 
 
 def _is_binary(run: list[Token], at: int) -> bool:
-    """Not a sign, not a dereference or an address, not the star of a pointer's declaration."""
+    """Whether it is binary: no sign, no dereference or address, no star of a pointer's declaration."""
     before = run[at - 1]
     if at == 0 or is_type(before.text):
         return False
@@ -194,12 +194,12 @@ def _other_number(token: Token, *, has_sign: bool) -> Iterator[Fault]:
         yield token.start, token.end, "1.0", ""
     elif not token.text.startswith("0x"):
         yield token.start, token.end, f"(1.01 * {token.text})", ""
-        if not has_sign:  # else its sign is left out
+        if not has_sign:  # otherwise its sign is left out
             yield token.start, token.end, f"(-{token.text})", ""
 
 
 def _negated(text: str, run: list[Token], at: int, stop: int | None = None) -> Iterator[Fault]:
-    """Nothing where another fault is the same: a single relation turned round, a `!` left out."""
+    """Empty where another fault is the same: a single relation reversed, a `!` left out."""
     end = matching(run, at) if stop is None else stop - 1
     inside = [token for token in run[at : end + 1] if token.text not in ("(", ")")]
     relations = sum(token.text in RELATIONS for token in inside)

@@ -1,4 +1,4 @@
-"""The committed list of mutants that no test sees, each with the reason why none can or need."""
+"""The committed list of mutants that no test sees, each with the reason why no test can or has to."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _key(entry: Mapping[str, Any], listed: str) -> Key:
 def wrong(
     reasons: Mapping[Key, str], everything: Iterable[Mutant], killed: Iterable[Mutant], survived: Iterable[Mutant]
 ) -> list[str]:
-    """What makes the list untrue; of mutants that were not tried it says only whether they still exist."""
+    """The errors of the list; for mutants that were not tried it only checks that they still exist."""
     existing = {mutant.key for mutant in everything}
     unlisted = [mutant.key for mutant in survived if mutant.key not in reasons]
     dead = [mutant.key for mutant in killed if mutant.key in reasons]
@@ -60,11 +60,11 @@ def _section(heading: str, keys: Iterable[Key]) -> list[str]:
 
 
 def entries(keys: Iterable[Key]) -> list[str]:
-    """As they stand in the list."""
+    """In the form of the list."""
     return [_entry(key) for key in sorted(keys)]
 
 
 def _entry(key: Key) -> str:
-    # A string of JSON is one of TOML, too.
+    # A JSON string is also a TOML string.
     values = (f"{name} = {json.dumps(getattr(key, name))}" for name in FIELDS)
     return f"    {{ {', '.join(values)} }},"

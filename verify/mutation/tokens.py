@@ -24,7 +24,7 @@ TYPE_WORDS = {"bool", "char", "const", "double", "float", "int", "static", "stru
 
 @dataclass(frozen=True)
 class Token:
-    """``function``: what it is in the body of; empty at file scope, and the whole line's name in a #define."""
+    """``function``: the function whose body contains the token; empty at file scope; in a #define the macro's name."""
 
     kind: str
     text: str

@@ -48,7 +48,7 @@ class Trial:
 
 
 def of_some(killers: Killers, number: int, seed: int = SEED) -> Trial:
-    """Until ``number`` of them count, in the order that the seed gives."""
+    """Tries mutants in the order of the seed until ``number`` of them count."""
     waiting = shuffled(every(killers.context.root), seed)
     fates: dict[Mutant, Fate] = {}
     while waiting and (lacking := number - Trial(fates).counted) > 0:
@@ -62,7 +62,7 @@ def of_all(killers: Killers, mutants: Sequence[Mutant]) -> Trial:
 
 
 def judge(killers: Killers, trial: Trial) -> None:
-    """`RungFailed` unless enough were killed and every survivor is listed; entries in the form of the list."""
+    """`RungFailed` unless enough were killed and every survivor is listed; prints entries in the form of the list."""
     survived = [mutant for mutant, fate in trial.fates.items() if fate is Fate.SURVIVED]
     others = [mutant for mutant, fate in trial.fates.items() if fate is not Fate.SURVIVED]
     root = killers.context.root

@@ -1,5 +1,5 @@
-"""A minute of fuzzing per harness and real type, configurations and input sequences: no sanitizer speaks, no invariant
-breaks."""
+"""A minute of fuzzing per harness and real type, with configurations and input sequences: no sanitizer reports an
+error, no invariant is broken."""
 
 from __future__ import annotations
 

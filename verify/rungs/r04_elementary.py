@@ -13,8 +13,8 @@ from verify.rung import Figure, Rung, RungFailed, planted
 from verify.targets import GCC, HOST, PORTABLE
 
 INFINITY_BITS = 0x7F800000
-# Parts that take about equally long, two at a time: tiny numbers are slow (their squares are subnormal), and above
-# GW_ANGLE_MAX little is left to compute.
+# Parts of about equal duration, two at a time: tiny numbers are slow (their squares are subnormal), and above
+# GW_ANGLE_MAX there is little to compute.
 BOUNDS = (0, 0x10000000, 0x20000000, 0x30000000, INFINITY_BITS)
 PARTS = tuple(itertools.pairwise(BOUNDS))
 AT_A_TIME = 2

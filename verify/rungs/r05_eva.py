@@ -14,7 +14,7 @@ from verify.rung import Figure, Rung, RungFailed, planted
 from verify.targets import PORTABLE, core_sources
 
 FRAMA_C = Tool("frama-c", ("-version",), package="frama-c-base")
-# Bounds of these are in eva/math_contracts.h; rung `contracts` checks them on the code.
+# The bounds of these functions are in eva/math_contracts.h; rung `contracts` checks them on the code.
 CONTRACTS = ("gw_sqrt", "gw_exp", "gw_expm1", "gw_tanh", "gw_sincos", "gw_atan2", "gw_wrap_angle", "gw_fraction")
 ONLY_CALLED_BY_THOSE = {
     "atan_of_fraction",
@@ -38,7 +38,7 @@ OWN = re.compile(r"(draw|hold|disturb|demand|any|part|lowest|highest|step_sums|m
 
 @dataclass(frozen=True)
 class Mutant:
-    """What a driver must not accept: a line of c_core without its guard."""
+    """A mutant that a driver has to refuse: a line of c_core without its guard."""
 
     file: str
     healthy: str
@@ -48,8 +48,8 @@ class Mutant:
 @dataclass(frozen=True)
 class Driver:
     mutant: Mutant
-    split_returns: str = ""  # calls whose outcomes are followed apart
-    states: int = 200  # followed apart at one point (-eva-slevel)
+    split_returns: str = ""  # calls whose outcomes are analysed separately
+    states: int = 200  # states analysed separately at one point (-eva-slevel)
     finite: bool = True
 
 
@@ -138,7 +138,7 @@ def check(context: Context) -> Figure:
 
 
 def _proved(context: Context, name: str, driver: Driver, core: Path) -> str:
-    """What Eva says; `RungFailed` with every alarm if there is one."""
+    """Eva's output; `RungFailed` with all alarms if there are any."""
     folder = context.root / "verify" / "eva"
     answer = context.run(
         context.which(FRAMA_C),
@@ -184,7 +184,7 @@ def _defined(log: str) -> Iterator[str]:
 
 
 def _everywhere(name: str) -> str:
-    """An inline function of a header, which Eva numbers anew for every file that includes it."""
+    """An inline function of a header; Eva gives it a new number for every file that includes it."""
     return re.sub(r"_\d+$", "", name)
 
 

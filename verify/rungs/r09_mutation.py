@@ -1,4 +1,4 @@
-"""The tests of c_core see nine of ten small faults in it; why they cannot see the rest is written down, one by one."""
+"""The tests of c_core see nine of ten small faults in it; for each of the others the reason is listed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.rung import Figure, Rung, planted
 from verify.targets import GCC
 
 MUTANTS = 500
-WITHOUT_TESTS = 20  # mutants of a module whose tests are taken away
+WITHOUT_TESTS = 20  # mutants of a module whose tests are removed
 
 
 def check(context: Context) -> Figure:
@@ -34,7 +34,7 @@ def check(context: Context) -> Figure:
 
 
 def _check_planted(context: Context) -> None:
-    """Without the tests of the servo its mutants live: the golden bits alone do not see them all."""
+    """Without the tests of the servo some of its mutants survive: the golden bits alone do not see all."""
     apart = replace(context, work=context.work / "without_tests")
     apart.work.mkdir()
     stub = apart.work / "no_servo_test.c"

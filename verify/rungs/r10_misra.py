@@ -1,4 +1,4 @@
-"""MISRA C:2012: no finding in c_core but the deviations that c_core/MISRA.md lists."""
+"""MISRA C:2012: no finding in c_core except the deviations listed in c_core/MISRA.md."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ END = re.compile(r"cppcheck-suppress-end misra-c2012-[\d.]+ \*/")
 SUPPRESSION = re.compile(r"cppcheck-suppress")
 ANCHOR = re.compile(r"^### (DEV-\d\d): rule ([\d.]+) \((?:mandatory|required|advisory)\)$", re.MULTILINE)
 PLACES = re.compile(r"^Places: (.*)$", re.MULTILINE)
-# The two rules that the checker does not cover (3.2, 12.5) are about these.
+# The two rules that the checker does not cover (3.2, 12.5) concern these.
 UNCOVERED = re.compile(r"//|\bsizeof\b")
 
 
@@ -45,7 +45,7 @@ def _refuse(findings: list[str]) -> None:
 
 
 def _findings(context: Context, core: Path, double: int, sources: str = "src") -> list[str]:
-    """What cppcheck and its MISRA addon find in the files that a user copies, for one real type."""
+    """Findings of cppcheck and its MISRA addon in the files that a user copies, for one real type."""
     caller = context.work / "caller.c"
     caller.write_text(_caller(core))
     common = (
@@ -53,7 +53,7 @@ def _findings(context: Context, core: Path, double: int, sources: str = "src") -
         "--language=c",
         "--platform=unix32",  # int and pointers of 32 bits, as on the microcontrollers
         "--suppress=checkersReport",
-        "--suppress=normalCheckLevelMaxBranches",  # the analysis below has no such limit
+        "--suppress=normalCheckLevelMaxBranches",  # the analysis below has no limit of configurations
         "--template={file}:{line}: {id}: {message}",
         "--quiet",
         "-DFLT_EVAL_METHOD=0",
@@ -70,7 +70,7 @@ def _findings(context: Context, core: Path, double: int, sources: str = "src") -
 
 
 def _caller(core: Path) -> str:
-    """A program that uses the whole interface: without one a library is nothing but unused names (8.7, 2.5)."""
+    """A program that uses the whole interface: without it all names of a library would be unused (8.7, 2.5)."""
     functions: set[str] = set()
     constants: set[str] = set()
     for path in sorted((core / "include").rglob("*.h")):
@@ -127,7 +127,7 @@ def _listed(core: Path) -> tuple[dict[str, str], dict[str, set[str]]]:
     return rules, places
 
 
-# Appended to gw_sum.c: one fault per kind of checking that the rung relies on.
+# Appended to gw_sum.c: one fault per kind of check that the rung relies on.
 PLANTED = {
     "two exits": (
         "extern int32_t planted(int32_t x);\nint32_t planted(int32_t x) { if (x > 0) { return 1; } return 0; }\n",

@@ -31,7 +31,7 @@ def check(context: Context) -> Figure:
 
 
 def _passed(context: Context, target: Target, core: Path, double: int) -> int:
-    """The number of tests that passed; `RungFailed` if one failed or the program did not come to its end."""
+    """The number of tests that passed; `RungFailed` if one failed or the program did not finish."""
     tests = sorted((context.root / "tests" / "c_core" / "unit").glob("*.c"))
     program = target.build(
         context,
@@ -49,7 +49,7 @@ def _passed(context: Context, target: Target, core: Path, double: int) -> int:
 
 
 def _check_planted(context: Context) -> None:
-    """Bad sensors that let the robot go on: the tests have to see it, on the target too."""
+    """The robot continues with bad sensors: the tests have to see it, also on the target."""
     core = context.work / "planted"
     shutil.copytree(context.core, core)
     source = core / "src" / "gw_sensor_check.c"

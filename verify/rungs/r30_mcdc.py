@@ -21,7 +21,7 @@ TYPES = ("float", "double")
 def check(context: Context) -> Figure:
     tests = sorted((context.root / "tests" / "c_core" / "unit").glob("*.c"))
     totals = [_covered(context, context.core, tests, double) for double in (0, 1)]
-    # A harness that reports what it was told would say 100 % without the tests of a module, too.
+    # A harness that always reports 100 % would do so without the tests of a module, too.
     without = [path for path in tests if path.name != "servo_test.c"]
     stub = context.work / "no_servo_test.c"
     stub.write_text('#include "unit.h"\nvoid suite_servo(void)\n{\n}\n')
@@ -34,7 +34,7 @@ def check(context: Context) -> Figure:
 
 
 def _check_planted_condition(context: Context, tests: list[Path]) -> None:
-    """A condition that never matters: lines and branches of both outcomes are reached, MC/DC is not."""
+    """A condition without effect: all lines and branches are reached, but MC/DC is not."""
     core = context.work / "planted"
     shutil.copytree(context.core, core)
     source = core / "src" / "gw_wrench.c"
@@ -53,13 +53,13 @@ def _check_planted_condition(context: Context, tests: list[Path]) -> None:
 
 
 def _covered(context: Context, core: Path, tests: list[Path], double: int) -> dict[str, int]:
-    """How many lines, branches and conditions there are; `RungFailed` names those that were not reached."""
+    """Numbers of lines, branches and conditions; `RungFailed` names those that were not reached."""
     program = context.work / f"tests_{TYPES[double]}"
     raw, profile = program.with_suffix(".profraw"), program.with_suffix(".profdata")
     context.run(
         context.which(CLANG),
         *STANDARD,
-        *WARNINGS,  # clang warns of decisions that it cannot instrument
+        *WARNINGS,  # clang warns about decisions that it cannot instrument
         PORTABLE,
         "-O0",
         "-fprofile-instr-generate",

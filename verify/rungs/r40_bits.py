@@ -1,4 +1,4 @@
-"""Every compiler and machine gives the same bits, and a build that cannot is refused or seen."""
+"""Every compiler and machine gives the same bits; a build that cannot is refused or detected."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.rung import Figure, Rung, RungFailed, planted
 from verify.targets import CORTEX_M, CROSS, HOST, HOST_CLANG, TARGETS, WIN64, Target
 
 LEVELS = ("-O0", "-O1", "-O2", "-O3", "-Os")
-# Of the other machines each optimisation level is one more compiler run for little news: M4F stands for them.
+# On the other machines each further optimisation level would add little: M4F represents them.
 MACHINES = [
     *[(target, level) for target in (HOST, HOST_CLANG, TARGETS["cortex-m4f"]) for level in LEVELS],
     *[(target, "-O2") for target in (WIN64, *CORTEX_M, *CROSS) if target.name != "cortex-m4f"],
@@ -21,7 +21,7 @@ MACHINES = [
 
 @dataclass(frozen=True)
 class Breaking:
-    """Flags under which the promise cannot be kept, and how that shows."""
+    """Flags that break the promise, and how this is detected."""
 
     target: Target
     flags: tuple[str, ...]

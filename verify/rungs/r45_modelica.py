@@ -1,4 +1,4 @@
-"""The equations of modelica/GiveWay, as C by a second Modelica tool, are those of fmu/plant at random states."""
+"""The equations of modelica/GiveWay, translated to C by a second Modelica tool, equal fmu/plant at random states."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.rung import Figure, Rung, RungFailed, planted
 PYTHON = Tool("modelica-python", package="python 3.12")
 CC, CXX = Tool("gcc"), Tool("g++")
 MODELS = ("Drivetrain", "Bumper", "Contact")
-# Relative to the largest term: some ten operations in double precision, and tanh to a few units in the last place.
+# Relative to the largest term: about ten operations in double precision, and tanh within a few ulp.
 LARGEST = 1e-12
 FAULTS = {
     "Drivetrain": ("coulomb*direction", "coulomb*direction*1.00000000001"),
@@ -42,7 +42,7 @@ def check(context: Context) -> Figure:
 
 
 def _compared(context: Context, models: Path) -> dict[str, float]:
-    """Worst difference by right-hand side, and the number of states; `RungFailed` if one is too large."""
+    """Largest difference per right-hand side, and the number of states; `RungFailed` if one is too large."""
     out = context.work / f"out_{models.name}"
     out.mkdir()
     sources = [models / f"{model}.mo" for model in MODELS]

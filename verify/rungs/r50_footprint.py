@@ -1,4 +1,4 @@
-"""Flash, RAM, stack and instructions on Cortex-M are those of c_core/README.md, and no function calls itself."""
+"""Flash, RAM, stack and instructions on Cortex-M equal those in c_core/README.md, and there is no recursion."""
 
 from __future__ import annotations
 

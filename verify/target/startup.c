@@ -17,7 +17,8 @@ static void reset(void)
     _start();
 }
 
-/* A fault must not look like a slow program: SYS_EXIT with ADP_Stopped_InternalError makes qemu exit with 1. */
+/* A processor fault must not look like a slow program: SYS_EXIT with ADP_Stopped_InternalError makes qemu exit with 1.
+ */
 static void fault(void)
 {
     __asm volatile("mov r0, #0x18\n ldr r1, =0x20024\n bkpt 0xAB\n b .");

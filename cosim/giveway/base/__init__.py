@@ -1,4 +1,4 @@
-"""What every room stands on: errors and checks, units, files that appear whole, words and tables for a terminal.
+"""Common to all rooms: errors and checks, units, atomic files, words and tables for a terminal.
 
-Nothing here knows robots or FMUs; `native` says where the native parts lie.
+Nothing here depends on robots or FMUs; `native` locates the native parts.
 """

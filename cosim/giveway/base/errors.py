@@ -23,12 +23,12 @@ _MAX_LISTED = 12
 
 
 class GivewayError(Exception):
-    """Something given to giveway is not usable.
+    """An input of giveway is not usable.
 
     Attributes:
         field: what is wrong, as the user wrote it (``testbed.slider.mass``, ``--bumper``).
         value: the value found.
-        allowed: what would have been accepted, in words.
+        allowed: the accepted values, in words.
     """
 
     def __init__(self, field: str, value: object, allowed: str) -> None:
@@ -68,11 +68,11 @@ class FileError(GivewayError):
 
 
 class WriteError(FileError):
-    """A file or folder that could not be written on the way: the disk is full, a limit is reached, it went away.
+    """A file or folder could not be written during the work: the disk is full, a limit is reached, or it was removed.
 
     Attributes:
-        path: what was to be written.
-        cause: what the system said.
+        path: the file or folder to be written.
+        cause: the system's message.
     """
 
     def __init__(self, path: Path | str, cause: OSError, hint: str = "") -> None:
@@ -81,11 +81,11 @@ class WriteError(FileError):
 
 
 class InputFileError(GivewayError):
-    """A value in a file that is not usable: the message begins with file and line.
+    """An unusable value in a file: the message begins with file and line.
 
     Attributes:
-        path, line: where; lines count from 1.
-        cause: what is wrong there.
+        path, line: its position; lines count from 1.
+        cause: the error at this position.
     """
 
     def __init__(self, path: Path | str, line: int, cause: GivewayError) -> None:
@@ -130,10 +130,10 @@ def nearest_names(name: str, known: Iterable[str]) -> list[str]:
 
 
 def system_words(error: OSError) -> str:
-    """What the system says about ``error``, without number and file: "No space left on device"."""
+    """The system's text for ``error``, without number and file: "No space left on device"."""
     return os.strerror(error.errno) if error.errno else str(error)
 
 
 def one_line(text: str) -> str:
-    """``text`` with every run of white space made one space."""
+    """``text`` with all white space collapsed to single spaces."""
     return " ".join(text.split())

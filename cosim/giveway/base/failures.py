@@ -1,4 +1,4 @@
-"""What nobody foresaw, in one line; the traceback goes to a file that the line names."""
+"""Unexpected errors as one line; the traceback goes to a file that the line names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DEBUG_VARIABLE = "GIVEWAY_DEBUG"
 
 
 def unforeseen(error: Exception, arguments: Sequence[str]) -> str:
-    """One line about ``error``, which no other part has a sentence for; writes a file with the traceback."""
+    """One line about an unexpected ``error``; writes a file with the traceback."""
     details = _write_details(error, arguments)
     where = f"`giveway --debug` or {DEBUG_VARIABLE}=1 shows the traceback" if details is None else f"details: {details}"
     return one_line(f"{_words(error)}; {where}")
@@ -36,7 +36,7 @@ def _words(error: Exception) -> str:
 
 
 def _write_details(error: Exception, arguments: Sequence[str]) -> Path | None:
-    """The file with what helps to find the cause; None if there is no place for it."""
+    """The file with details about the cause; None if it cannot be written."""
     text = "\n".join([
         f"giveway {VERSION}, Python {sys.version}, {platform.platform()}",
         f"giveway {shlex.join(arguments)}",
@@ -44,7 +44,7 @@ def _write_details(error: Exception, arguments: Sequence[str]) -> Path | None:
         "".join(traceback.format_exception(error)),
     ])  # fmt: skip
     for place in (_temporary_folder, _cache_folder):
-        with contextlib.suppress(OSError, RuntimeError):  # RuntimeError: nobody knows the home folder
+        with contextlib.suppress(OSError, RuntimeError):  # RuntimeError: the home folder is unknown
             handle, name = tempfile.mkstemp(prefix="giveway-failure-", suffix=".txt", dir=place())
             try:
                 with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:

@@ -1,4 +1,4 @@
-"""Writing so that nothing half-written is ever seen: a temporary name first, then one rename."""
+"""Atomic writing: first under a temporary name, then one rename, so that no partial file is ever visible."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MARKERS = ("manifest.json", "summary.json", "drivetrain.json", "table.json")
 
 
 def read_json(path: Path, schema_version: int, hint: str) -> dict[str, Any]:
-    """The object in a JSON file of this schema version; FileError says what is wrong, ``hint`` what to give instead."""
+    """The object in a JSON file of this schema version; FileError names the fault, ``hint`` what to give instead."""
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -53,7 +53,7 @@ def check_file(path: Path) -> None:
 
 
 def _existing_parent(path: Path) -> Path:
-    """The nearest folder above ``path`` that is there."""
+    """The nearest existing folder above ``path``."""
     parent = path.absolute().parent
     while not parent.exists():
         parent = parent.parent
@@ -62,7 +62,7 @@ def _existing_parent(path: Path) -> Path:
 
 @contextmanager
 def _looking_at(path: Path) -> Iterator[None]:
-    """What the system refuses to look at (a folder without permission, a name too long) names ``path``."""
+    """Errors of the system when it reads a path (no permission, name too long) name ``path``."""
     try:
         yield
     except OSError as error:
@@ -72,7 +72,7 @@ def _looking_at(path: Path) -> Iterator[None]:
 def _check_parent(path: Path) -> None:
     parent = _existing_parent(path)
     try:
-        with tempfile.TemporaryFile(dir=parent):  # permissions alone do not tell: it may be a read-only disk, or /proc
+        with tempfile.TemporaryFile(dir=parent):  # permissions are not sufficient: it may be a read-only disk, or /proc
             pass
     except OSError as error:
         words = f"cannot be written: {parent} is not a writable folder ({system_words(error)})"
@@ -81,7 +81,7 @@ def _check_parent(path: Path) -> None:
 
 @contextmanager
 def _writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
-    """What goes wrong on the disk names ``path``, also where it happens in the ``temporary`` one; else it stays."""
+    """Disk errors in ``path`` or ``temporary`` name ``path``; other errors pass unchanged."""
     try:
         yield
     except OSError as error:
@@ -108,7 +108,7 @@ def replace_files(*paths: Path) -> Iterator[tuple[Path, ...]]:
 
     Raises:
         FileError: one of them could not be written; nothing was done yet.
-        WriteError: the disk refused on the way; ``paths`` are as they were.
+        WriteError: writing failed during the work; ``paths`` are unchanged.
     """
     for path in paths:
         check_file(path)
@@ -120,7 +120,7 @@ def replace_files(*paths: Path) -> Iterator[tuple[Path, ...]]:
             temporary.append(Path(folders.enter_context(folder)) / path.name)
             folders.enter_context(_writing(path, temporary[-1].parent))
         yield tuple(temporary)
-        # Only renames are left when all of them are on the disk.
+        # When all of them are on the disk, only renames remain.
         for new, path in zip(temporary, paths, strict=True):
             with _writing(path):
                 _sync(new)
@@ -132,13 +132,13 @@ def replace_files(*paths: Path) -> Iterator[tuple[Path, ...]]:
 
 @contextmanager
 def replace_folder(folder: Path) -> Iterator[Path]:
-    """A temporary folder beside ``folder`` that takes its place when the block ends without an exception.
+    """A temporary folder next to ``folder`` that replaces it when the block ends without an exception.
 
-    Parents that had to be made are removed again if the block fails.
+    Parent folders made for it are removed again if the block fails.
 
     Raises:
         FileError: it could not be written, or holds something else; nothing was done yet.
-        WriteError: the disk refused on the way; ``folder`` is as it was.
+        WriteError: writing failed during the work; ``folder`` is unchanged.
     """
     check_output(folder)
     made = [parent for parent in folder.absolute().parents if not parent.exists()]
@@ -173,10 +173,10 @@ def _swap(temporary: Path, folder: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write ``text`` to ``path`` atomically (UTF-8; bytes of a file name that are none as in Python, ``\\udcfc``).
+    """Write ``text`` to ``path`` atomically (UTF-8; other bytes of a file name as in Python, ``\\udcfc``).
 
     Raises:
-        WriteError: the disk refused; ``path`` is as it was.
+        WriteError: writing failed; ``path`` is unchanged.
     """
     with _writing(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.absolute().parent)

@@ -1,4 +1,4 @@
-"""Module names of earlier versions: importing one gives the module that has its content now, and a FutureWarning."""
+"""Module names of earlier versions: importing one gives the module that now has its content, and a FutureWarning."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ FORMER_NAMES = MappingProxyType({
 
 
 def name_now(name: str) -> str | None:
-    """The full name now of the module whose full name was ``name``; None if that is no former name."""
+    """The present full name of the module formerly called ``name``; None if that is not a former name."""
     package, _, inside = name.partition(".")
     if package != PACKAGE:
         return None
@@ -101,9 +101,9 @@ def name_now(name: str) -> str | None:
 
 
 def forward_former_names() -> None:
-    """From now on former names can be imported."""
+    """Make former names importable."""
     if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())  # first: the folder of the native files is called as a module was
+        sys.meta_path.insert(0, _Finder())  # first: the folder of the native files has the name of a former module
 
 
 class _Finder(MetaPathFinder):

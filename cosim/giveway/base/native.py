@@ -1,7 +1,7 @@
 """Where the native parts are: FMUs, the batch library, variable tables and the robot file.
 
-They lie flat in one folder: ``giveway/native`` of the installed package, else the folder that the environment
-variable ``GIVEWAY_NATIVE_DIR`` names.
+They are in one folder: ``giveway/native`` of the installed package, or else the folder in the environment variable
+    ``GIVEWAY_NATIVE_DIR``.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from giveway.base.errors import NativeMissingError
 __all__ = ["COMPONENTS", "MODELS", "batch_library", "file", "fmu", "robot", "variables"]
 
 ENVIRONMENT_VARIABLE = "GIVEWAY_NATIVE_DIR"
-MODELS = ("controller", "testbed")  # what an experiment runs
-COMPONENTS = ("drivetrain", "bumper")  # pieces of it, for a user's own robot
+MODELS = ("controller", "testbed")  # the models of an experiment
+COMPONENTS = ("drivetrain", "bumper")  # components for a user's own robot
 DEFAULT_ROBOT = "trikey.toml"
 
 

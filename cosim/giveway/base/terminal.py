@@ -1,4 +1,4 @@
-"""What the commands put on a terminal: tables, and progress bars on stderr."""
+"""Terminal output of the commands: tables, and progress bars on stderr."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str,
     from rich.text import Text
 
     terminal = Console(highlight=False)
-    # A pipe has no width to fit into: every row keeps its line there.
+    # A pipe has no width limit: there every row stays on one line.
     console = terminal if terminal.is_terminal else Console(highlight=False, width=1000)
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for index, name in enumerate(header):
@@ -42,7 +42,7 @@ def print_columns(title: str, header: tuple[str, ...], rows: Sequence[tuple[str,
 
 
 def print_warnings(lines: Sequence[str]) -> None:
-    """What happened otherwise than asked, one line each below "Warnings"; nothing if nothing did."""
+    """Deviations from the request, one line each below "Warnings"; nothing if there are none."""
     if lines:
         typer.secho("Warnings", bold=True)
     for line in lines:
@@ -68,7 +68,7 @@ def progress_bar(title: str) -> Iterator[Callable[[float, float], None] | None]:
 
 @contextmanager
 def working(name: str) -> Iterator[Callable[[float], None]]:
-    """One bar of `progress_bars` for a single piece of work; what is yielded is called with the share that is done."""
+    """One bar of `progress_bars` for a single task; call the yielded function with the finished share."""
     with progress_bars((name,)) as progress:
         progress(name, 0.0)
         yield lambda share: progress(name, share)
@@ -77,9 +77,9 @@ def working(name: str) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def progress_bars(names: Sequence[str]) -> Iterator[Callable[[str, float], None]]:
-    """One progress bar per part of the work on stderr at a terminal, else a line when a part begins.
+    """One progress bar per part of the work on stderr at a terminal, otherwise a line when a part begins.
 
-    What is yielded is called with the part's name and the share of it that is done, 0 to 1.
+    Call the yielded function with the part's name and its finished share, 0 to 1.
     """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

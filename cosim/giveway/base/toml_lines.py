@@ -1,4 +1,4 @@
-"""Which line of a TOML text a name is set in: tomllib does not say, but it can be asked, line by line."""
+"""The line of a TOML text in which a name is set: tomllib does not tell, so beginnings of the text are parsed."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def flatten(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str
 
 
 def line_of(text: str, name: str) -> int:
-    """The line (from 1) where ``name`` begins; of its table if it is not there; 1 if that is not there either.
+    """The line (from 1) where ``name`` begins; if it is missing, that of its table; if that is missing, too, 1.
 
-    A beginning of the text that ends after a whole statement is TOML, too: the first one that has the name ends with
-    the statement that sets it, and the line after the one before that is where that statement begins.
+    Every beginning of the text that ends after a complete statement is valid TOML. The shortest one with the name ends
+    with the statement that sets it; this statement begins one line after the next shorter beginning.
     """
     lines = text.splitlines(keepends=True)
     wanted = name
@@ -50,7 +50,7 @@ def _beginning(lines: Sequence[str], wanted: str) -> int | None:
     while True:
         middle = (without + having) // 2
         nearby = (*range(middle, having), *range(middle - 1, without, -1))
-        for count in nearby:  # a count in the middle of a value of several lines is no TOML, and says nothing
+        for count in nearby:  # a beginning that ends within a multi-line value is not TOML, and tells nothing
             found = _sets(lines, count, wanted) if count > without else None
             if found is not None:
                 break
@@ -63,7 +63,7 @@ def _beginning(lines: Sequence[str], wanted: str) -> int | None:
 
 
 def _sets(lines: Sequence[str], count: int, wanted: str) -> bool | None:
-    """Whether the first ``count`` lines set ``wanted``; None if they are no TOML."""
+    """Whether the first ``count`` lines set ``wanted``; None if they are not valid TOML."""
     try:
         document = tomllib.loads("".join(lines[:count]))
     except tomllib.TOMLDecodeError:

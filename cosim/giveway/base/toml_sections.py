@@ -1,4 +1,4 @@
-"""Reading a user's TOML file key by key: every refusal names the key, what was found and what is allowed."""
+"""Reads a user's TOML file key by key: every error names the key, the value found and the allowed values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Section", "lines_named", "read_toml", "renamed"]
 
 
 def read_toml(path: Path, hint: str) -> tuple[str, dict[str, Any]]:
-    """Text and document of the file ``path``; ``hint`` says what to give if there is no such file."""
+    """Text and document of the file ``path``; ``hint``: what to give if there is no such file."""
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -33,7 +33,7 @@ def read_toml(path: Path, hint: str) -> tuple[str, dict[str, Any]]:
 
 @contextmanager
 def lines_named(path: Path, text: str) -> Iterator[None]:
-    """Errors about a key of the file ``path`` get its line."""
+    """Adds the line to errors about a key of the file ``path``."""
     try:
         yield
     except (FileError, InputFileError):
@@ -43,7 +43,7 @@ def lines_named(path: Path, text: str) -> Iterator[None]:
 
 
 def _syntax(text: str, message: str) -> tuple[int, GivewayError]:
-    """Line and cause of what tomllib said."""
+    """Line and cause of tomllib's error."""
     found = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)", message)
     if found is None:
         return 1, FileError("not TOML", message)
@@ -53,7 +53,7 @@ def _syntax(text: str, message: str) -> tuple[int, GivewayError]:
 
 @contextmanager
 def renamed(section: str, **names: str) -> Iterator[None]:
-    """Errors of what the file's values are handed to, in the names of the file."""
+    """Renames errors of functions that get the file's values, with the names of the file."""
     try:
         yield
     except GivewayError as error:
@@ -64,7 +64,7 @@ def renamed(section: str, **names: str) -> Iterator[None]:
 
 
 class Section:
-    """One table of the file; every reader names the key, what was found and what is allowed."""
+    """One table of the file; errors of every reader name the key, the value found and the allowed values."""
 
     def __init__(self, name: str, values: Any, known: Sequence[str] | None) -> None:
         """``known``: the keys it may have; None: any."""

@@ -1,4 +1,4 @@
-"""Units as a user writes them: "N/mm", "lb", "km/h", "%"; whether they fit a quantity, and by which factor."""
+"""Units as users write them: "N/mm", "lb", "km/h", "%"; whether they suit a quantity, and their factor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["WrittenUnit", "factor"]
 
-DIGITS = 15  # of a value that is shown: one less than a conversion there and back may change
+DIGITS = 15  # digits of a displayed value: one less than a conversion in both directions may change
 
 # Per unit: size in SI, and exponents of m, kg, s, rad, degC.
 _Dimension = tuple[int, int, int, int, int]
@@ -57,17 +57,17 @@ _FACTOR = re.compile(r"(1|%|[A-Za-z]+)(\d?)")
 
 @dataclass(frozen=True)
 class WrittenUnit:
-    """A unit as the user wrote it: ``name``, and ``scale``, by which a value in it is multiplied to be in our own."""
+    """A unit as the user wrote it: ``name``, and ``scale``, the factor from it to our own unit."""
 
     name: str
     scale: float = 1.0
 
     def of(self, value: float) -> float:
-        """``value``, which is in our own unit, in this one."""
+        """Converts ``value`` from our own unit to this one."""
         return value if self.scale == 1.0 else float(f"{value / self.scale:.{DIGITS}g}")
 
     def all_of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The same of an array."""
+        """The same for an array."""
         import numpy as np
 
         return values if self.scale == 1.0 else np.array([self.of(value) for value in values.tolist()])
@@ -79,7 +79,7 @@ class WrittenUnit:
 
 
 def factor(field: str, unit: str, wanted: str) -> float:
-    """What a value in ``unit`` is to be multiplied by to be in ``wanted``; GivewayError in the name of ``field``."""
+    """The factor from ``unit`` to ``wanted``; a GivewayError names ``field``."""
     size, dimension = _read(field, unit, wanted)
     wanted_size, wanted_dimension = _read(field, wanted or "1", wanted)
     if dimension != wanted_dimension:
@@ -92,7 +92,7 @@ def _allowed(wanted: str) -> str:
 
 
 def _read(field: str, unit: str, wanted: str) -> tuple[float, _Dimension]:
-    """Size and dimension of ``N.m.s/rad``: all after the one slash is below it."""
+    """Magnitude and dimension of ``N.m.s/rad``: all factors after the one slash are divisors."""
     size, dimension = 1.0, [0, 0, 0, 0, 0]
     above, _, below = unit.partition("/")
     for part, sign in ((above, 1), (below, -1)):

@@ -1,4 +1,4 @@
-"""What things cost (`giveway bench`): one co-simulated second, collisions per second, integration methods."""
+"""Benchmarks (`giveway bench`): one co-simulated second, collisions per second, integration methods."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long one co-simulated second takes over FMPy, and where the time goes."""
+"""The time that one co-simulated second takes with FMPy, and its parts."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class Timing:
 
 
 def measure(repeats: int, fmi_version: int) -> list[Timing]:
-    """Wall times of 1 s of the motionless experiment, which holds a whole collision.
+    """Wall times of 1 s of the motionless experiment, which contains a whole collision.
 
-    "run" is what a caller of the master waits for (instances made, initialised, stepped, traces copied out, freed);
-    "stepping" is its loop alone. The FMUs' own shares come from separate, profiled runs.
+    "run" is the whole call of the master (making, initialising, stepping and freeing instances, copying traces);
+    "stepping" is its loop alone. The FMUs' shares come from separate, profiled runs.
     """
     scenario = experiments.get("motionless").scenario("magnetic")
     scenario = dataclasses.replace(scenario, duration_s=SIMULATED_S, fmi_version=fmi_version)

@@ -1,8 +1,8 @@
-"""How many collisions a second: FMPy, ecos, the batch library event-exact and over fixed steps, MuJoCo; and how exact.
+"""Collisions per second with FMPy, ecos, the batch library (event-exact and with fixed steps) and MuJoCo; and errors.
 
 Runs are the motionless experiment's first 0.6 s: the hit, the detection and the start of the escape, with three wheels
-on bristle rollers, the 2 kHz servos and the 1 kHz controller. The engines we compare with live in an environment of
-their own that `make bench` prepares (bench/ in the repository); without it their lines say so.
+on bristle rollers, the 2 kHz servos and the 1 kHz controller. The other engines are in a separate environment that
+`make bench` prepares (bench/ in the repository); without it their lines say so.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ SCALE_LONGEST_S = 1500.0
 
 @dataclass
 class _Way:
-    """One way to run a number of collisions, the rates that were found, and one's peak force and plant step."""
+    """One way to run a number of collisions, the measured rates, and peak force and plant step of one collision."""
 
     name: str
     runs: int
@@ -81,7 +81,7 @@ class _Way:
 
 
 def collision() -> Scenario:
-    """The collision that is run over and over."""
+    """The collision that is repeated."""
     scenario = experiments.get("motionless").scenario("magnetic")
     return dataclasses.replace(scenario, duration_s=SIMULATED_S)
 
@@ -98,7 +98,7 @@ def measure(repeats: int) -> list[tuple[str, ...]]:
     ]
     idle = dataclasses.replace(scenario, controller={**scenario.controller, "controller.period": SLOWEST_PERIOD_S})
     without = _fixed_or_exact(idle, "fixed-step", batch.widest_lanes(), 1)
-    for _ in range(repeats):  # in turns, so that a busy machine slows all of them
+    for _ in range(repeats):  # alternately, so that other load slows all of them
         for way in (*ways, without):
             way.go()
     exact_n = ways[1].peak_n
@@ -110,7 +110,7 @@ def measure(repeats: int) -> list[tuple[str, ...]]:
     name = "mujoco.rollout, 1 thread" + (f" ({mujoco['version']}, no controller, no sensors)" if mujoco else "")
     rows.append(_engine_row(name, mujoco, reference))
     widest = ways[-2]
-    # What is left of the controller's cost at a tenth of its rate counts as its own.
+    # The share of the controller's cost that remains at a tenth of its rate counts as the controller's.
     share = (1.0 - max(widest.rates) / max(without.rates)) / (1.0 - 1e-3 / SLOWEST_PERIOD_S)
     rows.append((f"the controller's share of {widest.name}", f"{100.0 * share:.0f} %", "", "", "", ""))
     return rows
@@ -153,7 +153,7 @@ def _engine_row(name: str, found: dict[str, float] | None, mujoco: float | None)
 
 
 def _engine(name: str, repeats: int) -> dict[str, float] | None:
-    """What another engine's script prints; None if its environment is not there."""
+    """The output of another engine's script; None if its environment is missing."""
     tools = os.environ.get(TOOLS)
     if not tools:
         return None
@@ -172,7 +172,7 @@ def _engine(name: str, repeats: int) -> dict[str, float] | None:
 
 
 def _connections() -> list[tuple[str, str, str]]:
-    """Outputs of one model that are inputs of the other: kind, source and target as ecos names them."""
+    """Outputs of one model that are inputs of the other: kind, source and target with ecos' names."""
     pairs = (("testbed", "controller"), ("controller", "testbed"))
     return [
         (_ECOS[variable.type], f"{source}::{variable.name}", f"{target}::{variable.name}")
@@ -184,7 +184,7 @@ def _connections() -> list[tuple[str, str, str]]:
 
 
 def detection_rows(found: xarray.Dataset) -> NDArray[np.float64]:
-    """Time of each detection, ms since the start, to the whole millisecond; NaN without one."""
+    """Time of each detection, ms since the start, rounded to milliseconds; NaN without one."""
     return np.asarray(np.round(found["detection time"].values + 1e3 * found["contact time"].values))
 
 
@@ -239,12 +239,12 @@ def scale_name(count: int) -> str:
 
 
 def scale(counts: Sequence[int], progress: Callable[[str, float], None] | None = None) -> Iterator[tuple[str, ...]]:
-    """Rows of `SCALE_HEADER`: random collisions, as many as said, over fixed steps on all processors.
+    """Rows of `SCALE_HEADER`: given numbers of random collisions with fixed steps on all processors.
 
-    A row comes as soon as it is known. The designs repeat after `SCALE_DESIGNS`, and are handed over in portions of
-    `SCALE_PORTION`, so memory does not grow with them; every one is computed. A count that would take longer than
-    `SCALE_LONGEST_S` by the rate before it is left out.
-    ``progress`` gets a count's name and the share that is done. Ctrl-C ends it at once with KeyboardInterrupt.
+    A row is yielded as soon as it is known. The designs repeat after `SCALE_DESIGNS`, and are passed in portions of
+    `SCALE_PORTION`, so memory does not grow with their number; each is computed. A count that would take longer than
+    `SCALE_LONGEST_S` at the previous rate is left out. ``progress`` gets a count's name and the finished share.
+    Ctrl-C ends it at once with KeyboardInterrupt.
     """
     designs = random_collisions(SCALE_DESIGNS, ACCURACY_SEED)
     rate = 0.0

@@ -31,8 +31,8 @@ SWEEPS: Mapping[str, tuple[tuple[str, ...], tuple[float, ...]]] = {
 SIMULATED_S, STEP_S = 1.0, 1e-3
 REFERENCE_TOLERANCE = 1e-11
 DEFAULT_TOLERANCE = 1e-6
-# Each is judged by its own largest value: motions, a torque, the push on the robot, and the energy that was lost.
-# The blow is central, so the robot hardly turns: its angle would show nothing but rounding.
+# Each is judged relative to its largest value: motions, a torque, the push on the robot, and the lost energy. The blow
+# is central, so the robot hardly turns: its angle would only show rounding.
 SIGNALS = (
     "truth.x",
     "truth.slider_position",
@@ -53,7 +53,7 @@ class Measurement:
 
     Attributes:
         sweep: "springs" or "damper".
-        scale: what the sweep's parameters are multiplied with.
+        scale: factor on the sweep's parameters.
         wall_ms: wall time inside the FMU per simulated second, the best of the repeats.
         error: the largest deviation of any signal, relative to that signal's largest value.
     """
@@ -97,7 +97,8 @@ def _design(sweep: str, scale: float) -> dict[str, Value]:
     variables = table("testbed")
     design: dict[str, Value] = {
         "bumper.kind": 2,
-        # Methods that differ by far less than a count may still round to different ones: that should cost little.
+        # Results that differ by far less than a count may still round to different counts: with fine counts this
+        # matters little.
         "electronics.encoder_counts": 1_000_000,
     }
     for name in SWEEPS[sweep][0]:

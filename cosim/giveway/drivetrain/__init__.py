@@ -1,6 +1,6 @@
 """The linear drivetrain (`giveway drivetrain`): `model`, its `analysis`, and the `frequency_response` of the FMU.
 
-`record` and `pictures` are what the command writes.
+`record` and `pictures` write the command's files.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What the linear drivetrain amounts to: poles, frequency and step responses, margins; as table, JSON and curves.
+"""Analysis of the linear drivetrain: poles, frequency and step responses, margins; as table, JSON and curves.
 
-Three cases are told apart: "gear stuck" (stiction holds the motor), "unpowered" (the gear slides, no servo) and
-"servo" (the gear slides, the servo holds the motor). What cannot move is left out: a stuck gear with a locked wheel.
+There are three cases: "gear stuck" (stiction holds the motor), "unpowered" (the gear slides, no servo) and "servo" (the
+    gear slides, the servo holds the motor). A stuck gear with a locked wheel cannot move and is left out.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 __all__ = ["Analysis", "Case", "Channel", "Margins", "Pole", "analyse", "table_rows"]
 
 STUCK, UNPOWERED, SERVO = "gear stuck", "unpowered", "servo"
-STATIC_HZ = 1e-6  # stands for frequency zero, where an unpowered drivetrain that turns freely has no response
+STATIC_HZ = 1e-6  # used as frequency zero, where an unpowered drivetrain that turns freely has no response
 LOWEST_HZ, POINTS = 1e-3, 1500
-NO_SHARE = 1e-3  # a static gain below is none
+NO_SHARE = 1e-3  # a smaller static gain counts as none
 SOURCES = {"environment": ENVIRONMENT, "motor": MOTOR}
 STEP_S = (0.05, 5.0)  # shortest and longest step response
 SETTLED = 3.0  # time constants
 CREEP_PER_S = 1.0
-AT_ONCE_Z = 1e-6  # a sampled pole this close to zero is gone after one tick: a delay, not a motion
+AT_ONCE_Z = 1e-6  # a sampled pole this close to zero decays within one tick: a delay, not a motion
 
 
 @dataclass(frozen=True)
@@ -56,14 +56,14 @@ class Pole:
 
     @property
     def damping(self) -> float | None:
-        """-Re s/|s|; None at s = 0, a load that nothing holds back from turning."""
+        """-Re s/|s|; None at s = 0, a load that turns freely."""
         size = math.hypot(self.real, self.imaginary)
         return -self.real / size if size > 0.0 else None
 
 
 @dataclass(frozen=True)
 class Channel:
-    """Sensed torque per torque of one source, with the numbers a sensor is judged by; an unstable case has none.
+    """Sensed torque per torque of one source, with the figures of merit of a sensor; an unstable case has none.
 
     Attributes:
         response: N m/N m at each frequency of the analysis.
@@ -92,16 +92,16 @@ class Case:
 
 @dataclass(frozen=True)
 class Margins:
-    """Of the servo's loop, broken at the motor torque.
+    """Margins of the servo's loop, broken at the motor torque.
 
-    None where the curve does not cross; an unstable loop has no margin of gain, phase or delay to lose.
+    None where the curve does not cross; an unstable loop has no margin of gain, phase or delay.
 
     Attributes:
         gain: the factor by which the loop gain may grow; at gain_hz the phase is -180 degrees.
         gain_least: the factor to which it may fall; None if it may vanish.
         phase_deg: the smallest distance of the phase from -180 degrees where the gain is 1; at phase_hz.
         crossover_hz: every frequency at which the gain is 1.
-        delay_s: the delay that would make the loop unstable, on top of what there is.
+        delay_s: the additional delay that would make the loop unstable.
         distance: of the Nyquist curve from -1, the modulus margin; at distance_hz.
     """
 
@@ -118,7 +118,7 @@ class Margins:
 
 @dataclass(frozen=True)
 class Analysis:
-    """Everything there is to know about one linear drivetrain.
+    """The complete analysis of one linear drivetrain.
 
     Attributes:
         frequency_hz: of all responses.
@@ -136,7 +136,7 @@ class Analysis:
 
 
 def analyse(drivetrain: Drivetrain, servo: Servo) -> Analysis:
-    """All cases of ``drivetrain`` (it must not be stuck and locked at once, so locked leaves that case out)."""
+    """All cases of ``drivetrain`` (without "gear stuck" for a locked wheel, which cannot move)."""
     systems: dict[str, control.StateSpace] = {}
     if not drivetrain.locked:
         systems[STUCK] = plant(drivetrain, stuck=True)
@@ -167,7 +167,7 @@ def _poles(system: control.StateSpace) -> list[Pole]:
     poles = system.poles()
     if system.isdtime(strict=True):
         poles = np.log(poles[np.abs(poles) > AT_ONCE_Z]) / SERVO_PERIOD_S
-    poles = np.where(np.abs(poles) < 1e-6, 0.0, poles)  # an integrator comes out as rounding
+    poles = np.where(np.abs(poles) < 1e-6, 0.0, poles)  # an integrator appears as a rounding error
     upper = poles[poles.imag >= 0.0]
     return [Pole(float(s.real), float(s.imag)) for s in sorted(upper, key=lambda s: (abs(s), s.imag))]
 
@@ -181,7 +181,7 @@ def _case(
     time_s: NDArray[np.float64],
 ) -> Case:
     poles = _poles(system)
-    # The integrator of a load that turns freely is not seen in the torque.
+    # The integrator of a freely turning load does not appear in the torque.
     stable = all(pole.real < 0.0 or pole.damping is None for pole in poles)
     moved = {"environment": not drivetrain.locked, "motor": name != STUCK}
     channels = {
@@ -212,7 +212,7 @@ def _channel(
     static = static if abs(static) > NO_SHARE else 0.0
     below = np.flatnonzero(gain < abs(static) / math.sqrt(2.0))
     peak = int(np.argmax(gain))
-    # The first and last point of the range are no peaks, nor is what hardly rises above the static gain.
+    # The first and last point of the range are not peaks, nor are maxima barely above the static gain.
     peaked = 0 < peak < len(gain) - 1 and gain[peak] > 1.001 * abs(static)
     step = control.step_response(system[SENSED, SOURCES[source]], time_s)
     return Channel(
@@ -234,7 +234,7 @@ def _crossing(frequency_hz: NDArray[np.float64], gain: NDArray[np.float64], row:
 
 
 def _step_times(poles: list[Pole]) -> NDArray[np.float64]:
-    """Whole servo ticks until everything has settled but the creep of a load that only friction slows down."""
+    """Whole servo ticks until everything has settled, except the creep of a load that only friction slows down."""
     slowest = min((-pole.real for pole in poles if -pole.real > CREEP_PER_S), default=CREEP_PER_S)
     duration = min(max(SETTLED / slowest, STEP_S[0]), STEP_S[1])
     ticks = np.arange(math.ceil(duration / SERVO_PERIOD_S) + 1, dtype=float)

@@ -36,12 +36,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Sweep", "check_load", "deviations", "measurable", "measure", "measure_all"]
 
-PERIODS, SHORTEST_S = 4, 0.02  # of the sine that is fitted
+PERIODS, SHORTEST_S = 4, 0.02  # periods of the fitted sine
 SAMPLES_PER_PERIOD = 64  # of the master, at the least
-SHARE = 0.2  # of the stiction or of the bias speed that the settled sine takes; its start takes more
+SHARE = 0.2  # share of the stiction or of the bias speed that the settled sine uses; its start uses more
 FREQUENCY_HZ = (0.01, 0.45 / SERVO_PERIOD_S)
-TIME_CONSTANTS = 10.0  # until the start has died away
-SLOW_PER_S = 0.5  # slower decays without oscillation: the fit's constant and slope take them
+TIME_CONSTANTS = 10.0  # until the transient has decayed
+SLOW_PER_S = 0.5  # slower decays without oscillation are covered by the fit's constant and slope
 LONGEST_SETTLING_S = 30.0
 LEAST_STICTION_NM = 1e-3
 TORQUE_LIMIT_NM = 1000.0
@@ -53,8 +53,8 @@ class Sweep:
 
     Attributes:
         case: "gear stuck", "unpowered" or "servo".
-        source: where the sine goes in, "environment" or "motor".
-        frequency_hz: measured frequencies; next to those asked for, so that whole periods are whole servo ticks.
+        source: where the sine acts, "environment" or "motor".
+        frequency_hz: measured frequencies; near the requested ones, so that whole periods are whole servo ticks.
         response: sensed torque per torque of the source, N m/N m.
     """
 
@@ -88,8 +88,8 @@ def measure(
     Args:
         gear_friction: Coulomb friction and stiction of the gear, N m.
         bias_speed: rad/s, for a gear that slides; 0: without Coulomb friction.
-        amplitude: of the sine, N m; smaller where the gear would change its mode.
-        progress: called with the share that is done, 0 to 1.
+        amplitude: of the sine, N m; reduced where the gear would change its mode.
+        progress: called with the finished share, 0 to 1.
     """
     if case not in (STUCK, UNPOWERED, SERVO):
         raise UnknownNameError("case", case, (STUCK, UNPOWERED, SERVO))
@@ -123,7 +123,7 @@ def measure(
 
 
 def measurable(analysis: Analysis, gear_friction: float) -> list[tuple[str, str]]:
-    """Every stable case with every source; stuck only what ``gear_friction`` (N m) can hold."""
+    """Every stable case with every source; "gear stuck" only if ``gear_friction`` (N m) can hold it."""
     return [
         (name, source)
         for name, case in analysis.cases.items()
@@ -140,7 +140,7 @@ def measure_all(
 ) -> list[Sweep]:
     """Everything `measurable`, at frequencies from 0.5 to 500 Hz.
 
-    ``progress``, if given, is called with case, source and the share of it that is done.
+    ``progress``, if given, is called with case, source and its finished share.
     """
     frequency_hz = np.geomspace(0.5, 500.0, points)
     return [
@@ -193,12 +193,12 @@ class _Setup:
 
     @property
     def bias_torque(self) -> float:
-        """What keeps a sliding gear at the bias speed."""
+        """The torque that keeps a sliding gear at the bias speed."""
         sliding = self.bias_speed > 0.0
         return self.friction + self.drivetrain.gear_viscous * self.bias_speed if sliding else 0.0
 
     def amplitude(self, frequency_hz: float) -> float:
-        """As wanted, or what the linear model says leaves the gear in its mode."""
+        """The requested amplitude, or the largest that keeps the gear in its mode by the linear model."""
         if self.frictionless:
             return self.wanted_amplitude
         stuck = self.case == STUCK
@@ -226,7 +226,7 @@ class _Setup:
 
 
 def _measure_one(setup: _Setup, frequency_hz: float, fmi_version: int) -> tuple[float, complex]:
-    """The frequency really used, and the response there."""
+    """The actual frequency, and the response there."""
     from giveway.simulation.fmu import Instance, open_fmu
 
     periods = max(PERIODS, math.ceil(SHORTEST_S * frequency_hz))
@@ -242,12 +242,12 @@ def _measure_one(setup: _Setup, frequency_hz: float, fmi_version: int) -> tuple[
     with Instance(file, f"sweep at {frequency_hz:.4g} Hz") as instance:
         instance.initialise(setup.parameters(), table("drivetrain"))
         sensed = _run(instance, setup, amplitude, frequency_hz, step_s, settling + fitted)
-    # What the FMU sees is a staircase: the sine's own part in it is smaller and late by half a step.
+    # The FMU's input is a staircase: its sine component is smaller and half a step late.
     phase = 2j * np.pi * frequency_hz * step_s
     hold = (1.0 - np.exp(-phase)) / phase
     time_s = step_s * np.arange(settling + 1, settling + fitted + 1)
     turn = np.exp(2j * np.pi * frequency_hz * time_s)
-    # Over whole periods; a constant and a slope take up what is left of the start.
+    # Over whole periods; a constant and a slope cover the rest of the transient.
     columns = np.column_stack((turn.real, turn.imag, np.ones(fitted), np.linspace(-1.0, 1.0, fitted)))
     cosine, sine = np.linalg.lstsq(columns, sensed[settling:], rcond=None)[0][:2]
     return frequency_hz, complex(cosine, -sine) / (amplitude * hold)
@@ -266,7 +266,7 @@ def _run(
     inputs = np.zeros((steps, len(names)))
     inputs[:, 0] = setup.bias_torque
     inputs[:, 1] = setup.drivetrain.load_viscous * setup.bias_speed
-    # Without a servo's lag: the angle at which the motor would be without any sine.
+    # Without the servo's lag: the angle that the motor would have without a sine.
     inputs[:, 2] = np.remainder(setup.bias_speed * time_s + math.pi, 2.0 * math.pi) - math.pi
     inputs[:, 3] = setup.bias_speed
     inputs[:, 0 if setup.source == "motor" else 1] += amplitude * np.cos(2.0 * np.pi * frequency_hz * time_s)

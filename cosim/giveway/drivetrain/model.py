@@ -17,8 +17,8 @@ and its torque holds until the next, ``delay`` ticks later. Without limits and q
 
     C(z) = (kp + kd F(z)) z^-delay,   F(z) = g (1 - z^-1) / (T (1 - (1 - g) z^-1)),   g = 1 - exp(-2 pi fc T)
 
-and acts as tau_m = -C(z) thm. A reading counts in the torque of its own tick: the way from encoder to torque takes no
-tick unless ``delay`` says so.
+and acts as tau_m = -C(z) thm. A reading affects the torque of its own tick: there is no latency from encoder to torque
+except ``delay``.
 """
 
 from __future__ import annotations
@@ -177,7 +177,7 @@ def describe(robot_path: Path | None, load: str | float, drivetrain: Drivetrain,
 
 
 def gear_friction(robot_path: Path | None = None) -> float:
-    """Coulomb friction of the gear, N m: no part of the linear model, but what `sweep` has to overcome."""
+    """Coulomb friction of the gear, N m: not part of the linear model, but the sweep has to overcome it."""
     return _value(
         read_robot(native.robot() if robot_path is None else robot_path), "drivetrain", "drivetrain.gear_coulomb"
     )
@@ -235,7 +235,7 @@ def plant(drivetrain: Drivetrain, stuck: bool = False) -> control.StateSpace:
 
 
 def sampled_plant(drivetrain: Drivetrain, period_s: float = SERVO_PERIOD_S) -> control.StateSpace:
-    """`plant`, sliding, as the servo sees it: torques hold for ``period_s``, outputs are read at its end. Exact."""
+    """`plant`, sliding, sampled by the servo: torques hold for ``period_s``, outputs are read at its end. Exact."""
     import control
 
     return control.sample_system(plant(drivetrain), period_s, method="zoh")
@@ -247,7 +247,7 @@ def loop_gain(drivetrain: Drivetrain, servo: Servo) -> control.StateSpace:
 
 
 def closed_loop(drivetrain: Drivetrain, servo: Servo) -> control.StateSpace:
-    """`sampled_plant` under the servo. The motor torque, an input still, is what comes on top of the servo's."""
+    """`sampled_plant` under the servo. The motor torque, still an input, is added to the servo's."""
     import control
 
     into_motor, from_angle = np.array([[1.0], [0.0]]), np.array([[0.0, 1.0]])
@@ -265,14 +265,14 @@ def response(
 ) -> NDArray[np.complex128]:
     """``sink`` (SENSED torque, N m, or motor ANGLE, rad) per N m of ``source`` (MOTOR, ENVIRONMENT) at each frequency.
 
-    With a servo, a sine goes into a sampled loop and more than a sine comes out; this is the part at the sine's own
-    frequency, below half the servo's rate 1/T. With G the plant and P its sampled form, z = exp(j w T), and a hold
-    H = (1 - exp(-j w T))/(j w T)::
+    With a servo, the response of the sampled loop to a sine has further frequencies; this is the part at the sine's own
+    frequency, below half the servo's rate 1/T. With G the plant and P its sampled form, z = exp(j w T), and a hold H =
+    (1 - exp(-j w T))/(j w T)::
 
         G_ks - G_km H C(z)/(1 + C(z) P_am(z)) G_as       k: sink, s: source, m: motor torque, a: motor angle
 
-    Exact: the samples of a sine are those of its continuous response, and C answers them with a staircase.
-    A stuck gear leaves the servo no part.
+    Exact: the samples of a sine are those of its continuous response, and C responds with a staircase. With a stuck
+        gear the servo has no effect.
     """
     w = 2.0 * np.pi * np.asarray(frequency_hz, dtype=float)
     continuous: NDArray[np.complex128] = plant(drivetrain, stuck)(1j * w)

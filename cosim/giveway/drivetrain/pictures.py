@@ -36,7 +36,7 @@ LOWEST_DEG = -405.0
 POLES_SHOWN = 4.0  # up to this many times the fastest pole of the plant: those of a delay lie far out
 DECADES = 5  # of gain shown below the highest
 COLUMN_IN, HEIGHT_IN = 4.3, 9.2
-# At rest the sensor shows what the environment does, with the opposite sign: it is plotted against that.
+# At rest the sensor shows the torque of the environment with the opposite sign, so the sign is inverted in the plot.
 SIGN = {"environment": -1.0, "motor": 1.0}
 TITLES = {
     "environment": "Environment torque to sensed torque (sign reversed)",
@@ -45,7 +45,7 @@ TITLES = {
 
 
 def write_results(out: Path, title: str, analysis: Analysis, sweeps: Sequence[Sweep] = ()) -> list[Path]:
-    """Write what the name asks for: FILE.png or FILE.svg, FILE.json, or drivetrain.png and .json into a folder."""
+    """Write FILE.png, FILE.svg or FILE.json, by the ending, or drivetrain.png and .json into a folder."""
     if out.suffix in FILES:
         with replace_file(out) as temporary:
             _write(temporary, title, analysis, sweeps)
@@ -73,7 +73,8 @@ def _write(path: Path, title: str, analysis: Analysis, sweeps: Sequence[Sweep]) 
 
 
 def write_picture(path: Path, title: str, analysis: Analysis, sweeps: Sequence[Sweep] = ()) -> None:
-    """Write ``path`` (.png or .svg): one column per way to the sensed torque, one for the servo loop and the poles."""
+    """Write ``path`` (.png or .svg): one column per source of the sensed torque, one for the servo loop and the
+    poles."""
     sources = [source for source in SIGN if any(source in case.channels for case in analysis.cases.values())]
     columns = len(sources) + 1
     with context(STYLE):

@@ -1,4 +1,4 @@
-"""What is known of a drivetrain, as one JSON file: the linear analysis and the FMU's measured response."""
+"""A drivetrain as one JSON file: the linear analysis and the FMU's measured response."""
 
 from __future__ import annotations
 

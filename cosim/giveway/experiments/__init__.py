@@ -33,7 +33,7 @@ def _refuse_single_run(name: str, _bumper: str, *, robot: Path | None = None) ->
     raise GivewayError("experiment", name, allowed)
 
 
-_NO_SINGLE_RUN: _MakesScenario = functools.partial(_refuse_single_run, "")  # until an experiment knows its name
+_NO_SINGLE_RUN: _MakesScenario = functools.partial(_refuse_single_run, "")  # set after the experiment has its name
 
 
 @dataclass(frozen=True)
@@ -43,10 +43,10 @@ class Experiment:
     Attributes:
         name: what the command line calls it.
         summary: one sentence.
-        section: where the paper has it ("5.2"), or "" for what the paper has not; orders the report.
+        section: its section in the paper ("5.2"), or "" if the paper does not have it; orders the report.
         bumpers: the bumpers its scenario is run with.
         scenario: makes the scenario for a bumper and, if given, the robot file ``robot``; refuses an unknown bumper, or
-            a robot with which the experiment is not possible. Left out by what is more than one run.
+            a robot with which the experiment is not possible. None for an experiment of several runs.
         reproduce: computes its part of the reproduction, or None if it has none.
     """
 

@@ -1,14 +1,14 @@
 """The robot goes around a circle of 1.5 m at 0.16 m/s and is pushed from all sides (Kim, Llado, Sentis 2016, 5.4).
 
-Each push is noticed, the robot gives way along it by 0.5 m, settles, and goes back to its circle. The paper shows the
-path (Fig. 12) and prints no numbers; pushes, start and way back are chosen here: pushes by hand of 30 to 60 N for 0.4
-to 0.8 s, a quarter of it to rise and a quarter to fall; a start from rest at 0.1 m/s2.
+Each push is noticed; the robot escapes by 0.5 m, settles, and returns to its circle. The paper shows the path (Fig. 12)
+and prints no numbers; pushes, start and return are chosen here: pushes by hand of 30 to 60 N for 0.4 to 0.8 s, a
+quarter of it to rise and a quarter to fall; a start from rest at 0.1 m/s2.
 
-The heading stays as it is, so every roller turns forwards, stands, and turns backwards twice a round: the hard case for
-a friction model. The estimator is the full one: bristles per roller and measured acceleration. Its force is averaged
-over 50 ms instead of 20 ms, because at rest the noise of the measured acceleration would otherwise keep the force from
-looking quiet for the 0.5 s that end a reaction. What the paper's own estimator does here stands beside it, on a way
-back that is as gentle as the start: it takes planned for real acceleration, and every jolt for a push.
+The heading is constant, so every roller turns forwards, stops, and turns backwards twice a round: the hard case for a
+friction model. The estimator is the full one: bristles per roller and measured acceleration. Its force is averaged over
+50 ms instead of 20 ms, because at rest the noise of the measured acceleration would otherwise keep the force from
+looking quiet for the 0.5 s that end a reaction. The paper's own estimator is shown for comparison, with a return as
+gentle as the start: it assumes that the real acceleration is the planned one, and mistakes every jolt for a push.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 DIAMETER_M, SPEED_MPS = 1.5, 0.16  # the paper's
 START_MPS2 = 0.1
 ROUND_S = 33.0  # a whole round takes 29.5 s, and 2.6 s more with tare and start
-BUMPERS = ("none",)  # nothing but hands
+BUMPERS = ("none",)  # only pushes by hand
 
 TANH, BRISTLES = 0, 1
 PLANNED, MEASURED = 0, 1
@@ -72,13 +72,13 @@ BY_HAND = (
     (2, 0.10, 10.0, 45.0, 0.5),
 )
 FIRST_PUSH_S, BETWEEN_PUSHES_S = 7.0, 18.0
-LAST_LOOK_S = 24.0  # after the last push: 7 s of escape, 7 s back, and the plan caught up with
+LAST_LOOK_S = 24.0  # after the last push: 7 s of escape, 7 s of return, and time to catch up with the plan
 RAMP_SHARE = 0.25
 OBLIQUE_DEG = 45.0
 
 PAPERS_DIRECTION_DEG = 12.0  # the largest error of a direction in 5.1
 FALSE_ALARMS_PER_HOUR = 3.0
-FORGIVEN_N = 9.0  # what 20 % of three rollers' 2 x 21 N asks for, and a little
+FORGIVEN_N = 9.0  # 20 % of three rollers' 2 x 21 N, and a margin
 
 
 def scenario(
@@ -120,7 +120,7 @@ def _push(
     force_n: float,
     duration_s: float,
 ) -> TimedPush:
-    """A push on a side of the robot, which keeps the heading of its plan."""
+    """A push on a side of the robot, whose heading is that of the plan."""
     from giveway.scenario.approach import edge_middle, outward_normal
 
     point = edge_middle(outline, side, offset_m)
@@ -135,7 +135,7 @@ def _random_pushes(count: int, oblique: bool, estimator: str) -> list[tuple[Scen
     import numpy as np
 
     outline = outline_of_robot(None)
-    random = np.random.default_rng(20160325)  # any number will do; fixed, so that the rows are the same every time
+    random = np.random.default_rng(20160325)  # arbitrary; fixed, so that the rows are reproducible
     runs = []
     for seed in range(count):
         plan = Circle(DIAMETER_M, SPEED_MPS, start_rad=random.uniform(-3.0, 3.0), acceleration_mps2=START_MPS2)
@@ -179,7 +179,7 @@ def _refuse_failures(data: xarray.Dataset) -> None:
 
 
 def _false_alarms(estimator: str, hours: float, effort: Effort) -> int:
-    """Detections while the robot goes around undisturbed, in several runs with noise of their own."""
+    """Detections during undisturbed rounds, in several runs with different noise."""
     from giveway import batch
 
     runs = effort.pick(6, 2)
@@ -193,7 +193,7 @@ def _false_alarms(estimator: str, hours: float, effort: Effort) -> int:
 def _mismatched(
     estimator: str, shares: Sequence[float], effort: Effort, controller: Mapping[str, Value] = MappingProxyType({})
 ) -> xarray.Dataset:
-    """A round undisturbed, with rollers that rub by ``shares`` more than the estimator believes."""
+    """An undisturbed round, with roller friction larger by ``shares`` than the estimator assumes."""
     from giveway import batch
 
     plan = Circle(DIAMETER_M, SPEED_MPS, acceleration_mps2=START_MPS2)
@@ -360,7 +360,7 @@ def _rows_of_false_alarms(estimator: str, count: int, hours: float) -> list[Row]
             "1/h",
             "assumed",
             None,
-            target if hours >= 1.0 else None,  # less than an hour cannot show it
+            target if hours >= 1.0 else None,  # a shorter time cannot show it
             decimals=3,
         ),
     ]

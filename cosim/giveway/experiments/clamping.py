@@ -1,9 +1,10 @@
 """A leg between robot and wall: quasi-static clamping (the future work of Kim, Llado, Sentis 2016, first step).
 
 The robot drives at the speed of 5.3 into the paper's slider, which stands in front of a wall and cannot get out of the
-way. It pushes on until it notices, then gives way. The slider stands for a body region: its effective stiffness lies in
-series with the cover in front, and again between the slider and the wall behind. What it feels, the larger one of both
-sides, is judged against the region's limits: the peak within 0.5 s of the contact, and the lasting force after that.
+way. It keeps pushing until it notices, then escapes. The slider represents a body region: its effective stiffness is in
+series with the cover in front, and acts again between the slider and the wall behind. The force on it, the larger one
+of both sides, is judged against the region's limits: the peak within 0.5 s of the contact, and the lasting force after
+that.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from giveway.experiments import Experiment
 from giveway.experiments.placement import before_resting, stated_contact, tare_s, testbed_of
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.robot.variables import table
-from giveway.scenario.body_regions import NOTICE, TRANSIENT_S, Judgement, body_region, contact_peak, judge
+from giveway.scenario.body_regions import NOTICE, Judgement, body_region, contact_peak, judge
 from giveway.scenario.scenario import BUMPERS, Scenario
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ SPEEDS_MPS = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5)  # up to th
 SLIDER_KG = 13.62  # the paper's, of 5.3
 GAPS_M: Mapping[str, float] = {"at the wall": 0.001, "20 mm before the wall": 0.02}
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
-AFTER_S = 1.6  # of which 1.1 s count as lasting; a robot that pushes on for longer lags by half a wheel turn
+AFTER_S = 1.6  # of which 1.1 s count as lasting; a robot that keeps pushing for longer lags by half a wheel turn
 NO_REFLEX = {"detector.impulse_threshold": 1000.0, "detector.force_threshold": 10000.0}
 RECORDED = (
     *(f"testbed.truth.{name}" for name in ("contact_force", "wall_force", "first_contact_time", "contact")),
@@ -57,7 +58,7 @@ def scenario(
         speed_mps: of the robot, m/s.
         gap_m: between the slider and the wall, m, above 0.
         region: the body region.
-        reflex: False: the detector is off and the robot pushes on.
+        reflex: False: the detector is off and the robot keeps pushing.
         robot: another robot's file; it drives with its own side between corners 0 and 1 ahead.
     """
     body = body_region(region)
@@ -129,11 +130,11 @@ def reproduce(effort: Effort) -> Findings:
 
 
 class Clamped:
-    """What the leg felt in one run of a batch that recorded `RECORDED`.
+    """The force on the leg in one run of a batch that recorded `RECORDED`.
 
     Attributes:
         time_s: since the first contact, shape (n,), s; from 0.2 s before.
-        force_n: larger one of robot's and wall's force, shape (n,), N.
+        force_n: the larger one of the robot's and the wall's force, shape (n,), N.
         judgement: of the force.
         detection_ms: from the first contact to the decision; None without one.
     """
@@ -180,7 +181,7 @@ def _rows(bumper: str, place: str, clamped: Clamped, safe_mps: float | None) -> 
 
 
 def _safe_speed(found: Mapping[float, Clamped]) -> float | None:
-    """The largest speed up to which every tried one keeps both limits; None if not even the slowest does."""
+    """The largest tried speed up to which all speeds keep both limits; None if not even the slowest does."""
     safe = None
     for speed, clamped in found.items():
         if not clamped.judgement.ok:
@@ -193,9 +194,10 @@ def _figure(forces: Mapping[tuple[object, ...], Clamped], speeds: Sequence[float
     from matplotlib.figure import Figure
     from matplotlib.style import context
 
+    from giveway.library.recorded import windows
     from giveway.report.style import COLOURS, STYLE
 
-    region = body_region(REGION)
+    region, transient_s = body_region(REGION), windows().transient_s
     place = next(iter(GAPS_M))
     with context(STYLE):
         figure = Figure(figsize=(9.6, 3.9), layout="constrained")
@@ -209,7 +211,7 @@ def _figure(forces: Mapping[tuple[object, ...], Clamped], speeds: Sequence[float
                 right.plot(speeds, peaks, style, markersize=4, color=colour)
         clamped = forces["no reflex", place]
         left.plot(clamped.time_s, clamped.force_n, color=NO_REFLEX_COLOUR, label="no bumper, no reflex")
-        limits = ([0.0, TRANSIENT_S, TRANSIENT_S, 1.5], [region.peak_limit_n] * 2 + [region.lasting_limit_n] * 2)
+        limits = ([0.0, transient_s, transient_s, 1.5], [region.peak_limit_n] * 2 + [region.lasting_limit_n] * 2)
         left.plot(*limits, "--", color=LIMIT_COLOUR, linewidth=1.2, label=f"limits, {REGION}")
         right.axhline(region.peak_limit_n, linestyle="--", color=LIMIT_COLOUR, linewidth=1.2)
         left.set(xlabel="time since contact (s)", ylabel="force on the leg (N)", xlim=(-0.1, 1.5))

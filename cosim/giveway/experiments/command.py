@@ -221,5 +221,5 @@ def _changed(
 
 
 def _share_of(progress: Callable[[str, float], None], name: str) -> Progress:
-    """What a simulation reports (simulated time and duration, s) as the share of the bar ``name``."""
+    """Converts a simulation's progress (simulated time and duration, s) to the share of the bar ``name``."""
     return lambda now_s, duration_s: progress(name, now_s / duration_s)

@@ -1,8 +1,8 @@
-"""How much of a collision's impulse the estimator sees, with and without what stuck rollers carry past the wheels.
+"""The share of a collision's impulse that the estimator sees, with and without the force that stuck rollers carry.
 
-The paper's estimator takes its planned acceleration for the real one, and its friction law is zero at rest: in 5.2 it
-misses a third of the impulse. With bristles for the rollers and the measured acceleration it sees all of it, at rest
-and in motion, through the noise of the sensors.
+The paper's estimator assumes that the real acceleration is the planned one, and its friction law is zero at rest: in
+5.2 it misses a third of the impulse. With bristles for the rollers and the measured acceleration it sees all of it, at
+rest and in motion, through the noise of the sensors.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _rows(name: str, seen: dict[str, Seen]) -> list[Row]:
 
 
 def _reason(seen: dict[str, Seen]) -> str:
-    """For a miss: what another corner of the rate filters would give."""
+    """For a missed target: the result with another corner frequency of the rate filters."""
     from giveway.experiments.impulse_trials import HIGH_CUTOFF_RADPS, LOW_CUTOFF_RADPS
 
     slow, fast = (seen[form].share(JUDGED_S) for form in ("slow", "fast"))

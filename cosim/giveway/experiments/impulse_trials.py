@@ -1,7 +1,7 @@
-"""How much of a collision's impulse the estimator sees: one hit, forms of the estimator, seeds of the sensor noise.
+"""The share of a collision's impulse that the estimator sees: one hit, variants of the estimator, seeds of the noise.
 
 The estimate is taken tick by tick (an averaging window of one sample), delays of sensors and bus included. Detection is
-off, so that every form sees the same collision.
+off, so that every variant sees the same collision.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 __all__ = ["FORMS", "SHOWN_S", "Form", "Seen", "run_forms"]
 
 SHOWN_S = 0.2
-"""How long after the contact the impulses are followed, s."""
+"""Time after the contact over which the impulses are recorded, s."""
 TRACES = (
     *("testbed.truth.first_contact_time", "testbed.truth.contact_impulse_x", "testbed.truth.contact_impulse_y"),
     *("controller.estimate.force_x", "controller.estimate.force_y"),
 )
 WATCHING: Mapping[str, Value] = {"estimator.average_window": 1, "detector.impulse_threshold": 1000.0}
-FINE_COUNTS = 1_000_000  # encoder counts per turn that leave no step to speak of: 0.6 um at the rim
+FINE_COUNTS = 1_000_000  # encoder counts per turn with negligible steps: 0.6 um at the rim
 NOISELESS_TESTBED: Mapping[str, Value] = {
     "electronics.torque_noise": 0.0,
     "electronics.torque_resolution": 0.0,
@@ -44,17 +44,18 @@ NOISELESS_CONTROLLER: Mapping[str, Value] = {
     "estimator.encoder_counts": FINE_COUNTS,
     "sensor_check.encoder_jump": FINE_COUNTS,
 }
-ENCODER_PHASE_M = 1e-3  # of a moving robot's way, some ten encoder counts: where in a count the hit comes is chance
+# of a moving robot's travel, some ten encoder counts: the position of the hit within a count is random
+ENCODER_PHASE_M = 1e-3
 
 
 @dataclass(frozen=True)
 class Form:
-    """One form of the estimator.
+    """One variant of the estimator.
 
     Attributes:
         label: for tables and figures.
         controller: its parameters.
-        softness: the bristles' stiffness that it works with, over that of the rollers.
+        softness: the bristle stiffness that it assumes, relative to that of the rollers.
     """
 
     label: str
@@ -75,8 +76,8 @@ def measured(cutoff_radps: float) -> dict[str, Value]:
 
 
 BRISTLES: Mapping[str, Value] = MappingProxyType({"estimator.friction_model": 1})
-# Two corner times pass until the filters know a motion, and what moved until then is missing; but what a step of an
-# encoder makes of the acceleration grows with the square of the corner.
+# The filters need two corner times to follow a motion, and the motion until then is missing; but the effect of an
+# encoder step on the acceleration grows with the square of the corner frequency.
 CUTOFF_RADPS, LOW_CUTOFF_RADPS, HIGH_CUTOFF_RADPS = 300.0, 200.0, 400.0
 FORMS: Mapping[str, Form] = MappingProxyType(
     {
@@ -92,7 +93,7 @@ FORMS: Mapping[str, Form] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Seen:
-    """Impulses along the true one's direction, N s, from the contact on, one row per run, one column per ms.
+    """Impulses in the direction of the true one, N s, from the contact on, one row per run, one column per ms.
 
     Attributes:
         time_s: shape (n,), from the first sample after the contact.
@@ -109,7 +110,7 @@ class Seen:
         return np.asarray(self.seen[:, column] / self.true[:, column])
 
     def excess(self) -> NDArray[np.float64]:
-        """By how much the seen impulse is ahead of the true one at most, N s, shape (runs,)."""
+        """Largest amount by which the seen impulse exceeds the true one, N s, shape (runs,)."""
         return np.asarray((self.seen - self.true).max(axis=1))
 
 
@@ -122,8 +123,8 @@ def run_forms(
     threads: int = 2,
     progress: Callable[[float], None] = lambda _share: None,
 ) -> list[Seen]:
-    """The hit of ``scenario`` as each of ``forms`` sees it, with ``seeds`` noises: its own sensor noise each, and for
-    a moving robot its own place within the encoders' counts.
+    """The hit of ``scenario`` as seen by each of ``forms``, for ``seeds`` seeds: each has its own sensor noise, and for
+    a moving robot its own position within the encoders' counts.
 
     Without ``noise`` the torques are exact and the encoders very fine.
     """
@@ -147,7 +148,7 @@ def _run(scenario: Scenario, form: Form, seed: int, seeds: int, noise: bool) -> 
     further_m = ENCODER_PHASE_M * (seed - 1) / seeds
     direction = float(scenario.parameters("testbed").get("slider.direction", _start("testbed", "slider.direction")))
     for name, along in (("slider.target_x", -math.cos(direction)), ("slider.target_y", -math.sin(direction))):
-        if name in testbed:  # only a moving robot has its slider elsewhere
+        if name in testbed:  # only for a moving robot is the slider elsewhere
             testbed[name] = float(testbed[name]) + further_m * along
     return dataclasses.replace(scenario, testbed=testbed, controller=controller, seed=seed)
 

@@ -1,11 +1,11 @@
 """The moving robot drives into a resting slider (Kim, Llado, Sentis 2016, 5.3).
 
-The robot drives at 0.22 m/s, with the middle of one side ahead, into a slider of 13.62 kg that nothing pulls. It
-notices, reverses and gives way by 0.5 m.
+The robot drives at 0.22 m/s, with the middle of one side ahead, into a free slider of 13.62 kg. It notices the hit,
+reverses and escapes by 0.5 m.
 
-It starts from rest and speeds up slowly: the servo is a PD loop that owes its torque to its own lag, so a robot that
-is set in motion at once first falls behind its plan, which the estimator takes for a push. By the time of the contact
-lag, rollers and drivetrains are those of steady motion.
+It starts from rest and accelerates slowly: the PD servo makes torque only by its lag, so a robot that is set in motion
+at once first falls behind its plan, which the estimator mistakes for a push. By the time of the contact lag, rollers
+and drivetrains are those of steady motion.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ STEADY_S = 0.4  # at full speed before the contact: more than ten time constants
 ESCAPE_S = 8.0  # as in 5.2
 HOLD = 0  # after the escape; 1 would go back to the path and into the slider again
 PAPER_BUMPER = "magnetic"
-REVERSAL_S = 1.2  # after the contact: the reversal, and the time in which it might be taken for another hit
+REVERSAL_S = 1.2  # after the contact: the reversal, and the time in which it might be mistaken for another hit
 
 
 def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | None = None) -> Scenario:

@@ -1,4 +1,4 @@
-"""What sensor noise does to a number: the range of a metric over seeds."""
+"""The effect of sensor noise on a metric: its range over seeds."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Where what collides stands in an experiment: for Trikey as in the paper, for any other robot by its own outline.
+"""Position of the collider in an experiment: for Trikey as in the paper, for any other robot by its own outline.
 
-Trikey's start is kept to the last bit: it is what the fit was made with. A robot whose outline is Trikey's has it, too.
+Trikey's start is kept to the last bit, since the fit was made with it. It also applies to a robot with Trikey's
+outline.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ __all__ = [
 ]
 
 SIDE = 0  # of the outline, between corners 0 and 1: the one that the paper's slider hits
-RUN_UP_SHARE = 0.04  # by which a run-up may differ: the speed at its end then differs by 2 %
+RUN_UP_SHARE = 0.04  # tolerance of a run-up: the speed at its end then differs by 2 %
 
 
 def testbed_of(robot: Path | None) -> dict[str, Value]:
@@ -55,7 +56,7 @@ def outline_of_robot(robot: Path | None) -> NDArray[np.float64]:
 
 @contextmanager
 def for_this_robot(experiment: str, robot: Path | None) -> Iterator[None]:
-    """What an experiment cannot do for ``robot`` is refused in the name of both."""
+    """Errors of an experiment with ``robot`` name both."""
     try:
         yield
     except (FileError, InputFileError):
@@ -69,7 +70,7 @@ def for_this_robot(experiment: str, robot: Path | None) -> Iterator[None]:
 def pulled_by_weight(experiment: str, robot: Path | None, speed_mps: float) -> dict[str, Value]:
     """``slider.*`` of a slider that the weight pulls into the middle of `SIDE` of the resting robot at ``speed_mps``.
 
-    The run-up of the robot file stands if it makes that speed.
+    The run-up of the robot file is used if it gives that speed.
     """
     if robot is None:
         return {}

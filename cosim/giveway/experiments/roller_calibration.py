@@ -1,9 +1,9 @@
 """Roller friction from two arcs (Kim, Llado, Sentis 2016, 4.2 and Fig. 7).
 
-Wheel 0 moves as 3/2 - 3/2 cos(2 pi f t) rad while the others stand; then wheels 0 and 1 do so together and the robot
-turns about wheel 2. The servos drive the real plant, with bristle rollers and with the paper's tanh rollers, noise,
-quantisation and a zero error on every torque sensor. From encoders and torques of both arcs B_r and alpha are fitted.
-The paper does not print f; 0.1 Hz lets the rollers pass through the bend of the tanh slowly.
+Wheel 0 moves as 3/2 - 3/2 cos(2 pi f t) rad while the others stand still; then wheels 0 and 1 do so together and the
+robot turns about wheel 2. The servos drive the real plant, with bristle rollers and with the paper's tanh rollers,
+noise, quantisation and a zero error on every torque sensor. From encoders and torques of both arcs B_r and alpha are
+fitted. The paper does not print f; with 0.1 Hz the rollers pass slowly through the bend of the tanh.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class WheelArc:
 
     Attributes:
         wheels: share of the swing of each wheel, not all three the same.
-        swing_rad: half of the way of a wheel, rad.
+        swing_rad: half of a wheel's travel, rad.
         frequency_hz: swings per second.
         wheel_radius_m, wheel_distance_m: of the robot.
     """
@@ -70,7 +70,7 @@ class WheelArc:
         azimuth = np.arange(3) * (2.0 * math.pi / 3.0)
         axes = np.stack([-2.0 * np.sin(azimuth), 2.0 * np.cos(azimuth), np.full(3, 1.0 / self.wheel_distance_m)]) / 3.0
         vx, vy, turn = self.wheel_radius_m * axes @ np.array(self.wheels)  # base twist per wheel rate
-        pivot = np.array([-vy, vx]) / turn  # where the base has no velocity; it stays where it is
+        pivot = np.array([-vy, vx]) / turn  # pivot: the point of the base without velocity; it does not move
 
         omega = 2.0 * math.pi * self.frequency_hz
         phase = omega * np.maximum(time_s - REST_S, 0.0)
@@ -112,7 +112,7 @@ def arc_scenario(
 
 
 def log_of(name: str, table: xarray.Dataset, run: int, robot: Robot) -> MotionLog:
-    """What the robot's own computer would have written down in ``run`` of a batch that recorded `RECORDED`."""
+    """The log that the robot's own computer would have written in ``run`` of a batch that recorded `RECORDED`."""
     import numpy as np
 
     from giveway.identification.motion_log import MotionLog, behind_drivetrain, counts_to_rad
@@ -183,7 +183,7 @@ def _wave_rows(log: FittedLog) -> list[Row]:
 
 
 def _plateaus(log: FittedLog, torque: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Half the difference of the median torques at full speed forth and back, N m, shape (3,): no tare is in it."""
+    """Half the difference of the median torques at full speed in both directions, N m, shape (3,): free of the tare."""
     import numpy as np
 
     rate = np.gradient(log.wheel_angle_rad[:, 0], log.time_s)

@@ -2,8 +2,8 @@
 
 The robot drives into something low that it does not see. The wheels are part of its outline: they stick out of the
 triangle, and low contacts meet them first. Stiffness and mass of the person are those of the body region, in series
-with cover or roller; those of the bicycle and all friction on the floor are estimates. What is hit can move along one
-line. Besides as it is, each scene is run with what could explain a miss changed: see `VARIANTS`.
+with cover or roller; those of the bicycle and all friction on the floor are estimates. The obstacle can move along one
+line. Each scene is also run with changes that could explain a missed target: see `VARIANTS`.
 """
 
 from __future__ import annotations
@@ -44,23 +44,23 @@ VARIANTS: Mapping[str, tuple[Mapping[str, Value], Mapping[str, Value]]] = {
     "those and bristles in the estimator": ({}, {**MEASURED, "estimator.friction_model": 1}),
     "rollers without presliding": ({"roller.model": 1}, {}),
 }
-"""Changes of testbed and controller: the paper's estimator leaves out how the base brakes, and presliding."""
+"""Changes of testbed and controller: the paper's estimator neglects the braking of the base, and presliding."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Something in the robot's way.
+    """An obstacle in the robot's path.
 
     Attributes:
         title: for tables and figures.
         direction_rad: in which the robot drives, world frame.
         speed_mps: of the robot.
         height_m: of the contact above the floor.
-        mass_kg, stiffness_npm, friction_n: of what is hit; the stiffness without the robot's.
+        mass_kg, stiffness_npm, friction_n: of the obstacle; the stiffness without the robot's.
         region: body region, or "" if it is not a person.
-        edge_rad: a long straight edge, turned by this against lying across the way; None: a disc.
+        edge_rad: a long straight edge, rotated by this angle from perpendicular to the path; None: a disc.
         radius_m: of the disc.
-        aside_m: how far to the left of the base's way the disc's middle is.
+        aside_m: offset of the disc's centre to the left of the base's path.
         on_wheel: rubber of the rollers instead of the cover.
     """
 
@@ -158,7 +158,7 @@ def scenario(name: str) -> Scenario:
 
 
 def _obstacle(scene: Scene, testbed: Mapping[str, Value], way_m: float) -> dict[str, Value]:
-    """Place and shape of what is in the way, so that the robot meets it after ``way_m``."""
+    """Position and shape of the obstacle, so that the robot meets it after ``way_m`` of travel."""
     import numpy as np
 
     ahead = np.array([math.cos(scene.direction_rad), math.sin(scene.direction_rad)])
@@ -188,7 +188,7 @@ def _obstacle(scene: Scene, testbed: Mapping[str, Value], way_m: float) -> dict[
 
 
 def _reach(testbed: Mapping[str, Value], scene: Scene, ahead: NDArray[np.float64], left: NDArray[np.float64]) -> float:
-    """How far the robot reaches ahead on the line ``aside_m`` to the left, at the scene's height, m."""
+    """Distance to the robot's front on the line ``aside_m`` to the left, at the scene's height, m."""
     import numpy as np
 
     parts = [*wheel_corners(testbed, scene.height_m)]
@@ -234,15 +234,16 @@ def reproduce(effort: Effort) -> Findings:
 
 
 def _creeping_roller(name: str, result: Result) -> list[str]:
-    """What the slowest roller holds at the first hit long after the contact, against what (28) says; empty if none."""
+    """The force of the slowest roller at the first hit long after the contact, compared with (28); empty if none."""
     import numpy as np
 
-    from giveway.simulation.metrics import CAUSE_WINDOW_S, WHEELS, Collision
+    from giveway.library.recorded import windows
+    from giveway.simulation.metrics import WHEELS, Collision
 
     hit = Collision(result.traces, result.manifest["parameters"])
     hits = np.flatnonzero(np.diff(hit["controller.detection.count"], prepend=0) > 0)
     touched = np.maximum.accumulate(np.where(hit["testbed.truth.contact"], hit.time_s, -np.inf))  # last time, so far
-    late = hits[hit.time_s[hits] - touched[hits] > CAUSE_WINDOW_S]
+    late = hits[hit.time_s[hits] - touched[hits] > windows().cause_s]
     if not late.size or hit.contact_s is None:
         return []
     row = int(late[0])
@@ -271,7 +272,7 @@ def _varied(scenario: Scenario, variant: str) -> Scenario:
 
 
 def _rows(name: str, result: Result, changed: Mapping[str, Result]) -> list[Row]:
-    """What is judged in every scene; a miss gives the same number in the variants as its reason."""
+    """The numbers judged in every scene; the reason of a miss is the same number in the variants."""
     region = SCENES[name].region
     values = _values(result, region)
     others = {variant: _values(other, region) for variant, other in changed.items()}
@@ -310,7 +311,7 @@ def _values(result: Result, region: str) -> dict[str, float | None]:
     metrics = {metric.name: metric.value for metric in result.metrics}
     direction, location = metrics["direction error"], metrics["location error"]
     force = result.traces["testbed.truth.contact_force"].values
-    # Without a body region the same two numbers, of no limit's concern.
+    # Without a body region the same two numbers, without limits.
     judged = judge(result.traces["time"].values, force, region or next(iter(body_regions())))
     return {
         "detection time": metrics["detection time"],
@@ -324,7 +325,7 @@ def _values(result: Result, region: str) -> dict[str, float | None]:
 
 
 def _moved_m(result: Result) -> float | None:
-    """How far the base is at the end from where it was at the first detection, m."""
+    """Distance of the base at the end from its position at the first detection, m."""
     from giveway.simulation.metrics import Collision
 
     hit = Collision(result.traces, result.manifest["parameters"])

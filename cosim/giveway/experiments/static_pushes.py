@@ -1,9 +1,10 @@
 """Static pushes on the unpowered robot (Kim, Llado, Sentis 2016, 5.1).
 
-The weight of 1 kg pushes the robot, whose gears hold it; the torque sensors alone say where, from which side and how
-hard. The paper did this four times. Here it is done on many robots whose rollers differ, so that the paper's four have
-a distribution to lie in; then each robot's three presliding stiffnesses are learnt from three known pushes
-(`giveway.identification.presliding`), and the controller that knows them is judged on other placements and other noise.
+The weight of 1 kg pushes the robot, whose gears hold it; position, direction and magnitude are estimated from the
+torque sensors alone. The paper did this four times. Here it is done on many robots with different rollers, so that the
+paper's four pushes can be compared with a distribution. Then each robot's three presliding stiffnesses are identified
+from three known pushes (`giveway.identification.presliding`), and the controller with these stiffnesses is judged on
+other placements and other noise.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ def _group_rows(study: Study, statics: Statics) -> list[Row]:
 
 
 def _reason(column: int, study: Study, statics: Statics) -> str:
-    """Which parameter would have to be what for the paper's number in ``column`` to be an ordinary one."""
+    """The parameter values for which the paper's number in ``column`` would be a typical one."""
     from giveway.experiments.static_push_study.groups import PRINTED, group_values, percentile_of
     from giveway.experiments.static_push_study.robots import SCATTER, presliding_stiffness_n_per_m
     from giveway.experiments.static_push_study.statics import first_reaching
@@ -74,7 +75,7 @@ def _reason(column: int, study: Study, statics: Statics) -> str:
     paper = PRINTED[column].value
     drifted = percentile_of(paper, group_values(study.drifted)[:, column])
     drift = f"torque zeros that drift by {study.drift_nm:g} N m after the tare put it at {drifted:.0f} %"
-    if PRINTED[column].unit == "cm":  # a location needs the outline, which the static model has not
+    if PRINTED[column].unit == "cm":  # a location needs the outline, which the static model lacks
         return drift
 
     def place(scatter: float) -> float:
@@ -117,7 +118,7 @@ def _errors(readings: Readings) -> dict[str, tuple[float, float]]:
 
 
 def _compensated_rows(study: Study) -> list[Row]:
-    """What the calibrated controller is off by, on placements, loads and noise that it was not calibrated with."""
+    """Errors of the calibrated controller on placements, loads and noise that were not used for the calibration."""
     import numpy as np
 
     from giveway.experiments.static_push_study.study import KNOWN_PUSHES
@@ -145,7 +146,7 @@ def _compensated_rows(study: Study) -> list[Row]:
 
 
 def _notes(study: Study) -> list[str]:
-    """What was run, what does not fit and what would make it fit."""
+    """The runs, the deviations from the paper, and the changes that would remove them."""
     return [*_setting(study), *_strongest(study), *_calibration(study)]
 
 
@@ -165,7 +166,7 @@ def _setting(study: Study) -> list[str]:
 
 
 def _strongest(study: Study) -> list[str]:
-    """Why no push is felt in full, and what would make one be."""
+    """Why no push is felt completely, and which change would achieve it."""
     import numpy as np
 
     from giveway.experiments.static_push_study.groups import PAPER_FORCE_N, PRINTED, group_values, percentile_of

@@ -1,9 +1,9 @@
-"""The collisions of 5.2 with a base that can tip: what an impact above the centre of mass does to torques and motion.
+"""The collisions of 5.2 with a base that can tip: effects of an impact above the centre of mass on torques and motion.
 
 The paper's robot was hit "above its center of mass": its torques dip right after the impact, its motion has a plateau
-of about 50 ms after detection, and its front wheel left the floor (Fig. 10). A planar robot shows none of it. The
-height of the hit is not printed; taken is the one halfway between the centre of mass and the top of the body, and
-others beside it.
+of about 50 ms after detection, and its front wheel left the floor (Fig. 10). A planar robot shows none of it. The paper
+does not print the height of the hit; the height halfway between the centre of mass and the top of the body is used, and
+others for comparison.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ HEIGHTS_M = (0.42, 0.5, CONTACT_HEIGHT_M, 0.66, 0.74)
 DURATION_S = 1.0
 WINDOW_S = 0.35  # after contact, as for 5.2's peak torque
 PLATEAU_SHARE = 0.5
-# Nothing to tip about, and no slip, which the planar robot does not have either.
+# No lever arm for tipping, and no slip, which the planar robot does not have either.
 FLAT: dict[str, Value] = {"base.com_height": 0.01, "contact.height": 0.01, "wheel.grip_friction": 10.0}
 
 
@@ -69,7 +69,7 @@ class _Run:
         return self._all(name)[self._rows]
 
     def along_push(self, quantity: tuple[str, str]) -> NDArray[np.float64]:
-        """A vector's component along the push that was."""
+        """A vector's component along the push."""
         push = [float(self[f"truth.contact_impulse_{axis}"][-1]) for axis in "xy"]
         size = math.hypot(*push)
         along: NDArray[np.float64] = self[quantity[0]] * (push[0] / size) + self[quantity[1]] * (push[1] / size)
@@ -83,7 +83,7 @@ class _Run:
         return self.result.metric("detection time").value
 
     def plateau_ms(self) -> float:
-        """Longest time of a speed along the push of less than half of what it had been."""
+        """Longest time for which the speed along the push is less than half of its previous maximum."""
         speed = self.along_push(("truth.vx", "truth.vy"))
         return _longest(speed < PLATEAU_SHARE * np.maximum.accumulate(speed), self.time_ms)
 
@@ -193,7 +193,7 @@ def _plateau_rows(planar: _Run, tipping: _Run, by_height: dict[float, _Run]) -> 
 
 
 def _safety_row(bumper: str, run: _Run) -> Row:
-    # 0 is the point of no return; half of the way is what a design would keep.
+    # 0 is the point of no return; a design would keep half of the margin.
     half, margin = Target(minimum=0.5), run.margin()
     reason = "" if half.met(margin) else "a lower or softer contact, or a slower escape, would keep it"
     name = f"least tip margin, {BUMPERS_IN_WORDS[bumper]} (leans {run.lean_deg():.1f} deg)"
@@ -215,7 +215,7 @@ def _detection_row(bumper: str, run: _Run) -> Row:
 
 
 def _agreement_row(planar: _Run, flat: _Run) -> Row:
-    """Both hit without a bumper, compared until the controllers react, which see different encoder counts."""
+    """Both hit without a bumper, compared until the controllers react, as these see different encoder counts."""
     reacts = min(planar.detection_ms() or 1e3 * WINDOW_S, flat.detection_ms() or 1e3 * WINDOW_S)
     worst = 0.0
     for names in (

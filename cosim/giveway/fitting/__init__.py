@@ -1,5 +1,5 @@
-"""The fit of the robot's open parameters to what the paper measured: one set of values for all experiments.
+"""The fit of the robot's unknown parameters to the paper's measurements: one set of values for all experiments.
 
-`quantities`: what is computed and what it should be. `parameters`: what may move, and how far an estimate is believed.
-`search`: the fit. `record`: what is printed and kept.
+`quantities`: the computed numbers and their targets. `parameters`: the fitted parameters, and the uncertainty of their
+    estimates. `search`: the fit. `record`: printed and stored results.
 """

@@ -1,7 +1,7 @@
-"""What the fit may change: estimates, how far each is believed, and bounds.
+"""The fitted parameters: estimates, their uncertainty, and bounds.
 
-An estimate is what one would expect without the paper's results; ``factor`` is the deviation from it that costs as
-much as missing a number of the paper by its tolerance. Sources are those of the robot file's notes.
+An estimate is the value expected without the paper's results; ``factor`` is the deviation from it that costs as much as
+missing a number of the paper by its tolerance. Sources are those of the robot file's notes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FREE", "Free", "from_unit", "limits", "to_unit"]
 
-DIGITS = 3  # of a fitted value: more would claim what nobody can know
+DIGITS = 3  # digits of a fitted value: more would not be justified
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Free:
     """A parameter that is fitted.
 
     Attributes:
-        paths: where the robot file has it; two that are one number here share the value.
+        paths: its entries in the robot file; several paths share the value.
         unit: of estimate and bounds.
         estimate: the expected value.
         minimum, maximum: the range that is plausible; the fit stays within.

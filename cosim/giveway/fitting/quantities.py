@@ -1,7 +1,7 @@
-"""What the fit compares: the paper's measured numbers and the same numbers of simulated runs.
+"""The quantities that the fit compares: the paper's measured numbers and the same numbers of simulated runs.
 
 Sensor noise is off, the encoders are fine, and the detection time is interpolated between the controller's ticks, so
-that every quantity changes smoothly with the parameters. `Bench.seeds` puts noise and quantisation back in.
+that every quantity changes smoothly with the parameters. `Bench.seeds` includes noise and quantisation again.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ Values = Mapping[str, float]
 """Values by their path in the robot file."""
 
 PUSH_N = 1.0 * GRAVITY_MPS2  # the 1 kg of 5.1
-PUSH_S = (0.2, 0.5, 0.8)  # it comes on after the tare, is there in full, and is read
+PUSH_S = (0.2, 0.5, 0.8)  # it starts after the tare, reaches its full value, and is read
 STATISTIC, CONTACT_TIME = "controller.detection.statistic", "testbed.truth.first_contact_time"
 SLIDER_SPEED, COUNT = "testbed.truth.slider_speed", "controller.detection.count"
 FORCE = "controller.estimate.force"
-# The finest encoders there are; the check for jumps counts in their counts.
+# The finest possible encoders; the limit of the check for jumps is in their counts.
 SMOOTH: Mapping[str, Mapping[str, Value]] = {
     "testbed": {
         "electronics.torque_noise": 0.0,
@@ -48,7 +48,7 @@ SMOOTH: Mapping[str, Mapping[str, Value]] = {
     },
     "controller": {"estimator.encoder_counts": 1_000_000, "sensor_check.encoder_jump": 100_000},
 }
-NOT_HAPPENED = 10.0  # residual, in tolerances, of what did not happen: farther off than any real miss
+NOT_HAPPENED = 10.0  # residual, in tolerances, of an event that did not happen: larger than any real miss
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Quantity:
         return max(0.0, deviation) if self.upper else deviation
 
 
-# A detection time may be 10 ms off; the tolerances of the ratios are what "about" is taken for.
+# A detection time may deviate by 10 ms; the tolerances of the ratios are our reading of "about".
 QUANTITIES = (
     Quantity("contact speed", "5.2", "m/s", 0.5, 0.002, "0.5 m/s"),
     Quantity("detection time, no bumper", "5.2", "ms", 45.0, 10.0, "45 ms"),
@@ -94,7 +94,7 @@ QUANTITIES = (
     # The project's own demand: not more than 5 % higher.
     Quantity("peak contact force, magnetic over spring", "3.5", "1", 1.0, 0.05, "a latch does not cost force", True),
     Quantity("detection time, moving", "5.3", "ms", 105.0, 10.0, "105 ms"),
-    # The project's own demand: the robot's own acceleration must stay far from being taken for another hit.
+    # The project's own demand: the robot's own acceleration must not come near to being mistaken for another hit.
     Quantity("false impulse after the reversal over the threshold", "5.3", "1", 0.5, 0.2, "one reaction", True),
     Quantity("peak torque of the reversal over 5.2's with bumpers", "5.3", "1", 2.0, 0.2, "about twice"),
     # With uniform rollers: the mean of what the paper saw; its range, which is their scatter, is two deviations wide.
@@ -104,7 +104,7 @@ QUANTITIES = (
 
 @dataclass(frozen=True)
 class _Push:
-    """A push along x through the centre that rises and stays."""
+    """A push along x through the centre that rises and is held."""
 
     def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
         force = np.zeros((len(time_s), 4))
@@ -116,12 +116,12 @@ _PUSH = _Push()
 
 
 class Bench:
-    """Runs what the quantities need for many sets of values at once, on top of a robot file."""
+    """Runs the simulations for the quantities for many sets of values at once, based on a robot file."""
 
     def __init__(self, robot: Path | None = None, threads: int | None = None) -> None:
         """``robot``: the file of the values that are not varied, None for the one the FMUs were built with.
 
-        Its outline must be that of the paper's robot: slider and obstacle stand where the paper had them.
+        Its outline must be that of the paper's robot: slider and obstacle have the paper's positions.
         """
         if not has_default_outline(robot):
             raise GivewayError("robot", robot, "a robot with the outline of the paper's: its results are fitted")
@@ -141,7 +141,7 @@ class Bench:
     def measure(self, candidates: Sequence[Values]) -> NDArray[np.float64]:
         """The quantities of each candidate without noise and quantisation, shape (candidates, quantities).
 
-        NaN is what did not happen, or came after a false detection. Ctrl-C raises KeyboardInterrupt.
+        NaN: it did not happen, or came after a false detection. Ctrl-C raises KeyboardInterrupt.
         """
         return self._measure([(values, SMOOTH) for values in candidates], _interpolated_detection)
 
@@ -194,7 +194,7 @@ class Bench:
         settings: Sequence[tuple[dict[str, Value], dict[str, Value]]],
         traces: Sequence[str],
     ) -> xarray.Dataset:
-        """Every scenario with every setting; the scenario's own parameters win."""
+        """Every scenario with every setting; the scenario's own parameters take precedence."""
         batch = [
             dataclasses.replace(
                 scenario,
@@ -241,7 +241,7 @@ def _undisturbed(runs: xarray.Dataset, values: NDArray[np.float64]) -> NDArray[n
 
 
 def _statistic_afterwards(runs: xarray.Dataset) -> NDArray[np.float64]:
-    """The detector's largest statistic after the first detection, by when the contact is over."""
+    """The detector's largest statistic after the first detection, when the contact is over."""
     statistic = np.where(runs[COUNT].values > 0, runs[STATISTIC].values, 0.0)
     statistic[np.arange(len(statistic)), np.argmax(runs[COUNT].values > 0, axis=1)] = 0.0
     return np.asarray(statistic.max(axis=1))
@@ -265,7 +265,7 @@ def _interpolated_detection(runs: xarray.Dataset, threshold: NDArray[np.float64]
 
 
 def _contact_speed(runs: xarray.Dataset) -> NDArray[np.float64]:
-    """Speed of the slider at the very contact, m/s: the two samples before it, carried on."""
+    """Speed of the slider at the contact, m/s: extrapolated from the two samples before."""
     at = runs[CONTACT_TIME].values[:, -1] / float(runs["time"].values[1])
     row = _row_at(runs, runs[CONTACT_TIME].values[:, -1])
     speed = runs[SLIDER_SPEED].values

@@ -43,7 +43,7 @@ def target_rows(fit: Fit) -> list[tuple[str, ...]]:
 
 
 def parameter_rows(fit: Fit) -> list[tuple[str, ...]]:
-    """One row per parameter: what was expected, what was found, how well it is known, and by what."""
+    """One row per parameter: expected value, fitted value, uncertainty, and the quantity that determines it."""
     deviations, decided = to_unit(fit.values), _decided_by(fit)
     return [
         (
@@ -60,7 +60,7 @@ def parameter_rows(fit: Fit) -> list[tuple[str, ...]]:
 
 
 def _decided_by(fit: Fit) -> list[str]:
-    """For each parameter what pulls hardest at it: a quantity, or its estimate where that is the stronger."""
+    """For each parameter its strongest influence: a quantity, or its own estimate if that is stronger."""
     names = []
     for column in fit.jacobian.T:
         strongest = int(np.argmax(np.abs(column)))
@@ -114,12 +114,12 @@ def _short(value: float) -> float:
 
 
 def read_record(path: Path) -> dict[str, Any]:
-    """What `record` made and a file keeps."""
+    """A stored record, as made by `record`."""
     return read_json(path, SCHEMA_VERSION, "give a record that `giveway fit` wrote")
 
 
 def robot_text(path: Path, fit: Fit, record_name: str) -> str:
-    """The robot file ``path`` with the fitted values, their provenance and source; all else stays as it is written."""
+    """The robot file ``path`` with the fitted values, their provenance and source; everything else is unchanged."""
     source = f"giveway fit, to the results of Kim, Llado, Sentis, Auton Robot 40:325 (2016); residuals in {record_name}"
     changes = {name: NewValue(float(value), source, "fitted") for name, value in fit.values.items()}
     return changed_robot(path, changes)

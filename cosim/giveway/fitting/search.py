@@ -1,7 +1,7 @@
 """The fit: the box of parameters is sampled evenly, then the best points are improved by least squares.
 
 Minimised is the sum of squares of the quantities' deviations in tolerances and the parameters' deviations from their
-estimates in factors. Nothing is drawn at random: the same code gives the same values.
+estimates in factors. Nothing is random: the same code gives the same values.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Fit:
-    """A set of values and all that tells how good it is and how well it is known.
+    """A set of values with its quality and uncertainty.
 
     Attributes:
         values: by path of the robot file.
@@ -61,7 +61,8 @@ class Fit:
 
     @property
     def singular_values(self) -> NDArray[np.float64]:
-        """Of the Jacobian: combinations of parameters with values above 1 are decided by the paper's numbers."""
+        """Singular values of the Jacobian: parameter combinations with values above 1 are determined by the paper's
+        numbers."""
         return np.asarray(np.linalg.svd(self.jacobian, compute_uv=False))
 
     @property
@@ -72,7 +73,7 @@ class Fit:
 
 
 def evaluate(bench: Bench, values: dict[str, float], seeds: tuple[int, ...] = SEEDS) -> Fit:
-    """Judge ``values`` without changing them."""
+    """Evaluate ``values`` without changing them."""
     noisy = bench.seeds(values, seeds)
     return Fit(
         values,
@@ -83,7 +84,7 @@ def evaluate(bench: Bench, values: dict[str, float], seeds: tuple[int, ...] = SE
 
 
 def search(bench: Bench, progress: Progress, samples: int = SAMPLES) -> Fit:
-    """The best values, rounded as a robot file states them, and judged."""
+    """The best values, rounded for a robot file, and evaluated."""
     from scipy.optimize import least_squares
 
     whole("samples", samples, 1, 2**16)
@@ -108,7 +109,7 @@ def search(bench: Bench, progress: Progress, samples: int = SAMPLES) -> Fit:
 
 
 def _promising(bench: Bench, progress: Progress, samples: int, starts: int) -> list[NDArray[np.float64]]:
-    """The best of an even sample of the box, which begins with the estimates themselves."""
+    """The best of an even sample of the box that begins with the estimates themselves."""
     from scipy.stats import qmc
 
     lower, upper = limits()

@@ -1,4 +1,4 @@
 """Anybody's FMU (`giveway fmu check`, `info`, `run`), and ours as a System Structure Package (`giveway ssp`).
 
-An FMU is read without trust: limits on its files, its libraries opened in processes of their own.
+FMUs are not trusted: there are limits on their files, and their libraries are opened in separate processes.
 """

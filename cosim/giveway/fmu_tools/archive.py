@@ -1,7 +1,7 @@
-"""The zip file that an FMU is: its directory, and its files unpacked no further than that directory says.
+"""The zip file of an FMU: its directory, and its files unpacked no further than the directory states.
 
-Python's zipfile reads the directory. The files are unpacked here, because zipfile stops silently where the directory
-says that a file ends, and so hides that another tool would unpack more, or something else.
+Python's zipfile reads the directory. The files are unpacked here, because zipfile stops silently at the size that the
+directory states, which hides that another tool would unpack more, or other content.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ class ArchiveError(FileError):
 
 
 class OverLimitError(ArchiveError):
-    """There is more in it than the limits allow."""
+    """Its content exceeds the limits."""
 
     def __init__(self, path: Path, found: str, option: str) -> None:
         super().__init__(path, found, f"{option} allows more")
 
 
 def shown(text: str, longest: int = 120) -> str:
-    """A name from the file for a terminal: control characters escaped, and not endless."""
+    """A name from the file for a terminal: control characters escaped, and shortened."""
     if len(text) <= longest and text.isprintable():
         return text
     plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text[: longest + 1])
@@ -61,12 +61,12 @@ class Archive:
     """An FMU that is open for reading; a context manager.
 
     Attributes:
-        infos: its entries as the directory has them, folders too.
+        infos: its entries as in the directory, including folders.
         files: entry by name, folders left out; of entries with the same name the last one.
     """
 
     def __init__(self, path: Path, limits: Limits | None = None) -> None:
-        """Read the directory: FileError if ``path`` is no zip file, OverLimitError if it has too many entries."""
+        """Read the directory: FileError if ``path`` is not a zip file, OverLimitError if it has too many entries."""
         self.path = path
         self.limits = limits or Limits()
         self._file = _opened(path)
@@ -93,7 +93,7 @@ class Archive:
 
     @property
     def unpacked_bytes(self) -> int:
-        """As the directory states; reading never goes beyond it."""
+        """The size stated in the directory; reading never goes beyond it."""
         return sum(info.file_size for info in self.infos)
 
     def check_unpacked_size(self) -> None:
@@ -106,7 +106,7 @@ class Archive:
             )
 
     def chunks(self, info: zipfile.ZipInfo) -> Iterator[bytes]:
-        """The content of one file; ArchiveError where it is not what the directory says."""
+        """The content of one file; ArchiveError if it differs from the directory's statement."""
         name = shown(info.filename)
         if info.flag_bits & 1:
             raise ArchiveError(self.path, f"{name} is encrypted")
@@ -126,7 +126,7 @@ class Archive:
             raise ArchiveError(self.path, f"{name} is damaged: its checksum differs")
 
     def read(self, name: str) -> bytes:
-        """The whole content of one file: for files that are known to be small, or wanted in memory."""
+        """The whole content of one file: for files that are known to be small, or needed in memory."""
         return b"".join(self.chunks(self.files[name]))
 
     def extract(self, folder: Path) -> None:
@@ -141,7 +141,7 @@ class Archive:
                     target.mkdir(parents=True, exist_ok=True)
                     continue
                 target.parent.mkdir(parents=True, exist_ok=True)
-                with target.open("xb") as stream:  # never over a file that is there
+                with target.open("xb") as stream:  # never overwrites an existing file
                     for piece in self.chunks(info):
                         stream.write(piece)
             except (OSError, ValueError) as error:
@@ -149,13 +149,13 @@ class Archive:
                 raise ArchiveError(self.path, f"{shown(info.filename)} cannot be unpacked: {reason}") from None
 
     def _check_directory_size(self) -> None:
-        """Before zipfile makes an object of each entry."""
+        """Checked before zipfile makes an object of each entry."""
         start, size = _directory_place(self._file)
         too_many = OverLimitError(self.path, f"has more than {self.limits.entries:,} entries", "--max-entries")
         if size > self.limits.entries * _DIRECTORY_BYTES_PER_ENTRY + LONGEST_NAME:
             raise too_many
         self._file.seek(start)
-        # Names may hold these four bytes too: then this counts one too many.
+        # A name may contain these four bytes, too: then this counts one too many.
         if self._file.read(size).count(b"PK\x01\x02") > self.limits.entries:
             raise too_many
 
@@ -203,7 +203,7 @@ class Archive:
 
 
 def unsafe_place(name: str) -> str:
-    """Why no file can be unpacked under that name safely, in words; empty if it can."""
+    """Why a file cannot be unpacked safely under this name; empty if it can."""
     if not name:
         return "has no name"
     if leads_outside(name):

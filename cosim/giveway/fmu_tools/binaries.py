@@ -1,6 +1,6 @@
-"""What is inside a shared library of Linux, Windows or macOS: machine, exports, libraries it needs (by LIEF).
+"""Content of a shared library of Linux, Windows or macOS: machine, exports, libraries it needs (by LIEF).
 
-The library comes from elsewhere and may be damaged or made to do harm, so LIEF reads it in a process of its own.
+The library may be damaged or malicious, so LIEF reads it in a separate process.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ _MACHINES = {
     "AARCH64": "aarch64",
     "ARM64": "aarch64",
 }
-# What every machine of that system has.
+# Libraries on every machine with that system.
 _SYSTEM_LIBRARIES = {
     "linux": re.compile(r"lib(c|m|dl|rt|pthread)\.so(\.\d+)*|ld-linux.*|linux-vdso.*"),
     "windows": re.compile(r"(kernel32|ntdll|msvcrt|ucrtbase|advapi32|user32)\.dll|api-ms-win-.*\.dll", re.IGNORECASE),
     "darwin": re.compile(r"/usr/lib/libSystem\.B\.dylib"),
 }
-# Runtimes of compilers: not everywhere, but on nearly every machine that runs other programs.
+# Runtimes of compilers: on nearly every machine that runs other programs.
 _COMMON_LIBRARIES = {
     "linux": re.compile(r"lib(stdc\+\+|gcc_s|gomp|atomic)\.so(\.\d+)*"),
     "windows": re.compile(r"(msvcp|vcruntime|concrt)\d+(_\d+)?\.dll", re.IGNORECASE),
@@ -65,7 +65,7 @@ class Binary:
     Attributes:
         machines: "x86_64", "aarch64", "i686"; several in a universal file of macOS.
         exported: names of exported functions, without macOS's leading underscore.
-        imported: names that it takes from other libraries; read for Linux only.
+        imported: names from other libraries; read for Linux only.
         needed: libraries it asks the loader for.
         newest_glibc: the newest version of the GNU C library that it asks for, such as (2, 17); None if there is none.
     """
@@ -79,13 +79,13 @@ class Binary:
 
 
 def read_binary(path: Path) -> Binary:
-    """Read ``path``; FileError if it is no shared library, is cut short, or too large to read."""
+    """Read ``path``; FileError if it is not a shared library, is truncated, or too large to read."""
     size = path.stat().st_size
     if size > LARGEST_BYTES:
         raise FileError(path, f"has {size / 1e6:.0f} MB, too many to look into it")
     import lief
 
-    lief.logging.disable()  # loaded here, so that the process that reads need not
+    lief.logging.disable()  # loaded here, so that the reading process does not have to
     try:
         found = isolated(_read, path, READING_S, READING_MB)
     except IsolatedError as error:
@@ -96,7 +96,7 @@ def read_binary(path: Path) -> Binary:
 
 
 def _read(path: Path) -> Binary | str:
-    """What is in it, or what is wrong with it."""
+    """Its content, or its fault."""
     import lief
 
     size = path.stat().st_size
@@ -165,7 +165,7 @@ def cut_short(needed: int, size: int) -> str:
 
 
 def _loaded(macho: Any) -> list[Any]:
-    """The libraries of a Mach-O file but its own name, which it carries among them."""
+    """The libraries of a Mach-O file, except its own name, which is listed among them."""
     import lief
 
     own = lief.MachO.LoadCommand.TYPE.ID_DYLIB

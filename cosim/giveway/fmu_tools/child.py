@@ -1,8 +1,8 @@
-"""The process that an FMU of `giveway fmu run` runs in: whatever it does to itself, the caller reads it from a file.
+"""The process in which `giveway fmu run` runs an FMU: however it ends, the caller reads its results from files.
 
-Started by `fmu_process` with a folder as its only argument. It reads FOLDER/job.json, keeps FOLDER/status current
-(simulated time, and the FMI call that is under way), and writes FOLDER/traces.npy and, last, FOLDER/result.json. What
-it prints is the FMU's.
+Started by `fmu_process` with a folder as its only argument. It reads FOLDER/job.json, updates FOLDER/status (simulated
+time, and the present FMI call), and writes FOLDER/traces.npy and, last, FOLDER/result.json. Its printed output comes
+from the FMU.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ _LEAVING = "the library's own functions at the end of the process"
 
 
 def read_status(content: bytes) -> tuple[float, str]:
-    """Simulated time in s, and what was under way."""
+    """Simulated time in s, and the FMI call in progress."""
     time_s, doing = _STATUS.unpack(content)
     return time_s, doing.rstrip(b"\0").decode("utf-8", "replace")
 
 
 class _Status:
-    """A file in memory that outlives this process, however it ends."""
+    """A memory-mapped file that survives any end of this process."""
 
     def __init__(self, path: Path, time_s: float) -> None:
         with path.open("r+b") as file:
@@ -59,7 +59,7 @@ def main() -> None:
     except Exception as error:  # FMPy raises its own and plain Exceptions
         sys.stdout.flush()
         (folder / "result.json").write_text(json.dumps({"error": str(error)}), encoding="utf-8")
-        os._exit(0)  # the instance is in a state that nobody knows
+        os._exit(0)  # the instance is in an unknown state
     status.set(_LEAVING)
 
 
@@ -101,14 +101,14 @@ def _run(folder: Path, job: dict[str, Any], status: _Status) -> None:
     with (folder / "traces.npy").open("wb") as file:
         np.save(file, np.asarray(traces), allow_pickle=False)
     (folder / "result.json").write_text(json.dumps({"error": None}), encoding="utf-8")
-    # From here on a crash loses nothing.
+    # After this a crash loses no data.
     (fmu.fmi3FreeInstance if is_fmi3 else fmu.fmi2FreeInstance)(fmu.component)
     status.set(_UNLOADING)
     fmu.freeLibrary()
 
 
 def _watch(fmu: Any, status: _Status) -> None:
-    """Say before each FMI call which one it is: FMPy sends all of them through one method."""
+    """Record the name of each FMI call before it: FMPy makes all calls through one method."""
     call = fmu._call
 
     def watched(name: str, *arguments: Any) -> Any:

@@ -98,7 +98,7 @@ def info(
         first = list(islice(found, LONGEST_TABLE + 1))
         if len(first) <= LONGEST_TABLE:
             print_columns(f"{len(first)} variables", VARIABLE_HEADER, first)
-        else:  # a table is laid out as a whole, which takes long and much memory
+        else:  # the layout of a whole table takes much time and memory
             for row in (VARIABLE_HEADER, *first):
                 typer.echo("  ".join(row))
             for row in found:

@@ -1,7 +1,7 @@
-"""A model description of FMI 2 or 3 as plain data, read so forgivingly that a checker can say what is wrong with it.
+"""A model description of FMI 2 or 3 as plain data, read tolerantly, so that a checker can report its faults.
 
-It is read as a stream, without a tree: a file of some tens of MB does not take hundreds. FMPy's own reader raises on
-the first fault; this one keeps what is there as text, and lists the numbers that are none.
+It is read as a stream, without a tree, so a file of some tens of MB does not need hundreds. FMPy's reader raises on the
+first fault; this one keeps all values as text, and lists invalid numbers.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ _FMI2_SECTIONS = {"Outputs": "Output", "Derivatives": "ContinuousStateDerivative
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 _ROOT = "fmiModelDescription"
 _MOST_PROBLEMS = 100
-_NONE = -1  # a reference or an index that is none
+_NONE = -1  # an invalid reference or index
 
 
 class VersionError(XmlError):
-    """A model description of another FMI version; ``version`` as the file has it."""
+    """A model description of another FMI version; ``version`` as in the file."""
 
     def __init__(self, version: str) -> None:
         super().__init__(f"it is FMI {version!r}")
@@ -64,7 +64,7 @@ class Unit:
 
 @dataclass(frozen=True, slots=True)
 class VariableEntry:
-    """One variable as the file has it; attributes that are missing are empty texts.
+    """One variable as in the file; missing attributes are empty texts.
 
     Attributes:
         index: position in ModelVariables, from 1.
@@ -99,7 +99,7 @@ class VariableEntry:
 
     @property
     def initial(self) -> str:
-        """As written, else the standard's default for this causality and variability."""
+        """As in the file, or the standard's default for this causality and variability."""
         if self.get("initial"):
             return self.get("initial")
         if self.causality in ("input", "independent"):
@@ -110,7 +110,7 @@ class VariableEntry:
 
     @property
     def is_clocked(self) -> bool:
-        """Whether it changes with clocks alone, or is one."""
+        """Whether it changes only with clocks, or is a clock."""
         return self.type == "Clock" or bool(self.get("clocks"))
 
 
@@ -125,10 +125,10 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Description:
-    """What a modelDescription.xml says.
+    """The content of a modelDescription.xml.
 
     Attributes:
-        problems: what is there and is no number, with the line; such numbers are read as -1.
+        problems: values that should be numbers but are not, with the line; they are read as -1.
     """
 
     version: int
@@ -148,7 +148,7 @@ class Description:
     by_name: Mapping[str, VariableEntry] = field(default_factory=dict)
 
     def key(self, variable: VariableEntry) -> int:
-        """What ModelStructure calls ``variable``."""
+        """The key of ``variable`` in ModelStructure."""
         return variable.index if self.version == 2 else variable.reference
 
     @property
@@ -157,14 +157,14 @@ class Description:
 
 
 def effective(description: Description, variable: VariableEntry, name: str) -> str:
-    """An attribute of the variable, else of its declared type."""
+    """An attribute of the variable, or else of its declared type."""
     return variable.get(name) or description.types.get(variable.get("declaredType"), {}).get(name, "")
 
 
 def read_description(content: bytes | Iterable[bytes], budget: Budget | None = None) -> Description:
-    """From the bytes of a modelDescription.xml, whole or in pieces.
+    """Reads the bytes of a modelDescription.xml, whole or in pieces.
 
-    Raises XmlError if it is not XML, or over the limits of ``budget`` (without one: of `Limits`), or of another root;
+    Raises XmlError if it is not XML, exceeds the limits of ``budget`` (default: of `Limits`), or has another root;
     VersionError if it is neither FMI 2 nor 3.
     """
     budget = budget or Budget(Limits())
@@ -174,7 +174,7 @@ def read_description(content: bytes | Iterable[bytes], budget: Budget | None = N
 
 
 class _Reader:
-    """What the stream of elements adds up to; ``_path`` is where it is."""
+    """Collects the stream of elements; ``_path`` is the present position."""
 
     def __init__(self, budget: Budget) -> None:
         self._budget = budget

@@ -1,4 +1,4 @@
-"""`giveway fmu info`: what an FMU is and what it holds, as tables."""
+"""`giveway fmu info`: properties and content of an FMU, as tables."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _indicators(description: Description) -> str:
 
 
 def _platforms(archive: Archive) -> list[str]:
-    """Folders below binaries/, for Linux with the oldest GNU C library that will do."""
+    """Folders below binaries/, for Linux with the oldest sufficient GNU C library."""
     found: dict[str, str] = {}
     for name in archive.files:
         parts = name.split("/")

@@ -1,4 +1,4 @@
-"""What `giveway fmu run` gives to an FMU: values set once (--set), and inputs over time from a CSV file (--input)."""
+"""Inputs of `giveway fmu run` to an FMU: values set once (--set), and inputs over time from a CSV file (--input)."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def assigned(description: Description, assignments: Sequence[str]) -> dict[str, 
 def read_inputs(path: Path, description: Description) -> NDArray[Any]:
     """The inputs over time: a structured array, field "time" in s, then one per column of the file.
 
-    The first column is time in s, which does not fall; where it stands still, an input jumps. The others are called
-    like inputs, with their unit in brackets if they have one: "push.force_x [N]". Between rows reals are interpolated,
-    all else is held. FileError or InputFileError for what is not so.
+    The first column is time in s, which must not decrease; where it repeats, an input jumps. The others have the names
+    of inputs, with their unit in brackets if they have one: "push.force_x [N]". Between rows reals are interpolated,
+    other types are held. Otherwise FileError or InputFileError is raised.
     """
     rows = list(_rows(path))
     if len(rows) < 2:

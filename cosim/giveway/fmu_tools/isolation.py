@@ -1,4 +1,4 @@
-"""A function in a process of its own, so that a library that crashes, hangs or fills memory takes nothing with it."""
+"""Calls a function in a separate process, so that a library that crashes, hangs or fills memory does no damage."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ R = TypeVar("R")
 
 
 class IsolatedError(Exception):
-    """The process did not come back with a result; the text says how it ended, as "ends with SIGSEGV"."""
+    """The process returned no result; the text tells how it ended, such as "ends with SIGSEGV"."""
 
 
 def signal_name(number: int) -> str:
@@ -30,8 +30,8 @@ def signal_name(number: int) -> str:
 def isolated(function: Callable[[A], R], argument: A, seconds: int, memory_mb: int) -> R:
     """``function(argument)`` of a forked process; the result has to be plain data.
 
-    ``memory_mb`` is what it may have beyond what this process has. IsolatedError if it does not come back. Where
-    there is no fork (Windows) the function is called here.
+    ``memory_mb`` limits its memory in addition to that of this process. IsolatedError if it returns no result. Without
+    fork (Windows) the function is called in this process.
     """
     if not hasattr(os, "fork"):
         return function(argument)

@@ -1,4 +1,4 @@
-"""How much of an FMU is read: a file from elsewhere may be made to fill memory, disk or time."""
+"""Limits for reading an FMU: a malicious file may try to fill memory, disk or time."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from giveway.base.checks import finite, whole
 __all__ = ["LARGEST_ELEMENT_BYTES", "MOST_LEVELS", "Limits"]
 
 LARGEST_ELEMENT_BYTES = 4_000_000
-"""Of one XML tag with its attributes: no parser hands it out before it is complete."""
+"""Size of one XML tag with its attributes: a parser returns it only when it is complete."""
 MOST_LEVELS = 100
-"""Of XML elements, and of folders in an archive, inside each other."""
+"""Nesting depth of XML elements, and of folders in an archive."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What is refused beyond; GivewayError for a limit that is none. The command line's options set them.
+    """Limits beyond which a file is refused; GivewayError for an invalid limit. The command line's options set them.
 
     Attributes:
         unpacked_mb: all files of the archive together, unpacked, in MB (1e6 bytes).

@@ -1,4 +1,4 @@
-"""What `giveway fmu run` writes: every recorded variable as CSV, or a page with plots."""
+"""Output of `giveway fmu run`: every recorded variable as CSV, or a page with plots."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["write_run"]
 
 PLOTTED_VARIABLES, POINTS_SHOWN = 60, 2000
-SWITCHES, COUNTS = "switches", "whole numbers"  # plots of their own, beside those of each unit
+SWITCHES, COUNTS = "switches", "whole numbers"  # separate plots, in addition to those of each unit
 
 
 def write_run(out: Path, run: FmuRun) -> None:
@@ -42,7 +42,8 @@ def _write_csv(path: Path, run: FmuRun) -> None:
 
 
 def _page(run: FmuRun) -> str:
-    """One self-contained page. What is not drawn is listed: what never changes, and counters beside reals."""
+    """One self-contained page. Variables that are not drawn are listed: those that never change, and counters if there
+    are reals."""
     from html import escape
 
     from giveway.report.inline_svg import inline_svg
@@ -67,7 +68,7 @@ def _page(run: FmuRun) -> str:
 
 
 def _sorted_out(run: FmuRun) -> tuple[dict[str, list[str]], list[str], list[str]]:
-    """What is drawn, by unit (reals first, then switches and whole numbers); what is not; what never changes.
+    """Drawn variables by unit (reals first, then switches and whole numbers); those not drawn; those that never change.
 
     Unless the user chose: whole numbers (counters, mostly) are drawn only if there is nothing else.
     """
@@ -116,6 +117,6 @@ def _figure(traces: NDArray[Any], unit: str, names: list[str]) -> Any:
 
 
 def _label(text: str) -> str:
-    """Names are from elsewhere: no formula in them, and none is hidden for its first character."""
+    """Names come from the FMU: they are not interpreted as formulas, and none is hidden for its first character."""
     plain = text.replace("\\", "\\\\").replace("$", "\\$")
     return f" {plain}" if plain.startswith("_") else plain

@@ -1,4 +1,4 @@
-"""Runs somebody's FMU in a process of its own, in a temporary folder that goes whatever happens."""
+"""Runs any FMU in a separate process, in a temporary folder that is always removed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _log = logging.getLogger(__name__)
 
 POLL_S = 0.05
 LAST_BYTES, LAST_LINES = 4000, 3  # of what the FMU printed
-# Reads until the caller has gone, then ends what it started and removes its folder: a killed process cannot.
+# Waits for the end of the caller, then ends its processes and removes its folder, which a killed caller cannot do.
 _JANITOR = 'read child; cat > /dev/null; kill -s KILL -- "-$child" 2> /dev/null; rm -rf -- "$1"'
 
 
@@ -48,7 +48,7 @@ class TemporaryFolder:
         except OSError as error:
             raise FileError(tempfile.gettempdir(), f"cannot be written: {error.strerror}") from None
         self._janitor: subprocess.Popen[str] | None = None
-        with contextlib.suppress(OSError):  # a system without that shell: then a killed run leaves its folder
+        with contextlib.suppress(OSError):  # a system without this shell: then a killed run leaves its folder behind
             self._janitor = subprocess.Popen(
                 ["/bin/sh", "-c", _JANITOR, "sh", str(self.path)],
                 stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,
@@ -88,9 +88,9 @@ def run_in_child(
 ) -> tuple[NDArray[Any], str]:
     """Run the FMU that is unpacked in the folder's ``fmu``, and return its traces.
 
-    The second value is what went wrong after the run was over and its results were safe, or nothing.
-    Raises SimulationError with the FMU's own words if it refuses or fails, FmuStoppedError if its process does not
-    end well. ``job`` is what `fmu_child` reads.
+    The second value tells what went wrong after the end of the run, when its results were safe; empty if nothing did.
+    Raises SimulationError with the FMU's own message if it refuses or fails, FmuStoppedError if its process crashes or
+    hangs. ``job`` is the input of `child`.
     """
     import numpy as np
 
@@ -148,7 +148,7 @@ def _wait(
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """With everything that the FMU started."""
+    """Including all processes that the FMU started."""
     if hasattr(os, "killpg"):
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -162,7 +162,7 @@ def _how_it_ended(code: int) -> str:
 
 
 class _Tail:
-    """Reads what the FMU prints, which may be endless, and keeps the end."""
+    """Reads the FMU's printed output, which may be endless, and keeps the end."""
 
     def __init__(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""`giveway fmu run`: any FMU, Co-Simulation or Model Exchange, over FMPy, in a process of its own."""
+"""`giveway fmu run`: any FMU, Co-Simulation or Model Exchange, with FMPy, in a separate process."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ _FEW = 5  # variables that are recorded of an FMU without outputs
 
 @dataclass(frozen=True)
 class FmuRun:
-    """What came out.
+    """The results.
 
     Attributes:
         traces: structured array; field "time" in s, then one field per recorded variable.
         units: per variable, "" if it has none.
-        plotted: what the user asked to see; empty: the usual.
-        note: what was chosen otherwise than the FMU's default experiment has it; empty if nothing.
-        stopped: what happened to the FMU's process after the run was complete; empty if it ended well.
+        plotted: variables that the user chose; empty: the default.
+        note: deviations from the FMU's default experiment; empty if there are none.
+        stopped: fault of the FMU's process after the run was complete; empty if it ended normally.
     """
 
     path: Path
@@ -89,9 +89,9 @@ def run_fmu(
         assignments: "NAME=VALUE" for inputs and parameters.
         progress: called now and then with the simulated time and the end, in s.
         inputs: CSV file of inputs over time; see `fmu_inputs.read_inputs`. Others are held.
-        plot: names, or patterns with * and ?, of what is recorded beside the outputs, and drawn.
-        limits: of what is unpacked.
-        time_limit_s: of the wall, 0.1 to 1e7 s; None: as long as it takes.
+        plot: names, or patterns with * and ?, of variables to record in addition to the outputs, and to draw.
+        limits: for unpacking.
+        time_limit_s: wall time, 0.1 to 1e7 s; None: unlimited.
         most_steps: 1 to 1e9.
 
     Raises GivewayError for wrong input, FileError for a file that is refused, SimulationError if the FMU refuses or
@@ -195,7 +195,7 @@ def _own(text: str | None, name: str) -> float | None:
 
 
 def _recorded(description: Description, plot: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
-    """Names of what is recorded, and of what the user wants to see."""
+    """Names of the recorded variables, and of those that the user chose."""
     numeric = {v.name: v for v in description.variables if v.type not in _UNPLOTTABLE and v.causality != "independent"}
     plotted: dict[str, None] = {}
     for pattern in plot:

@@ -1,14 +1,14 @@
 """`giveway ssp`: controller and testbed as a System Structure Package (SSP 1.0), with a parameter set for each bumper.
 
-Names, units and values come from the FMUs and their tables. SSP says what is connected, not in which order values are
-exchanged: the tools that read it (FMPy, ecos, libcosim) all exchange between steps, both models at once, which costs
-the command a cycle that our own order does not have. So the parameter sets take one cycle out of
-`electronics.command_delay`; the loop is then the same.
+Names, units and values come from the FMUs and their tables. SSP defines connections, but not the order of exchange: the
+tools that read it (FMPy, ecos, libcosim) exchange values between steps, for both models at once, which delays the
+command by one cycle compared with our order. Therefore the parameter sets reduce `electronics.command_delay` by one
+cycle; the loop is then the same.
 
 Parameters are bound twice, to the same values: at the system, where a set for the whole (``BUMPER.ssv``) names them
 "testbed.NAME" and FMPy expects them, and at each component, where ecos and libcosim look (``BUMPER.MODEL.ssv``). The
-system has no connectors of its own, which those two refuse, and a component none for an input that nothing is connected
-to (plan, push), which FMPy 0.3.32 would connect to something else; such inputs keep their start values.
+system itself has no connectors, since those two refuse them. A component has no connector for an unconnected input
+(plan, push), since FMPy 0.3.32 would connect it to something else; such inputs keep their start values.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["DEFAULT_BUMPER", "parameter_set", "write_ssp"]
 
 DEFAULT_BUMPER = "magnetic"
-FMI_VERSION = 2  # SSP 1.0 knows no FMI 3
+FMI_VERSION = 2  # SSP 1.0 does not support FMI 3
 STOP_S = 1.0
 _BASE = "http://ssp-standard.org/SSP1/SystemStructure"
 _SSD, _SSV, _SSC = _BASE + "Description", _BASE + "ParameterValues", _BASE + "Common"
@@ -47,7 +47,7 @@ def write_ssp(out: Path, robot: Robot | None = None, *, sequential: bool = False
 
     Args:
         robot: instead of the robot that the FMUs were built with.
-        sequential: for a tool that exchanges in our order; the command delay stays as it is.
+        sequential: for a tool that exchanges in our order; the command delay is not changed.
     """
     if out.suffix != ".ssp":
         raise GivewayError("--out", out, "a file that ends in .ssp")
@@ -72,9 +72,9 @@ def write_ssp(out: Path, robot: Robot | None = None, *, sequential: bool = False
 
 
 def parameter_set(bumper: str, robot: Robot | None = None, *, sequential: bool = False) -> dict[str, Value]:
-    """What makes the testbed one with ``bumper``, by "model.name"; with ``robot`` also all that robot's values.
+    """Parameters of the testbed with ``bumper``, by "model.name"; with ``robot`` also all values of that robot.
 
-    The slider hits that robot as the experiment "motionless" does.
+    The slider hits that robot as in the experiment "motionless".
     """
     testbed = table("testbed")
     if bumper not in BUMPERS:
@@ -127,7 +127,7 @@ def _root(namespace: str, prefix: str, tag: str, name: str) -> Any:
 
 
 def _units(root: Any, namespace: str, used: Iterable[str], descriptions: Mapping[str, Description]) -> None:
-    """The definitions of ``used``, as the FMUs have them."""
+    """The definitions of ``used`` from the FMUs."""
     defined = {unit.name: unit for description in descriptions.values() for unit in description.units}
     units = _add(root, namespace, "Units")
     for name in sorted(set(used)):

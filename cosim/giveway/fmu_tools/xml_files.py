@@ -1,4 +1,4 @@
-"""XML from elsewhere, read as a stream: no tree, no document type, no entities, nothing fetched, nothing endless."""
+"""Untrusted XML, read as a stream: no tree, no document type, no entities, no network, with limits."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ DEPENDENCIES_PER_ELEMENT = 20
 
 
 class XmlError(Exception):
-    """The file is not XML that is read here; the text says why, with the line."""
+    """The file is not acceptable XML; the text gives the reason and the line."""
 
 
 class XmlLimitError(XmlError):
-    """It is larger than the limits allow."""
+    """It exceeds the limits."""
 
 
 @dataclass
 class Budget:
-    """What may still be read; the XML files of one FMU share it."""
+    """The remaining budget; the XML files of one FMU share it."""
 
     limits: Limits
     read_bytes: int = 0
@@ -42,7 +42,7 @@ class Budget:
             raise XmlLimitError(f"more than {self.limits.xml_elements:,} XML elements; --max-elements allows more")
 
     def add_dependencies(self, count: int) -> None:
-        """Of ModelStructure; each is a number in an attribute, so they are not elements."""
+        """Dependencies in ModelStructure; each is a number in an attribute, so they are not elements."""
         self.dependencies += count
         most = DEPENDENCIES_PER_ELEMENT * self.limits.xml_elements
         if self.dependencies > most:
@@ -50,11 +50,11 @@ class Budget:
 
 
 Start = Callable[[str, dict[str, str], int], None]
-"""(tag, attributes, line). A namespace stands before a tag, with a space between."""
+"""(tag, attributes, line). A namespace precedes its tag, separated by a space."""
 
 
 def read_xml(chunks: Iterable[bytes], budget: Budget, start: Start, end: Callable[[], None]) -> None:
-    """Hand out every element as it begins and ends; XmlError with the line where it cannot go on."""
+    """Report the begin and end of every element; XmlError with the line where reading fails."""
     parser = expat.ParserCreate(namespace_separator=" ")
     level = fed = 0
     handing_out = False
@@ -90,13 +90,13 @@ def read_xml(chunks: Iterable[bytes], budget: Budget, start: Start, end: Callabl
             budget.add_bytes(len(chunk))
             parser.Parse(chunk, False)
             fed += len(chunk)
-            # What the parser still holds is one unfinished tag or comment.
+            # The parser's buffer contains one unfinished tag or comment.
             if fed - max(0, parser.CurrentByteIndex) > LARGEST_ELEMENT_BYTES:
                 raise XmlLimitError(f"{line()}: one element has over {LARGEST_ELEMENT_BYTES / 1e6:g} MB")
         parser.Parse(b"", True)
     except expat.ExpatError as error:
         raise XmlError(f"line {error.lineno}: {expat.ErrorString(error.code)}") from None
-    except (LookupError, UnicodeError, ValueError) as error:  # an encoding that does not exist, or is not one
+    except (LookupError, UnicodeError, ValueError) as error:  # an unknown encoding, or not a text encoding
         if handing_out:
             raise
         raise XmlError(f"{line()}: {error}") from None

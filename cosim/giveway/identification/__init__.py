@@ -1,5 +1,5 @@
 """Roller friction (28) of a user's own robot, from logs of its free motion: `giveway calibrate`.
 
-`motion_log` reads a log, `torque_model` is (27), `roller_fit` the fit, `roller_friction` what is made of it, `command`
-the command.
+`motion_log` reads a log, `torque_model` is (27), `roller_fit` the fit, `roller_friction` its evaluation, `command` the
+command.
 """

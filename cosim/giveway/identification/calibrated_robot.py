@@ -1,4 +1,4 @@
-"""`giveway calibrate`: from log files to a new robot file with a residual plot beside it."""
+"""`giveway calibrate`: from log files to a new robot file and a residual plot."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from giveway.robot.robot_file import read_robot
 __all__ = ["calibrate_robot", "table_rows"]
 
 COULOMB, SLOPE = "roller.coulomb_torque", "roller.tanh_slope"
-HASH_DIGITS = 12  # of sha256: enough to tell logs apart
-DIGITS = 5  # more than any log can tell
+HASH_DIGITS = 12  # digits of sha256: enough to distinguish logs
+DIGITS = 5  # more digits than any log can determine
 
 
 def calibrate_robot(logs: Sequence[Path], robot: Path, out: Path) -> tuple[Calibration, tuple[Path, Path]]:

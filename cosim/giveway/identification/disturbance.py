@@ -1,7 +1,7 @@
-"""What touched the robot while a log of free motion was written: forces that (27) does not explain.
+"""Contacts with the robot in a log of free motion: forces that (27) does not explain.
 
-The torques that the fit leaves are taken for a force and a moment on the base, and judged as the robot's own detector
-does: what is above a leak adds up, and from a certain impulse on it was no error of the model.
+The residual torques of the fit are interpreted as a force and a moment on the base, and judged like in the robot's
+detector: the part above a leak is integrated, and above a certain impulse it cannot be an error of the model.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Disturbance", "Limits", "find_disturbance"]
 
-NOISE = 4.0  # medians of what is left: this much more leak for noise and for what is wrong with the model all along
+NOISE = 4.0  # leak in addition, in medians of the residual: for noise and for permanent errors of the model
 NEAR_REST = 2.0  # B_r: the largest sum of three rollers' friction of up to B_r each, at 120 degrees
-OVER_S = 0.3  # this long below the leak, and the disturbance is over
+OVER_S = 0.3  # a disturbance ends after this time below the leak
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,11 @@ class Limits:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Something that touched the robot.
+    """A contact with the robot.
 
     Attributes:
         log: number of the log.
-        begin_s, end_s: from when to when, s.
+        begin_s, end_s: its begin and end, s.
         force_n: largest force that (27) leaves unexplained, N.
     """
 
@@ -52,16 +52,16 @@ class Disturbance:
 def find_disturbance(
     samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], found: Fit, model: TorqueModel, limits: Limits
 ) -> Disturbance | None:
-    """The first disturbance of the first log that has one; None if all of it is free motion."""
+    """The first disturbance in the first log that has one; None if all logs are free motion."""
     for log, (one, rows) in enumerate(zip(samples, used, strict=True)):
         friction = found.x[0] * np.tanh(found.x[1] * one.roller_rate) @ model.friction_gain.T
         if not rows.any():
             continue
-        # Rollers near rest hold any force up to their friction, but none of it has a moment about the centre.
+        # Rollers near rest hold any force up to their friction, but these forces have no moment about the centre.
         friction[~rows] = 0.0
         held_n = np.where(rows, 0.0, NEAR_REST * abs(float(found.x[0])) / model.roller_radius_m)
         wrench = (one.torque_nm - one.rigid_nm - friction) @ model.wheel_jacobian
-        wrench -= np.median(wrench[rows], axis=0)  # the tare; a disturbance that lasts draws that of the fit towards it
+        wrench -= np.median(wrench[rows], axis=0)  # the tare; a lasting disturbance shifts that of the fit
         force = np.hypot(wrench[:, 0], wrench[:, 1])
         lever = np.abs(wrench[:, 2]) / model.wheel_distance_m
         above = np.maximum(

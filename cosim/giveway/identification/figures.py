@@ -1,4 +1,4 @@
-"""Pictures of a roller calibration: what was measured, what the model makes of it, and what is left."""
+"""Figures of a roller calibration: measurement, model, and residual."""
 
 from __future__ import annotations
 
@@ -84,6 +84,6 @@ def _draw_residuals(axis: Axes, x: NDArray[np.float64], left: NDArray[np.float64
         axis.plot(x[unused], left[unused, wheel], ".", color=TRUTH_COLOUR, markersize=2, alpha=0.6)
         axis.plot(x[log.used], left[log.used, wheel], ".", color=colour, markersize=2.5, label=f"wheel {wheel}")
     axis.plot([], [], ".", color=TRUTH_COLOUR, label="left out (near rest)")
-    # The scale of what was fitted; what was left out may lie far outside.
+    # The scale of the used samples; left-out samples may lie far outside.
     reach = float(np.abs(left[log.used]).max()) if log.used.any() else 1.0
     axis.set_ylim(-2.5 * reach, 2.5 * reach)

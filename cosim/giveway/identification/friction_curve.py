@@ -1,4 +1,4 @@
-"""Friction over the speed without a law: what (28) is judged by where it does not fit."""
+"""Friction over the speed without a given law: used to judge (28) where it does not fit."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class FrictionCurve:
     Attributes:
         rate: roller rates, rising, shape (n,), rad/s.
         torque_nm: shape (n,), N m.
-        left_nm: root mean square of what it leaves of the torques, N m.
-        all_nm: root mean square of all that the rigid robot does not explain, about its mean, N m.
+        left_nm: root mean square of its residual torques, N m.
+        all_nm: root mean square of the torques that the rigid robot does not explain, about their mean, N m.
     """
 
     rate: NDArray[np.float64]

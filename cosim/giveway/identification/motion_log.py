@@ -1,13 +1,13 @@
 """A user's own log of wheel angles and wheel torques, from a CSV file.
 
-Columns are found by their names, in any order; others are left alone:
+Columns are found by their names, in any order; other columns are ignored:
 
     time_s                                        also _ms, _us
     wheel_angle_0_rad  ..._1_rad  ..._2_rad       also _deg, _counts (the robot's drivetrain.encoder_counts per turn)
     torque_0_nm        ..._1_nm   ..._2_nm        also _mnm
 
-`motor_angle_0_...` instead of `wheel_angle_0_...` says that the encoders sit on the motor side of the torque sensors,
-as Trikey's do; the deflection T/k of the drivetrain is then taken off. Angles may wrap (at a turn, counts at 32 bits).
+`motor_angle_0_...` instead of `wheel_angle_0_...` means that the encoders are on the motor side of the torque sensors,
+as on Trikey; the deflection T/k of the drivetrain is then subtracted. Angles may wrap (at a turn, counts at 32 bits).
 Signs and order are those of the robot: wheel i at azimuth 120 i deg, positive torque turns it towards positive angles.
 """
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 __all__ = ["MotionLog", "behind_drivetrain", "counts_to_rad", "read_log"]
 
 WHEELS = 3
-ROWS_MIN = 10  # anything shorter is a wrong file; whether a log is long enough is for the fit to say
-GAP_STEPS = 10.0  # a step longer than this many usual ones is a hole in the log
+ROWS_MIN = 10  # a shorter file is wrong; the fit decides whether a log is long enough
+GAP_STEPS = 10.0  # a step longer than this many usual steps is a gap in the log
 COUNT_WRAP = 2.0**32
 _TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 _TORQUE = {"nm": 1.0, "mnm": 1e-3}
@@ -42,7 +42,7 @@ _ANGLE_UNITS = ("rad", "deg", "counts")
 
 @dataclass(frozen=True)
 class MotionLog:
-    """What a robot's wheels did and felt.
+    """Motion and torques of a robot's wheels.
 
     Attributes:
         name: for messages and figures.
@@ -61,7 +61,7 @@ class MotionLog:
 
 @dataclass(frozen=True)
 class _Column:
-    """Where a quantity is in a row, and its factor to SI units."""
+    """The column of a quantity, and its factor to SI units."""
 
     name: str
     index: int
@@ -69,7 +69,7 @@ class _Column:
 
 
 def read_log(path: Path, robot: Robot) -> MotionLog:
-    """Read ``path``; FileError names the file, the line and the column of what is wrong.
+    """Read ``path``; FileError names file, line and column of the fault.
 
     Args:
         path: a CSV file with a header line; see the module for its columns.
@@ -183,7 +183,7 @@ def _check_time(path: Path, time_s: NDArray[np.float64], numbers: list[int]) -> 
 
 
 def _radians(values: NDArray[np.float64], column: _Column, robot: Robot) -> NDArray[np.float64]:
-    """Angles in rad, with every jump of more than half a period taken as a wrap."""
+    """Angles in rad; every jump of more than half a period counts as a wrap."""
     import numpy as np
 
     if column.unit == "counts":

@@ -1,4 +1,4 @@
-"""Presliding: what rollers at rest carry past the wheels, and how to learn three stiffnesses from a few known pushes.
+"""Presliding: the force that rollers at rest carry, and how to identify three stiffnesses from a few known pushes.
 
 A roller that does not roll is a spring along its wheel's axle. A static push on the unpowered robot is carried by the
 three drivetrains, which the torque sensors feel, and by the three rollers, which they do not::
@@ -35,13 +35,14 @@ __all__ = ["Base", "Calibration", "KnownPush", "calibrate", "felt_wrench", "stat
 WHEELS = 3
 FORCE_MAXIMUM_N, LENGTH_MAXIMUM_M, TORQUE_MAXIMUM_NM = 1e4, 10.0, 1e4
 # The moment of a push is felt in full, so the felt one tells a wrong point, unit, sign or wheel order from presliding.
-# A quarter of R F is a push 6 cm from where it is said to be on Trikey: more than a careful hand is off.
+# A quarter of R F is a push 6 cm from its stated point on Trikey: more than the error of a careful hand.
 MOMENT_TOLERANCE = 0.25
 # One standard deviation of s_i may be this share of the drivetrain's stiffness at the floor: the force of a push on
 # that wheel's roller is then wrong by at most the same share of what the wheel feels.
 SIGMA_TOLERANCE = 0.1
-# What the fitted stiffnesses leave of the known forces may be this share of them: beyond, a calibrated robot would feel
-# a push wrong by as much. A roller that slipped, a robot that moved or wheels in another order leave more.
+# Largest residual of the fitted stiffnesses, as a share of the known forces: with a larger one, a calibrated robot
+# would have this error in the force of a push. A roller that slipped, a robot that moved or wheels in another order
+# leave more.
 RESIDUAL_TOLERANCE = 0.1
 # Beyond this many standard deviations below zero a stiffness is not small but wrong.
 NEGATIVE_SIGMAS = 3.0
@@ -49,7 +50,7 @@ NEGATIVE_SIGMAS = 3.0
 
 @dataclass(frozen=True)
 class Base:
-    """What the static model needs to know of a robot.
+    """The numbers of a robot for the static model.
 
     Attributes:
         wheel_radius_m: r_w, above 0.
@@ -103,7 +104,7 @@ class KnownPush:
     Attributes:
         force_n: (x, y) of the force ON the robot, base frame, N: a weight of m kg over a pulley is 9.81 m.
         point_m: (x, y) of where it acts, base frame, m.
-        torque_nm: what the three wheels' torques changed by, N m: mean while pushed minus mean before.
+        torque_nm: change of the three wheels' torques, N m: mean during the push minus mean before.
     """
 
     force_n: tuple[float, float]
@@ -135,7 +136,7 @@ class Calibration:
     moment_residual_nm: float
 
     def controller_parameters(self) -> dict[str, float]:
-        """What makes the controller compensate: for ``Scenario.controller``, or ``--set controller.NAME=``."""
+        """Parameters for compensation in the controller: for ``Scenario.controller``, or ``--set controller.NAME=``."""
         allowed = table("controller")["estimator.presliding_stiffness[0]"]
         within = np.clip(self.stiffness_n_per_m, allowed.minimum, allowed.maximum)
         stiffness = {f"estimator.presliding_stiffness[{wheel}]": float(s) for wheel, s in enumerate(within)}
@@ -157,7 +158,7 @@ def static_torques(base: Base, stiffness_n_per_m: ArrayLike, wrench: ArrayLike) 
 
 
 def felt_wrench(base: Base, torque_nm: ArrayLike) -> NDArray[np.float64]:
-    """Fx, Fy (N) and moment (N m) that the torques show by themselves (38) at rest; shapes (..., 3) to (..., 3)."""
+    """Fx, Fy (N) and moment (N m) computed from the torques alone (38) at rest; shapes (..., 3) to (..., 3)."""
     return np.asarray(-np.asarray(torque_nm, dtype=np.float64) @ base.wheel_jacobian)
 
 
@@ -190,7 +191,7 @@ def calibrate(pushes: Sequence[KnownPush], base: Base | None = None, torque_sigm
     known = np.stack([push.wrench for push in pushes])
     felt = felt_wrench(base, torques)
     displacement = -np.linalg.solve(base.wheel_jacobian, torques.T).T / base.drivetrain_stiffness_nm_per_rad
-    # What the wheels do not feel is what the rollers carry: sum_i s_i n_i (n_i . d) = F - felt. Linear in s.
+    # The rollers carry the force that the wheels do not feel: sum_i s_i n_i (n_i . d) = F - felt. Linear in s.
     deflection = displacement[:, :2] @ base.radial.T
     design = (base.radial.T[None] * deflection[:, None, :]).reshape(-1, WHEELS)
     missing = (known - felt)[:, :2].reshape(-1)
@@ -245,7 +246,7 @@ def _solve(design: NDArray[np.float64], missing: NDArray[np.float64]) -> NDArray
 
 
 def _noise(base: Base, stiffness: NDArray[np.float64], torque_sigma_nm: float) -> NDArray[np.float64]:
-    """Covariance (N^2) of one push's two equations: a torque enters the felt force, and what loads the rollers."""
+    """Covariance (N^2) of one push's two equations: a torque enters the felt force, and the load of the rollers."""
     jacobian, radial = base.wheel_jacobian, base.radial
     to_displacement = np.linalg.inv(jacobian)[:2] / base.drivetrain_stiffness_nm_per_rad
     noise = (jacobian.T[:2] + (radial.T * stiffness) @ radial @ to_displacement) * torque_sigma_nm
@@ -253,7 +254,7 @@ def _noise(base: Base, stiffness: NDArray[np.float64], torque_sigma_nm: float) -
 
 
 def _sigma(design: NDArray[np.float64], covariance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Standard deviations of the stiffnesses that torque noise makes, shape (3,)."""
+    """Standard deviations of the stiffnesses from torque noise, shape (3,)."""
     shares = np.linalg.pinv(design).reshape(WHEELS, -1, 2)
     return np.asarray(np.sqrt(np.einsum("ipa,ab,ipb->i", shares, covariance, shares)))
 

@@ -1,6 +1,6 @@
 """The numerical part of the roller calibration: smoothed samples, the zone near rest, the robust fit and its spread.
 
-`giveway.identification.roller_friction` says what is done and why, and refuses what these functions cannot use.
+`giveway.identification.roller_friction` explains the method, and refuses logs that these functions cannot use.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ __all__ = [
 SMOOTHING_S = 0.05
 """Standard deviation of the Gaussian: -3 dB at 2.7 Hz. Arcs take seconds; encoder steps and servo ripple do not."""
 
-LONGEST_STEP_S = SMOOTHING_S  # between two samples of a log: the Gaussian has to see some of them
+LONGEST_STEP_S = SMOOTHING_S  # between two samples of a log: the Gaussian has to cover some of them
 CONFIDENCE = 0.95
 TRUNCATE = 4.0  # Gaussians are cut off here; what the cut touches at the ends of a log is left out
-SAMPLES_PER_SMOOTHING = 1  # kept ones: closer they would say the same again
+SAMPLES_PER_SMOOTHING = 1  # between kept samples: closer ones would add no information
 REST_SPEEDS = 4.0  # exp(-16): nothing is left of the Stribeck term
 REST_LENGTHS = 5.0  # exp(-5) = 0.7 %: the bristles have turned over
 ROBUST = 2.0  # residuals beyond two standard deviations lose weight (soft l1)
-ROUNDS = 3  # of fitting and re-estimating each wheel's noise; the third changes nothing visible any more
+ROUNDS = 3  # rounds of fitting and re-estimating each wheel's noise; the third has no visible effect
 CORRELATIONS_PER_BLOCK = 3.0
-BLOCKS_PER_PARAMETER = 2  # with fewer, how much the blocks differ is itself unknown
+BLOCKS_PER_PARAMETER = 2  # with fewer blocks their scatter is unknown
 GAUSSIAN_MAD = 1.4826  # standard deviation over median absolute deviation
 SLOPES = np.geomspace(0.03, 300.0, 24)  # starting values of alpha, times the largest roller rate
 
@@ -109,7 +109,7 @@ def prepare(log: MotionLog, model: TorqueModel, torque_limit_nm: float, smoothin
 
 @dataclass(frozen=True)
 class RestZone:
-    """Where presliding and stiction rule a roller, in m/s and m at its rim."""
+    """The zone in which presliding and stiction dominate a roller, in m/s and m at its rim."""
 
     speed_mps: float
     length_m: float
@@ -216,7 +216,7 @@ class _Problem:
         return float(np.abs(self._rate).max())
 
     def weigh(self, x: NDArray[np.float64]) -> None:
-        """Take each wheel's noise from its residuals."""
+        """Estimate each wheel's noise from its residuals."""
         plain = self.residuals(x).reshape(-1, WHEELS) * self.sigma[self._log]
         for log in range(len(self.sigma)):
             spread = (
@@ -268,15 +268,15 @@ def fit(samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], model: To
 
 
 def enough_blocks(found: Fit) -> bool:
-    """Whether the blocks are enough to know how much they differ."""
+    """Whether there are enough blocks to estimate their scatter."""
     return found.blocks >= BLOCKS_PER_PARAMETER * len(found.x)
 
 
 def half_widths(found: Fit) -> NDArray[np.float64]:
     """Half-widths of the 95 % intervals of ``found.x`` from its residuals, shape of x; infinite where undetermined.
 
-    The covariance is H^-1 (sum over blocks of g g^T) H^-1: right for residuals that hang together within a block and
-    differ in size. Student's quantile makes up for few blocks, down to two for each parameter.
+    The covariance is H^-1 (sum over blocks of g g^T) H^-1: correct for residuals that are correlated within a block and
+    differ in magnitude. Student's quantile corrects for few blocks, down to two for each parameter.
     """
     from scipy.special import stdtrit
 
@@ -300,7 +300,7 @@ def _block_length(
     for s, rows in zip(samples, used, strict=True):
         count = int(rows.sum())
         for wheel in range(WHEELS):
-            whole = np.zeros(len(rows))  # what was left out counts as zero
+            whole = np.zeros(len(rows))  # left-out samples count as zero
             whole[rows] = residuals[start : start + count, wheel]
             longest = max(longest, s.step_s * _correlation(whole))
         start += count
@@ -319,7 +319,7 @@ def _correlation(values: NDArray[np.float64]) -> float:
 
 
 def _blocks(samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], block_s: float) -> NDArray[np.intp]:
-    """The number of the block of every used sample; blocks do not reach over logs."""
+    """The number of the block of every used sample; a block belongs to one log."""
     numbers: list[NDArray[np.intp]] = []
     first = 0
     for s, rows in zip(samples, used, strict=True):

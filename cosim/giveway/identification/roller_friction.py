@@ -8,19 +8,18 @@ and everything but B_r, alpha and the offsets of the sensors is known from the r
 steps, in the base frame, where the Jacobians are constant:
 
 1. Wheel angles and torques pass through one and the same zero-phase low-pass (a Gaussian), so that both sides of the
-   equation see the same thing; rates and accelerations are differences of the smoothed angles (29), (30).
-2. Samples at which a moving roller is near rest are left out: presliding and stiction rule there, and (28) knows
-   neither. Near rest means slower than 4 Stribeck speeds, or less than 5 presliding lengths after a reversal.
-3. B_r, alpha and one offset per wheel and log (the tare; a resting robot cannot tell it, its stuck rollers and gears
-   hold torque) are fitted to all logs together, with a robust loss, each wheel weighted by its own noise.
-4. The interval: the residuals of one block of time count as one observation (a block is long against their
-   correlation), so neither autocorrelation nor uneven noise makes it too narrow; to this is added what B_r and alpha
-   move by with other widths of the zone of step 2 and of the low-pass of step 1. The numbers of the rigid part (mass,
-   radii) count as exact.
+equation are filtered alike; rates and accelerations are differences of the smoothed angles (29), (30). 2. Samples at
+which a moving roller is near rest are left out: there presliding and stiction dominate, and (28) has neither. Near rest
+means slower than 4 Stribeck speeds, or less than 5 presliding lengths after a reversal. 3. B_r, alpha and one offset
+per wheel and log (the tare; it cannot be measured at rest, as stuck rollers and gears hold torque) are fitted to all
+logs together, with a robust loss, each wheel weighted by its own noise. 4. The interval: the residuals of one block of
+time count as one observation (a block is long against their
+   correlation), so neither autocorrelation nor uneven noise makes it too narrow. The change of B_r and alpha with other
+   widths of the zone of step 2 and of the low-pass of step 1 is added. The numbers of the rigid part (mass, radii)
+   count as exact.
 
-Logs that are no free motion are refused: the same log twice, and one in which something touched the robot
-(`disturbance`). So is a log that leaves the friction force more uncertain than the detector's leak in motion forgives,
-with what to do about it.
+Refused are: the same log twice, a log in which something touched the robot (`disturbance`), and logs that leave the
+    friction force more uncertain than the detector's leak in motion covers. The message says what to do.
 """
 
 from __future__ import annotations
@@ -56,17 +55,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Calibration", "Estimate", "FittedLog", "UnidentifiableError", "calibrate"]
 
-EXPLAINED_MIN = 0.5  # below, something else than (27) makes most of the torque
+EXPLAINED_MIN = 0.5  # with a smaller share most of the torque is not explained by (27)
 ALIKE = 1.5  # speeds within this factor show the tanh at one point
 NEAR_REST = 3.0  # widths of the zone near rest: a log that shows rollers so slow has been slow enough
 LEVEL = 0.1  # share by which friction over the speed may fall and still counts as constant
 FLAT = 2.65  # tanh(2.65) = 0.99
 VARIATIONS = ((0.7, 1.0), (1.5, 1.0), (1.0, 2.0))
-"""Widths of the zone near rest and of the low-pass, relative to those of the fit, whose results give the spread."""
+"""Widths of the zone near rest and of the low-pass, relative to those of the fit; their results give the spread."""
 
 
 class UnidentifiableError(GivewayError):
-    """Logs that cannot tell B_r or alpha.
+    """Logs that do not determine B_r or alpha.
 
     Attributes:
         field: names of the logs.
@@ -80,7 +79,7 @@ class UnidentifiableError(GivewayError):
 
 @dataclass(frozen=True)
 class Estimate:
-    """A fitted number and how far it can be trusted.
+    """A fitted number and its uncertainty.
 
     Attributes:
         value: the number.
@@ -114,7 +113,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class FittedLog:
-    """One log after smoothing, and what the fit makes of it.
+    """One log after smoothing, and the fitted model's results for it.
 
     Attributes:
         name: of the log.
@@ -141,7 +140,7 @@ class FittedLog:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What a calibration found.
+    """The results of a calibration.
 
     Attributes:
         coulomb_torque_nm: B_r of (28), N m.
@@ -165,8 +164,8 @@ class Calibration:
 def calibrate(logs: Sequence[MotionLog], robot: Robot) -> Calibration:
     """Fit B_r and alpha to ``logs`` of free motion of ``robot``.
 
-    Raises UnidentifiableError if they cannot tell B_r or alpha; it says what is missing. The same log twice, and a log
-    in which something touched the robot, are refused likewise.
+    Raises UnidentifiableError if they do not determine B_r or alpha; it says what is missing. The same log twice, and a
+    log in which something touched the robot, are refused likewise.
     """
     if not logs:
         raise GivewayError("logs", "none", "at least one log")
@@ -194,7 +193,7 @@ def calibrate(logs: Sequence[MotionLog], robot: Robot) -> Calibration:
 
 
 def _check_different(logs: Sequence[MotionLog]) -> None:
-    """Refuse a log that says what another one said, under whatever name and from whatever time on."""
+    """Refuse a log with the data of another one, under any name and with any start time."""
     for index, log in enumerate(logs):
         for other in logs[:index]:
             if np.array_equal(log.torque_nm, other.torque_nm) and np.array_equal(
@@ -206,7 +205,7 @@ def _check_different(logs: Sequence[MotionLog]) -> None:
 
 @dataclass(frozen=True)
 class _Data:
-    """The logs and what of the robot belongs to them."""
+    """The logs and the robot's numbers for them."""
 
     logs: Sequence[MotionLog]
     model: TorqueModel
@@ -230,7 +229,7 @@ class _Data:
 
     @property
     def leak_n(self) -> float:
-        """What the detector forgives in motion, N."""
+        """The detector's leak in motion, N."""
         return self.limits.leak_n
 
     @property
@@ -245,7 +244,7 @@ class _Data:
 
 
 def _check_motion(data: _Data, samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]]) -> None:
-    """Refuse logs in which nothing can be fitted, for the reason that lies deepest."""
+    """Refuse logs in which nothing can be fitted, with the most basic reason."""
     for log in data.logs:
         for wheel, spread in enumerate(np.ptp(log.torque_nm, axis=0)):
             if spread == 0.0:
@@ -279,7 +278,7 @@ def _spread(data: _Data, found: Fit) -> NDArray[np.float64]:
         samples = data.samples(smoothing)
         used = data.used(samples, zone)
         if not any(rows.any() for rows in used):
-            continue  # no sample is that far from rest; the narrower zone speaks for it
+            continue  # no sample is that far from rest; the narrower zone alone gives the spread
         change = np.abs(fit(samples, used, data.model).x[:2] - found.x[:2])
         changes[zone == 1.0] = np.maximum(changes[zone == 1.0], change)
     return np.hypot(changes[True], changes[False])
@@ -297,7 +296,7 @@ def _force_uncertainty(coulomb: Estimate, slope: Estimate) -> float:
 def _refusal(
     data: _Data, found: Fit, samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], uncertainty_n: float
 ) -> tuple[str, str] | None:
-    """What the logs lack, and what to do about it, the deepest reason first; None if nothing."""
+    """What the logs lack, and what to do about it, the most basic reason first; None if nothing."""
     uncertain = not uncertainty_n <= data.leak_n
     rates = np.concatenate([s.roller_rate[rows] for s, rows in zip(samples, used, strict=True)])
     one_way = all((rates[:, roller] > 0.0).mean() in (0.0, 1.0) for roller in range(rates.shape[1]))
@@ -334,7 +333,7 @@ def _too_little(
     moving = np.abs(rates[np.abs(rates) * data.model.roller_radius_m > data.zone.speed_mps])
     slowest, fastest = np.quantile(moving, (0.05, 0.95))
     rim = 1e3 * data.model.roller_radius_m
-    level = found.x[1] * slowest > 1.5  # tanh(1.5) = 0.91: its slope has hardly been seen
+    level = found.x[1] * slowest > 1.5  # tanh(1.5) = 0.91: the samples hardly cover its slope
     if level and slowest * data.model.roller_radius_m <= NEAR_REST * data.zone.speed_mps:
         return _does_not_grow(found, curve, rim)
     if not enough_blocks(found):
@@ -345,7 +344,7 @@ def _too_little(
             f"one speed only, {rim * slowest:.3g} to {rim * fastest:.3g} mm/s: B_r and alpha show only together",
             "drive in sines, fast and slow",
         )
-    if found.x[1] * moving.max() < 1.0:  # tanh(1) = 0.76: its bend has not been seen
+    if found.x[1] * moving.max() < 1.0:  # tanh(1) = 0.76: the samples do not cover its bend
         return (
             f"too slow: up to {rim * moving.max():.3g} mm/s the friction grows with the speed, and only "
             f"B_r alpha = {found.x[0] * found.x[1]:.3g} N m s/rad shows",
@@ -360,7 +359,7 @@ def _too_little(
 
 
 def _does_not_grow(found: Fit, curve: FrictionCurve, rim: float) -> tuple[str, str]:
-    """What to say of rollers whose friction is level, or falls, from the slowest speed on that is not rest."""
+    """The message about rollers whose friction is constant, or falls, from the slowest speed above rest on."""
     first, last = float(curve.torque_nm[0]), float(curve.torque_nm[-1])
     over = f"{rim * curve.rate[0]:.3g} to {rim * curve.rate[-1]:.3g} mm/s"
     if last < (1.0 - LEVEL) * first:

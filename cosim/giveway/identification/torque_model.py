@@ -20,7 +20,7 @@ WHEELS = 3
 
 @dataclass(frozen=True)
 class TorqueModel:
-    """A base on three omniwheels: what (27) needs, with units in the names."""
+    """A base on three omniwheels: the numbers of (27), with units in the names."""
 
     wheel_radius_m: float
     wheel_distance_m: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,11 +38,13 @@ METHODS = ("event-exact", "fixed-step")
 LANES = (1, 4, 8)
 PLANT_STEP_RANGE_S = (1e-6, 5e-4)
 STATUSES = ("ok", "cancelled", "wrong", "refused", "failed", "no memory")
-OK, CANCELLED, WRONG, REFUSED = 0, 1, 2, 3
+OK, CANCELLED, WRONG = 0, 1, 2
 NONE = 2**32 - 1  # no model, no reference
 MESSAGE_SIZE = 512
+OF_COLLISION, OF_DESIGN, OF_FREE_RUN = 1, 2, 4  # where a metric is shown
 THREADS_MAX = 1024
 
+DTYPES: Mapping[str, Any] = {"real": np.float64, "integer": np.int32, "boolean": np.bool_}
 _POINTER = np.uintp
 SETTING = np.dtype([("model", "u4"), ("reference", "u4"), ("value", "f8")], align=True)
 COLUMN = np.dtype([("model", "u4"), ("reference", "u4"), ("values", _POINTER)], align=True)
@@ -100,15 +102,25 @@ class Options(ctypes.Structure):
     ]
 
 
+class WindowsInHeader(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_double) for name in ("cause_s", "transient_s", "contact_gap_s", "peak_torque_s")]
+
+
 class ProgressCounts(ctypes.Structure):
     _fields_ = [(name, ctypes.c_uint64) for name in ("runs_done", "runs", "steps_done", "steps")]
 
 
 @dataclass(frozen=True)
-class _NativeMetric:
+class NativeMetric:
+    """A line of GWB_METRICS: `shown` is a sum of ``OF_COLLISION``, ``OF_DESIGN`` and ``OF_FREE_RUN``."""
+
     name: str
     unit: str
     has_truth: bool
+    decimals: int | None
+    shown: int
+    line: int
+    description: str
 
 
 @dataclass(frozen=True)
@@ -140,7 +152,10 @@ class Library:
         self.cancel = self._function("gwb_cancel", None, pointer)
         self.widest_lanes = self._function("gwb_widest_lanes", number)
         self.finish = self._function("gwb_finish", None, pointer)
-        self.run_up = self._function("gwb_run_up", size, pointer, size)
+        self.evaluate = self._function("gwb_evaluate", number, pointer, pointer)
+        force = (pointer, pointer, size, ctypes.c_double, pointer)
+        self.judge_force = self._function("gwb_judge_force", ctypes.c_int, *force)
+        self.windows = self._function("gwb_windows", WindowsInHeader)
         sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
         self.models: dict[str, _Model] = {}
         for number_of_model, model in enumerate(native.MODELS):
@@ -174,7 +189,7 @@ class Library:
         return function  # type: ignore[no-any-return]
 
     def _check_matches(self, path: Path, number: int, model: str) -> None:
-        """Refuse a library that was built from another variable table: its references would mean other things."""
+        """Refuse a library that was built from another variable table: its references would have other meanings."""
         for variable in table(model):
             found = _Variable()
             known = self._dll.gwb_find_variable(number, variable.name.encode(), ctypes.byref(found))
@@ -182,10 +197,18 @@ class Library:
                 reason = f"was built from another variable table: {model}.{variable.name} differs"
                 raise FileError(path, reason, "build the library and the tables together")
 
-    def _metric(self, index: int) -> _NativeMetric:
+    def _metric(self, index: int) -> NativeMetric:
         info = _MetricInfo()
         self._dll.gwb_metric_info(index, ctypes.byref(info))
-        return _NativeMetric(info.name.decode(), info.unit.decode(), bool(info.has_truth))
+        return NativeMetric(
+            name=info.name.decode(),
+            unit=info.unit.decode(),
+            has_truth=bool(info.has_truth),
+            decimals=None if info.decimals < 0 else info.decimals,
+            shown=info.shown,
+            line=info.line,
+            description=info.description.decode(),
+        )
 
 
 def library() -> Library:
@@ -198,13 +221,13 @@ def _load(path: Path, _modified_ns: int) -> Library:
     return Library(path)
 
 
-def native_metrics() -> list[_NativeMetric]:
-    """What the library measures, with units, in the order of its results."""
+def native_metrics() -> list[NativeMetric]:
+    """The library's metrics with units, in the order of its results."""
     return library().metrics
 
 
 def widest_lanes() -> int:
-    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, else 1."""
+    """Designs that this processor computes side by side: 8 with AVX-512, 4 with AVX2, otherwise 1."""
     return int(library().widest_lanes())
 
 

@@ -31,7 +31,7 @@ def write_picture(path: Path, results: Sequence[Result]) -> None:
 
 
 def render(title: str, summary: str, results: Sequence[Result]) -> str:
-    """The report as HTML text; it refers to nothing outside itself. ``summary`` is a sentence below the title."""
+    """The report as HTML text; it has no external references. ``summary`` is a sentence below the title."""
     import jinja2
 
     from giveway.report import pushes
@@ -60,7 +60,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
         warnings=warning_lines(by_bumper),
         pushes=[(push_rows(result), false_detection_line(result)) for result in results if result.pushes],
         figures=drawn,
-        # "</" would end the script element early.
+        # "</" would end the script element.
         scenes=json.dumps(scenes, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
         manifest=results[0].manifest,
         runs=[result.manifest for result in results],

@@ -1,4 +1,4 @@
-"""The data of the top-view animation: few enough samples for a small file, dense where the impact is."""
+"""The data of the top-view animation: few samples for a small file, dense around the impact."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def scene(label: str, result: Result) -> dict[str, Any]:
 
 
 def _touches(hit: Collision, pushes: Sequence[PushResponse], contact_s: float) -> list[dict[str, Any]]:
-    """When the robot was hit or pushed, and what it felt, in the order of time."""
+    """Hits and pushes with the robot's estimates, in the order of time."""
     found = []
     if hit.contact_s is not None:
         found.append({"what": "contact", "time": 0.0, "detection": _detection(hit, hit.detected, contact_s)})
@@ -96,7 +96,7 @@ def _to_world(
 
 
 def _detection(hit: Collision, row: int | None, contact_s: float) -> dict[str, Any] | None:
-    """When and what was detected in ``row``; point and force in the base frame, where they stay put on the robot."""
+    """Time and estimate of the detection in ``row``; point and force in the base frame, fixed on the robot."""
     if row is None:
         return None
     return {

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["alarm", "path"]
 
-# controller.mode: what it is called in the legend, and its colour
+# controller.mode: its name in the legend, and its colour
 MODES = {1: ("on the circle", "#0b64a8"), 2: ("giving way", "#c8500a"), 4: ("going back", "#0a8a63")}
 PUSH_COLOUR = "#2b2f36"
 METRES_PER_NEWTON = 0.006
 LESS, MORE = "#0b64a8", "#c8500a"
-BIN = 100  # samples, of which the highest is drawn
+BIN = 100  # samples per drawn point, which is their maximum
 
 
 def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]], outline: NDArray[np.float64] | None = None) -> Figure:
@@ -87,7 +87,7 @@ def _draw_push(
         arrowprops={"arrowstyle": "-|>", "color": PUSH_COLOUR, "shrinkA": 0, "shrinkB": 0},
     )
     x, y = tail - 0.05 * along
-    axes.update_datalim([(x, y)])  # arrows and words do not count by themselves
+    axes.update_datalim([(x, y)])  # arrows and text do not affect the limits automatically
     axes.text(x, y, str(number), ha="center", va="center", color=PUSH_COLOUR)
 
 

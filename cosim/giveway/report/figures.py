@@ -1,4 +1,5 @@
-"""The figures of a report, overlaid per bumper as in the paper's Fig. 10; time runs from the first contact."""
+"""The figures of a report, with all bumpers in one panel as in the paper's Fig. 10; time starts at the first
+contact."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ BETWEEN_IN = (0.2, 0.5)  # columns, whose numbers are those of the first one; ro
 
 @dataclass(frozen=True)
 class NamedFigure:
-    """A figure with its words; ``svg`` is an element to be put inline."""
+    """A figure with its texts; ``svg`` is an element for inline use."""
 
     title: str
     caption: str
@@ -151,7 +152,7 @@ _FIGURES: tuple[tuple[str, str, Callable[[list[Run]], Figure]], ...] = (
 
 
 def _panels(rows: int, columns: int, height_in: float, legend: bool = False) -> tuple[Figure, NDArray[Any]]:
-    """A figure with fixed margins: to fit them to its words (a layout engine) takes as long as to draw it."""
+    """A figure with fixed margins: a layout engine would take as long as the drawing."""
     figure = Figure(figsize=(WIDTH_IN, height_in))
     bottom_in = BOTTOM_IN + (LEGEND_IN if legend else 0.0)
     panel_in = (

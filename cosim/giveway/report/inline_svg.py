@@ -13,7 +13,7 @@ __all__ = ["inline_svg"]
 
 
 def inline_svg(figure: Figure, prefix: str) -> str:
-    """The figure as an SVG element; ``prefix`` keeps its ids apart from those of other figures in the page."""
+    """The figure as an SVG element; ``prefix`` makes its ids unique in the page."""
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     text = buffer.getvalue()

@@ -1,4 +1,4 @@
-"""The obstacle seen from above: what the animation and the pictures draw of the slider, its nose and its bumper."""
+"""The obstacle from above: shapes of slider, nose and bumper for the animation and the figures."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ __all__ = ["EDGE_DEPTH_M", "EDGE_M", "SLIDER_M", "obstacle", "plate", "rail"]
 EDGE_M, EDGE_DEPTH_M = 1.2, 0.06  # of a long edge, as drawn
 SLIDER_M = (0.14, 0.12)  # along its rail and across it, as drawn
 RIGID_M = 0.1  # from the slider to its nose without a bumper, as drawn
-CLOSED_M = 0.02  # between slider and nose when the whole travel is used
+CLOSED_M = 0.02  # between slider and nose at full compression
 PLATE_M = 0.2  # of a bumper's plate on the robot, as drawn
 
 
 def rail(testbed: Mapping[str, Any]) -> list[float]:
-    """Unit vector in the world along which the slider travels: from it to the robot, whoever of them moves."""
+    """Unit vector of the slider's direction of travel in the world: from it to the robot, whichever of them moves."""
     direction = float(testbed["slider.direction"])
     return [math.cos(direction), math.sin(direction)]
 
 
 def obstacle(testbed: Mapping[str, Any]) -> dict[str, Any]:
-    """Shapes behind the tip of the nose, as polygons of (way back along the rail, way to its left), m.
+    """Shapes behind the tip of the nose, as polygons of (distance back along the rail, distance to its left), m.
 
     The body moves towards the nose by the compression if the bumper is ``sprung`` and on the slider.
     """
@@ -44,7 +44,8 @@ def obstacle(testbed: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def plate(testbed: Mapping[str, Any]) -> dict[str, Any] | None:
-    """A bumper on the robot, base frame, m: ends of its plate, the way it gives, where its spring stands; None: no."""
+    """A bumper on the robot, base frame, m: ends of its plate, its direction, base of its spring; None if there is
+    none."""
     if not testbed["bumper.kind"] or int(testbed["bumper.mount"]) == 0:
         return None
     azimuth = float(testbed["bumper.mount_azimuth"])

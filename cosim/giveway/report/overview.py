@@ -1,4 +1,4 @@
-"""One picture of a collision: the robot from above before, at and after detection, and the forces beside it."""
+"""One picture of a collision: the robot from above before, at and after detection, and the forces."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def write_overview(path: Path, results: Mapping[str, Result]) -> None:
         _top_view(figure.add_subplot(grid[:, 0]), runs[-1])
         _forces(figure.add_subplot(grid[0, 1]), runs)
         _escapes(figure.add_subplot(grid[1, 1]), runs)
-        # The picture carries its numbers, so that a stale copy can be told from a fresh one.
+        # The picture contains its numbers, so that an outdated copy can be recognised.
         figure.savefig(path, dpi=130, metadata={"Software": None, "Description": numbers(results)})
 
 
 def numbers(results: Mapping[str, Result]) -> str:
-    """The table as text, less what is rounding noise."""
+    """The table as text, without rounding noise."""
     noise = {metric.name for metric in next(iter(results.values())).metrics if metric.decimals is None}
     return "\n".join(" | ".join(row) for row in table_rows(results) if row[0] not in noise)
 
@@ -110,8 +110,9 @@ def _draw_estimate(axes: Axes, run: Run, row: int) -> None:
     pose = _pose(run, row)
     turn = Affine2D().rotate(float(run.hit["testbed.truth.theta"][row]))
     lasted_s = max(float(run.time_s[row]), 1e-3)
+    impulse = run.hit.true_impulse()
     pairs = [
-        ("true", run.hit.true_point(), run.hit.true_impulse() / lasted_s, INK, 4.5),
+        ("true", run.hit.true_point(), None if impulse is None else impulse / lasted_s, INK, 4.5),
         (
             "estimated from wheel torques",
             np.array([run.hit[f"controller.detection.point_{axis}"][row] for axis in "xy"]),
@@ -121,7 +122,7 @@ def _draw_estimate(axes: Axes, run: Run, row: int) -> None:
         ),
     ]
     for label, point, force, colour, width in pairs:
-        if point is None:
+        if point is None or force is None:
             continue
         tip = pose.transform(point)
         tail = tip - ARROW_M_PER_N * turn.transform(force)

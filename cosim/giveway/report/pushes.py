@@ -1,4 +1,4 @@
-"""Figures of a run that is pushed: each push against what was felt of it, and the path from above."""
+"""Figures of a run with pushes: each push with its estimate, and the path from above."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A result as figures need it: time from contact, travel along the slider's rail."""
+"""A result prepared for figures: time from contact, travel along the slider's rail."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from giveway.report.obstacle import rail
 from giveway.report.style import COLOURS
-from giveway.simulation.metrics import Collision
+from giveway.simulation.metrics import FIRST_PEAK, Collision
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,13 +23,13 @@ AROUND_PEAK_MS, LATEST_PEAK_MS = 120.0, 3000.0
 
 
 def force_window_ms(runs: list[Run]) -> tuple[float, float]:
-    """Times since contact in which every peak of `Run.peaks` and what surrounds it can be seen, ms."""
+    """Range of times since contact that shows every peak of `Run.peaks` and its surroundings, ms."""
     latest = max((time_ms for run in runs for time_ms, _, _ in run.peaks()), default=0.0)
     return IMPACT_MS[0], max(IMPACT_MS[1], min(latest, LATEST_PEAK_MS) + AROUND_PEAK_MS)
 
 
 class Run:
-    """One result, seen from its contact."""
+    """One result, relative to its contact."""
 
     def __init__(self, label: str, result: Result) -> None:
         self.hit = Collision(result.traces, result.manifest["parameters"])
@@ -42,7 +42,7 @@ class Run:
         self.detected_ms = None if self.hit.detected is None else float(self.time_ms[self.hit.detected])
         nose = np.stack([self.hit["testbed.truth.nose_x"], self.hit["testbed.truth.nose_y"]], axis=1)
         self.along = np.array(rail(self.parameters["testbed"]))
-        self.contact_row = min(self.hit.until_detection().start, len(nose) - 1)
+        self.contact_row = min(self.hit.start, len(nose) - 1)
         self.nose = nose
 
     def travel(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -54,10 +54,10 @@ class Run:
         return self.travel(np.stack([self.hit[f"{source}.x"], self.hit[f"{source}.y"]], axis=1))
 
     def peaks(self) -> list[tuple[float, float, str]]:
-        """Time (ms), force (N) and words of the peak of the first contact, and the run's if a later one is harder."""
+        """Time (ms), force (N) and label of the peak of the first contact, and of the run's peak if that is higher."""
         if self.hit.contact_s is None:
             return []
-        first, most = (metric.value or 0.0 for metric in (self.hit.contacts()[1], self.hit.peak_force()))
+        first, most = (self.hit.metrics[name].value or 0.0 for name in (FIRST_PEAK, "peak force of the run"))
         force = self.hit["testbed.truth.contact_force"]
         named = {"the first contact": first} | ({"the run": most} if most > first else {})
         rows = {name: int(np.argmax(force >= peak)) for name, peak in named.items()}

@@ -16,14 +16,14 @@ __all__ = ["NewValue", "changed_robot"]
 
 @dataclass(frozen=True)
 class NewValue:
-    """What replaces an entry of a robot file; the unit that the file states stays.
+    """A new value for an entry of a robot file; the unit in the file is kept.
 
     Attributes:
         value: in the unit of the variable tables.
-        source: where it comes from.
+        source: its source.
         provenance: given, sourced, fitted or assumed.
-        confidence: high, medium or low; None: as it was.
-        note: what to know about it; None: as it was.
+        confidence: high, medium or low; None: unchanged.
+        note: a remark; None: unchanged.
     """
 
     value: float
@@ -58,7 +58,7 @@ def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
 
 
 def _check(path: Path, text: str, changes: Mapping[str, float]) -> None:
-    """The new text says what the old one said, but for ``changes``: the new values by name."""
+    """Checks that the new text equals the old one except for ``changes``, the new values by name."""
     old, new = tomllib.loads(path.read_text(encoding="utf-8")), tomllib.loads(text)
     for name, value in changes.items():
         *tables, key = name.split(".")

@@ -1,4 +1,4 @@
-"""The robot seen from above, wheels included: corners and hull, for outlines that may be any convex polygon."""
+"""The robot from above, including the wheels: corners and hull, for outlines that are convex polygons."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ CORNERS_MAX = 16  # of the controller's outline
 def wheel_corners(testbed: Mapping[str, Value], height_m: float | None = None) -> NDArray[np.float64]:
     """Corners of the three wheels' sections at ``height_m``, base frame, m, shape (3, 4, 2), anticlockwise each.
 
-    A section is as wide as the wheel and as long as the chord of its disc: as in the plant. None: at the axle, where it
-    is longest.
+    A section is as wide as the wheel and as long as the chord of its disc: as in the plant. None: at axle height, where
+    it is longest.
     """
     radius, distance = float(testbed["wheel.radius"]), float(testbed["wheel.distance"])
     above_axle = 0.0 if height_m is None else height_m - radius
@@ -73,5 +73,5 @@ def controller_outline(corners: NDArray[np.float64]) -> dict[str, Value]:
 
 
 def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    """Positive if the way from ``a`` over ``b`` to ``c`` turns left."""
+    """Positive if the path from ``a`` over ``b`` to ``c`` turns left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

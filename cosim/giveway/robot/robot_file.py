@@ -1,7 +1,7 @@
 """The robot file: every number of a robot with its unit, source, confidence and provenance.
 
-`read_robot` is the one reader. What a robot file may state, and in which unit its numbers are handed on, is what the
-variable tables take from it; another unit of the same kind ("lb", "mm") is converted.
+`read_robot` is the only reader. The variable tables define the entries of a robot file and the units of the returned
+values; other units of the same kind ("lb", "mm") are converted.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SCHEMA_VERSION = 1
 PROVENANCE = ("given", "sourced", "fitted", "assumed")
 CONFIDENCE = ("high", "medium", "low")
 _KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
-_HEADER = ("schema_version", "robot")  # what is no number
+_HEADER = ("schema_version", "robot")  # entries that are not numbers
 _Number = float | int
 
 
@@ -38,8 +38,8 @@ class Entry:
         values: in ``unit``; a single number is a tuple of one.
         is_list: the file states a list.
         unit: of the variable tables; "1" for what has none.
-        text: value with unit as the file states them.
-        scale: what the stated value was multiplied by to be in ``unit``.
+        text: value with unit as in the file.
+        scale: factor from the stated value to ``unit``.
         provenance: given, sourced, fitted or assumed; "" if the file does not say.
         confidence: high, medium or low; "" likewise.
         source, note: in words; "" likewise.
@@ -76,7 +76,7 @@ class Robot:
         entry = self[name]
         if not entry.is_list:
             return entry.values[0]
-        return entry.values[index] if index < len(entry.values) else 0.0  # a shorter list leaves the rest unused
+        return entry.values[index] if index < len(entry.values) else 0.0  # with a shorter list the rest is unused
 
     def entries(self) -> Iterator[tuple[str, Entry]]:
         """Every entry with its name, in the order of the file."""
@@ -87,7 +87,7 @@ class Robot:
         return len(self[name].values)
 
     def refusal(self, name: str, allowed: str) -> GivewayError:
-        """The error that says, with file and line, that the value at ``name`` is not ``allowed``."""
+        """The error, with file and line, for a value at ``name`` that is not ``allowed``."""
         entry = self[name]
         values = ", ".join(f"{value:g}" for value in entry.values)
         converted = f" ({values} {entry.unit})" if entry.scale != 1.0 else ""
@@ -100,8 +100,8 @@ def read_robot(path: Path) -> Robot:
 
     Raises:
         FileError: the file cannot be read.
-        InputFileError: it is no TOML, or a table, key, word or unit in it is unknown, of the wrong type or kind; names
-            file and line.
+        InputFileError: it is not TOML, or a table, key, word or unit in it is unknown, or of the wrong type or kind;
+            names file and line.
     """
     text, document = read_toml(path, "give the path of a robot file (TOML)")
     with lines_named(path, text):

@@ -1,4 +1,4 @@
-"""The files of the variable tables, as they stand; `variables` and `robot` make something of them."""
+"""The files of the variable tables as plain data, for `variables` and `robot_file`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def entry_unit(entry: Mapping[str, Any]) -> str:
 
 
 def robot_paths(entry: Mapping[str, Any]) -> Iterator[str]:
-    """Where in the robot file a [[variable]] takes its start values from, if it does."""
+    """The robot file's entry with the start values of a [[variable]], if any."""
     start = entry.get("start")
     for item in start if isinstance(start, list) else [start]:
         if isinstance(item, dict):

@@ -1,4 +1,4 @@
-"""The variable tables of the FMUs: names, types, units, ranges; and the checks of what a user wants to set."""
+"""The variable tables of the FMUs: names, types, units, ranges; and checks of a user's settings."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class VariableTable:
         return {name: self.check(name, value) for name, value in values.items()}
 
     def robot_value(self, robot: Robot, variable: Variable) -> Value:
-        """What ``robot`` states for ``variable``, checked; the error names the line of the robot file."""
+        """The checked value of ``variable`` in ``robot``; an error names the line of the robot file."""
         assert variable.robot_path is not None
         try:
             return self.check(variable.name, robot.value(variable.robot_path, variable.robot_index))
@@ -114,7 +114,7 @@ class VariableTable:
             if variable.robot_path is None:
                 continue
             values[variable.name] = self.robot_value(robot, variable)
-        if "outline.count" in self:  # the one number that a robot file states by the length of a list
+        if "outline.count" in self:  # the only number that a robot file states by the length of a list
             values["outline.count"] = self.check("outline.count", robot.count("outline.x"))
         return values
 

@@ -1,6 +1,6 @@
-"""What a run is made of, in Python or as a TOML file, and checked before anything runs.
+"""The definition of a run, in Python or as a TOML file, checked before anything runs.
 
-Plan and pushes of the robot, what collides with it and where that has to start, and which body region is hit.
+Plan and pushes of the robot, the collider and its start, and the body region that is hit.
 """
 
 from giveway.scenario.scenario import BUMPERS, Scenario

@@ -1,24 +1,24 @@
-"""Where the collision dummy has to start so that it meets a chosen point of the robot, as fast as asked.
+"""The start of the collision dummy for a hit at a chosen point of the robot with a given speed.
 
 The slider's nose is a disc on a straight rail. `meet` gives the testbed's ``slider.*`` parameters for a contact point
-on the outline, a direction and a speed; a robot that moves along its plan is led. The robot itself lags its plan by a
-few millimetres (servo and drivetrain give), and so does the contact point.
+on the outline, a direction and a speed; for a moving robot its planned motion is taken into account. The robot itself
+lags its plan by a few millimetres (compliance of servo and drivetrain), and so does the contact point.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError
-from giveway.library.batch_library import OK, REFUSED, WRONG
-from giveway.library.run_up import LONGEST_RUN_UP_S, RUN_UP, find_run_ups
-from giveway.robot.variables import Value, table
+from giveway.base.gravity import GRAVITY_MPS2
+from giveway.robot.variables import Value
 from giveway.scenario.plan import Plan, Rest
 from giveway.scenario.stated_contact import StatedContact
 
@@ -40,26 +40,26 @@ __all__ = [
     "outward_normals",
 ]
 
-ON_OUTLINE_M = 1e-3  # robot files state corners to micrometres; users state points to millimetres
+ON_OUTLINE_M = 1e-3  # robot files give corners to micrometres; users give points to millimetres
 STILL_MPS = 1e-6
-SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes for 4 mm goes 0.1 mm deep
+SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes over 4 mm penetrates by 0.1 mm
 SAMPLES_AT_ONCE = 200_000
-# What the run-up depends on, of the testbed.
-SLIDER = ("mass", "friction", "friction_speed", "damping")
+LONGEST_RUN_UP_S = 60.0
 ROPE = ("hanging_mass", "stiffness", "damping", "drop_height")
+_SURFACE = Callable[["Numbers"], "Numbers"]
 
 
 @dataclass(frozen=True)
 class Approach:
-    """How slider and robot meet.
+    """The contact of slider and robot.
 
     Attributes:
         point_m: contact point on the robot's outline, base frame, m.
-        speed_mps: speed of the slider along its rail at contact, m/s; 0: it stands, and the robot runs into it.
+        speed_mps: speed of the slider along its rail at contact, m/s; 0: it stands still, and the robot runs into it.
         direction_rad: direction in which the slider travels (or, at rest, points), world frame, rad; None: straight
             into the robot's side.
-        time_s: when they meet, s. With the rope, the run-up takes as long as it takes, and this must be None.
-        rope: the hanging weight pulls the slider from rest; else it slides freely from the start.
+        time_s: time of the contact, s. With the rope it follows from the run-up, and this must be None.
+        rope: the hanging weight pulls the slider from rest; otherwise it slides freely from the start.
     """
 
     point_m: tuple[float, float]
@@ -84,26 +84,19 @@ class Approach:
 
 @dataclass(frozen=True)
 class _RunUp:
-    """Motions along the rail that end at the asked speeds, one per run, as the batch library finds them.
+    """Motions along the rail that end at the given speeds, one per run.
 
     Attributes:
         start_mps, length_m, duration_s: start speed, travel and time to contact, shape (n,).
-        different, which: the answers (`RUN_UP`), each once, and that of each run, shape (n,).
-        refused: why a run cannot be met, by its index.
+        travel: times of shape (k, n) from the start to travel in m, shape (k, n).
+        refused: why a contact is not possible, by index of the run.
     """
 
     start_mps: Numbers
     length_m: Numbers
     duration_s: Numbers
-    different: NDArray[Any]
-    which: NDArray[np.intp]
+    travel: _SURFACE
     refused: dict[int, GivewayError]
-
-    def sampled(self, shares: Numbers, before_s: float) -> tuple[Numbers, Numbers]:
-        """Times and travels from the start, shape (k, n), at ``shares`` (k,) of the time to ``before_s`` before it."""
-        times = np.maximum(self.different["duration_s"] - before_s, 0.0)[:, None] * shares
-        travels = find_run_ups(self.different.copy(), times)
-        return times[self.which].T, travels[self.which].T
 
 
 def outline_of(testbed: Mapping[str, Value]) -> NDArray[np.float64]:
@@ -152,14 +145,14 @@ def meet(
     """The testbed's ``slider.*`` and ``rope.attached`` for ``approach``.
 
     Args:
-        approach: where and how they shall meet.
-        testbed: all parameters of the testbed by name, outline, slider mass and rope among them.
+        approach: the intended contact.
+        testbed: all parameters of the testbed by name, including outline, slider mass and rope.
         plan: the robot's motion until then.
         path_start_s: when the plan's clock starts: after the controller's first tare, s.
 
     Raises:
-        GivewayError: naming the field of `Approach` that cannot be met: the point is not on the outline, slider and
-            robot do not approach there, the weight cannot make the slider so fast, or they would touch before.
+        GivewayError: naming the impossible field of `Approach`: the point is not on the outline, slider and robot do
+            not approach there, the weight cannot accelerate the slider to this speed, or they would touch earlier.
     """
     return meet_as_stated(approach, testbed, plan, path_start_s)[0]
 
@@ -167,7 +160,7 @@ def meet(
 def meet_as_stated(
     approach: Approach, testbed: Mapping[str, Value], plan: Plan, path_start_s: float = 0.0
 ) -> tuple[dict[str, float | bool], StatedContact, float]:
-    """What `meet` gives, the contact that it is meant to make, and when that will be, s (the rope decides, too)."""
+    """The result of `meet`, the intended contact, and its time, s (which also depends on the rope)."""
     direction_rad = math.nan if approach.direction_rad is None else approach.direction_rad
     many = Approaches(
         np.array([approach.point_m]),
@@ -205,13 +198,13 @@ class Approaches:
 
 @dataclass(frozen=True)
 class Meetings:
-    """How many runs meet.
+    """The contacts of many runs.
 
     Attributes:
-        slider: each of the testbed's ``slider.*`` that makes them meet, shape (n,).
+        slider: the testbed's ``slider.*`` for the contacts, each of shape (n,).
         contact_speed_mps: of the nose relative to the base, shape (n,).
         time_s: of the contacts, shape (n,).
-        refused: why a run cannot be met, by its index.
+        refused: why a contact is not possible, by index of the run.
     """
 
     slider: dict[str, Numbers]
@@ -230,7 +223,7 @@ def meet_many(
     count = len(approaches.speed_mps)
     values = {name: np.broadcast_to(np.asarray(value, dtype=np.float64), count) for name, value in testbed.items()}
     outline = outline_of({name: float(values[name][0]) for name in testbed if name.startswith("outline.")})
-    run_up = _run_ups(approaches, values)
+    run_up = (_free if approaches.time_s is not None else _with_rope)(approaches, values)
     refused = dict(run_up.refused)
     mounted = np.flatnonzero((values["bumper.kind"] != 0.0) & (values["bumper.mount"] != 0.0))
     for index in mounted:
@@ -257,7 +250,7 @@ def meet_many(
     radius = values["contact.nose_radius"]
     centre = pose[:, 0:2] + arm + radius[:, None] * outward  # of the nose, when it touches
     target = centre + radius[:, None] * along
-    if not isinstance(plan, Rest):  # onto a resting convex outline, a straight line comes only once
+    if not isinstance(plan, Rest):  # a straight line enters a resting convex outline only once
         motion = _Nose(run_up, centre, along, radius)
         for run, time_s in _earlier_contacts(motion, outline, plan, path_start_s):
             when = f"touches the robot elsewhere before, at {time_s:.3g} s"
@@ -291,43 +284,88 @@ def _off_outline(outline: Numbers, point: Numbers) -> GivewayError:
     return GivewayError("point_m", [float(value) for value in point], allowed)
 
 
-def _run_ups(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
-    """With the rope from rest until the slider is as fast as asked; without, until the rail has slowed it so far."""
-    rope = approaches.time_s is None
-    duration = np.zeros(len(approaches.speed_mps)) if approaches.time_s is None else approaches.time_s
-    names = [*(f"slider.{name}" for name in SLIDER), *(f"rope.{name}" for name in ROPE)]
-    rows = np.stack([approaches.speed_mps, duration, *(testbed[name] for name in names)], axis=1)
+def _free(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
+    """Without the rope: the start speeds that rail friction reduces to the given speeds at the given times."""
+    assert approaches.time_s is not None
+    mass = testbed["slider.mass"]
+    end, duration = approaches.speed_mps, approaches.time_s
+    moves = end > 0.0
+    coulomb = np.where(moves, testbed["slider.friction"] / mass, 0.0)
+    viscous = np.where(moves, testbed["slider.damping"] / mass, 0.0)
+    # Backwards in time friction is growth: v' = a + c v, written with expm1 so that c may be small.
+    small = viscous * duration < 1e-9
+    rate = np.where(small, 1.0, viscous)
+    grown = end + (end + coulomb / rate) * np.expm1(rate * duration)
+    start = np.where(small, end + coulomb * duration, grown)
+
+    def travel(time_s: Numbers) -> Numbers:
+        slowing = -(start + coulomb / rate) * np.expm1(-rate * time_s) / rate - coulomb / rate * time_s
+        return np.where(small, start * time_s - 0.5 * coulomb * time_s**2, slowing)
+
+    return _RunUp(start, travel(duration[None, :])[0], duration, travel, {})
+
+
+def _with_rope(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
+    """With the rope: slider and weight integrated from rest until the slider has the given speed."""
+    names = ("slider.mass", "slider.friction", "slider.damping", *(f"rope.{name}" for name in ROPE))
+    rows = np.stack([approaches.speed_mps, *(testbed[name] for name in names)], axis=1)
     # Most runs of a batch share theirs.
-    each, which = np.unique(rows, axis=0, return_inverse=True)
+    different, which = np.unique(rows, axis=0, return_inverse=True)
+    times, travels, refused = _pulled(different.tobytes(), len(different))
     which = which.ravel()
-    different = np.zeros(len(each), dtype=RUN_UP)
-    for name, column in zip(("end_speed_mps", "duration_s", *names), each.T, strict=True):
-        different[name] = column
-    different["rope.attached"] = rope
-    find_run_ups(different)
-    reasons = {int(index): _refusal(different[index]) for index in np.flatnonzero(different["status"] != OK)}
-    refused = {run: reasons[int(index)] for run, index in enumerate(which) if int(index) in reasons} if reasons else {}
-    found = different[which]
-    return _RunUp(found["start_speed_mps"], found["travel_m"], found["duration_s"], different, which, refused)
+    reasons = {i: refused[int(k)] for i, k in enumerate(which) if int(k) in refused} if refused else {}
+
+    def travel(time_s: Numbers) -> Numbers:
+        columns = np.broadcast_to(time_s, (len(time_s), len(which))).T
+        return np.stack([np.interp(t, times[:, k], travels[:, k]) for t, k in zip(columns, which, strict=True)], axis=1)
+
+    start = np.zeros(len(which))
+    return _RunUp(start, travels[-1, which], times[-1, which], travel, reasons)
 
 
-def _refusal(run_up: np.void) -> GivewayError:
-    """Why the library finds no start."""
-    speed = float(run_up["end_speed_mps"])
-    if run_up["status"] == WRONG:
-        for variable in (table("testbed")[name] for name in (run_up.dtype.names or ()) if "." in name):
-            low, high = variable.minimum, variable.maximum
-            value = float(run_up[variable.name])
-            if low is not None and high is not None and not low <= value <= high:
-                return GivewayError(variable.name, value, f"{low:g} to {high:g}")
-        return GivewayError("speed_mps", speed, "0 to 20 m/s, with the rope above 0, and a time of 0 to 60 s")
-    if run_up["status"] == REFUSED and run_up["rope.attached"]:
-        reached = max(0.0, float(run_up["reached_mps"]))
-        return GivewayError("speed_mps", speed, f"a speed that the hanging weight reaches: at most {reached:.3g} m/s")
-    if run_up["status"] == REFUSED:
-        allowed = "a time for which the rail's friction does not ask for a start at more than 1000 m/s"
-        return GivewayError("time_s", float(run_up["duration_s"]), allowed)
-    return GivewayError("speed_mps", speed, "a run-up whose equations can be integrated")
+@functools.lru_cache(maxsize=8)
+def _pulled(packed: bytes, count: int) -> tuple[Numbers, Numbers, dict[int, GivewayError]]:
+    """Times and travels of ``count`` run-ups on the rope, shape (steps, count); each ends in its last value.
+
+    ``packed`` holds speed, slider mass, friction, damping and `ROPE`, shape (count, 9).
+    """
+    speed, slider, friction, viscous, weight, stiffness, damping, drop = np.frombuffer(packed).reshape(count, -1).T
+    pull = weight * GRAVITY_MPS2
+
+    def rate(state: Numbers) -> Numbers:
+        s, s_rate, h, h_rate = state
+        tension = np.maximum(0.0, pull + stiffness * (h - s) + damping * (h_rate - s_rate))
+        return np.stack([
+            s_rate, (tension - friction - viscous * s_rate) / slider, h_rate, GRAVITY_MPS2 - tension / weight,
+        ])  # fmt: skip
+
+    # Small against the rope's fastest motion, for the classical Runge-Kutta method.
+    reduced = 1.0 / slider + 1.0 / weight
+    fastest = np.minimum(0.3 / np.sqrt(stiffness * reduced), 1.0 / np.maximum(damping * reduced, 1e-9))
+    step = np.minimum(1e-3, fastest)
+    state, times, travels = np.zeros((4, count)), [np.zeros(count)], [np.zeros(count)]
+    refused: dict[int, GivewayError] = {}
+    pulling = state[1] < speed
+    while pulling.any():
+        for index in np.flatnonzero(
+            pulling & ((pull <= friction) | (state[2] > drop) | (times[-1] > LONGEST_RUN_UP_S))
+        ):
+            allowed = f"a speed that the hanging weight reaches: at most {max(0.0, float(state[1, index])):.3g} m/s"
+            refused[int(index)] = GivewayError("speed_mps", float(speed[index]), allowed)
+            pulling[index] = False
+        k1 = rate(state)
+        k2 = rate(state + 0.5 * step * k1)
+        k3 = rate(state + 0.5 * step * k2)
+        k4 = rate(state + step * k3)
+        after = state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        ends = pulling & (after[1] >= speed)
+        gain = np.where(ends, after[1] - state[1], 1.0)
+        share = np.where(ends, (speed - state[1]) / gain, 1.0)  # of the last step
+        times.append(np.where(pulling, times[-1] + share * step, times[-1]))
+        travels.append(np.where(pulling, state[0] + share * (after[0] - state[0]), travels[-1]))
+        state = np.where(pulling, after, state)
+        pulling &= ~ends
+    return np.array(times), np.array(travels), refused
 
 
 def _at(plan: Plan, path_s: Numbers) -> Numbers:
@@ -337,7 +375,7 @@ def _at(plan: Plan, path_s: Numbers) -> Numbers:
 
 @dataclass(frozen=True)
 class _Nose:
-    """Where the noses go: run-up, centre at the contact (n, 2), unit vector along the rail (n, 2), radius (n,)."""
+    """Paths of the noses: run-up, centre at the contact (n, 2), unit vector along the rail (n, 2), radius (n,)."""
 
     run_up: _RunUp
     centre: Numbers
@@ -346,15 +384,15 @@ class _Nose:
 
 
 def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: Numbers) -> Iterator[tuple[int, float]]:
-    """The runs in which the nose is not outside the robot from the start until it meets the point; and when."""
+    """The runs in which the nose touches the robot before it reaches the point, and the times."""
     duration = np.maximum(nose.run_up.duration_s - SAMPLE_S, 0.0)
     longest = float(duration.max(initial=0.0))
     way = _at(plan, np.arange(0.0, longest + SAMPLE_S, SAMPLE_S))[:, :3]
     moved = np.abs(np.diff(way, axis=0)).sum(axis=0) @ [1.0, 1.0, float(np.hypot(*outline.T).max())]
     moved += float(np.abs(nose.run_up.length_m).max(initial=0.0))
     samples = 1 + max(1, math.ceil(min(longest / SAMPLE_S, moved / SAMPLE_M)))
-    time_s, travel = nose.run_up.sampled(np.linspace(0.0, 1.0, samples), SAMPLE_S)
-    travel -= nose.run_up.length_m
+    time_s = np.linspace(0.0, 1.0, samples)[:, None] * duration
+    travel = nose.run_up.travel(time_s) - nose.run_up.length_m
     runs = max(1, SAMPLES_AT_ONCE // samples)
     for first in range(0, len(duration), runs):
         part = slice(first, first + runs)

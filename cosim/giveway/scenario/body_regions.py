@@ -1,10 +1,9 @@
-"""What a contact does to a person, judged against the force limits of a body region (ISO/TS 15066:2016, Annex A).
+"""Judges a contact with a person by the force limits of a body region (ISO/TS 15066:2016, Annex A).
 
-Two limits: the *peak* within the first 0.5 s of a contact (transient), and the *lasting* force after them, which is
-what clamping does (quasi-static); where the area of the contact is known, its mean pressure likewise. `contact_peak`
-and `speed_limit` are the standard's two-mass estimate of the first.
-The numbers are in `body_regions.toml`. They judge a design; they do not replace the standard: `NOTICE` says so in every
-output.
+Two limits: the *peak* within the first 0.5 s of a contact (transient), and the *lasting* force after that, as in
+clamping (quasi-static); where the area of the contact is known, its mean pressure likewise. `contact_peak` and
+`speed_limit` are the standard's two-mass estimate of the first. The numbers are in `body_regions.toml`. They help to
+judge a design, but do not replace the standard: `NOTICE` says so in every output.
 """
 
 from __future__ import annotations
@@ -25,19 +24,25 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    TRANSIENT_S: float
+
 __all__ = ["NOTICE", "TRANSIENT_S", "BodyRegion", "Judgement", "body_region", "body_regions", "contact_peak"]
 __all__ += ["check_contact_area", "judge", "source", "speed_limit"]
-
-TRANSIENT_S = 0.5
-"""How long a contact counts as transient; a force that lasts longer is quasi-static."""
 
 CM2_PER_M2 = 1e4
 CONTACT_AREA_M2 = (1e-6, 1.0)  # of the contact
 SCHEMA_VERSION = 1
 _FILE = Path(__file__).with_suffix(".toml")
 _Stiffness = TypeVar("_Stiffness", float, "NDArray[np.float64]")
-_Largest = tuple[float, float | None]  # a force in N and its time in s
-_NOTHING: _Largest = (0.0, None)
+
+
+def __getattr__(name: str) -> float:
+    """TRANSIENT_S: how long a contact counts as transient, s; a force that lasts longer is quasi-static."""
+    if name != "TRANSIENT_S":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from giveway.library.recorded import windows
+
+    return windows().transient_s
 
 
 @dataclass(frozen=True)
@@ -46,13 +51,11 @@ class BodyRegion:
 
     Attributes:
         name: what scenario files call it ("lower leg").
-        covers: what belongs to it.
+        covers: its parts.
         lasting_limit_n: highest quasi-static force, N.
         peak_limit_n: highest force within the first 0.5 s of a contact, N; 0 where no transient contact is allowed.
-        lasting_pressure_limit, peak_pressure_limit: the same of the pressure, N/cm2, of the region's tenderest spot.
-        stiffness_npm: effective stiffness, N/m.
-        mass_kg: effective mass, kg.
-        source: the tables of the standard.
+        lasting_pressure_limit, peak_pressure_limit: the same for the pressure, N/cm2, at the region's most sensitive
+        spot. stiffness_npm: effective stiffness, N/m. mass_kg: effective mass, kg. source: the tables of the standard.
     """
 
     name: str
@@ -90,7 +93,7 @@ class Judgement:
         lasting_time_s: when; None if none lasted so long.
         longest_contact_s: length of the longest contact, s.
         contact_area_m2: area of the contact, m2; None if it is not known, and the pressure neither.
-        lasting_known: the trace goes on for more than 0.5 s after the first touch, so that what lasts can be told.
+        lasting_known: the trace continues for more than 0.5 s after the first touch, so the lasting force is known.
     """
 
     region: BodyRegion
@@ -128,7 +131,8 @@ class Judgement:
         return self.peak_ok and self.lasting_ok and self.lasting_known
 
     def __str__(self) -> str:
-        """One line with the verdict, both forces and mean pressures, their limits, and who decides in the end."""
+        """One line with the verdict, both forces and mean pressures, their limits, and the notice about the
+        standard."""
         region = self.region
         allowed = f"{region.peak_limit_n:g} N" if region.peak_limit_n else "no transient contact"
         known = "within" if self.peak_ok and self.lasting_ok else "above"
@@ -167,12 +171,12 @@ def body_region(name: str) -> BodyRegion:
 
 
 def check_contact_area(area_m2: object) -> float:
-    """``area_m2`` as a float, m2; GivewayError if it is no number from 1e-6 to 1."""
+    """``area_m2`` as a float, m2; GivewayError if it is not a number from 1e-6 to 1."""
     return finite("contact_area_m2", area_m2, *CONTACT_AREA_M2, "m2")
 
 
 def source() -> str:
-    """Where the limits come from."""
+    """The source of the limits."""
     return str(_read()[1]["source"])
 
 
@@ -186,9 +190,9 @@ def judge(
 ) -> Judgement:
     """Judge the magnitude of a contact force over time against the limits of ``region``.
 
-    A contact begins when the force rises above ``touch_n`` and ends when it stays at or below it for 0.5 s: what comes
-    back sooner belongs to the same contact. So chatter does not escape the lower, lasting limit, and a second blow
-    within one contact is judged by it too, which errs on the safe side.
+    A contact begins when the force rises above ``touch_n`` and ends when it stays at or below it for 0.5 s: an earlier
+    touch belongs to the same contact. So chatter is subject to the lower, lasting limit, and so is a second blow within
+    one contact, which is on the safe side.
 
     Args:
         time_s: shape (n,), s, strictly rising.
@@ -198,24 +202,24 @@ def judge(
         contact_area_m2: area over which the force spreads, m2, 1e-6 to 1; None: unknown, no pressure is judged. The
             pressure is the mean one: edges and hard spots press harder.
     """
-    import numpy as np
+    from giveway.library.recorded import judge_force
 
     chosen = body_region(region) if isinstance(region, str) else region
     finite("touch_n", touch_n, 0.0, math.inf, "N")
     if contact_area_m2 is not None:
         check_contact_area(contact_area_m2)
     time, force = _trace(time_s, force_n)
-    peak = lasting = _NOTHING
-    longest = 0.0
-    touching = np.flatnonzero(force > touch_n)
-    groups = np.split(touching, np.flatnonzero(np.diff(time[touching]) >= TRANSIENT_S) + 1) if touching.size else []
-    for rows in groups:
-        since = time[rows] - time[rows[0]]
-        longest = max(longest, float(since[-1]))
-        peak = max(peak, _largest(time, force, rows[since <= TRANSIENT_S]), key=_force)
-        lasting = max(lasting, _largest(time, force, rows[since > TRANSIENT_S]), key=_force)
-    known = not touching.size or bool(time[-1] - time[touching[0]] > TRANSIENT_S)
-    return Judgement(chosen, *peak, *lasting, longest, contact_area_m2, known)
+    found = judge_force(time, force, touch_n)
+    return Judgement(
+        chosen,
+        found.transient_n,
+        found.transient_time_s,
+        found.lasting_n,
+        found.lasting_time_s,
+        found.longest_contact_s,
+        contact_area_m2,
+        found.lasting_known,
+    )
 
 
 def contact_peak(region: BodyRegion | str, speed_mps: float, robot_kg: float, padding_npm: float = math.inf) -> float:
@@ -260,17 +264,6 @@ def _trace(time_s: ArrayLike, force_n: ArrayLike) -> tuple[NDArray[np.float64], 
     return time, force
 
 
-def _largest(time: NDArray[np.float64], force: NDArray[np.float64], rows: NDArray[np.intp]) -> _Largest:
-    if not rows.size:
-        return _NOTHING
-    row = rows[force[rows].argmax()]
-    return float(force[row]), float(time[row])
-
-
-def _force(found: _Largest) -> float:
-    return found[0]
-
-
 @functools.cache
 def _read() -> tuple[Mapping[str, BodyRegion], dict[str, Any]]:
     document = tomllib.loads(_FILE.read_text(encoding="utf-8"))
@@ -294,4 +287,4 @@ def _read() -> tuple[Mapping[str, BodyRegion], dict[str, Any]]:
 
 
 NOTICE: str = _read()[1]["notice"]
-"""Who decides in the end; part of every output that shows a limit."""
+"""The notice about the standard; part of every output that shows a limit."""

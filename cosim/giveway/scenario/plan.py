@@ -41,7 +41,7 @@ Plan = Callable[["NDArray[np.float64]"], "NDArray[np.float64]"]
 """Path times (n,) in s to (n, 9): the columns of ``PLAN_INPUTS``."""
 
 HEADINGS = ("fixed", "turning")
-"""What the heading does on a circle: stays as it is, or turns with the path."""
+"""The heading on a circle: constant, or turning with the path."""
 
 MAXIMUM_POSITION_M = 1e4  # of the controller's and the testbed's variable tables, as are the next two
 MAXIMUM_HEADING_RAD = 10.0
@@ -82,15 +82,15 @@ class Rest:
 
 @dataclass(frozen=True)
 class Straight:
-    """Move along a straight line with a fixed heading, without end.
+    """Move endlessly along a straight line with a fixed heading.
 
     Attributes:
         speed_mps: in m/s, at least 0.
         direction_rad: of travel, world frame, in rad.
-        x_m, y_m: where path time 0 is, in m.
+        x_m, y_m: position at path time 0, in m.
         theta_rad: heading in rad.
         acceleration_mps2: from rest with at most this, in m/s2 (half a sine wave over time); None: already moving,
-            which a servo that still has to fall behind to make its torque follows with a jolt.
+            which starts with a jolt, since the servo has to lag behind to make its torque.
     """
 
     speed_mps: float
@@ -112,7 +112,7 @@ class Straight:
 
     @property
     def ramp_m(self) -> float:
-        """Way from rest to full speed, m."""
+        """Travel from rest to full speed, m."""
         return 0.5 * self.speed_mps * self.ramp_s
 
     def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -129,17 +129,17 @@ class Straight:
 
 @dataclass(frozen=True)
 class Circle:
-    """Move around a circle, without end; anticlockwise for a positive speed.
+    """Move endlessly around a circle; anticlockwise for a positive speed.
 
     Attributes:
         diameter_m: in m, above 0.
         speed_mps: along the circle in m/s; negative: clockwise.
         centre_x_m, centre_y_m: in m.
-        start_rad: where path time 0 is, as the angle about the centre in the world frame, in rad.
+        start_rad: position at path time 0, as the angle about the centre in the world frame, in rad.
         heading: "fixed", or "turning" at the rate of the path: the same side of the robot looks ahead all the time.
         theta_rad: heading at path time 0 in rad.
         acceleration_mps2: from rest with at most this along the path, in m/s2 (half a sine wave over time); None:
-            already moving, see `Straight`. The centripetal acceleration, speed^2 over radius, comes on top.
+            already moving, see `Straight`. The centripetal acceleration, speed^2 over radius, is added to it.
     """
 
     diameter_m: float
@@ -183,10 +183,10 @@ class TimedPush:
     """One push: the force rises linearly, holds, and falls linearly.
 
     Attributes:
-        force_n: when it holds, in N, at least 0.
+        force_n: held force, in N, at least 0.
         direction_rad: of the force on the robot, world frame, in rad.
         point_x_m, point_y_m: where it acts, base frame, in m.
-        start_s: when it starts to rise, in s.
+        start_s: start of the rise, in s.
         duration_s: from first to last force in s, above 0.
         ramp_s: of the rise and of the fall, each in s; at most half the duration.
     """
@@ -210,12 +210,12 @@ class TimedPush:
 
     @property
     def end_s(self) -> float:
-        """When the force is gone, in s."""
+        """End of the force, in s."""
         return self.start_s + self.duration_s
 
     @property
     def impulse_newton_s(self) -> float:
-        """Of the whole push, in N s."""
+        """Impulse of the whole push, in N s."""
         return self.force_n * (self.duration_s - self.ramp_s)
 
     def force(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -259,7 +259,7 @@ class Pushes:
 
 
 def start_values(plan: Plan) -> dict[str, float]:
-    """The testbed's ``start.*`` parameters that put the robot where ``plan`` is at path time 0, as fast as it is."""
+    """The testbed's ``start.*`` parameters for the pose and the speed of ``plan`` at path time 0."""
     import numpy as np
 
     names = ("x", "y", "theta", "vx", "vy", "omega")

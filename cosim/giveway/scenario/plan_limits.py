@@ -1,7 +1,7 @@
 """Plans that the controller cannot follow, refused before anything runs.
 
-The controller's reference keeps to ``controller.reference.*_limit``: what a plan asks beyond them is cut off, and the
-robot then is elsewhere, and slower, than was asked.
+The controller's reference keeps ``controller.reference.*_limit``: beyond these limits the reference lags the plan, so
+the robot is behind the planned position, and slower.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 __all__ = ["LIMIT_NAMES", "Limits", "check_plan", "check_plan_of", "limits_of"]
 
-EXCESS = 0.02  # of both accelerations together: the reference makes up for so little within a millimetre
+EXCESS = 0.02  # of both accelerations together: the reference corrects this small excess within a millimetre
 SAMPLES = 1001  # of the time in which a circle's speed is reached
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What the controller's reference keeps to.
+    """Limits of the controller's reference.
 
     Attributes:
         speed_mps, acceleration_mps2: along the path.
@@ -53,7 +53,7 @@ LIMIT_NAMES = tuple(name for name, _ in _NAMES.values())
 
 
 def limits_of(controller: Mapping[str, Value]) -> Limits:
-    """The limits among the controller's parameters ``controller``; what is not set has its start value."""
+    """The limits among the controller's parameters ``controller``; a missing one has its start value."""
     from giveway.robot.variables import table
 
     variables = table("controller")
@@ -67,7 +67,7 @@ def check_plan_of(scenario: Scenario) -> None:
 
 
 def check_plan(plan: Plan, limits: Limits) -> None:
-    """Refuse a `Straight` or `Circle` that asks for more than ``limits``; other plans are the caller's business.
+    """Refuse a `Straight` or `Circle` beyond ``limits``; other plans are not checked.
 
     Raises:
         GivewayError: naming the plan's field (``Straight.speed_mps``), its value and the limit.
@@ -109,7 +109,8 @@ def _check_circle(plan: Circle, limits: Limits) -> None:
 
 
 def _largest_acceleration(along_mps2: float, speed_mps: float, radius_m: float) -> float:
-    """Of a circle that is started from rest: half a sine wave along the path, and what grows inwards, m/s2."""
+    """Of a circle started from rest: half a sine wave along the path, and the growing centripetal acceleration,
+    m/s2."""
     largest = 0.0
     for index in range(SAMPLES):
         phase = math.pi * index / (SAMPLES - 1)
@@ -121,7 +122,7 @@ def _largest_acceleration(along_mps2: float, speed_mps: float, radius_m: float) 
 def _refuse(
     field: str, value: float, asked: float, limit: str, limits: Limits, what: str = "", excess: float = 0.0
 ) -> None:
-    """Refuse ``value``, which asks for ``asked`` (``what`` follows from it, if not itself)."""
+    """Refuse ``value``, which requires ``asked`` (a quantity ``what`` that follows from it, if not itself)."""
     most, (name, unit) = getattr(limits, limit), _NAMES[limit]
     if asked > most * (1.0 + excess):
         found: object = value if not what else f"{value:g} ({what}: {asked:.3g} {unit})"

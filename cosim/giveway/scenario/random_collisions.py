@@ -1,4 +1,4 @@
-"""Random collisions over a wide range: what fixed steps are compared with event-exact runs on.
+"""Random collisions over a wide range, for the comparison of fixed steps with event-exact runs.
 
 Every number of `FACTORS` is drawn around the robot file's value, by a factor that is uniform on a
 logarithmic scale; places, directions and kinds are uniform.
@@ -54,18 +54,18 @@ FACTORS: Mapping[str, float] = MappingProxyType(
         "contact.damping": 3.0,
     }
 )
-"""Each of these is its start value times something from 1/factor to factor."""
+"""Each of these is its start value times a random number from 1/factor to factor."""
 
 PRESLIDING_FACTOR = 3.0
 SPEED_RANGE_MPS = (0.1, 1.0)
-CONTACT_RANGE_S = (0.12, 0.25)  # the controller has tared its sensors by then
+CONTACT_RANGE_S = (0.12, 0.25)  # after the controller's tare
 PLACE_SHARE = 0.6  # of a side's half length, from its middle
 LONGEST_FALL_M = 0.15  # of the hanging weight before the hit
 TILT_RAD = math.radians(35.0)  # from the side's normal
 
 
 def random_collisions(count: int, seed: int, duration_s: float = DURATION_S) -> list[Scenario]:
-    """``count`` scenarios ([0, 1e6]) of ``duration_s`` (s), of which each depends on ``seed`` and its number alone."""
+    """``count`` scenarios ([0, 1e6]) of ``duration_s`` (s); each depends only on ``seed`` and its number."""
     whole("count", count, 0, 10**6)
     start = {variable.name: variable.start for variable in table("testbed") if variable.start is not None}
     return [_scenario(np.random.default_rng((seed, index)), start, index, duration_s) for index in range(count)]

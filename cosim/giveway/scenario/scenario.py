@@ -1,4 +1,4 @@
-"""A scenario: everything that decides the outcome of one run."""
+"""A scenario: the complete input of one run."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ FMI_VERSIONS = (3, 2)
 MAXIMUM_DURATION_S = 3600.0
 MINIMUM_STEP_S, MAXIMUM_STEP_S = 1e-4, 0.1
 MAXIMUM_STEPS = 4_000_000  # of the batch library
-MAXIMUM_TRACE_VALUES = 100_000_000  # kept in memory: 0.8 GB of numbers
+MAXIMUM_TRACE_VALUES = 100_000_000  # values in memory: 0.8 GB
 
 
 @dataclass(frozen=True)
 class Scenario:
     """One co-simulation of controller and testbed.
 
-    Nothing collides with the robot unless ``testbed`` says so by ``"slider.present": True``, with what the slider shall
-    be beside it; `giveway.scenario.approach.meet` gives all of that for a hit at a place and speed.
+    Nothing collides with the robot unless ``testbed`` has ``"slider.present": True`` and the other parameters of the
+    slider; `giveway.scenario.approach.meet` computes all of them for a hit at a given point and speed.
 
     Attributes:
         name: a short name, for manifests and figures.
@@ -43,13 +43,13 @@ class Scenario:
         seed: seed of the testbed's sensor noise, or None for the table's start value.
         fmi_version: 3 or 2.
         robot: a robot file that replaces the one the FMUs were built with, or None.
-        body_region: what is hit, a name of `body_regions`, or None. The slider gets its effective mass, and
-            ``contact.stiffness`` is that of the robot's cover (its robot file's ``contact.stiffness``) and the body in
-            series; the contact force is judged by its limits.
-        judge_as: the region by whose limits the force is judged while mass and stiffness are what ``testbed`` and
-            robot file state; None: that of ``body_region``, if any.
+        body_region: the part that is hit, a name of `body_regions`, or None. The slider gets its effective mass, and
+            ``contact.stiffness`` becomes that of the robot's cover (``contact.stiffness`` in the robot file) and the
+            body in series; the contact force is judged by its limits.
+        judge_as: the region whose limits judge the force, while mass and stiffness are those of ``testbed`` and robot
+            file; None: that of ``body_region``, if any.
         contact_area_m2: area of the contact, m2, 1e-6 to 1, for the mean pressure; None: unknown.
-        contact: the contact that the parameters are meant to make, or None; another one becomes a warning.
+        contact: the intended contact, or None; a different contact gives a warning.
     """
 
     name: str
@@ -86,12 +86,12 @@ class Scenario:
                 if name.startswith(("slider.", "rope.")):
                     allowed = "only what collides has it: set slider.present = True, too"
                     raise GivewayError(f"testbed.{name}", value, allowed)
-        # Copies, so that a frozen scenario cannot change behind the caller's back.
+        # Copies, so that a frozen scenario cannot change later.
         object.__setattr__(self, "testbed", MappingProxyType(dict(self.testbed)))
         object.__setattr__(self, "controller", MappingProxyType(dict(self.controller)))
 
     def _check_region(self) -> None:
-        """Refuse an unknown region, one of nothing, and what contradicts it."""
+        """Refuse an unknown region, a region without a collider, and contradictions."""
         if self.judge_as is not None:
             if self.body_region is not None:
                 allowed = "nothing beside body_region, which is judged by its own limits"
@@ -122,7 +122,7 @@ class Scenario:
 
     @property
     def judged(self) -> BodyRegion | None:
-        """The body region by whose limits the contact force is judged."""
+        """The body region whose limits judge the contact force."""
         name = self.body_region or self.judge_as
         return None if name is None else body_region(name)
 

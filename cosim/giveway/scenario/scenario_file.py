@@ -1,7 +1,7 @@
 """A user's own scenario as a TOML file; `cosim/README.md` lists its keys, `examples/` has files to start from.
 
 Points are on the robot (base frame, m), directions and headings in the world (degrees). A wrong file is refused with
-one message that names file, line and key; ranges are those of the variable tables and of the plans, not stated twice.
+one message that names file, line and key; ranges are those of the variable tables and of the plans.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _TOP = (
     "plan", "collision", "push", "testbed", "controller",
 )  # fmt: skip
 _POSE = ("x", "y", "heading")
-PLAN_KEYS = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}  # fields of plans, in the file's words
+PLAN_KEYS = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}  # fields of plans, by the file's keys
 _PLAN_KEYS = {
     "rest": _POSE,
     "straight": (*_POSE, "speed", "direction", "acceleration"),
@@ -42,7 +42,7 @@ _PLAN_KEYS = {
 }
 _COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
-# Parameters that a key of the file sets; [testbed] must not set them once more.
+# Parameters that a key of the file sets; [testbed] must not set them again.
 SET_BY = {
     "bumper.kind": "bumper",
     "electronics.seed": "seed",
@@ -65,8 +65,8 @@ def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | 
 
     Raises:
         FileError: the file cannot be read.
-        InputFileError: it is no TOML, or something in it is unknown, of the wrong type, out of range or contradicts
-            something else in it; names the line.
+        InputFileError: it is not TOML, or contains something unknown, of the wrong type, out of range or contradictory;
+            names the line.
     """
     path = Path(path)
     text, document = read_toml(path, "give the path of a scenario file (TOML)")
@@ -80,7 +80,7 @@ def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | 
 def scenario_of(
     document: Mapping[str, Any], path: Path, bumper: str | None = None, robot: Path | None = None
 ) -> Scenario:
-    """The scenario that ``document`` describes, as the file ``path`` would; errors name its keys, without lines."""
+    """The scenario of ``document``, as if read from the file ``path``; errors name its keys, without lines."""
     top = Section("", document, _TOP)
     version = top.required("schema_version", "1")
     if version != SCHEMA_VERSION:
@@ -174,7 +174,7 @@ def _pushes(top: Section) -> Pushes | None:
                     section.number("ramp", 0.0),
                 )
             )
-            Pushes(tuple(pushes))  # so that an overlap is told with the later one's line
+            Pushes(tuple(pushes))  # so that an overlap is reported with the later one's line
     return Pushes(tuple(pushes))
 
 
@@ -207,14 +207,15 @@ def scalars(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
 
 
 def _collision(section: Section, bare: Scenario) -> tuple[dict[str, Value], StatedContact, float]:
-    """The testbed's parameters for the dummy, the contact that they are meant to make, and when that is, s."""
+    """The testbed's parameters for the dummy, the intended contact, and its time, s."""
     from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
 
     set_already = bare.parameters("testbed")
     mass = section.number("mass", float(set_already.get("slider.mass", table("testbed")["slider.mass"].start or 0.0)))
     with renamed("collision", **{"testbed.slider.mass": "mass"}):
         set_already["slider.mass"] = table("testbed").check("slider.mass", mass)
-        dataclasses.replace(bare, testbed={**bare.testbed, "slider.mass": mass})  # refuses what is no body's mass
+        # refuses a mass that is not the body's
+        dataclasses.replace(bare, testbed={**bare.testbed, "slider.mass": mass})
     everything = {v.name: set_already.get(v.name, v.start) for v in table("testbed").select("parameter")}
     testbed = {name: value for name, value in everything.items() if value is not None}
     if "edge" in section.values and "point" in section.values:

@@ -1,4 +1,4 @@
-"""The contact that a scenario asks for, so that what came instead can be told."""
+"""The contact stated by a scenario, so that deviations from it can be reported."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ __all__ = ["StatedContact"]
 
 @dataclass(frozen=True)
 class StatedContact:
-    """How slider and robot shall meet; None: not stated.
+    """The intended contact of slider and robot; None: not stated.
 
     Attributes:
         speed_mps: of the slider's nose relative to the base, m/s, as the metric "contact speed".
         point_m: on the robot, base frame, m.
-        time_s: when, s.
+        time_s: time of the contact, s.
     """
 
     speed_mps: float | None = None

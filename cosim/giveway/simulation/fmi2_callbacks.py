@@ -10,9 +10,9 @@ __all__ = ["fmi2_callbacks"]
 
 
 def fmi2_callbacks(log: Callable[[Any, bytes, int, bytes, bytes], None]) -> Any:
-    """FMPy's own, but for ``log`` (environment, instance, status, category, text).
+    """FMPy's own callbacks, except for ``log`` (environment, instance, status, category, text).
 
-    Messages come with printf arguments; FMPy's native proxy puts them into the text.
+    Messages have printf arguments; FMPy's native proxy formats them into the text.
     """
     from fmpy import fmi2
     from fmpy.logging import addLoggerProxy

@@ -66,7 +66,7 @@ class FmuFile:
     references: Mapping[str, int]
 
     def check_matches(self, table: VariableTable) -> None:
-        """Refuse an FMU that was built from another variable table: its references would mean other things."""
+        """Refuse an FMU that was built from another variable table: its references would have other meanings."""
         for variable in table:
             found = self.references.get(variable.name)
             if found != variable.reference:
@@ -90,7 +90,7 @@ def _unpack(path: Path, _modified_ns: int) -> FmuFile:
     folder = temporary_folder()
     try:
         fmpy.extract(str(path), unzipdir=str(folder))
-        # Our own build validates the description; doing so in every process would cost more than a run.
+        # Our build validates the description; a validation in every process would take longer than a run.
         description: ModelDescription = fmpy.read_model_description(str(folder), validate=False)
     except OSError as error:
         raise WriteError(folder, error) from error
@@ -120,7 +120,7 @@ def _shared_fmi2_callbacks() -> Any:
 
     def dispatch(environment: int | None, name: bytes, status: int, category: bytes, text: bytes) -> None:
         listener = _listeners.get(environment or 0)
-        if listener is None:  # an instance that someone else made through FMPy
+        if listener is None:  # an instance made elsewhere with FMPy
             fmi2.printLogMessage(environment, name, status, category, text)
         else:
             listener._logged(status, text)
@@ -163,7 +163,7 @@ class Instance:
             raise SimulationError(self.name, " ".join([str(error), *self._messages]), 0.0) from None
 
     def _fmi2_callbacks(self) -> Any:
-        """FMI 2 callbacks of this instance: the shared logger, told apart by the component environment."""
+        """FMI 2 callbacks of this instance: the shared logger, distinguished by the component environment."""
         from fmpy import fmi2
 
         shared = _shared_fmi2_callbacks()
@@ -189,7 +189,7 @@ class Instance:
         self._fmu.freeInstance()
 
     def check(self, status: int, time_s: float) -> None:
-        """Raise SimulationError with the FMU's own words if ``status`` (one or several or-ed) is a failure."""
+        """Raise SimulationError with the FMU's message if ``status`` (one or several or-ed) is a failure."""
         if status <= WORST_USABLE_STATUS:
             return
         self._worst = max(self._worst, status)
@@ -243,7 +243,7 @@ class Instance:
         return lambda address: call2(instance, where, count, address)
 
     def stepper(self) -> Callable[[float, float], int]:
-        """A function of (time in s, step in s) that does one step and returns the FMI status."""
+        """A function of (time in s, step in s) that makes one step and returns the FMI status."""
         pointer, double, instance = ctypes.c_void_p, ctypes.c_double, self._component
         name = f"{self._prefix}DoStep"
         if self._version == 2:

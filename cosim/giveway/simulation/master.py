@@ -8,9 +8,9 @@ Exchange order, once per communication step from t_k to t_k + h (sequential; sen
 4. set the testbed's inputs: the commands, and the external push at t_k;
 5. testbed.doStep(t_k, h).
 
-Delays of bus and sensors live inside the testbed. Row k of every trace holds the testbed at t_k and what the controller
-made of it at t_k. A last read of both closes the record at the end time. Other orders (Jacobi, plant first) give other
-results: the order is part of the definition of a run.
+Delays of bus and sensors are inside the testbed. Row k of every trace holds the testbed's outputs at t_k and the
+controller's outputs from them at t_k. A last read of both closes the record at the end time. Other orders (Jacobi,
+plant first) give other results: the order is part of the definition of a run.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ COMMANDS = {
 
 
 class Binary(Protocol):
-    """The file that a model's code came from; `FmuFile` is one."""
+    """The file with a model's code; `FmuFile` is one."""
 
     @property
     def path(self) -> Path: ...
@@ -79,7 +79,7 @@ class Binary(Protocol):
 
 @dataclass
 class Record:
-    """What one run produced, before it is labelled.
+    """The output of one run, before it is labelled.
 
     Attributes:
         time_s: shape (n,).
@@ -105,8 +105,8 @@ class Record:
 class _Traces:
     """All outputs of one instance over the whole run: one preallocated array per type, one row per step.
 
-    A row is the buffer of the FMU call itself, and the values that pass to the other FMU come first in it, so
-    neither recording nor exchanging copies anything.
+    A row is the buffer of the FMU call itself, and the values for the other FMU come first in it, so neither recording
+    nor exchanging makes a copy.
     """
 
     def __init__(self, instance: Instance, variables: VariableTable, first: dict[str, tuple[str, ...]], rows: int):
@@ -135,7 +135,7 @@ class _Traces:
         )
 
     def sender(self, receiver: Instance, to: VariableTable, names: dict[str, tuple[str, ...]]) -> Callable[[int], int]:
-        """A function that hands the first values of row k to ``receiver`` and returns the or-ed FMI status."""
+        """A function that passes the first values of row k to ``receiver`` and returns the or-ed FMI status."""
         used = [kind for kind in KINDS if names[kind]]
         ports = [
             (receiver.setter(kind, [to[name].reference for name in names[kind]]), self.base[kind], self.stride[kind])

@@ -1,4 +1,4 @@
-"""Names that metrics had before: what users wrote with them goes on working, with a word about the new name."""
+"""Former names of metrics: they still work, with a warning about the new name."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from types import MappingProxyType
 
 __all__ = ["RENAMED", "current_name", "former_name"]
 
-# "Travel" is what a bumper has (`testbed.bumper.travel`), "compression" what a collision uses of it.
-# The peak of a run may belong to a later contact than the first, which has a peak of its own.
+# "Travel" is a property of a bumper (`testbed.bumper.travel`), "compression" the part that a collision uses.
+# The peak of a run may belong to a later contact; the peak of the first contact is a separate metric.
 RENAMED: Mapping[str, str] = MappingProxyType(
     {"bumper travel": "bumper compression", "peak contact force": "peak force of the run"}
 )
 
 
 def current_name(field: str, name: str) -> str:
-    """The name of the metric ``name`` today; if that is another one, a FutureWarning names ``field`` and both."""
+    """The present name of the metric ``name``; if it differs, a FutureWarning names ``field`` and both."""
     if name not in RENAMED:
         return name
     warnings.warn(f'{field}: "{name}" is called "{RENAMED[name]}" now', FutureWarning, stacklevel=3)
@@ -24,5 +24,5 @@ def current_name(field: str, name: str) -> str:
 
 
 def former_name(name: str) -> str | None:
-    """What the metric ``name`` was called before; None: it always had this name."""
+    """The former name of the metric ``name``; None: it always had this name."""
     return next((old for old, new in RENAMED.items() if new == name), None)

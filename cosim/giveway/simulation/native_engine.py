@@ -16,6 +16,7 @@ from giveway.base.errors import GivewayError, SimulationError
 from giveway.library.batch_library import (
     CANCELLED,
     COLUMN,
+    DTYPES,
     MESSAGE_SIZE,
     NONE,
     OK,
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 __all__ = ["NativeRuns", "Trace", "simulate"]
 
 WAIT_S = 0.1
-_DTYPES: Mapping[str, Any] = {"real": np.float64, "integer": np.int32, "boolean": np.bool_}
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Trace:
 
     @property
     def dtype(self) -> Any:
-        return _DTYPES[self.variable.type]
+        return DTYPES[self.variable.type]
 
 
 class NativeRuns:
@@ -143,11 +143,11 @@ class NativeRuns:
                     library.cancel(handle)
                     interrupted = True
         finally:
-            library.finish(handle)  # whatever happened, no thread writes to the arrays any more
+            library.finish(handle)  # from here on no thread writes to the arrays, also after an exception
         return interrupted
 
     def error(self, index: int) -> GivewayError:
-        """What went wrong in a run, as giveway.run would raise it."""
+        """The error of a run, as giveway.run would raise it."""
         result = self.results[index]
         message = result["message"].decode()
         if result["model"] == NONE:
@@ -160,7 +160,7 @@ class NativeRuns:
 
 
 class _Tables:
-    """One kind of input table of all specs; those that share a function share the memory."""
+    """One kind of input table of all specs; specs with the same function share the memory."""
 
     def __init__(self, specs: NDArray[Any], field: str) -> None:
         self._specs, self._field = specs, field
@@ -178,7 +178,7 @@ class _Tables:
 
 def _plan(scenario: Scenario) -> NDArray[np.float64]:
     values = plan_table(scenario)
-    # The library holds the last row for ever: one is enough to rest.
+    # The library holds the last row for ever, so a robot at rest needs only one.
     return values[:1] if isinstance(scenario.plan, Rest) else values
 
 

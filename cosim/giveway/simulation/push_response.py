@@ -1,4 +1,4 @@
-"""What became of the pushes of a run: noticed or not, invented ones, where the robot went, and whether it came back."""
+"""The response to the pushes of a run: noticed or not, false detections, the escape, and the return to the path."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.library.recorded import windows
 from giveway.scenario.plan import TimedPush
-from giveway.simulation.metrics import CAUSE_WINDOW_S, Metric
+from giveway.simulation.metrics import Metric
 
 if TYPE_CHECKING:
     import xarray
@@ -35,16 +36,16 @@ TRACES = (
 
 @dataclass(frozen=True)
 class PushResponse:
-    """One push and what followed.
+    """One push and the response to it.
 
     Attributes:
         push: the push.
         detected_s: time of its first detection in the run, s; None if it was missed.
-        again_s: times of further detections that it caused, s: the robot took it for another push.
+        again_s: times of further detections that it caused, s: the robot mistook it for another push.
         felt_error_deg: felt minus true direction of the push at detection, deg.
         escape_m: travel of the base from the detection to the end of the reaction, m.
         escape_error_deg: direction of that travel minus that of the push, deg.
-        back_s: when the robot was on its path again, s; None if not before the next detection or the end.
+        back_s: time of the return to the path, s; None if not before the next detection or the end.
     """
 
     push: TimedPush
@@ -83,7 +84,7 @@ class Responses:
 
     @property
     def returned(self) -> int:
-        """Pushes after which the robot came back to its path."""
+        """Pushes after which the robot returned to its path."""
         return sum(one.back_s is not None for one in self.pushes)
 
 
@@ -124,10 +125,10 @@ def responses(
 
 
 def _caused(pushes: Sequence[TimedPush], detected_s: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Which push caused each detection: the last one that had begun, if it ended less than 0.25 s before; else -1."""
-    found = np.full(len(detected_s), -1)
+    """The push that caused each detection: the last one begun, if it ended less than 0.25 s before; otherwise -1."""
+    found, cause_s = np.full(len(detected_s), -1), windows().cause_s
     for number, push in enumerate(pushes):
-        found[(detected_s >= push.start_s) & (detected_s <= push.end_s + CAUSE_WINDOW_S)] = number
+        found[(detected_s >= push.start_s) & (detected_s <= push.end_s + cause_s)] = number
     return found
 
 
@@ -140,7 +141,7 @@ def responses_of(traces: xarray.Dataset, manifest: Mapping[str, Any]) -> Respons
 def push_metrics(
     response: PushResponse, traces: xarray.Dataset, parameters: Mapping[str, Mapping[str, Any]]
 ) -> tuple[Metric, ...]:
-    """How a push was felt, against truth, base frame; None for what did not happen because it was not felt.
+    """The estimate of a push compared with the truth, base frame; None if the push was not felt.
 
     "felt after" counts from the push's start, when its force begins to rise. Force and impulse are those of
     `metrics`: the filtered estimate at detection against the true force averaged over the same window, and the
@@ -157,7 +158,7 @@ def push_metrics(
     step_s = float(time_s[1] - time_s[0])
     controller = parameters["controller"]
     window_s = float(controller["estimator.average_window"]) * float(controller["controller.period"])
-    # Row k of the push acts from then on: what has acted up to a row stands in those before it.
+    # Row k of the push acts from t_k on: the push up to a row is in the rows before it.
     acted = slice(max(0, row - max(1, round(window_s / step_s))), row)
     since = slice(int(np.searchsorted(time_s, push.start_s)), row)
     mean = [float(trace(f"testbed.push.force_{axis}")[acted].mean()) if felt else 0.0 for axis in "xy"]

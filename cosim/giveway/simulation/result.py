@@ -1,4 +1,4 @@
-"""The result of a run: labelled traces with units, metrics, and a manifest that says where they come from."""
+"""The result of a run: labelled traces with units, metrics, and a manifest of their origin."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ class Result:
     Attributes:
         traces: one variable per FMU output, named ``testbed.truth.x``, over the coordinate ``time`` (s);
             the attributes ``units`` and ``long_name`` come from the variable tables.
-        metrics: what the run is judged by, in the order of the printed table.
+        metrics: in the order of the printed table.
         manifest: versions, hashes, seeds, parameters, solver options, scenario.
-        warnings: what happened otherwise than asked.
-        pushes: how each push of the scenario's schedule was felt, see `giveway.simulation.push_response.push_metrics`.
+        warnings: deviations from the request.
+        pushes: the estimate of each push of the scenario's schedule, see
+            `giveway.simulation.push_response.push_metrics`.
     """
 
     traces: xarray.Dataset

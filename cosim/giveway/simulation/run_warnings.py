@@ -1,7 +1,7 @@
-"""What happened in a run otherwise than it was asked: one line each, from what was stated and from its metrics.
+"""Deviations of a run from the request: one line each, from the stated values and the metrics.
 
-`BOUNDS` says from where on something is worth a warning. Whatever can be told for certain before a run is refused
-there (`plan_limits`, `approach`, the variable tables); these are the rest.
+`BOUNDS` has the thresholds of the warnings. Requests that are certainly impossible are refused before a run
+(`plan_limits`, `approach`, the variable tables); warnings cover the rest.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ SEPARATOR = "; "  # of codes in a table
 
 @dataclass(frozen=True)
 class RunWarning:
-    """One thing that was otherwise.
+    """One deviation.
 
     Attributes:
         code: which one, for tables and scripts; one of `CODES`.
@@ -71,7 +71,7 @@ class RunWarning:
 
 @dataclass(frozen=True)
 class Stated:
-    """What some runs were asked to do, each a number per run, shape (n,); NaN: not stated.
+    """The requests of some runs, one number per run, shape (n,); NaN: not stated.
 
     Attributes:
         contact_speed_mps: of the nose relative to the base.
@@ -92,11 +92,11 @@ class Stated:
 
     @classmethod
     def nothing(cls, count: int) -> Stated:
-        """What ``count`` runs state that state nothing; to be filled by `put`."""
+        """The requests of ``count`` runs without any statement; to be filled by `put`."""
         return cls(*(np.full(count, math.nan) for _ in range(5)), *(np.zeros(count, dtype=np.bool_) for _ in range(2)))
 
     def put(self, where: NDArray[np.int64], other: Stated) -> None:
-        """The runs ``where`` state what ``other`` does."""
+        """Copy the requests of ``other`` to the runs ``where``."""
         for one in fields(self):
             getattr(self, one.name)[where] = getattr(other, one.name)
 
@@ -123,7 +123,7 @@ def _known(values: Sequence[float | None]) -> Numbers:
 
 
 def plan_speed(scenario: Scenario) -> float | None:
-    """The speed that the scenario's plan states, m/s; None: none, or it stands."""
+    """The speed of the scenario's plan, m/s; None: no plan, or standing."""
     plan = scenario.plan
     return abs(plan.speed_mps) or None if isinstance(plan, Straight | Circle) else None
 
@@ -272,17 +272,18 @@ _CHECKS: Sequence[_Check] = (
 )
 
 CODES = tuple(check.code for check in _CHECKS)
-"""Every code there is, in the order of lines and tables."""
+"""All codes, in the order of lines and tables."""
 
 MEANINGS = MappingProxyType({check.code: check.meaning for check in _CHECKS})
-"""What each code says, without the numbers of a run."""
+"""The meaning of each code, without the numbers of a run."""
 
 METRICS = tuple(dict.fromkeys(name for check in _CHECKS for name in check.metrics))
-"""The metrics that warnings follow from."""
+"""The metrics on which the warnings are based."""
 
 
 def masks(stated: Stated, metrics: _Metrics) -> dict[str, Masks]:
-    """Which runs have which warning, by code, each of shape (n,); ``metrics`` holds `METRICS`, NaN for what was not."""
+    """The runs with each warning, by code, shape (n,); ``metrics`` holds `METRICS`, NaN for events that did not
+    happen."""
     with np.errstate(invalid="ignore"):
         return {check.code: check.found(stated, metrics) for check in _CHECKS}
 
@@ -298,7 +299,7 @@ def codes_of(stated: Stated, metrics: _Metrics) -> list[str]:
 
 
 def warnings_of(scenario: Scenario, metrics: Sequence[Metric]) -> tuple[RunWarning, ...]:
-    """The warnings of a run of ``scenario`` that came to its end, in the order of `CODES`."""
+    """The warnings of a completed run of ``scenario``, in the order of `CODES`."""
     values = {metric.name: metric.value for metric in metrics}
     found = {name: _known([values[name]]) for name in METRICS}
     stated = Stated.of([scenario])

@@ -1,4 +1,4 @@
-"""From a scenario to a result: run, label, judge, and record where it came from."""
+"""From a scenario to a result: run, label, judge, and record the origin."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ import xarray
 from giveway.base import native
 from giveway.base.errors import UnknownNameError
 from giveway.base.version import VERSION
+from giveway.library.batch_library import OF_COLLISION, OF_FREE_RUN
 from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Pushes, TimedPush
 from giveway.scenario.plan_limits import check_plan_of
@@ -48,24 +49,23 @@ def run(scenario: Scenario, progress: Progress | None = None, engine: Engine = "
 
 
 def judge(scenario: Scenario, record: Record) -> Result:
-    """``record`` labelled, with its metrics, its warnings and where it came from."""
+    """``record`` with labels, metrics, warnings and manifest."""
     traces = _label(record)
     manifest = _manifest(scenario, record)
     parameters = manifest["parameters"]
-    found = metrics.collision(traces, parameters)
+    found = metrics.evaluate(traces, parameters)
     warnings: tuple[RunWarning, ...] = ()
-    if not record.interrupted:  # else nobody knows what would have come
-        warnings = warnings_of(scenario, (*found, *metrics.design(traces, parameters)))
+    if not record.interrupted:  # otherwise the rest of the run is unknown
+        warnings = warnings_of(scenario, tuple(found.values()))
     manifest["warnings"] = [warning.text for warning in warnings]
     felt = responses_of(traces, manifest).pushes
     pushes = tuple(push_metrics(one, traces, parameters) for one in felt)
-    if not parameters["testbed"]["slider.present"]:
-        found = metrics.without_collision(traces, parameters)
-    return Result(traces, found, manifest, warnings, pushes)
+    where = OF_COLLISION if parameters["testbed"]["slider.present"] else OF_FREE_RUN
+    return Result(traces, metrics.shown(found, where), manifest, warnings, pushes)
 
 
 def _stated(scenario: Scenario) -> dict[str, Any] | None:
-    """The contact that is asked for, as JSON has it."""
+    """The stated contact as plain data for JSON."""
     contact = scenario.contact
     if contact is None:
         return None

@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base.files import write_text
-from giveway.simulation.metrics import CAUSE_WINDOW_S, Metric
+from giveway.library.recorded import windows
+from giveway.simulation.metrics import Metric
 from giveway.simulation.result import Result
 
 __all__ = ["cell", "false_detection_line", "push_rows", "summary", "table_rows", "warning_lines", "write_summary"]
 
 SCHEMA_VERSION = 1
-NOT_IN_ROWS = ("contact point x", "contact point y")  # of a push: the location error tells enough, and rows are long
+NOT_IN_ROWS = ("contact point x", "contact point y")  # of a push: the location error suffices, and rows are long
 
 
 def table_rows(results: Mapping[str, Result]) -> list[tuple[str, ...]]:
@@ -28,7 +29,7 @@ def table_rows(results: Mapping[str, Result]) -> list[tuple[str, ...]]:
 
 
 def push_rows(result: Result) -> list[tuple[str, ...]]:
-    """The header and one row per push: what it was, then how it was felt, ``value (truth)``; empty without pushes."""
+    """The header and one row per push: the push, then its estimate, ``value (truth)``; empty without pushes."""
     if not result.pushes:
         return []
     shown = [[one for one in push if one.name not in NOT_IN_ROWS] for push in result.pushes]
@@ -42,7 +43,7 @@ def push_rows(result: Result) -> list[tuple[str, ...]]:
 
 
 def false_detection_line(result: Result) -> str:
-    """When the robot felt what was not there, as a sentence; empty if it did not."""
+    """False detections as a sentence; empty if there are none."""
     from giveway.simulation.push_response import responses_of
 
     if not result.pushes:
@@ -51,11 +52,11 @@ def false_detection_line(result: Result) -> str:
     if not false_s:
         return ""
     times = ", ".join(f"{time_s:.3f}" for time_s in false_s)
-    return f"False detections, with no push in the {CAUSE_WINDOW_S:g} s before: at {times} s"
+    return f"False detections, with no push in the {windows().cause_s:g} s before: at {times} s"
 
 
 def warning_lines(results: Mapping[str, Result]) -> list[str]:
-    """What happened otherwise than asked, one line each; with the bumper before it where there are several results."""
+    """Warnings, one line each, with the bumper first if there are several results."""
     labels = {
         bumper: f"{'no bumper' if bumper == 'none' else bumper}: " if len(results) > 1 else "" for bumper in results
     }
@@ -63,14 +64,14 @@ def warning_lines(results: Mapping[str, Result]) -> list[str]:
 
 
 def cell(metric: Metric) -> str:
-    """A metric as text: ``value (truth)``, with "-" for what did not happen."""
+    """A metric as text: ``value (truth)``, with "-" if it did not happen."""
     if metric.truth is None or metric.truth == 0.0:  # an error's truth is zero by definition: not worth printing
         return number(metric.value, metric.decimals)
     return f"{number(metric.value, metric.decimals)} ({number(metric.truth, metric.decimals)})"
 
 
 def number(value: float | None, decimals: int | None) -> str:
-    """A number with fixed digits after the point, or in exponent form; "-" for what did not happen."""
+    """A number with fixed digits after the point, or in exponent form; "-" if it did not happen."""
     if value is None:
         return "-"
     return f"{value:.1e}" if decimals is None else f"{value:z.{decimals}f}"

@@ -223,7 +223,7 @@ def draw_all(
             figure, sentence = draw(load(studies / name))
             path = out / f"study_{name}.png"
             with replace_file(path) as temporary:
-                # The picture carries its numbers, so that a stale copy can be told from a fresh one.
+                # The picture contains its numbers, so that an outdated copy can be recognised.
                 figure.savefig(temporary, dpi=130, metadata={"Software": None, "Description": sentence})
         yield path, sentence
 

@@ -14,7 +14,7 @@ from .table import Table, expanded, read_table
 
 
 def _pictures(table: Table) -> dict[str, bytes]:
-    """Where each FMI version looks for the icon; a model without a picture has none."""
+    """The icon at the path that each FMI version expects; a model without a picture has none."""
     shapes = icon.PICTURES.get(table.name)
     if shapes is None:
         return {}
@@ -32,7 +32,7 @@ def _shipped(table: Table, files: list[Path], generated: dict[str, str]) -> dict
     for version in (2, 3):
         folder = f"fmi{version}/sources"
         for path in files:
-            if path.name != f"fmi{5 - version}_shell.cpp":  # not the other version's functions
+            if path.name != f"fmi{5 - version}_shell.cpp":  # without the other version's functions
                 # c_core includes its headers by their folder.
                 name = f"giveway/{path.name}" if path.parent.name == "giveway" else path.name
                 contents[f"{folder}/{name}"] = path.read_bytes()
@@ -61,7 +61,7 @@ def _write_sources(arguments: argparse.Namespace) -> None:
         "fmi3/modelDescription.xml": fmi.fmi3_model_description(table, arguments.version),
         "common/documentation/index.html": documentation.page(table, arguments.version, arguments.equations),
     }
-    # For those who compile the model, or read its table without codegen; no file of a source-code FMU.
+    # For users who compile the model, or read its table without codegen; not part of a source-code FMU.
     aside = {
         f"{table.name}.variables.toml": toml.text(expanded(arguments.table), f"Variables of the {table.name} FMU.")
     }
@@ -71,7 +71,7 @@ def _write_sources(arguments: argparse.Namespace) -> None:
     contents.update(_pictures(table))
     if shipped:
         contents.update(_shipped(table, shipped, code))
-    for folder in ("common", "fmi2", "fmi3"):  # whatever an earlier build left there would be packed
+    for folder in ("common", "fmi2", "fmi3"):  # files of an earlier build would be packed otherwise
         shutil.rmtree(arguments.out / folder, ignore_errors=True)
     for name, data in contents.items():
         path = arguments.out / name

@@ -15,7 +15,7 @@ def _declaration(group: Group) -> str:
     return f"    {_CPP_TYPES[group.type]} {group.identifier}{size}; // {group.description}{unit}"
 
 
-# What an importer that integrates reads, filled by the shell when it is asked for.
+# Variables for an importer that integrates; the shell fills them on request.
 _LOCAL_MEMBERS = {"state": "states", "derivative": "derivatives", "indicator": "indicators"}
 
 
@@ -63,7 +63,7 @@ def _literal(value: Value) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):
-        # -2147483648 is no literal in C++
+        # -2147483648 is not a literal in C++
         return str(value) if value != -(2**31) else "(-2147483647 - 1)"
     return repr(value)
 
@@ -80,7 +80,7 @@ def source(table: Table) -> str:
             if group.role is not None:
                 continue
             member = group.identifier if group.count is None else f"{group.identifier}[{index}]"
-            # -0.0 == 0 but is not what Variables{} holds
+            # -0.0 == 0, but Variables{} holds +0.0
             if variable.start is not None and (variable.start != 0 or str(variable.start).startswith("-")):
                 starts.append(f"    variables.{member} = {_literal(variable.start)};")
             offset = f"offsetof(Variables, {group.identifier})"

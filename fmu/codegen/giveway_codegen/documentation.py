@@ -44,7 +44,7 @@ def _feedthrough(table: Table) -> str:
 
 
 def _words(text: str) -> str:
-    """A paragraph's text; what stands between grave accents is mathematics."""
+    """A paragraph's text; text between grave accents is mathematics."""
     parts = text.split("`")
     return "".join(mathml(part, "inline") if i % 2 else escape(part) for i, part in enumerate(parts))
 

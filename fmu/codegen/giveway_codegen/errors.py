@@ -2,4 +2,4 @@
 
 
 class TableError(Exception):
-    """A variable table or robot file that cannot be used; the message names file, variable and key."""
+    """An unusable variable table or robot file; the message names file, variable and key."""

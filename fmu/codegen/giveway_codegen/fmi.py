@@ -12,7 +12,7 @@ from .units import DISPLAY_UNITS
 __all__ = ["fmi2_model_description", "fmi3_model_description"]
 
 AUTHOR = "giveway contributors"
-_TOLERANCE = 1e-6  # for an importer's solver: the relative tolerance of our own (solver.relative_tolerance)
+_TOLERANCE = 1e-6  # for an importer's solver: our own relative tolerance (solver.relative_tolerance)
 
 
 def _text(value: Value) -> str:
@@ -52,7 +52,7 @@ def _unit_definitions(table: Table) -> list[str]:
 
 
 def _type_attributes(quantity: Quantity) -> dict[str, str | None]:
-    """What the type definition of a quantity says beside its name and description: the same in both versions."""
+    """Attributes of a quantity's type definition besides name and description: the same in both versions."""
     numbers = {"min": quantity.minimum, "nominal": quantity.nominal}
     return {
         "quantity": quantity.quantity,
@@ -103,7 +103,7 @@ def _description(table: Table, group: Group, variable: Variable) -> dict[str, st
 
 
 def _initial(table: Table, group: Group) -> list[Variable] | None:
-    """What ``group`` depends on at the start: inputs that act at once and parameters. None: it is no unknown."""
+    """What ``group`` depends on at the start: inputs that act at once, and parameters. None: it is not an unknown."""
     if group.causality != "output" and group.role not in ("state", "derivative"):
         return None
     at_once = group.dependencies or ()
@@ -118,9 +118,9 @@ def _variability(group: Group) -> str:
 
 
 def _value_attributes(group: Group, variable: Variable) -> dict[str, str | None]:
-    """Type, unit, range, nominal and start: the same words in both versions.
+    """Type, unit, range, nominal and start: the same attributes in both versions.
 
-    Unit, display unit and nominal value of the type stand there alone: an importer's parser stops at a repetition.
+    Unit, display unit and nominal value are given only in the type: an importer's parser fails on a repetition.
     """
     optional = {"min": group.minimum, "max": group.maximum, "nominal": group.size, "start": variable.start}
     pairs: dict[str, str | None] = {"unit": group.unit, "displayUnit": group.display_unit}
@@ -201,7 +201,8 @@ def _interface(tag: str, attributes: Mapping[str, str], sources: Sequence[str]) 
 
 
 def fmi2_model_description(table: Table, version: str, sources: Sequence[str] = ()) -> str:
-    """FMI 2.0, without a variable for time: some importers refuse an explicit one. ``sources``: what to compile."""
+    """FMI 2.0, without a variable for time: some importers refuse an explicit one. ``sources``: the files to
+    compile."""
     types = {"real": "Real", "integer": "Integer", "boolean": "Boolean"}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     head = {"fmiVersion": "2.0", **_header(table, version), "guid": table.token}
@@ -247,7 +248,7 @@ def fmi2_model_description(table: Table, version: str, sources: Sequence[str] = 
     outputs = [(group, v) for group, v in table.scalars if group.causality == "output"]
     initial = [(group, v) for group, v in table.scalars if _initial(table, group) is not None]
     sections = {
-        # dependencies="" says that there are none; leaving it out would mean: all.
+        # dependencies="" means that there are none; without the attribute it would mean all.
         "Outputs": [(v, table.followed(group)) for group, v in outputs],
         "Derivatives": [(v, table.followed(group)) for group, v in derivatives],
         "InitialUnknowns": [(v, _initial(table, group) or []) for group, v in initial],

@@ -61,9 +61,9 @@ def _block(x0: float, y0: float, x1: float, y1: float, colour: str) -> Stroke:
 
 
 PICTURES: dict[str, list[Stroke]] = {
-    # felt a push, gives way to it
+    # a push and the escape from it
     "controller": [*_robot(82, 64, 42), *_arrow(4, 64, 38, 64, _HIT), *_arrow(62, 64, 98, 64, "#ffffff")],
-    # a robot on its floor and the slider that runs into it
+    # a robot on the floor and the slider that hits it
     "testbed": [
         Stroke(((6, 116), (122, 116)), 4, _DARK),
         *_robot(84, 62, 36),
@@ -91,7 +91,7 @@ PICTURES: dict[str, list[Stroke]] = {
 
 
 def svg(shapes: list[Stroke]) -> str:
-    """A square drawing with a transparent ground."""
+    """A square drawing with a transparent background."""
     lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {SIZE} {SIZE}" width="{SIZE}" height="{SIZE}">']
     for shape in shapes:
         points = " ".join(f"{x:.2f},{y:.2f}" for x, y in shape.points)
@@ -104,7 +104,7 @@ def svg(shapes: list[Stroke]) -> str:
 
 
 def _distance(x: float, y: float, shape: Stroke) -> float:
-    """Of a point from the shape's edge, negative inside."""
+    """Distance of a point from the shape's edge, negative inside."""
     points = shape.points
     edges = list(zip(points, (*points[1:], points[0]), strict=True))
     nearest = math.inf

@@ -2,7 +2,7 @@
 
 F_ext = sum_i ( j_w,i T_i ) + M a       names of one word; _sub with commas inside, ^2, greek letters by name
 dot(x), ddot(x), sqrt(x)                a function's name and one bracket
-a / b                                   a slash with blanks around stays in the line
+a / b                                   a slash between blanks is set in the line
 "text"                                  words
 """
 
@@ -21,7 +21,7 @@ _LETTERS = {
     }.items()
 }  # fmt: skip
 _OPERATORS = {"sum": "\u2211", "<=": "\u2264", "-": "\u2212"}
-_OVER = {"dot": ".", "ddot": ".."}  # as accents browsers set them into the letter
+_OVER = {"dot": ".", "ddot": ".."}  # browsers would draw these accents into the letter
 _FUNCTIONS = ("max", "tanh", "clamp", "sign")
 _TOKEN = re.compile(r"\s*(\"[^\"]*\"|[A-Za-z]+|\d+(?:\.\d+)?|<=|[-+/=<>|(),;:.'\[\]^_\u00d7\u00b7])")
 

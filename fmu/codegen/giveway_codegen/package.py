@@ -10,9 +10,9 @@ from .universal import universal_binary
 
 __all__ = ["PLATFORMS", "write_fmu"]
 
-# FMI 3's platform tuples, and the folders of an FMI 2 FMU that hold the binary. FMI 2 has names of its own for x86
-# only and takes the tuples for the rest (2.0.5); importers on Apple silicon look for either name, so darwin64 holds a
-# binary for both processors.
+# FMI 3's platform tuples, and the folders of the binary in an FMI 2 FMU. FMI 2 has its own names for x86 only and uses
+# the tuples for the rest (2.0.5); importers on Apple silicon look for either name, so darwin64 holds a binary for both
+# processors.
 PLATFORMS = {
     "x86_64-linux": ("linux64",),
     "aarch64-linux": ("aarch64-linux",),
@@ -38,8 +38,8 @@ def _binaries(fmi: int, files: dict[str, Path]) -> dict[str, bytes]:
 def write_fmu(fmi: int, generated: Path, binaries: dict[str, Path], licences: dict[str, Path], output: Path) -> None:
     """Write ``output`` from generated files, shared libraries (platform -> file) and licence texts (name -> file).
 
-    ``generated`` holds what both versions have in common in ``common/`` and the rest in ``fmi2/`` and ``fmi3/``, each
-    laid out as in the FMU.
+    ``generated`` has the files of both versions in ``common/`` and the others in ``fmi2/`` and ``fmi3/``, in the layout
+    of the FMU.
     """
     contents = _binaries(fmi, binaries)
     for folder in (generated / "common", generated / f"fmi{fmi}"):
@@ -59,7 +59,7 @@ def write_fmu(fmi: int, generated: Path, binaries: dict[str, Path], licences: di
     with zipfile.ZipFile(temporary, "w") as archive:
         for name in sorted(contents):
             entry = zipfile.ZipInfo(name, _EPOCH)
-            entry.create_system = 3  # Unix, whatever this runs on
+            entry.create_system = 3  # Unix, on any build system
             entry.external_attr = (0o100755 if name.startswith("binaries/") else 0o100644) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, contents[name], compresslevel=9)

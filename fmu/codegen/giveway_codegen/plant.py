@@ -1,4 +1,4 @@
-"""C++: the plant's parameters as the variable tables state them, and how they get their values."""
+"""C++: the plant's parameters from the variable tables, and the code that assigns their values."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _assignment(group: Group) -> str:
 
 
 def reader_header(table: Table) -> str:
-    """How the plant parameters that a model's table has get the values of its variables."""
+    """Code that copies a model's variables to the plant parameters in its table."""
     lines = "\n".join(_assignment(group) for group in table.plant_parameters)
     return f"""// Generated from the variable table of {table.name}; do not edit.
 #pragma once

@@ -1,7 +1,7 @@
-"""An FMU's sources: what an importer compiles itself, on whatever machine it has.
+"""An FMU's sources, which an importer compiles itself on any machine.
 
-C++17 and C99 files in one list: all are valid C++17 too, so an importer can go by the language or by the extension. The
-headers of FMI are not among them; both standards leave them to the importer.
+C++17 and C99 files in one list: all are also valid C++17, so an importer can use the stated language or the extension.
+FMI's headers are not included; both standards leave them to the importer.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from .table import Table
 __all__ = ["build_description", "entry", "source_names"]
 
 _PREFIX = {
-    # An importer that links the FMU statically needs names of its own; one that makes a library of it does not.
+    # An importer that links the FMU statically needs unique names; one that makes a library of it does not.
     2: "",
     3: """// The prefix that FMI 3 wants of functions that are linked statically; who makes a shared library
 // of these sources defines FMI3_OVERRIDE_FUNCTION_PREFIX.
@@ -31,7 +31,7 @@ def entry(table: Table, fmi: int) -> str:
 
 
 def source_names(table: Table, shipped: list[Path], fmi: int) -> list[str]:
-    """What has to be compiled, of ``shipped`` and the generated files, relative to the folder of the sources."""
+    """The files to compile, of ``shipped`` and the generated ones, relative to the folder of the sources."""
     generated = [f"giveway_{table.name}_fmi{fmi}.cpp", f"{table.name}_fmu.cpp", f"{table.name}_variables.cpp"]
     included = {"fmi2_shell.cpp", "fmi3_shell.cpp"}
     files = [path.name for path in shipped if path.suffix in (".c", ".cpp") and path.name not in included]

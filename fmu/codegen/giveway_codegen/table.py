@@ -24,7 +24,7 @@ INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
 Value = float | int | bool
 
 _MODEL_KEYS = {"name", "description", "step_size_s", "shares", "c_core"}
-# What a shared entry may say for itself; the rest is that of the other table's entry.
+# Keys that a shared entry may have; the rest comes from the other table's entry.
 _SHARED_KEYS = {"reference", "shared", "description", "minimum", "maximum", "dependencies"}
 _STATE_KEYS = {"reference", "name", "count", "unit", "display_unit", "nominal", "dependencies", "description"}
 _INDICATOR_KEYS = {"reference", "name", "count", "description"}
@@ -61,7 +61,7 @@ class Variable:
     reference: int
     name: str
     start: Value | None
-    robot_path: str | None  # where in the robot file the start value comes from
+    robot_path: str | None  # path of the start value in the robot file
 
 
 @dataclass(frozen=True)
@@ -78,13 +78,13 @@ class Group:
     maximum: Value | None
     nominal: float | None
     allow_nonfinite: bool
-    # What an output follows within the same instant, by group: inputs and, in Model Exchange, states. None: all states.
+    # Groups that an output depends on within the same instant: inputs and, in Model Exchange, states. None: all states.
     dependencies: tuple[str, ...] | None
     description: str
     variables: tuple[Variable, ...]
     role: str | None = None  # of a local variable: "state", "derivative" or "indicator"
-    display_unit: str | None = None  # what an importer may show instead of the unit
-    # Type of the plant's parameter of this name, if it is one; nothing that an importer sees, so not in the token.
+    display_unit: str | None = None  # unit that an importer may show instead
+    # Type of the plant's parameter of this name, if it is one. Importers do not see it, so it is not in the token.
     plant: str | None = field(default=None, repr=False)
     choices: tuple[str, ...] = field(default=(), repr=False)  # names of the values 0, 1, ... of an enumeration
     c_core: str | None = field(default=None, repr=False)  # member of the module's configuration, input or output
@@ -97,7 +97,7 @@ class Group:
 
     @property
     def size(self) -> float | None:
-        """Nominal value: the table's, else that of its quantity; None for what does not vary and for indicators."""
+        """Nominal value: the table's, or else that of its quantity; None for constants and for indicators."""
         if self.nominal is not None or self.type != "real" or self.causality == "parameter" or self.role == "indicator":
             return self.nominal
         return None if self.quantity is None else self.quantity.nominal
@@ -128,7 +128,7 @@ class Table:
 
     @property
     def has_equations(self) -> bool:
-        """States, so Model Exchange beside Co-Simulation."""
+        """Whether it has states, so Model Exchange besides Co-Simulation."""
         return any(group.role == "state" for group in self.groups)
 
     @property
@@ -150,7 +150,7 @@ class Table:
 
     @property
     def units(self) -> dict[str, dict[str, int]]:
-        """The units in use with their SI exponents, always with the second (the unit of time)."""
+        """The units in use with their SI exponents, always including the second (the unit of time)."""
         names = {group.unit for group in self.groups if group.unit} | {"s"}
         return {name: base_units(name) for name in sorted(names)}
 
@@ -182,7 +182,7 @@ def _robot_entry(robot: dict[str, Any], path: str) -> dict[str, Any] | None:
 
 
 class _Entry:
-    """One [[variable]] while it is being checked."""
+    """One [[variable]] during its check."""
 
     def __init__(self, file: Path, position: int, raw: dict[str, Any]) -> None:
         self.file = file
@@ -338,7 +338,7 @@ def _dependencies(entry: _Entry) -> tuple[str, ...]:
 
 
 def _local(entry: _Entry, role: str, keys: set[str], offset: int, form: str, unit: str) -> Group:
-    """A group of states, derivatives or indicators: reals that the importer reads."""
+    """A group of states, derivatives or indicators: real variables that the importer reads."""
     raw = entry.raw
     name = raw.get("name")
     if not isinstance(name, str) or not _NAME.fullmatch(name):
@@ -438,12 +438,12 @@ def _robot_value(
         return value
     if count is None or len(value) > count:
         raise entry.fail("start", f"{path} of {robot_file} has {len(value)} values for {count or 1} variables")
-    # A robot with fewer elements than there are variables (an outline's vertices) leaves the rest unused.
+    # If the robot has fewer elements than there are variables (an outline's vertices), the rest is unused.
     return value[index] if index < len(value) else 0
 
 
 def expanded(table_file: Path) -> dict[str, Any]:
-    """The table's document, with the entries that it shares with another table written out."""
+    """The table's document, with the entries shared with another table filled in."""
     document = _read_toml(table_file)
     shares = document.get("model", {}).pop("shares", None)
     if shares is not None and not isinstance(shares, str):
@@ -459,7 +459,7 @@ def expanded(table_file: Path) -> dict[str, Any]:
 
 
 def _written_out(entry: _Entry, theirs: dict[str, dict[str, Any]]) -> dict[str, Any]:
-    """A shared entry: theirs, with what it states itself."""
+    """A shared entry: that of the other table, updated with its own keys."""
     name = entry.raw["shared"]
     if name not in theirs:
         raise entry.fail("shared", f"{name!r}, but must be a variable of the table that `shares` of [model] names")

@@ -1,4 +1,4 @@
-"""Writes a table as TOML: what the Python package reads, with shared entries written out."""
+"""Writes a table as TOML for the Python package, with shared entries filled in."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["text"]
 
 
 def text(document: dict[str, Any], comment: str) -> str:
-    """A document of plain values, tables and lists of tables, without nesting beyond that."""
+    """A document of plain values, tables and lists of tables, without further nesting."""
     lines = [f"# {comment}", *_pairs({key: value for key, value in document.items() if not _is_table(value)})]
     for key, value in document.items():
         if isinstance(value, dict):
@@ -33,5 +33,5 @@ def _value(value: Any) -> str:
         return "{ " + ", ".join(_pairs(value)) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(_value(item) for item in value) + "]"
-    # What JSON writes of strings, numbers and booleans is TOML, too.
+    # Strings, numbers and booleans in JSON are also valid TOML.
     return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -13,7 +13,7 @@ __all__ = ["Quantity", "quantity_of"]
 class Quantity:
     """A type definition; ``kind`` is the variables' type, ``quantity`` the physical quantity's name.
 
-    Variables that are shown in another unit than most of their quantity are of a type of their own, "Position.mm".
+    Variables with another display unit than usual for their quantity have a separate type, "Position.mm".
     """
 
     name: str
@@ -37,8 +37,8 @@ class Quantity:
         return replace(self, name=f"{self.name}.{display_unit}", description=description, own_display_unit=display_unit)
 
 
-# unit -> quantity, name and description of what has a sign, of what has none, typical size of a robot's. A variable
-# is of the type without sign when its own range has none.
+# unit -> quantity, name and description of the signed type, of the unsigned type, typical magnitude for a robot. A
+# variable has the unsigned type if its own range is not negative.
 _REALS: dict[str, tuple[str, tuple[str, str], tuple[str, str], float]] = {
     "1": ("Dimensionless", ("SignedNumber", "Number"), ("Ratio", "Number that is not negative"), 1.0),
     "1/s": ("Rate", ("SignedRate", "Rate"), ("Rate", "Rate that is not negative"), 1.0),

@@ -1,4 +1,4 @@
-"""Units as FMI wants them: exponents of the SI base units, a factor, and what an importer may show instead."""
+"""Units in FMI's form: exponents of the SI base units, a factor, and display units."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DISPLAY_UNITS: dict[str, dict[str, tuple[float, float]]] = {
     "s": {"ms": (1e3, 0.0)},
 }
 
-# What is shown unless a variable says otherwise. Lengths in metres and in millimetres are both common on a robot.
+# Default display units. Lengths in metres and in millimetres are both common on a robot.
 _DEFAULT_DISPLAY_UNITS = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2", "s": "ms"}
 
 
@@ -46,8 +46,8 @@ def default_display_unit(unit: str | None) -> str | None:
 def base_units(unit: str) -> dict[str, int]:
     """Exponents of a unit written like ``N.m.s/rad`` or ``kg.m2``; ValueError if it cannot be read.
 
-    Factors are joined by dots; what follows a slash up to the next dot or slash is divided by. Only
-    coherent SI units are known, so the factor is always 1.
+    Factors are joined by dots; a factor after a slash is a divisor. Only coherent SI units are known, so the numeric
+    factor is always 1.
     """
     exponents: dict[str, int] = {}
     for operator, symbol, power in re.findall(r"(^|[./])([A-Za-z]+|1)(-?\d+)?", unit):

@@ -6,13 +6,13 @@ import struct
 
 __all__ = ["universal_binary"]
 
-_FAT_MAGIC = 0xCAFEBABE  # big-endian, as all of the header
+_FAT_MAGIC = 0xCAFEBABE  # big-endian, like the whole header
 _THIN_MAGIC = 0xFEEDFACF  # 64 bits, little-endian
 _ALIGNMENT_BITS = 14  # pages of 16 KiB, the larger ones of both processors
 
 
 def universal_binary(images: list[bytes]) -> bytes:
-    """The images one behind the other, each on a page of its own, with a table in front."""
+    """The images one after the other, each page-aligned, after a table of them."""
     alignment = 1 << _ALIGNMENT_BITS
     table = struct.pack(">II", _FAT_MAGIC, len(images))
     body = b""

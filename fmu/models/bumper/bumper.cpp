@@ -1,6 +1,6 @@
 // The bumper behind the model interface: motion of its two faces in, forces on them out.
 //
-// Co-Simulation moves the faces on with their velocities over a step, so that stops and latch are met inside a step and
+// Co-Simulation extrapolates the faces with their velocities over a step, so that stops and latch act within a step and
 // the force at its end is that of the predicted position.
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ public:
         running_ = false;
     }
 
-    // Everything but what resume() makes of it.
+    // All members except those that resume() restores.
     template <class Archive> void archive(Archive &a) {
         a(v_);
         a(running_);
@@ -83,7 +83,7 @@ public:
         system_.set_faces(faces(), integrator_.time());
         integrator_.restart();
         const bool advanced = integrator_.advance(time_s + step_size_s - start_time_s_);
-        now_s_ = integrator_.time(); // of the last good state, if it failed
+        now_s_ = integrator_.time(); // time of the last good state, after a failure
         write_outputs_now();
         if (!advanced) {
             return failure(integrator_, message);
@@ -113,7 +113,7 @@ public:
     }
 
     Status update_events(EventUpdate &update, Message &message) override {
-        // What the motion of before this instant has led to, then the new one.
+        // First the effects of the motion before this instant, then the new motion.
         if (!settle_events(system_, now_s_, states(), start_time_s_, events_, update, message)) {
             return Status::error;
         }
@@ -130,7 +130,7 @@ private:
         return Status::ok;
     }
 
-    // Co-Simulation moves the faces itself.
+    // Co-Simulation extrapolates the faces itself.
     void follow_faces() {
         if (exchanging_) {
             system_.follow_faces(faces(), now_s_);

@@ -1,5 +1,5 @@
-// The bumper between two faces that others move, as the solver sees it: its force is algebraic, its states are the
-// accounts of energy.
+// The bumper between two faces with given motion, as seen by the solver: its force is algebraic, its states are energy
+// accounts.
 #pragma once
 
 #include "bumper.hpp"
@@ -29,7 +29,7 @@ public:
         a(faces_time_s_);
     }
 
-    // From `time_s` on the faces move on with these velocities. Where they are decides which stops they touch.
+    // From `time_s` on the faces move with these velocities. Their positions decide which stops they touch.
     void set_faces(const Faces &faces, double time_s) {
         follow_faces(faces, time_s);
         const double c = compression(time_s);
@@ -38,7 +38,7 @@ public:
         modes_.bottom_stop = beyond > 0.0 || (beyond >= 0.0 && compression_rate() > 0.0) ? 1.0 : 0.0;
     }
 
-    // In continuous time: stops that are met are left to the event that follows.
+    // In continuous time: stops that are reached wait for the following event.
     void follow_faces(const Faces &faces, double time_s) {
         faces_ = faces;
         faces_time_s_ = time_s;
@@ -54,8 +54,8 @@ public:
         return plant::is_latched(parameters_, compression(time_s), end_stop());
     }
 
-    // The ideal latch is the continuous one with no reach: all of its force while the plate is at its end stop, none
-    // beyond. It lets go where the faces pull at it with its force and the preload, and takes hold again at full
+    // The ideal latch is the continuous one with zero reach: its full force while the plate is at its end stop, none
+    // beyond. It releases when the pull of the faces exceeds its force plus the preload, and latches again at full
     // extension.
     [[nodiscard]] plant::BumperForce<double> force(double time_s) const {
         const double c = compression(time_s);

@@ -1,4 +1,4 @@
-// The drivetrain of Fig. 6 behind the model interface; by choice with the servo of the drives beside it.
+// The drivetrain of Fig. 6 behind the model interface, optionally with the servo of the drives.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,7 +33,7 @@ public:
         running_ = false;
     }
 
-    // Everything but what resume() makes of it.
+    // All members except those that resume() restores.
     template <class Archive> void archive(Archive &a) {
         a(v_);
         a(running_);
@@ -135,7 +135,7 @@ public:
     }
 
     Status update_events(EventUpdate &update, Message &message) override {
-        // What the torques of before this instant have led to, then the new ones.
+        // First the effects of the torques before this instant, then the new torques.
         if (!settle_now(update, message)) {
             return Status::error;
         }
@@ -172,7 +172,7 @@ public:
     }
 
 private:
-    // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
+    // Time in ticks, `since_start_s` after the start; the start time may be much larger than that.
     [[nodiscard]] double rounding_at(double since_start_s) const {
         return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)),
                               static_cast<double>(servo_rate_hz));
@@ -186,7 +186,7 @@ private:
         return Status::ok;
     }
 
-    // Co-Simulation takes its torques in at the start of a step.
+    // Co-Simulation reads its torques at the start of a step.
     void follow_torques() {
         if (exchanging_) {
             system_.follow_torques(wanted_torques());
@@ -197,7 +197,7 @@ private:
         return settle_events(system_, now_s_, states(), start_time_s_, events_, update, message);
     }
 
-    // Acts on the tick of now, if it is one. The importer has to stop at each.
+    // Processes the present tick, if there is one. The importer has to stop at each tick.
     bool reach_tick(Message &message) {
         const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
         const double rounding_ticks = rounding_at(now_s_);

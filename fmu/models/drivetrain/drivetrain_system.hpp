@@ -1,5 +1,5 @@
-// One actuator of Fig. 6 as the solver sees it. The element laws are the plant's; only the load is different: an
-// inertia of its own.
+// One actuator of Fig. 6 as seen by the solver. The element laws are the plant's; only the load is different: a
+// separate inertia.
 #pragma once
 
 #include <cmath>
@@ -52,7 +52,7 @@ public:
         release(state);
     }
 
-    // In continuous time: a gear that breaks away is left to the event that follows.
+    // In continuous time: a gear that breaks away waits for the following event.
     void follow_torques(const Torques &torques) { torques_ = torques; }
 
     [[nodiscard]] const Torques &torques() const { return torques_; }
@@ -98,8 +98,8 @@ public:
             return;
         }
         const double net = evaluate(state).net;
-        // At the located break-away the net torque equals the stiction to rounding: it goes in the direction of the
-        // torque.
+        // At the located break-away the net torque equals the stiction up to rounding: the gear slides in the direction
+        // of the torque.
         direction_ = stuck() ? math::sign(net) : plant::gear_direction_from_rest(parameters_, net);
         state[motor_speed] = 0.0;
     }
@@ -124,7 +124,7 @@ public:
     }
 
 private:
-    // A stuck gear whose motor pulls more than its stiction breaks away at once.
+    // A stuck gear breaks away at once if the net torque exceeds its stiction.
     void release(const double *state) {
         if (stuck()) {
             direction_ = plant::gear_direction_from_rest(parameters_, evaluate(state).net);

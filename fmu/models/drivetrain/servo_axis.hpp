@@ -20,7 +20,7 @@ struct ServoOptions {
 
 class ServoAxis {
 public:
-    // Returns what the servo refuses, empty if nothing.
+    // Returns the servo's refusal, empty if there is none.
     gw_config_error_t start(const ServoOptions &options) {
         sensors_.encoder_counts = options.encoder_counts;
         gw_servo_config_t config{};
@@ -40,7 +40,7 @@ public:
         return error;
     }
 
-    // Every tick; the torque that acts from now on.
+    // To be called every tick; returns the torque that acts from now on.
     double regulate(double motor_angle_rad, double reference_angle_rad, double reference_speed_radps,
                     bool reference_is_new) {
         gw_servo_input_t input{};

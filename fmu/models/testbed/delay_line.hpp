@@ -1,4 +1,4 @@
-// The last entries put in, handed out a fixed number of bus cycles later. Plain data: a copy is a checkpoint.
+// Returns entries a fixed number of bus cycles after they were put in. Plain data: a copy is a checkpoint.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ inline constexpr int max_delay_cycles = 64;
 
 template <class Entry> class DelayLine {
 public:
-    // Until the first entries come through, `history(j)` is what went in j cycles before the start, j = 1 .. delay.
+    // Until the first entries arrive, `history(j)` is the entry of j cycles before the start, j = 1 .. delay.
     template <class History> void start(int delay_cycles, History history) {
         delay_ = delay_cycles;
         next_ = 0;
@@ -19,10 +19,11 @@ public:
         }
     }
 
-    // Puts this cycle's entry in and returns the one of `delay_cycles` ago.
+    // Puts in this cycle's entry and returns the entry of `delay_cycles` ago.
     Entry exchange(const Entry &entry) {
         entries_[static_cast<std::size_t>(next_)] = entry;
-        next_ = next_ == delay_ ? 0 : next_ + 1; // no more places than are needed, which stay in the processor's cache
+        next_ = next_ == delay_ ? 0 : next_ + 1; // only as many places as needed, so that they stay in the processor's
+                                                 // cache
         return entries_[static_cast<std::size_t>(next_)];
     }
 

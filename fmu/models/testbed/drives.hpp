@@ -1,5 +1,5 @@
-// The drive electronics of Fig. 3: a 2 kHz joint servo for each wheel, sensor sampling, and the bus with its delay each
-// way.
+// The drive electronics of Fig. 3: a 2 kHz joint servo for each wheel, sensor sampling, and the bus with its latency in
+// both directions.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ struct DriveOptions {
 
 class Drives {
 public:
-    // The drives have been holding their reference: earlier cycles moved at the start's wheel speeds. Returns what the
-    // servo refuses, empty if nothing.
+    // Before the start the drives followed their reference: earlier cycles moved at the start's wheel speeds. Returns
+    // the servo's refusal, empty if there is none.
     gw_config_error_t start(const DriveOptions &options, const PerWheel<double> &motor_angle_rad,
                             const PerWheel<double> &wheel_speed_radps, const PerWheel<double> &torque_nm, bool enable) {
         options_ = options;
@@ -68,11 +68,11 @@ public:
         return error;
     }
 
-    // Once per bus cycle, when its time is reached: samples the sensors and returns what the controller gets now.
+    // Once per bus cycle, when its time is reached: samples the sensors and returns the controller's present inputs.
     SensorSample sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm) {
         return sample(motor_angle_rad, torque_nm, deviates(options_.sensors, cycle_));
     }
-    // With deviates() of the coming cycle that were drawn elsewhere.
+    // The same, with the deviates() of the coming cycle drawn elsewhere.
     SensorSample sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm,
                         const Deviates &drawn) {
         const SensorSample now = take_sample(motor_angle_rad, torque_nm, cycle_, drawn);
@@ -86,7 +86,7 @@ public:
         reference_is_new_ = true;
     }
 
-    // Every servo tick: motor torques, from the drives' own undelayed encoders.
+    // To be called every servo tick: motor torques, from the drives' own undelayed encoders.
     PerWheel<double> regulate(const PerWheel<double> &motor_angle_rad) {
         PerWheel<double> torque{};
         for (std::size_t i = 0; i < wheel_count; ++i) {

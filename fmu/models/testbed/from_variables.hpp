@@ -17,7 +17,7 @@ inline plant::Parameters<double> plant_parameters(const Variables &v) {
     read_plant_parameters(v, p);
     p.wheel_load.fill(1.0);
     p.wheel_traction.fill(1.0);
-    // What a cut at the contact's height goes through; without wheels the body reaches to the floor.
+    // The parts that a horizontal cut at the contact's height meets; without wheels the body reaches to the floor.
     p.outline_body = !v.outline_wheels || v.contact_height >= v.outline_clearance ? 1 : 0;
     p.outline_wheels = v.outline_wheels && v.contact_height < 2.0 * v.wheel_radius ? 1 : 0;
     return p;

@@ -1,4 +1,4 @@
-// The plant as the solver sees it: state and indicators as plain arrays, modes kept between events.
+// The plant as seen by the solver: state and indicators as plain arrays, modes constant between events.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ public:
         a(modes_);
         a(first_contact_time_s_);
     }
-    // What follows from the parameters, after they were loaded.
+    // Computes the values that follow from the parameters, after these were loaded.
     void derive() {
         derived_ = plant::derive(parameters_);
         jacobian_.set_parameters(parameters_, derived_);
@@ -48,11 +48,11 @@ public:
         with_state(state, [&](const auto &x) { plant::accept_inputs(x, inputs_, modes_, parameters_, derived_); });
     }
 
-    // In continuous time: a gear that breaks away is left to the event that follows.
+    // In continuous time: a gear that breaks away waits for the following event.
     void follow_inputs(const plant::Inputs<double, Wheels> &inputs) { inputs_ = inputs; }
 
     [[nodiscard]] bool tips() const { return parameters_.base_tipping != 0; }
-    // The model does not go further: the base is about to lie down.
+    // The model ends here: the base is about to fall over.
     [[nodiscard]] bool overturned() const { return modes_.overturned > 0.5; }
     [[nodiscard]] const plant::Modes<double, Wheels> &modes() const { return modes_; }
     [[nodiscard]] const plant::Parameters<double, Wheels> &parameters() const { return parameters_; }
@@ -167,7 +167,7 @@ private:
     static bool of_wheels(int first, int index) { return index >= first && index < first + Wheels; }
     static int above(double mode) { return mode > 0.5 ? 1 : -1; }
 
-    // `state`: state_count() doubles. Calls use(x) with the plant's own type of them.
+    // `state`: state_count() doubles. Calls use(x) with the plant's state type.
     template <class Use> void with_state(const double *state, Use use) const {
         if (tips()) {
             use(*reinterpret_cast<const plant::TippingVector<double, Wheels> *>(state));

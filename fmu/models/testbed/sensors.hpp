@@ -34,7 +34,7 @@ inline std::int32_t encoder_count(const SensorOptions &options, double angle_rad
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
 }
 
-// What the noise of a sample is made of, one standard normal deviate per torque sensor.
+// The noise of a sample before scaling: one standard normal deviate per torque sensor.
 using Deviates = PerWheel<double>;
 inline Deviates deviates(const SensorOptions &options, std::int64_t cycle) {
     Deviates found{};

@@ -1,4 +1,4 @@
-// The start of a run: plant and drives from the variables, or a message about what does not fit.
+// The start of a run: plant and drives from the variables, or a message about inconsistent ones.
 #pragma once
 
 #include <cstdio>
@@ -29,7 +29,7 @@ inline void write_sensors(Variables &v, const SensorSample &sample) {
     v.sensor_present = true;
 }
 
-// False, with a message, if the parameters do not go together.
+// False, with a message, if the parameters are inconsistent.
 inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVector<double> &state, Drives &drives,
                       double &stored_j, Message &message) {
     if (!check_relations(v, message)) {
@@ -41,7 +41,7 @@ inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVec
     state = {};
     system.start(plant_parameters(v), motion, plant_inputs(v, {}), state);
     const auto truth = system.outputs(state.data());
-    // A start inside the robot would be a catapult.
+    // A start inside the robot would catapult the slider.
     constexpr double touching_m = 1e-6;
     if (v.slider_present && truth.contact_depth > touching_m) {
         std::snprintf(message.text, sizeof message.text,

@@ -1,8 +1,8 @@
 // The testbed: plant, solver and drive electronics behind the model interface.
 //
-// Time runs in servo ticks of 0.5 ms. Reaching a bus tick samples the sensors; leaving it takes the command in. So
-// sensor outputs at the end of a step belong to that instant (less the bus delay), and the command set before the next
-// step acts from there on.
+// Time runs in servo ticks of 0.5 ms. On arrival at a bus tick the sensors are sampled; on leaving it the command is
+// read. So sensor outputs at the end of a step belong to that instant (minus the bus delay), and the command set before
+// the next step acts from there on.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,7 +35,7 @@ public:
         running_ = false;
     }
 
-    // Everything but what resume() makes of it.
+    // All members except those that resume() restores.
     template <class Archive> void archive(Archive &a) {
         a(v_);
         a(running_);
@@ -131,7 +131,7 @@ public:
         exchange_state_ = whole_state();
         exchanging_ = true;
     }
-    // All that the model description lists; without tipping nothing reads or moves those after the planar ones.
+    // All states of the model description; without tipping, those after the planar ones are never read or changed.
     double *states() override {
         exchange_state_ = whole_state();
         return exchange_state_.data();
@@ -150,7 +150,7 @@ public:
     }
 
     Status update_events(EventUpdate &update, Message &message) override {
-        // What the inputs of before this instant have led to, then the tick and the new ones.
+        // First the effects of the inputs before this instant, then the tick and the new inputs.
         if (!settle_now(update, message) || !pass_tick(update, message)) {
             return Status::error;
         }
@@ -176,7 +176,7 @@ public:
     }
 
 private:
-    // In ticks, `since_start_s` after the start; the start time may be the larger of the two.
+    // Time in ticks, `since_start_s` after the start; the start time may be much larger than that.
     [[nodiscard]] double rounding_at(double since_start_s) const {
         return tick_tolerance(std::max(std::fabs(start_time_s_ + since_start_s), std::fabs(start_time_s_)),
                               static_cast<double>(servo_rate_hz));
@@ -202,7 +202,7 @@ private:
         return Status::error;
     }
 
-    // The states that are integrated, whoever does it.
+    // The states that are integrated, by the importer or by us.
     double *state() { return exchanging_ ? exchange_state_.data() : integrator_.state(); }
 
     plant::TippingVector<double> whole_state() {
@@ -214,7 +214,7 @@ private:
         return whole;
     }
 
-    // Co-Simulation takes a push in at the start of a step.
+    // Co-Simulation reads a push at the start of a step.
     void follow_push() {
         if (exchanging_) {
             system_.follow_inputs(plant_inputs(v_, system_.inputs().motor_torque));
@@ -225,8 +225,8 @@ private:
         return settle_events(system_, now_s_, state(), start_time_s_, events_, update, message);
     }
 
-    // The importer has to stop at each tick. At one of the bus first the sensors; in another update, when they have
-    // been passed on, the command.
+    // The importer has to stop at each tick. At a bus tick the sensors are updated first, and the command in another
+    // update, after the sensor values have been passed on.
     bool pass_tick(EventUpdate &update, Message &message) {
         const double now_ticks = now_s_ * static_cast<double>(servo_rate_hz);
         const double rounding_ticks = rounding_at(now_s_);
@@ -253,7 +253,7 @@ private:
         return true;
     }
 
-    // A step that does not start on a tick still has to see a new push from its start.
+    // A new push also acts from the start of a step that does not start on a tick.
     void change_push() {
         const auto &now = system_.inputs();
         if (v_.push_force_x != now.push_force_x || v_.push_force_y != now.push_force_y ||

@@ -1,4 +1,4 @@
-// What an observer with perfect sensors sees, and the energy account, as outputs of the testbed.
+// The truth for an observer with perfect sensors, and the energy account, as outputs of the testbed.
 #pragma once
 
 #include <algorithm>

@@ -29,7 +29,8 @@ equation
   I*der(omega) = frame.tau;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240},
+        fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
 <p>The first rows of (22) and (24): M x&#776; = forces of wheels and environment.</p>

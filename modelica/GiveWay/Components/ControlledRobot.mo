@@ -2,12 +2,13 @@ within GiveWay.Components;
 model ControlledRobot "Robot with its servos and the sampled controller"
   import Modelica.Units.SI;
   extends Interfaces.PartialServoRobot;
-  parameter SI.Torque resolution=data.drivetrain_torque_sensor_resolution "Of the torque sensors";
-  parameter Integer tare_ticks=100 "Samples of the tare at the start; 0: none, and the robot moves along its plan from the start";
+  parameter SI.Torque resolution=data.drivetrain_torque_sensor_resolution "Resolution of the torque sensors";
+  parameter Integer tare_ticks=100 "Samples of the initial tare; 0: no tare, the robot follows its plan from the start";
   replaceable model Plan = Sources.Standstill constrainedby Interfaces.PartialPlan "Kind of plan";
   Plan plan(t=controller.path_time) "Planned motion"
     annotation (Placement(transformation(extent={{-93,10},{-63,40}})));
-  SampledController controller(robot=data, period=cycle, counts=counts, resolution=resolution, tare_ticks=tare_ticks, phi_start=tau_start/data.drivetrain_stiffness, w_start=w_start, tau_start=tau_start,
+  SampledController controller(robot=data, period=cycle, counts=counts, resolution=resolution, tare_ticks=tare_ticks,
+    phi_start=tau_start/data.drivetrain_stiffness, w_start=w_start, tau_start=tau_start,
     plan_x={plan.x, plan.y}, plan_v={plan.v_x, plan.v_y}, plan_a={plan.a_x, plan.a_y}, plan_theta=plan.theta)
     "Estimator, detector and admittance"
     annotation (Placement(transformation(extent={{-93,-40},{-63,-10}})));
@@ -22,9 +23,11 @@ equation
   controller.phi_m[3] = phi_m[3];
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240},
+        fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>The closed loop of Fig. 3 and Fig. 4: three drives with a 2 kHz servo each, the controller at 1 kHz, and a bus that takes one millisecond each way.</p>
+<p>The closed loop of Fig. 3 and Fig. 4: three drives with a 2 kHz servo each, the controller at 1 kHz, and a bus with a
+latency of one millisecond in each direction.</p>
 </html>"));
 end ControlledRobot;

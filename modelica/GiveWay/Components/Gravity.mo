@@ -2,8 +2,8 @@ within GiveWay.Components;
 model Gravity "Constant pull on a slider on a vertical rail"
   import Modelica.Units.SI;
   parameter SI.Mass m "Mass";
-  constant SI.Acceleration g=9.81 "Gravity, as everywhere in this model";
-  Interfaces.LinearFlange flange "What is pulled"
+  constant SI.Acceleration g=9.81 "Gravitational acceleration";
+  Interfaces.LinearFlange flange "Body that is pulled"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
 equation
   flange.f = -m*g;

@@ -11,7 +11,7 @@ model Load "Load of a drivetrain on the bench, with the friction B2 of its envir
     annotation (Placement(transformation(extent={{-110,-37},{-90,-17}})));
   SI.Angle phi(start=0, fixed=true) "Angle";
   SI.AngularVelocity w(start=0, fixed=true) "Speed";
-  SI.Torque friction "B2, against the motion";
+  SI.Torque friction "Friction B2, against the motion";
 equation
   axle.phi = phi;
   der(phi) = w;
@@ -23,6 +23,7 @@ equation
       Ellipse(extent={{-12,12},{12,-12}}, lineColor={64,64,64}, fillColor={64,64,64}, fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>The downstream end of Fig. 6 on a bench: J w&#775; = T &minus; B2(w) + &tau;<sub>ext</sub>, with B2 = B tanh(&alpha; w) + b w.</p>
+<p>The downstream end of Fig. 6 on a bench: J w&#775; = T &minus; B2(w) + &tau;<sub>ext</sub>, with B2 = B tanh(&alpha;
+w) + b w.</p>
 </html>"));
 end Load;

@@ -1,13 +1,13 @@
 within GiveWay.Components;
 model Omniwheel "Omnidirectional wheel that rolls on the floor (9)-(30)"
   import Modelica.Units.SI;
-  parameter SI.Angle azimuth "Of the wheel in the base frame, phi_i";
-  parameter SI.Distance R "From the base's centre to the wheel";
+  parameter SI.Angle azimuth "Azimuth of the wheel in the base frame, phi_i";
+  parameter SI.Distance R "Distance from the base's centre to the wheel";
   parameter SI.Radius r_w "Radius of the wheel";
   parameter SI.Radius r_r "Radius of a roller";
   parameter SI.Inertia I_w "Inertia about the axle";
-  parameter SI.Inertia I_r "Inertia of the rollers on the floor";
-  parameter Parameters.Trikey robot "The robot's numbers, for the rollers";
+  parameter SI.Inertia I_r "Inertia of the rollers that touch the floor";
+  parameter Parameters.Trikey robot "The robot's parameters, for the rollers";
   parameter SI.Velocity v_n_start=0 "Speed along the axle at the start";
   Interfaces.PlanarFrame base "Centre of the base"
     annotation (Placement(transformation(extent={{-110,17},{-90,37}})));
@@ -16,14 +16,14 @@ model Omniwheel "Omnidirectional wheel that rolls on the floor (9)-(30)"
   replaceable model Roller = BristleRoller constrainedby Interfaces.PartialRollerFriction "Friction of the rollers";
   Roller roller(robot=robot, r_r=r_r, v_start=v_n_start, v=v_n) "Rollers"
     annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
-  SI.Angle direction "Of the axle, world frame";
-  SI.Velocity v_t "Speed along the rolling direction, without the base's turning";
-  SI.Velocity v_n "Speed along the axle, outwards";
+  SI.Angle direction "Azimuth of the axle, world frame";
+  SI.Velocity v_t "Speed along the rolling direction, without the base's rotation";
+  SI.Velocity v_n "Outward speed along the axle";
   SI.Angle q_w(start=0, fixed=true) "Angle of the wheel";
   SI.AngularVelocity w_w "Speed of the wheel";
   SI.AngularVelocity w_r "Speed of the roller on the floor";
   SI.Force f_t "Traction of the floor along the rolling direction";
-  SI.Force f_n "Force of the floor along the axle, inwards";
+  SI.Force f_n "Inward force of the floor along the axle";
 equation
   direction = base.theta + azimuth;
   v_t = -sin(direction)*der(base.x) + cos(direction)*der(base.y);
@@ -43,9 +43,12 @@ equation
       Ellipse(extent={{-12,12},{12,-12}}, lineColor={64,64,64}, fillColor={64,64,64}, fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>One row of (15) and (16): with the radial direction n = (cos, sin)(&theta; + &phi;<sub>i</sub>) and the rolling direction t = (&minus;sin, cos) of it</p>
-<p>r<sub>w</sub> q&#775;<sub>w</sub> = t&middot;x&#775; + R &theta;&#775;, &nbsp; r<sub>r</sub> q&#775;<sub>r</sub> = n&middot;x&#775;.</p>
-<p>The floor's forces are the constraint forces &lambda; of (24): I<sub>w</sub>q&#776;<sub>w</sub> = T &minus; r<sub>w</sub>F<sub>t</sub>,
-I<sub>r</sub>q&#776;<sub>r</sub> = r<sub>r</sub>(F<sub>n</sub> &minus; f). Nothing is neglected; the derivatives of the Jacobians (29), (30) follow from differentiating the constraints.</p>
+<p>One row of (15) and (16), with the radial direction n = (cos, sin)(&theta; + &phi;<sub>i</sub>) and the rolling
+direction t = (&minus;sin, cos)(&theta; + &phi;<sub>i</sub>):</p>
+<p>r<sub>w</sub> q&#775;<sub>w</sub> = t&middot;x&#775; + R &theta;&#775;, &nbsp; r<sub>r</sub> q&#775;<sub>r</sub> =
+n&middot;x&#775;.</p>
+<p>The floor's forces are the constraint forces &lambda; of (24): I<sub>w</sub>q&#776;<sub>w</sub> = T &minus;
+r<sub>w</sub>F<sub>t</sub>, I<sub>r</sub>q&#776;<sub>r</sub> = r<sub>r</sub>(F<sub>n</sub> &minus; f). Nothing is
+neglected: the derivatives of the Jacobians (29), (30) come from differentiating the constraints.</p>
 </html>"));
 end Omniwheel;

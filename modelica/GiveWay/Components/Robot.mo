@@ -7,9 +7,10 @@ equation
   tau_m = tau_ref;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240},
+        fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>With zero torque it is not powered, and held by the stiction of its gears: the robot of 5.1.</p>
+<p>With zero motor torque this is the unpowered robot of 5.1, held by the stiction of its gears.</p>
 </html>"));
 end Robot;

@@ -13,11 +13,14 @@ equation
   m_reduced*der(u) = f_lock - f;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Rectangle(extent={{-90,60},{-70,-60}}, lineColor={64,64,64}, fillColor={128,128,128}, fillPattern=FillPattern.Solid),
+      Rectangle(extent={{-90,60},{-70,-60}}, lineColor={64,64,64}, fillColor={128,128,128},
+        fillPattern=FillPattern.Solid),
       Line(points={{-70,0},{-50,0},{-38,30},{-14,-30},{10,30},{34,-30},{46,0},{70,0}}, color={64,64,64}, thickness=0.5),
-      Rectangle(extent={{70,60},{90,-60}}, lineColor={140,60,0}, fillColor={240,190,140}, fillPattern=FillPattern.Solid),
+      Rectangle(extent={{70,60},{90,-60}}, lineColor={140,60,0}, fillColor={240,190,140},
+        fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>The spring bumper of 3.5. Its preload rests on a stop at full extension: f<sub>end</sub> = max(0, &minus;k<sub>e</sub> c (1 &minus; e c&#775;)) for c &lt; 0.</p>
+<p>The spring bumper of 3.5. At full extension a stop carries the preload: f<sub>end</sub> = max(0, &minus;k<sub>e</sub>
+c (1 &minus; e c&#775;)) for c &lt; 0.</p>
 </html>"));
 end SpringBumper;

@@ -9,6 +9,7 @@ equation
       Line(points={{-90,0},{90,0}}, color={160,160,160}), Line(points={{0,80},{0,-80}}, color={160,160,160}),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>f = B<sub>r</sub>/r<sub>r</sub> tanh(&alpha; v/r<sub>r</sub>): (28) at the floor. It is zero at rest and so cannot carry a part of a static push.</p>
+<p>f = B<sub>r</sub>/r<sub>r</sub> tanh(&alpha; v/r<sub>r</sub>): (28) at the floor. It is zero at rest, so it cannot
+carry a part of a static push.</p>
 </html>"));
 end TanhRoller;

@@ -7,6 +7,6 @@ model TanhWheel "Omnidirectional wheel with the roller friction of the estimator
       Ellipse(extent={{-12,12},{12,-12}}, lineColor={64,64,64}, fillColor={64,64,64}, fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>For comparisons with (28), and for tools that want no bristles.</p>
+<p>For comparisons with (28), and for tools that cannot solve the bristles.</p>
 </html>"));
 end TanhWheel;

@@ -2,8 +2,8 @@ within GiveWay.Examples;
 model BumperDrop "A mass falls onto the floor with its magnetic spring bumper ahead"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
-  parameter Parameters.Trikey robot "Numbers of dummy and bumper";
-  parameter SI.Length height=0.02 "Of the fall";
+  parameter Parameters.Trikey robot "Parameters of dummy and bumper";
+  parameter SI.Length height=0.02 "Height of the fall";
   Components.Slider slider(robot=robot, coulomb=0) "Falling mass"
     annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
   Components.Gravity gravity(m=robot.slider_mass) "Its weight"
@@ -18,7 +18,7 @@ equation
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
-<p>The bumper of 3.5 on a bench: snap of the magnet, stroke onto the bottom stop, and rebound. The weight keeps the spring compressed: the magnet does not reach the plate again
-(<code>BumperSweep</code> shows that).</p>
+<p>The bumper of 3.5 on a bench: snap of the magnet, stroke onto the bottom stop, and rebound. The weight keeps the
+spring compressed: the magnet does not reach the plate again (<code>BumperSweep</code> shows that).</p>
 </html>"));
 end BumperDrop;

@@ -1,10 +1,11 @@
 within GiveWay.Examples;
 model DrivetrainStep "Steps of motor torque on a drivetrain with its wheel"
   extends Modelica.Icons.Example;
-  parameter Parameters.Trikey robot "The robot's numbers";
+  parameter Parameters.Trikey robot "The robot's parameters";
   Components.Drivetrain drivetrain(robot=robot) "Drivetrain"
     annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
-  Components.Load load(J=0.15, coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, viscous=0.02) "A third of the base, as the wheel feels it"
+  Components.Load load(J=0.15, coulomb=robot.roller_coulomb_torque, slope=robot.roller_tanh_slope, viscous=0.02)
+    "A third of the base, reflected to the wheel"
     annotation (Placement(transformation(extent={{40,40},{80,80}})));
   Sources.TorqueSteps steps "Wanted torque"
     annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
@@ -17,7 +18,7 @@ equation
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
-<p>The first torque is below the stiction and moves nothing; the second breaks away; the third reverses, through a standstill; with the last the gear comes to rest and holds the load's
-oscillation on the sensor's spring.</p>
+<p>The first torque is below the stiction and moves nothing; the second breaks the gear away; the third reverses it
+through standstill; with the last the gear comes to rest and holds while the load oscillates on the sensor's spring.</p>
 </html>"));
 end DrivetrainStep;

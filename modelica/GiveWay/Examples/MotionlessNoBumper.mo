@@ -8,10 +8,12 @@ model MotionlessNoBumper "The dummy with a hard cover hits the standing robot (5
     annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   SI.Time detection_time "From the first contact to the controller's decision, -1 before";
 equation
-  detection_time = if testbed.robot.controller.hits > 0 then testbed.robot.controller.hit_tick*testbed.robot.controller.period - first.t else first.never;
+  detection_time = if testbed.robot.controller.hits > 0 then
+    testbed.robot.controller.hit_tick*testbed.robot.controller.period - first.t else first.never;
   annotation (
     experiment(StopTime=0.6, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
-<p>5.2 without a bumper: the paper notices it after 45 ms.</p><p>The controller notices the impulse, and the robot gives way by 0.5 m with a time constant of 1.25 s; the example ends before.</p>
+<p>5.2 without a bumper: the paper notices the hit after 45 ms.</p><p>The controller notices the impulse, and the robot
+starts to escape by 0.5 m with a time constant of 1.25 s; the example ends earlier.</p>
 </html>"));
 end MotionlessNoBumper;

@@ -2,14 +2,15 @@ within GiveWay.Examples;
 model StaticPush "A steady push on the unpowered robot (5.1)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
-  parameter Parameters.Trikey data "The robot's numbers";
-  Components.Robot robot(data=data) "Robot, not powered"
+  parameter Parameters.Trikey data "The robot's parameters";
+  Components.Robot robot(data=data) "Unpowered robot"
     annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
   parameter SI.Force f=10 "Force of the push";
-  constant SI.Angle side=1.0471975511965976 "Of the side that is pushed";
-  Sources.Push push(f_x=-f*cos(side), f_y=-f*sin(side), p_x=0.088046, p_y=0.1525, t_on=0.1) "At the middle of a side, at right angles"
+  constant SI.Angle side=1.0471975511965976 "Direction of the pushed side";
+  Sources.Push push(f_x=-f*cos(side), f_y=-f*sin(side), p_x=0.088046, p_y=0.1525, t_on=0.1)
+    "Push at the middle of a side, at right angles"
     annotation (Placement(transformation(extent={{40,-20},{80,20}})));
-  SI.Force sensed[2] "Force that the torques show, base axes";
+  SI.Force sensed[2] "Force computed from the torques, base axes";
   Real share(unit="1") "Sensed force over true force";
 equation
   connect(push.frame, robot.frame)
@@ -20,7 +21,8 @@ equation
   annotation (
     experiment(StopTime=0.8, Tolerance=1e-7, Interval=0.001),
     Documentation(info="<html>
-<p>The gears hold the wheels; the base gives on the springs of its torque sensors and on the bristles of its rollers. Only the former is sensed: with k<sub>w</sub> = k/r<sub>w</sub><sup>2</sup> the share
-is k<sub>w</sub>/(k<sub>w</sub> + &sigma;<sub>0</sub>), which is why the paper's forces come out too small (0 to &minus;45 %).</p>
+<p>The gears hold the wheels; the base deflects the springs of its torque sensors and the bristles of its rollers. Only
+the springs' force is sensed: with k<sub>w</sub> = k/r<sub>w</sub><sup>2</sup> its share is k<sub>w</sub>/(k<sub>w</sub>
++ &sigma;<sub>0</sub>), which is why the paper's forces are too small (0 to &minus;45 %).</p>
 </html>"));
 end StaticPush;

@@ -1,5 +1,5 @@
 within GiveWay.Functions;
-function closestPoint "Point of a convex polygon that is closest to a point"
+function closestPoint "Point of a convex polygon closest to a given point"
   import Modelica.Units.SI;
   extends Modelica.Icons.Function;
   input SI.Position q_x "The point";
@@ -11,19 +11,19 @@ function closestPoint "Point of a convex polygon that is closest to a point"
   output Real n_y(unit="1") "Outward unit normal";
 protected
   Integer n=size(x, 1) "Number of corners";
-  Integer j "The next corner";
-  SI.Length length "Of an edge";
+  Integer j "Index of the next corner";
+  SI.Length length "Length of an edge";
   Real t_x(unit="1") "Unit vector along an edge";
   Real t_y(unit="1") "Unit vector along an edge";
-  SI.Position height "Over the line of an edge";
-  SI.Position along "Nearest point of an edge, from its first corner";
-  SI.Position o_x "From there to the point";
-  SI.Position o_y "From there to the point";
-  SI.Distance offset "Length of that";
-  SI.Position highest "Over any line of an edge";
-  SI.Distance nearest "To any edge";
-  Real m_x(unit="1") "Normal of the highest line";
-  Real m_y(unit="1") "Normal of the highest line";
+  SI.Position height "Height of the point above the line of an edge";
+  SI.Position along "Distance of the nearest point of an edge from the edge's first corner";
+  SI.Position o_x "Vector from the nearest point to the given point";
+  SI.Position o_y "Vector from the nearest point to the given point";
+  SI.Distance offset "Length of that vector";
+  SI.Position highest "Largest height above the line of any edge";
+  SI.Distance nearest "Smallest distance to any edge";
+  Real m_x(unit="1") "Normal of the line with the largest height";
+  Real m_y(unit="1") "Normal of the line with the largest height";
 algorithm
   highest := -1e300;
   nearest := 1e300;
@@ -61,6 +61,7 @@ algorithm
   end if;
   annotation (
     Documentation(info="<html>
-<p>Outside, the nearest point of any edge; inside, that of the nearest edge's line. The closest point itself is q &minus; distance&middot;n.</p>
+<p>Outside it is the nearest point of any edge; inside it is the nearest point of the nearest edge's line. The closest
+point itself is q &minus; distance&middot;n.</p>
 </html>"));
 end closestPoint;

@@ -11,6 +11,7 @@ algorithm
   F := {-(sin(third)*tau[2] + sin(2*third)*tau[3])/r_w, (tau[1] + cos(third)*tau[2] + cos(2*third)*tau[3])/r_w};
   annotation (
     Documentation(info="<html>
-<p>The first two rows of J<sub>w</sub><sup>T</sup> &tau;, the transpose of (15). The third is the moment, R/r<sub>w</sub> times the sum (42).</p>
+<p>The first two rows of J<sub>w</sub><sup>T</sup> &tau;, the transpose of (15). The third is the moment,
+R/r<sub>w</sub> times the sum (42).</p>
 </html>"));
 end forceOfTorques;

@@ -4,11 +4,11 @@ function limitLength "A velocity, shortened if it is longer than a limit"
   extends Modelica.Icons.Function;
   input SI.Velocity v[2] "The velocity";
   input SI.Velocity limit "Largest length";
-  output SI.Velocity u[2] "Of the same direction";
+  output SI.Velocity u[2] "Limited velocity";
 algorithm
   u := v*min(1, limit/max(sqrt(v[1]^2 + v[2]^2), 1e-300));
   annotation (
     Documentation(info="<html>
-<p>The direction stays.</p>
+<p>The direction is kept.</p>
 </html>"));
 end limitLength;

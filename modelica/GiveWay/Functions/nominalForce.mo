@@ -1,12 +1,12 @@
 within GiveWay.Functions;
-function nominalForce "Force that the motion alone asks of the wheels (38), in base axes"
+function nominalForce "Force that the wheels need for the motion alone (38), in base axes"
   import Modelica.Units.SI;
   extends Modelica.Icons.Function;
   input SI.Velocity v[2] "Velocity, base axes";
   input SI.AngularVelocity omega "Yaw rate";
   input SI.Acceleration a[2] "Acceleration, base axes";
   input SI.Mass m "Mass of the base";
-  input SI.Mass m_roll "What wheels and rollers add to it";
+  input SI.Mass m_roll "Mass that wheels and rollers add to it";
   input SI.Torque coulomb "B_r of (28)";
   input Real slope(unit="s/rad") "alpha of (28)";
   input SI.Radius r_r "Radius of the rollers";
@@ -22,6 +22,7 @@ algorithm
   end for;
   annotation (
     Documentation(info="<html>
-<p>M<sub>t</sub> x&#776; + c + J<sub>r</sub><sup>T</sup> B<sub>r</sub>: (38) before its division by J<sub>w</sub><sup>T</sup>, with the inertia of wheels and rollers of (27).</p>
+<p>M<sub>t</sub> x&#776; + c + J<sub>r</sub><sup>T</sup> B<sub>r</sub>: (38) before its division by
+J<sub>w</sub><sup>T</sup>, with the inertia of wheels and rollers of (27).</p>
 </html>"));
 end nominalForce;

@@ -3,15 +3,15 @@ function outlineEntry "Where a force enters a convex outline (41)-(46)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Function;
   input Real u[2](each unit="1") "Direction of the force, base axes";
-  input SI.Position arm "Lever arm: moment about the centre over force";
+  input SI.Position arm "Lever arm: moment about the centre divided by the force";
   input SI.Position x[:] "Corners of the outline, counter-clockwise";
   input SI.Position y[:] "Corners of the outline, counter-clockwise";
   output SI.Position p[2] "Point of the outline";
 protected
   Integer n "Number of corners";
   Integer j "Next corner";
-  SI.Position side "How far a corner is to the right of the line of action";
-  SI.Position side_next "The same of the next corner";
+  SI.Position side "Distance of a corner to the right of the line of action";
+  SI.Position side_next "The same for the next corner";
   SI.Position nearest "Distance of the nearest corner so far";
   Boolean enters "An edge that the force enters has been found";
 algorithm
@@ -33,7 +33,8 @@ algorithm
   end for;
   annotation (
     Documentation(info="<html>
-<p>All points p with p &times; u = d lie on the line of action of the force (43); the contact is where that enters the outline, since a cover only pushes (44)-(46).
-If noise puts the line beside the outline, it is the nearest corner.</p>
+<p>All points p with p &times; u = d lie on the line of action of the force (43); the contact is where this line enters
+the outline, since a cover can only be pushed (44)-(46). If noise shifts the line past the outline, the result is the
+nearest corner.</p>
 </html>"));
 end outlineEntry;

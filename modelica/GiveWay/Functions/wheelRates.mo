@@ -1,10 +1,10 @@
 within GiveWay.Functions;
-function wheelRates "Wheel speeds of a twist in base axes (13), (15)"
+function wheelRates "Wheel speeds for a twist in base axes (13), (15)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Function;
   input SI.Velocity v[2] "Velocity, base axes";
   input SI.AngularVelocity omega "Yaw rate";
-  input SI.Distance R "From the base's centre to the wheels";
+  input SI.Distance R "Distance from the base's centre to the wheels";
   input SI.Radius r_w "Radius of the wheels";
   output SI.AngularVelocity w[3] "Wheel speeds";
 protected
@@ -15,6 +15,7 @@ algorithm
   end for;
   annotation (
     Documentation(info="<html>
-<p>q&#775;<sub>w,i</sub> = (&minus;sin &phi;<sub>i</sub> v<sub>x</sub> + cos &phi;<sub>i</sub> v<sub>y</sub> + R &omega;)/r<sub>w</sub></p>
+<p>q&#775;<sub>w,i</sub> = (&minus;sin &phi;<sub>i</sub> v<sub>x</sub> + cos &phi;<sub>i</sub> v<sub>y</sub> + R
+&omega;)/r<sub>w</sub></p>
 </html>"));
 end wheelRates;

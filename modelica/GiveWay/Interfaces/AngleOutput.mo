@@ -2,7 +2,8 @@ within GiveWay.Interfaces;
 connector AngleOutput = output Modelica.Units.SI.Angle "Angle as an output signal"
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Polygon(points={{-90,90},{90,0},{-90,-90},{-90,90}}, lineColor={0,0,127}, fillColor={255,255,255}, fillPattern=FillPattern.Solid),
+      Polygon(points={{-90,90},{90,0},{-90,-90},{-90,90}}, lineColor={0,0,127}, fillColor={255,255,255},
+        fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
 <p>Signal connector, an output.</p>

@@ -13,10 +13,11 @@ partial block PartialPlan "Planned motion of the base over path time"
   SI.AngularAcceleration alpha "Planned yaw acceleration";
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Rectangle(extent={{-90,90},{90,-90}}, lineColor={0,0,127}, fillColor={255,255,255}, fillPattern=FillPattern.Solid),
+      Rectangle(extent={{-90,90},{90,-90}}, lineColor={0,0,127}, fillColor={255,255,255},
+        fillPattern=FillPattern.Solid),
       Line(points={{-70,0},{-50,40},{-30,50},{-10,30},{10,-30},{30,-50},{50,-40},{70,0}}, color={0,0,127}),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>Pose, twist and acceleration of the plan at the path time, which stands still while the robot gives way.</p>
+<p>Pose, twist and acceleration of the plan at the path time, which stands still while the robot escapes.</p>
 </html>"));
 end PartialPlan;

@@ -1,7 +1,7 @@
 within GiveWay.Interfaces;
-partial model PartialRobot "Base with three drivetrains, whose motors are somebody else's"
+partial model PartialRobot "Base with three drivetrains, without the control of the motors"
   import Modelica.Units.SI;
-  parameter Parameters.Trikey data "The robot's numbers";
+  parameter Parameters.Trikey data "The robot's parameters";
   parameter SI.Position x_start=0 "Position of the base at the start, world frame";
   parameter SI.Position y_start=0 "Position of the base at the start, world frame";
   parameter SI.Angle theta_start=0 "Heading of the base at the start";
@@ -9,15 +9,21 @@ partial model PartialRobot "Base with three drivetrains, whose motors are somebo
   parameter SI.Velocity v_y_start=0 "Velocity of the base at the start, world frame";
   parameter SI.AngularVelocity omega_start=0 "Yaw rate of the base at the start";
   constant SI.Angle third=2.0943951023931953 "A third of a turn";
-  final parameter SI.Velocity v_n[3]={cos(theta_start + i*third)*v_x_start + sin(theta_start + i*third)*v_y_start for i in 0:2} "Speeds along the axles at the start";
-  final parameter SI.AngularVelocity w_start[3]={(-sin(theta_start + i*third)*v_x_start + cos(theta_start + i*third)*v_y_start + data.wheel_distance*omega_start)/data.wheel_radius for i in 0:2}
+  final parameter SI.Velocity v_n[3]={cos(theta_start + i*third)*v_x_start
+    + sin(theta_start + i*third)*v_y_start for i in 0:2} "Speeds along the axles at the start";
+  final parameter SI.AngularVelocity w_start[3]={(-sin(theta_start + i*third)*v_x_start
+    + cos(theta_start + i*third)*v_y_start + data.wheel_distance*omega_start)/data.wheel_radius for i in 0:2}
     "Wheel speeds at the start";
-  final parameter Real stick[3](each unit="1")={exp(-(v_n[i]/data.roller_stribeck_speed)^2) for i in 1:3} "Share of stiction in the rollers at the start";
-  final parameter SI.Force f_start[3]={sign(v_n[i])*data.roller_coulomb_torque/data.roller_radius*(stick[i] + (1 - stick[i])*tanh(data.roller_tanh_slope*abs(v_n[i])/data.roller_radius)) for i in 1:3}
+  final parameter Real stick[3](each unit="1")={exp(-(v_n[i]/data.roller_stribeck_speed)^2) for i in 1:3}
+    "Share of stiction in the rollers at the start";
+  final parameter SI.Force f_start[3]={sign(v_n[i])*data.roller_coulomb_torque/data.roller_radius*(stick[i]
+    + (1 - stick[i])*tanh(data.roller_tanh_slope*abs(v_n[i])/data.roller_radius)) for i in 1:3}
     "Roller friction of the steady motion at the start";
-  final parameter SI.Force drag_x=f_start[1] + cos(third)*f_start[2] + cos(2*third)*f_start[3] "Of the rollers, base axes";
-  final parameter SI.Force drag_y=sin(third)*f_start[2] + sin(2*third)*f_start[3] "Of the rollers, base axes";
-  final parameter SI.Torque tau_start[3]={2/3*data.wheel_radius*(cos(i*third)*drag_y - sin(i*third)*drag_x) for i in 0:2} "Torques that carry it";
+  final parameter SI.Force drag_x=f_start[1] + cos(third)*f_start[2] + cos(2*third)*f_start[3]
+    "Force of the rollers, base axes";
+  final parameter SI.Force drag_y=sin(third)*f_start[2] + sin(2*third)*f_start[3] "Force of the rollers, base axes";
+  final parameter SI.Torque tau_start[3]={2/3*data.wheel_radius*(cos(i*third)*drag_y
+    - sin(i*third)*drag_x) for i in 0:2} "Torques that balance the force of the rollers";
   SI.Torque tau_m[3] "Wanted motor torques";
   Interfaces.TorqueOutput tau_s[3] "Sensed torques"
     annotation (Placement(transformation(extent={{90,30},{110,50}})));
@@ -25,14 +31,18 @@ partial model PartialRobot "Base with three drivetrains, whose motors are somebo
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   Interfaces.PlanarFrame frame "Centre of the base"
     annotation (Placement(transformation(extent={{90,-50},{110,-30}})));
-  Components.OmniBase base(robot=data, x_start=x_start, y_start=y_start, theta_start=theta_start, v_x_start=v_x_start, v_y_start=v_y_start, omega_start=omega_start)
+  Components.OmniBase base(robot=data, x_start=x_start, y_start=y_start, theta_start=theta_start, v_x_start=v_x_start,
+    v_y_start=v_y_start, omega_start=omega_start)
     "Base on three wheels"
     annotation (Placement(transformation(extent={{50,-20},{90,20}})));
-  Components.Drivetrain drive0(robot=data, phi_start=tau_start[1]/data.drivetrain_stiffness, w_start=w_start[1]) "Drivetrain of wheel 0"
+  Components.Drivetrain drive0(robot=data, phi_start=tau_start[1]/data.drivetrain_stiffness, w_start=w_start[1])
+    "Drivetrain of wheel 0"
     annotation (Placement(transformation(extent={{-5,45},{25,75}})));
-  Components.Drivetrain drive1(robot=data, phi_start=tau_start[2]/data.drivetrain_stiffness, w_start=w_start[2]) "Drivetrain of wheel 1"
+  Components.Drivetrain drive1(robot=data, phi_start=tau_start[2]/data.drivetrain_stiffness, w_start=w_start[2])
+    "Drivetrain of wheel 1"
     annotation (Placement(transformation(extent={{-5,-15},{25,15}})));
-  Components.Drivetrain drive2(robot=data, phi_start=tau_start[3]/data.drivetrain_stiffness, w_start=w_start[3]) "Drivetrain of wheel 2"
+  Components.Drivetrain drive2(robot=data, phi_start=tau_start[3]/data.drivetrain_stiffness, w_start=w_start[3])
+    "Drivetrain of wheel 2"
     annotation (Placement(transformation(extent={{-5,-75},{25,-45}})));
 equation
   connect(base.frame, frame)
@@ -54,9 +64,11 @@ equation
   phi_m[3] = drive2.phi_m;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240}, fillPattern=FillPattern.Solid),
+      Polygon(points={{80,0},{-40,70},{-40,-70},{80,0}}, lineColor={0,70,140}, fillColor={200,220,240},
+        fillPattern=FillPattern.Solid),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>The robot without its electronics. It starts at rest, or in steady motion with rollers that already slide and drivetrains that carry what the rollers pull. Who extends it says what the motors do.</p>
+<p>The robot without its electronics. It starts at rest, or in steady motion: then the rollers already slide and the
+drivetrains carry their friction. Extending models define the motor torques.</p>
 </html>"));
 end PartialRobot;

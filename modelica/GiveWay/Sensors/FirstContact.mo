@@ -2,8 +2,8 @@ within GiveWay.Sensors;
 block FirstContact "Time of the first contact"
   import Modelica.Units.SI;
   input Boolean touching "Contact";
-  constant SI.Time never=-1 "Stands for the time of what has not happened";
-  discrete SI.Time t(start=-1, fixed=true) "Of the first contact, -1 before";
+  constant SI.Time never=-1 "Time of an event that has not happened yet";
+  discrete SI.Time t(start=-1, fixed=true) "Time of the first contact, -1 before";
 equation
   when touching then
     t = if pre(t) < 0 then time else pre(t);
@@ -14,6 +14,6 @@ equation
       Line(points={{0,0},{40,40}}, color={0,0,0}, thickness=0.5),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>The detection times of 5.2 and 5.3 count from here.</p>
+<p>The detection times of 5.2 and 5.3 start here.</p>
 </html>"));
 end FirstContact;

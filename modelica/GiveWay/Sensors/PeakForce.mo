@@ -2,8 +2,8 @@ within GiveWay.Sensors;
 block PeakForce "Largest value of a force so far"
   import Modelica.Units.SI;
   input SI.Force f "Force";
-  discrete SI.Force peak(start=0, fixed=true) "Largest so far";
-  parameter SI.Time period=0.0001 "How often it is looked at";
+  discrete SI.Force peak(start=0, fixed=true) "Largest value so far";
+  parameter SI.Time period=0.0001 "Sample period";
 equation
   when sample(0, period) then
     peak = max(pre(peak), f);
@@ -14,6 +14,6 @@ equation
       Line(points={{0,0},{40,40}}, color={0,0,0}, thickness=0.5),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>Sampled: for a force that lasts milliseconds the default misses less than a hundredth of the peak.</p>
+<p>The force is sampled. If it lasts some milliseconds, the default period misses less than 1 % of the peak.</p>
 </html>"));
 end PeakForce;

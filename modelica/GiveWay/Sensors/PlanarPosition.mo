@@ -1,11 +1,11 @@
 within GiveWay.Sensors;
-model PlanarPosition "How far a body is from where it started"
+model PlanarPosition "Distance of a body from its start position"
   import Modelica.Units.SI;
   Interfaces.PlanarFrame frame "The body"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
-  SI.Distance distance "From where it started";
-  parameter SI.Position x_start=0 "Where it started, world frame";
-  parameter SI.Position y_start=0 "Where it started, world frame";
+  SI.Distance distance "Distance from the start position";
+  parameter SI.Position x_start=0 "Start position, world frame";
+  parameter SI.Position y_start=0 "Start position, world frame";
 equation
   frame.f_x = 0;
   frame.f_y = 0;
@@ -17,6 +17,6 @@ equation
       Line(points={{0,0},{40,40}}, color={0,0,0}, thickness=0.5),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>
-<p>The escape distance of 5.2 is the last value of <code>distance</code>.</p>
+<p>The last value of <code>distance</code> is the escape distance of 5.2.</p>
 </html>"));
 end PlanarPosition;

@@ -1,8 +1,8 @@
 within GiveWay;
-package Sensors "What is read from the models"
+package Sensors "Sensors for results of the models"
   extends Modelica.Icons.SensorsPackage;
   annotation (
     Documentation(info="<html>
-<p>Ideal sensors: they take nothing from what they read.</p>
+<p>Ideal sensors: they do not act on what they measure.</p>
 </html>"));
 end Sensors;

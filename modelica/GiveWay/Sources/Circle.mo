@@ -3,7 +3,7 @@ block Circle "Plan to move along a circle with a constant heading"
   import Modelica.Units.SI;
   extends Interfaces.PartialTravel(speed=0.16);
   parameter SI.Radius radius=0.75 "Radius";
-  SI.Angle phase "Along the circle";
+  SI.Angle phase "Angle along the circle";
 equation
   phase = s/radius;
   x = radius*sin(phase);
@@ -17,7 +17,8 @@ equation
   alpha = 0;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
-      Rectangle(extent={{-90,90},{90,-90}}, lineColor={0,0,127}, fillColor={255,255,255}, fillPattern=FillPattern.Solid),
+      Rectangle(extent={{-90,90},{90,-90}}, lineColor={0,0,127}, fillColor={255,255,255},
+        fillPattern=FillPattern.Solid),
       Line(points={{-70,0},{-50,40},{-30,50},{-10,30},{10,-30},{30,-50},{50,-40},{70,0}}, color={0,0,127}),
       Text(extent={{-150,140},{150,100}}, textString="%name", lineColor={0,0,255})}),
     Documentation(info="<html>

@@ -3,6 +3,6 @@ package Sources "Plans, waves and pushes"
   extends Modelica.Icons.SourcesPackage;
   annotation (
     Documentation(info="<html>
-<p>What the robot is asked to do, and what is done to it.</p>
+<p>Plans and wheel waves that the robot follows, and pushes and torques that act on it.</p>
 </html>"));
 end Sources;

@@ -2,7 +2,7 @@ within GiveWay.Tests;
 model RollerSteady "In steady motion the bristle's friction is (28)"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
-  parameter Parameters.Trikey robot "The robot's numbers";
+  parameter Parameters.Trikey robot "The robot's parameters";
   parameter SI.Velocity v=0.05 "Speed";
   Components.BristleRoller bristle(robot=robot, v_start=0.05, v=v) "Bristle"
     annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));

@@ -1,5 +1,5 @@
 within GiveWay.Tests;
-model RollingMass "The base's mass grows by its wheels and rollers"
+model RollingMass "Wheels and rollers add to the base's mass"
   import Modelica.Units.SI;
   extends Modelica.Icons.Example;
   parameter Parameters.Trikey robot(roller_coulomb_torque=0) "No roller friction";
@@ -8,8 +8,9 @@ model RollingMass "The base's mass grows by its wheels and rollers"
   parameter SI.Force f=10 "Force of the push";
   Sources.Push push(f_x=f) "Push through the centre"
     annotation (Placement(transformation(extent={{40,-20},{80,20}})));
-  parameter SI.Mass m_t=robot.base_mass + 1.5*robot.wheel_inertia/robot.wheel_radius^2 + 1.5*robot.roller_inertia/robot.roller_radius^2 "M_t";
-  SI.Velocity residual "Speed less that of the mass M_t";
+  parameter SI.Mass m_t=robot.base_mass + 1.5*robot.wheel_inertia/robot.wheel_radius^2
+    + 1.5*robot.roller_inertia/robot.roller_radius^2 "M_t";
+  SI.Velocity residual "Speed minus that of the mass M_t";
 equation
   connect(push.frame, base.frame)
     annotation (Line(points={{80,0},{-40,0}}, color={0,70,140}));

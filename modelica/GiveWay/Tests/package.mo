@@ -3,6 +3,6 @@ package Tests "Models that check themselves"
   extends Modelica.Icons.Package;
   annotation (
     Documentation(info="<html>
-<p>Each has a <code>residual</code> that is zero but for the solver's tolerance, and an assertion of that.</p>
+<p>Each has a <code>residual</code> that is zero within the solver's tolerance, and asserts it.</p>
 </html>"));
 end Tests;

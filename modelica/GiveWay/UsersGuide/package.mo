@@ -1,5 +1,5 @@
 within GiveWay;
-package UsersGuide "What this package is, and where it comes from"
+package UsersGuide "What this package is and where it comes from"
   extends Modelica.Icons.Information;
   annotation (
     Documentation(info="<html>

@@ -1,6 +1,6 @@
 // Nanoseconds per step of the library and of the same step written with Eigen, over the recorded collision.
 //
-//     bench_step COLLISIONS      prints "c_core NS" and "eigen NS": the best of COLLISIONS runs of each, taken in turns
+//     bench_step COLLISIONS      prints "c_core NS" and "eigen NS": the best of COLLISIONS alternating runs of each
 // run_c_core and run_eigen are what callgrind counts, once each.
 #include "eigen_step.hpp"
 

@@ -274,7 +274,7 @@ Contact Controller::locate(const Vector3 &wrench, Real samples) const
     contact.lever_arm = wrench.z() / size;
     contact.lever_arm_sigma = Vector2(sigma_torque_, contact.lever_arm * sigma_force_).norm() / (root * size);
     const Vector2 normal(direction.y(), -direction.x());
-    // Right of the line of the force, for all vertices at once.
+    // Distance to the right of the line of the force, for all vertices at once.
     Eigen::Array<Real, 1, Eigen::Dynamic, Eigen::RowMajor, 1, GW_OUTLINE_VERTEX_MAX> side =
         (normal.transpose() * outline_).array() - contact.lever_arm;
     Eigen::Index before = side.size() - 1;
@@ -321,7 +321,7 @@ void Controller::move(const Vector2 &velocity, const Vector2 &displacement)
     pose_.add(displacement_.array());
 }
 
-// Only a plan that stands is compared: what is left is the correction towards its pose.
+// Only a standing plan is compared, so only the correction towards its pose is needed.
 void Controller::follow(const gw_plan_t &plan)
 {
     const Vector3 target(plan.pose.x_m, plan.pose.y_m, plan.pose.theta_rad);
@@ -350,7 +350,7 @@ void Controller::start_escape(const Rotation2 &yaw)
     escape_velocity_ = twist_.head<2>();
 }
 
-// (2) as far as the limits allow.
+// (2) within the limits.
 void Controller::escape()
 {
     const auto &config = config_.admittance;

@@ -1,8 +1,8 @@
 // The controller's 1 ms step written with Eigen, for the comparison of costs that c_core/README.md shows.
 //
 // It computes what gw_controller_step computes in the modes TARING, TRACKING and REACTING with the tanh friction, the
-// impulse detector and the frozen impulse: what a recorded collision needs. Fixed sizes, no heap, matrices made once,
-// functions of the C library. Other modes and choices throw.
+// impulse detector and the frozen impulse, which suffices for a recorded collision. Fixed sizes, no heap, constant
+// matrices, functions of the C library. Other modes and choices throw.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,5 @@
-// The step written with Eigen does what the C library does, over the recorded collision: else its cost means nothing.
+// The step written with Eigen gives the results of the C library over the recorded collision; otherwise its cost would
+// mean nothing.
 #include "eigen_step.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +51,7 @@ TEST(EigenStep, DoesWhatTheLibraryDoesOverTheRecordedCollision)
         reacting += expected.mode == GW_MODE_REACTING ? 1 : 0;
         located += expected.contact.valid ? 1 : 0;
     }
-    EXPECT_GT(reacting, 300); // else nothing of the escape was compared
+    EXPECT_GT(reacting, 300); // otherwise the escape was not compared
     EXPECT_GT(located, 100);
 }
 

@@ -1,7 +1,7 @@
 /* Largest error of each scalar function, in units in the last place of its result.
  *
  * errors FIRST LAST: float, over all bit patterns from FIRST to LAST of the sign-less half (0 to 7F800000) and their
- * negatives. errors SAMPLES: double, over so many seeded samples.
+ * negatives. errors SAMPLES: double, over this number of seeded samples.
  * The references are the C library's double functions for float and its long double ones for double: their errors are
  * below a thousandth of the unit they are compared in. */
 #include <float.h>
@@ -43,7 +43,7 @@ static worst_t worst[FUNCTIONS];
 static void note(int function, gw_real_t x, gw_real_t found, reference_t expected)
 {
     const reference_t difference = OF(fabs)((reference_t)found - expected);
-    /* A unit in the last place is at least 2^-DIGITS of the number: most need no closer look. NaN does. */
+    /* A unit in the last place is at least 2^-DIGITS of the number, so most errors need no closer look. NaN does. */
     if (!(difference <= (worst[function].error * OF(fabs)(expected) * EPSILON))) {
         int exponent = 0;
         (void)OF(frexp)(expected, &exponent);
@@ -56,7 +56,8 @@ static void note(int function, gw_real_t x, gw_real_t found, reference_t expecte
     }
 }
 
-/* Far from 0 the sine next to a zero is as exact as the angle can be reduced: in units of the last place of 1. */
+/* Far from 0, near a zero of the sine, the error is that of the angle's reduction: measured in units of the last place
+ * of 1. */
 static void note_far(int function, gw_real_t x, gw_real_t found, reference_t expected)
 {
     const reference_t error = OF(fabs)((reference_t)found - expected) / ((reference_t)2 * EPSILON);
@@ -95,7 +96,7 @@ static void one_argument(gw_real_t x)
     }
 }
 
-/* Odd and even functions: of -x only that it gives the very same bits. */
+/* Odd and even functions: for -x it is only checked that the bits are the same. */
 static void symmetric(gw_real_t x)
 {
     const reference_t exact = (reference_t)x;

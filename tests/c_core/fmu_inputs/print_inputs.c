@@ -1,5 +1,6 @@
 /* Prints the inputs of the golden sequence "controller.trikey", one line per tick, for the controller's FMU: torques,
- * encoders, counter, present, plan, stop request, tare request. Reals as C99 hexadecimal floats, which lose nothing. */
+ * encoders, counter, present, plan, stop request, tare request. Reals are printed as C99 hexadecimal floats, which are
+ * exact. */
 #include <inttypes.h>
 #include <stdio.h>
 

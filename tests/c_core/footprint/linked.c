@@ -1,4 +1,4 @@
-/* Calls what a firmware calls and nothing else: what the linker keeps of c_core is what it costs in flash. */
+/* Calls exactly the functions that a firmware calls: what the linker keeps of c_core is its flash cost. */
 #include "giveway/gw_controller.h"
 #include "giveway/gw_servo.h"
 

@@ -1,7 +1,7 @@
 /* Instructions per step and bytes of RAM, measured on a Cortex-M under qemu -icount shift=0.
  *
  * There SysTick, at 25 MHz, counts one tick per 40 instructions. A step is repeated from the same state 40 times, so
- * that ticks become instructions; what copying the state and calling a function costs is measured and taken off. */
+ * that ticks become instructions; the cost of copying the state and of the call is measured and subtracted. */
 #include <inttypes.h>
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-/* Programs that call only a part of c_core, chosen by PART: what the linker then keeps of it. */
+/* Programs that call only a part of c_core, chosen by PART, to see what the linker keeps. */
 #include "giveway/giveway.h"
 
 volatile gw_status_t status;
@@ -31,7 +31,7 @@ void firmware(void)
                                   */
 static gw_estimator_t estimator;
 static gw_detector_t detector;
-/* The configurations that it has: not those of outline, reference, sensors and modes. */
+/* The configurations of this part: without outline, reference, sensors and modes. */
 const gw_real_t period_s = 0;
 const gw_geometry_config_t geometry = {0};
 const gw_inertia_config_t base = {0};

@@ -42,7 +42,8 @@ digest_t drive_controller_trikey(void)
     return play(&config, SCRIPT_TRIKEY_SEED, true);
 }
 
-/* All that the first one leaves: measured motion, live force, force average, odd geometry, plans that are not finite.
+/* Everything that the first drive does not cover: measured motion, live force, force average, odd geometry, non-finite
+ * plans.
  */
 digest_t drive_controller_measuring(void)
 {

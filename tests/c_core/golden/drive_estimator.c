@@ -20,7 +20,7 @@ static void add_output(digest_t *digest, const gw_estimator_output_t *output)
     digest_bool(digest, output->zero_changed);
 }
 
-/* Standing, creeping and moving in turn, with tares, wild torques and planned motions that are not finite. */
+/* Standing, creeping and moving in turn, with tares, wild torques and non-finite planned motions. */
 static void drive(digest_t *digest, generator_t *generator, const gw_controller_config_t *config)
 {
     static gw_estimator_t estimator;
@@ -58,7 +58,7 @@ static void drive(digest_t *digest, generator_t *generator, const gw_controller_
         } else if ((phase % 7U) == 5U) {
             gw_estimator_restart(&estimator);
         } else {
-            /* go on */
+            /* continue */
         }
     }
 }

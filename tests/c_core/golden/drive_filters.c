@@ -29,7 +29,7 @@ digest_t drive_tare(void)
     gw_wheels_t mean_nm = {{GW_ZERO, GW_ZERO, GW_ZERO}};
     gw_tare_start(&tare);
     for (uint32_t i = 0U; i < 3000U; i++) {
-        /* now and then a disturbance that has it refused */
+        /* now and then a disturbance, for which it is refused */
         const gw_real_t size = generator_one_in(&generator, 40U) ? GW_TWO : (gw_real_t)0.2;
         const gw_wheels_t torque_nm = generator_wheels(&generator, size);
         digest_u32(&digest, (uint32_t)gw_tare_add(&tare, &torque_nm, 16U, GW_ONE, &mean_nm));

@@ -12,11 +12,11 @@ generator_t generator_begin(uint32_t seed);
 uint32_t generator_u32(generator_t *generator);
 /* 0 to count - 1. */
 uint32_t generator_below(generator_t *generator, uint32_t count);
-/* True once in so many calls. */
+/* True once in this number of calls. */
 bool generator_one_in(generator_t *generator, uint32_t calls);
 /* [low, high), 24 bits. */
 gw_real_t generator_between(generator_t *generator, gw_real_t low, gw_real_t high);
-/* [-size, size), and once in a while what no sensor should ever send: NaN, infinities, the largest number. */
+/* [-size, size), and now and then values that no sensor should ever send: NaN, infinities, the largest number. */
 gw_real_t generator_wild(generator_t *generator, gw_real_t size);
 /* Any bit pattern: subnormal numbers, infinities and NaN too. */
 gw_real_t generator_any(generator_t *generator);

@@ -23,7 +23,7 @@ gw_kinematics_t random_kinematics(generator_t *generator)
     const gw_geometry_config_t geometry = random_geometry(generator);
     gw_kinematics_t kinematics;
     if (gw_kinematics_init(&kinematics, &geometry) != GW_STATUS_OK) {
-        abort(); /* no robot, no golden values */
+        abort(); /* without a robot there are no golden values */
     }
     return kinematics;
 }

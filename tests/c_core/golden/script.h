@@ -8,7 +8,7 @@
 #include "generator.h"
 #include "giveway/gw_controller.h"
 
-/* How long a script is played, and the seed of the one that the controller's FMU gets too. */
+/* Length of a script, and the seed of the script that the controller's FMU gets too. */
 #define SCRIPT_TICKS 6000U
 #define SCRIPT_TRIKEY_SEED 21U
 
@@ -29,7 +29,7 @@ typedef struct {
 } script_t;
 
 void script_begin(script_t *script, const gw_controller_config_t *config, uint32_t seed, bool valid_plans);
-/* The next input, after this output of the tick before. */
+/* The next input, given the output of the previous tick. */
 const gw_controller_input_t *script_next(script_t *script, const gw_controller_output_t *before);
 
 #endif

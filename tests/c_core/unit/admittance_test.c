@@ -55,7 +55,7 @@ static void bad_arguments_are_refused(void)
     CHECK((output.velocity_mps.x == GW_ZERO) && (output.displacement_m.x == GW_ZERO));
 }
 
-/* However it is limited, it ends at exactly p/B, at rest. */
+/* Whatever the limits, the escape ends at exactly p/B, at rest. */
 static void the_frozen_impulse_ends_at_p_over_b(void)
 {
     const struct {
@@ -65,7 +65,7 @@ static void the_frozen_impulse_ends_at_p_over_b(void)
         gw_vector_t velocity;
     } rows[] = {
         {R(0.5), R(2.8), R(0.01), {R(0.0), R(0.0)}},    /* the paper's */
-        {R(0.5), R(1000.0), R(0.01), {R(0.0), R(0.0)}}, /* (2) without limits, but for its tail */
+        {R(0.5), R(1000.0), R(0.01), {R(0.0), R(0.0)}}, /* (2) without limits, except at its end */
         {R(0.1), R(0.5), R(0.05), {R(0.0), R(0.3)}},    /* slow, and moving sideways when it is hit */
         {R(0.5), R(0.3), R(0.01), {R(-0.4), R(0.0)}},   /* moving against the push */
         {R(0.5), R(0.05), R(0.01), {R(0.4), R(0.0)}},   /* brakes too weakly: overshoots and comes back */
@@ -160,7 +160,7 @@ static void what_is_not_finite_is_refused(void)
     }
 }
 
-/* States on the way that seldom come about by themselves: the step has to stay within its limits in each. */
+/* Rare states of an escape: the step has to stay within its limits in each. */
 static void rare_states_keep_the_limits(void)
 {
     const struct {

@@ -1,6 +1,6 @@
 #include "unit.h"
 
-/* Every field of the table, and where it is kept. */
+/* Every field of the table, and where it is stored. */
 typedef struct {
     gw_controller_config_t controller;
     gw_servo_config_t servo;
@@ -112,7 +112,7 @@ static void every_bound_is_met_at_both_neighbours(void)
     }
 }
 
-/* A triangle stays convex when one corner moves out as far as it may. */
+/* A triangle stays convex when one corner moves out to its limit. */
 static void corners_of_the_outline_meet_their_bounds(void)
 {
     const struct {
@@ -184,7 +184,7 @@ static void the_first_bad_field_is_the_one_that_is_named(void)
                  GW_STATUS_CONFIG_INVALID);
 }
 
-/* What no robot file says: the choices of the paper's configuration. */
+/* Choices of the paper's configuration that are not in a robot file. */
 static void the_paper_s_settings_are_these(void)
 {
     const struct {
@@ -285,7 +285,7 @@ static void what_is_no_field_has_the_row_of_none(void)
     CHECK(gw_config_name((gw_config_field_t)beyond) == gw_config_name(GW_FIELD_NONE));
 }
 
-/* What is accepted fits into the arrays that hold it. */
+/* Every accepted size fits into its array. */
 static void arrays_are_as_long_as_their_fields_allow(void)
 {
     const gw_controller_config_t config = robot().controller;

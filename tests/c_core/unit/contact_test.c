@@ -138,7 +138,8 @@ static void a_line_through_corners_enters_or_touches(void)
     }
 }
 
-/* Of an edge along the line the end that the force meets first, also where both lie on one side of the centre. */
+/* If an edge lies on the line, the result is the end that the force meets first, also if both ends are on one side of
+ * the centre. */
 static void the_end_that_is_met_first_does_not_depend_on_the_centre(void)
 {
     const gw_contact_config_t ahead = {
@@ -155,8 +156,8 @@ static void the_end_that_is_met_first_does_not_depend_on_the_centre(void)
     }
 }
 
-/* The line runs through the first corner alone, and all others lie on its right: what lies on it counts as left, so the
- * edge behind that corner is entered. */
+/* The line runs through the first corner only, and all others are on its right. A corner on the line counts as left, so
+ * the edge behind this corner is entered. */
 static void a_line_through_the_first_corner_alone_enters_there(void)
 {
     const gw_contact_config_t triangle = {3U, {{R(0.0), R(0.0)}, {R(1.0), R(-0.5)}, {R(1.0), R(0.5)}}, R(1.0)};

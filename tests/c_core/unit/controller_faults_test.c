@@ -1,6 +1,6 @@
 #include "rig.h"
 
-/* A robot on its way at 0.2 m/s. */
+/* A robot moving at 0.2 m/s. */
 static void on_the_way(void)
 {
     rig_set_up();
@@ -11,7 +11,7 @@ static void on_the_way(void)
     CHECK(rig_output.reference_twist.vx_mps == R(0.2));
 }
 
-/* In the same tick: the last angles at zero speed, and FAULT. Then back to the path. */
+/* In the same tick: the last angles at zero speed, and mode FAULT. Then it returns to the path. */
 static void bad_sensors_command_no_motion(void)
 {
     const struct {
@@ -49,7 +49,7 @@ static void bad_sensors_command_no_motion(void)
     }
 }
 
-/* In every mode that moves or measures: a fault stops at once, and what was interrupted is taken up again, but for an
+/* In every mode that moves or measures, a fault stops at once. Afterwards the interrupted mode continues, except an
  * escape, which is abandoned. */
 static void bad_sensors_interrupt_every_mode(void)
 {
@@ -211,7 +211,8 @@ static gw_real_t any_real(void)
     return value;
 }
 
-/* Any input whatever: finite outputs within their limits, and the invariant, after every tick (step checks them). */
+/* For any input, the outputs are finite and within their limits and the invariant holds after every tick (step checks
+ * them). */
 static void no_input_whatever_leads_out_of_the_limits(void)
 {
     for (uint32_t seed = 1U; seed <= 10U; seed++) {

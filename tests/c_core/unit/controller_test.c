@@ -120,7 +120,7 @@ static void settled_can_mean_to_stay(void)
     CHECK(rig_output.detection_count == 2U);
 }
 
-/* The force of each tick moves the robot, less what the detector forgives; at rest again it does not. */
+/* The force of each tick, minus the detector's leak, moves the robot; back at rest it does not. */
 static void live_force_yields_while_it_is_pushed(void)
 {
     rig_set_up();
@@ -130,7 +130,7 @@ static void live_force_yields_while_it_is_pushed(void)
     rig_until(GW_MODE_TRACKING, 10U);
     rig_push(R(20.0));
     rig_until(GW_MODE_REACTING, 60U);
-    /* Just hit: the push counts although the robot creeps and 40 N are forgiven then. */
+    /* Just hit: the push counts, although the robot creeps and the leak is 40 N then. */
     rig_ticks(3U);
     CHECK(rig_output.reference_twist.vx_mps > GW_ZERO);
     const gw_real_t early = rig_output.reference_twist.vx_mps;
@@ -139,22 +139,22 @@ static void live_force_yields_while_it_is_pushed(void)
     CHECK(rig_output.reference_twist.vx_mps > early);
     rig_push(GW_ZERO);
     rig_until(GW_MODE_SETTLED, 20000U);
-    rig_push(R(1.5)); /* too weak for a hit: what is felt at rest does not move it */
+    rig_push(R(1.5)); /* too weak for a hit: a force felt at rest does not move it */
     rig_ticks(5U);
     CHECK(rig_output.mode == GW_MODE_SETTLED);
     CHECK(gw_abs(rig_output.reference_twist.vx_mps) < rig_config.supervisor.settled_speed_mps);
     const gw_real_t speed_mps = gw_abs(rig_output.reference_twist.vx_mps);
-    rig_push(R(60.0)); /* more than is forgiven, too short for a hit: only a reaction feels it */
+    rig_push(R(60.0)); /* above the leak, too short for a hit: only a running reaction responds to it */
     rig_ticks(4U);
     CHECK(rig_output.mode == GW_MODE_SETTLED);
     CHECK(gw_abs(rig_output.reference_twist.vx_mps) <= speed_mps);
 }
 
-/* An escape that has come to its end under a push that stays is not over: it is hit again instead. */
+/* An escape that reaches its end under a lasting push is not over: it counts as another hit. */
 static void a_push_that_stays_keeps_it_from_settling(void)
 {
     rig_set_up();
-    rig_config.estimator.rest_ticks = 10000U; /* no new zero, which would take the push for one */
+    rig_config.estimator.rest_ticks = 10000U; /* no new zero, which would include the push */
     rig_begin();
     rig_until(GW_MODE_TRACKING, 10U);
     rig_push(R(50.0));
@@ -205,7 +205,7 @@ static void a_stop_request_stops_it(void)
     CHECK(rig_output.mode == GW_MODE_REJOINING);
 }
 
-/* An escape that was interrupted is abandoned: nobody knows whether the way is still free. */
+/* An interrupted escape is abandoned: its path may no longer be free. */
 static void a_stopped_escape_is_not_resumed(void)
 {
     rig_set_up();
@@ -269,7 +269,7 @@ static void a_request_in_the_first_tick_is_an_edge(void)
     rig_tick(GW_STATUS_TARE_REFUSED);
 }
 
-/* How slow a turning robot is shows at its wheels: 0.02 rad/s are 4 mm/s there. */
+/* The speed of a turning robot is measured at its wheels: 0.02 rad/s are 4 mm/s there. */
 static void turning_counts_as_moving_at_the_rim(void)
 {
     const struct {
@@ -334,7 +334,7 @@ static void a_push_while_taring_spoils_the_tare(void)
     rig_until(GW_MODE_TRACKING, 10U);
 }
 
-/* It only watches: the drives are never enabled, the command is where the wheels are, hits are still reported. */
+/* Monitoring only: the drives are never enabled, the command equals the wheels' position, hits are still reported. */
 static void without_drives_it_only_watches(void)
 {
     rig_set_up();
@@ -373,7 +373,7 @@ static void counters_start_anew_after_24_days(void)
     CHECK(rig_output.detection_count == 0U);
 }
 
-/* Taken in the middle of a reaction: it goes on as the original does. */
+/* Copied in the middle of a reaction: the copy continues like the original. */
 static void a_copy_is_a_checkpoint(void)
 {
     rig_set_up();

@@ -47,7 +47,7 @@ static void bad_arguments_are_refused(void)
     CHECK(!output.tripped);
 }
 
-/* 51 N less 1 N forgiven is 0.05 N s a tick, and what leaks away is part of the mean force. */
+/* 51 N minus 1 N of leak is 0.05 N s per tick; the leak is part of the mean force. */
 static void the_impulse_trips_once_it_exceeds_the_threshold(void)
 {
     gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
@@ -66,7 +66,7 @@ static void the_impulse_trips_once_it_exceeds_the_threshold(void)
         CHECK_NEAR(output.mean_wrench.torque_nm, R(5.1), R(6.0) * ROUNDING);
         CHECK(output.samples == ticks);
     }
-    CHECK((ticks == 10U) || (ticks == 11U)); /* the tenth reaches 0.5 N s but for rounding */
+    CHECK((ticks == 10U) || (ticks == 11U)); /* the tenth reaches 0.5 N s up to rounding */
 }
 
 static void what_is_forgiven_depends_on_the_motion(void)

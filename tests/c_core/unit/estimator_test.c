@@ -98,8 +98,8 @@ static void bad_arguments_are_refused(void)
     CHECK(!gw_estimator_invariant_holds(&estimator));
 }
 
-/* Standing, tared: what changes from the zero is the push. Torques (0, 1, -1) less than the zero, wheels at 0, 120 and
- * 240 degrees of 0.1 m: sqrt(3)/2 * 20 N along x. */
+/* Standing and tared: the difference from the zero is the push. Torques (0, 1, -1) below the zero, wheels of 0.1 m at
+ * 0, 120 and 240 degrees: sqrt(3)/2 * 20 N along x. */
 static void at_rest_the_change_of_the_torques_is_the_push(void)
 {
     const gw_estimator_input_t quiet = input_of(torques(R(0.3), R(-0.2), R(0.1)), still);
@@ -145,7 +145,7 @@ static void the_regime_follows_the_planned_speed(void)
     }
 }
 
-/* A robot that comes to rest leaning on something takes that for its zero: only changes are pushes. */
+/* A robot that comes to rest leaning against something includes this force in its zero: only changes are pushes. */
 static void a_stop_has_a_zero_of_its_own(void)
 {
     const gw_wheels_t zero = torques(R(0.0), R(0.0), R(0.0));
@@ -271,8 +271,8 @@ static void the_motion_comes_from_the_source_that_is_chosen(void)
     }
 }
 
-/* With bristles: a tare that is taken while rollers are wound up leaves their part to the model, so a push that was
- * there before the stop is still seen after it. */
+/* With bristles, a tare with deflected rollers leaves their force to the model, so a push that began before the stop is
+ * still seen after it. */
 static void with_bristles_a_tare_leaves_the_rollers_part_to_the_model(void)
 {
     const gw_wheels_t zero = torques(R(0.0), R(0.0), R(0.0));
@@ -291,7 +291,7 @@ static void with_bristles_a_tare_leaves_the_rollers_part_to_the_model(void)
         output = step(&input, GW_STATUS_OK);
     }
     const gw_real_t held = output.wrench.force_x_n;
-    CHECK(held > GW_ZERO); /* what the rollers hold is a push against them */
+    CHECK(held > GW_ZERO); /* the force that the rollers hold is an opposite push */
     gw_estimator_start_tare(&estimator);
     tare(zero);
     CHECK_NEAR(step(&input, GW_STATUS_OK).wrench.force_x_n, GW_ZERO, R(0.001) * held);
@@ -324,7 +324,7 @@ static void what_is_beyond_any_robot_is_refused(void)
     }
 }
 
-/* A measured motion that no wheel can make gives a wrench that no push has: refused, and forgotten. */
+/* A measured motion that is impossible for a wheel gives an impossible wrench: it is refused, and not kept. */
 static void a_wrench_beyond_any_push_is_refused(void)
 {
     gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);

@@ -1,9 +1,9 @@
-/* What an object starts from is the init's doing alone: nothing of what its memory held before is left. */
+/* The initial state depends on init alone: no previous content of the memory remains. */
 #include "unit.h"
 
 #include <string.h>
 
-/* As memory may be before anything was written to it. */
+/* Content of uninitialised memory. */
 static void soil(void *place, size_t size)
 {
     (void)memset(place, 0xA5, size);
@@ -138,7 +138,7 @@ static void an_estimator_starts_from_nothing(void)
     check_kept(&estimator.config, &config.estimator);
 }
 
-/* What a tick without good sensors finds. */
+/* The state that a tick without good sensors starts from. */
 static void check_nothing_found(const gw_estimator_output_t *estimate, const gw_detector_output_t *detection)
 {
     const gw_wrench_t wrenches[] = {estimate->wrench, estimate->mean, estimate->window_mean, detection->mean_wrench};
@@ -187,7 +187,7 @@ static void a_refused_supervisor_is_in_fault(void)
     CHECK((supervisor.mode == GW_MODE_FAULT) && (!supervisor.initialised));
 }
 
-/* The output that means "do not move", over whatever the caller's memory held. */
+/* The output that means "do not move", written over arbitrary memory of the caller. */
 static void check_safe(const gw_controller_output_t *output)
 {
     const gw_contact_estimate_t *const contacts[2] = {&output->contact, &output->detection_contact};
@@ -232,7 +232,7 @@ static void a_safe_output_is_safe_throughout(void)
     check_safe(&output);
 }
 
-/* No configuration was looked at, so none of its fields is to blame. */
+/* The configuration was not read, so no field is reported. */
 static void a_missing_controller_blames_no_field(void)
 {
     const gw_controller_config_t config = trikey();

@@ -51,7 +51,7 @@ static void means_are_those_of_the_last_samples(void)
     CHECK(gw_moving_average_mean(&average).force_x_n == GW_ZERO);
 }
 
-/* A huge sample would leave its rounding error in a plain running sum for ever. */
+/* In a plain running sum the rounding error of a huge sample would stay for ever. */
 static void rounding_errors_live_for_one_window(void)
 {
     static gw_moving_average_t average;

@@ -30,7 +30,7 @@ static gw_wheels_t step(gw_presliding_t *presliding, const int32_t counts[3], co
     return friction_nm;
 }
 
-/* Counts of the wheels for a way along x: wheel 0 does not turn, the others by -+sqrt(3)/2 x/r_w. */
+/* Counts of the wheels for a travel along x: wheel 0 does not turn, the others by -+sqrt(3)/2 x/r_w. */
 static void counts_of(gw_real_t x_m, int32_t counts[3])
 {
     const gw_real_t turned = (R(0.866025403784438647) * x_m) / R(0.1) / constants.rad_per_count;
@@ -39,7 +39,7 @@ static void counts_of(gw_real_t x_m, int32_t counts[3])
     counts[2] = -counts[1];
 }
 
-/* Moves by a way along x in ticks of the given length; returns the friction of the last tick. */
+/* Moves along x in ticks of the given travel; returns the friction of the last tick. */
 static gw_wheels_t moved(gw_presliding_t *presliding, gw_real_t from_m, gw_real_t to_m, uint32_t ticks,
                          gw_twist_t twist)
 {
@@ -67,12 +67,13 @@ static void bad_arguments_are_refused(void)
     CHECK_STATUS(gw_presliding_init(&presliding, &config, &sticky, &kinematics), GW_STATUS_CONFIG_INVALID);
 }
 
-/* 0.05 mm along roller 0's axis are 5 N at 1e5 N/m; rollers at 120 degrees move half as far, the other way. */
-static void a_small_way_is_elastic_and_comes_back(void)
+/* 0.05 mm along roller 0's axis are 5 N at 1e5 N/m; rollers at 120 degrees move half as far, in the opposite direction.
+ */
+static void a_small_travel_is_elastic_and_reversible(void)
 {
     gw_presliding_t presliding = made();
     gw_wheels_t torques = moved(&presliding, R(0.0), R(0.00005), 10U, still);
-    /* A count is 0.6 um of way, 0.06 N of force, 0.6 mN m at the roller. */
+    /* A count is 0.6 um of travel, 0.06 N of force, 0.6 mN m at the roller. */
     CHECK_NEAR(torques.wheel[0], R(0.05), R(0.0007));
     CHECK_NEAR(torques.wheel[1], R(-0.025), R(0.0007));
     CHECK_NEAR(gw_presliding_elastic_torques(&presliding, &kinematics).wheel[0], torques.wheel[0], ROUNDING);
@@ -80,8 +81,8 @@ static void a_small_way_is_elastic_and_comes_back(void)
     CHECK_NEAR(torques.wheel[0], GW_ZERO, R(0.0007));
 }
 
-/* However far and in however long steps: the roller bears 0.2 N m and no more, either way. */
-static void a_long_way_ends_at_sliding_friction(void)
+/* For any distance and any step length the roller carries at most 0.2 N m, in both directions. */
+static void a_long_travel_ends_at_sliding_friction(void)
 {
     const uint32_t ticks[] = {1U, 3U, 100U, 2000U};
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(ticks); i++) {
@@ -105,7 +106,7 @@ static void in_motion_it_is_the_friction_of_28(void)
     CHECK(torques.wheel[0] > expected.wheel[0]);
 }
 
-/* Starting to move against the deflection: nothing slides on the way back, so all of sigma1 v is felt. */
+/* Starting to move against the deflection: nothing slides during the return, so the full sigma1 v is felt. */
 static void damping_is_felt_at_once(void)
 {
     gw_presliding_t presliding = made();
@@ -114,7 +115,7 @@ static void damping_is_felt_at_once(void)
     CHECK_NEAR(step(&presliding, counts, &no_torque, twist).wheel[0], R(0.001), R(10.0) * ROUNDING);
 }
 
-/* A torque that winds the drivetrain up by what the encoders show: the rollers did not move. */
+/* A torque that twists the drivetrain by the angle that the encoders show: the rollers did not move. */
 static void the_wind_up_of_the_drivetrain_is_taken_off(void)
 {
     gw_presliding_t presliding = made();
@@ -126,7 +127,7 @@ static void the_wind_up_of_the_drivetrain_is_taken_off(void)
     CHECK_NEAR(step(&presliding, after, &torque, still).wheel[0], GW_ZERO, ROUNDING);
 }
 
-/* Counts and torque after a gap say nothing about the way; after settling the torque does. */
+/* Counts and torque right after a gap do not tell the travel; after settling the torque does. */
 static void a_gap_keeps_the_deflection(void)
 {
     gw_presliding_t presliding = made();
@@ -140,8 +141,8 @@ static void a_gap_keeps_the_deflection(void)
     CHECK(step(&presliding, far, &torque, still).wheel[0] != before.wheel[0]);
 }
 
-/* Beyond a metre in a tick the sensors are wrong, and nothing is learnt from them. */
-static void an_impossible_way_changes_nothing(void)
+/* Beyond a metre in a tick the sensors are wrong, and their values are ignored. */
+static void an_impossible_travel_changes_nothing(void)
 {
     gw_presliding_t presliding = made();
     const int32_t before[3] = {0, 0, 0};
@@ -173,12 +174,12 @@ static void the_invariant_sees_every_member(void)
 void suite_presliding(void)
 {
     unit_run("bad_arguments_are_refused", bad_arguments_are_refused);
-    unit_run("a_small_way_is_elastic_and_comes_back", a_small_way_is_elastic_and_comes_back);
-    unit_run("a_long_way_ends_at_sliding_friction", a_long_way_ends_at_sliding_friction);
+    unit_run("a_small_travel_is_elastic_and_reversible", a_small_travel_is_elastic_and_reversible);
+    unit_run("a_long_travel_ends_at_sliding_friction", a_long_travel_ends_at_sliding_friction);
     unit_run("in_motion_it_is_the_friction_of_28", in_motion_it_is_the_friction_of_28);
     unit_run("damping_is_felt_at_once", damping_is_felt_at_once);
     unit_run("the_wind_up_of_the_drivetrain_is_taken_off", the_wind_up_of_the_drivetrain_is_taken_off);
     unit_run("a_gap_keeps_the_deflection", a_gap_keeps_the_deflection);
-    unit_run("an_impossible_way_changes_nothing", an_impossible_way_changes_nothing);
+    unit_run("an_impossible_travel_changes_nothing", an_impossible_travel_changes_nothing);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

@@ -28,7 +28,7 @@ static void a_stiffness_of_nearly_nothing_is_rigid(void)
     CHECK(made(R(500.0)).compliance_rad_per_nm == (GW_ONE / R(500.0)));
 }
 
-/* count + by for by > 0, as a counter does that wraps. */
+/* count + by for by > 0, with the wrap of a counter. */
 static int32_t advanced(int32_t count, int32_t by)
 {
     const int32_t left = INT32_MAX - ((count < 0) ? 0 : count);
@@ -82,7 +82,8 @@ static void the_wind_up_of_the_drivetrain_is_taken_off(void)
     CHECK_NEAR(filter.rate_radps, GW_ZERO, ROUNDING);
 }
 
-/* A robot that moves already when its filter starts: presumed to move as it is told, before the first sample only. */
+/* A robot that already moves when its filter starts: only before the first sample it is assumed to move as commanded.
+ */
 static void a_rate_may_be_presumed_before_the_first_sample(void)
 {
     const gw_rate_filter_constants_t constants = made(R(0.0));

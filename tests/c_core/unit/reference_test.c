@@ -132,7 +132,7 @@ static void the_reference_comes_to_a_plan_that_is_elsewhere(void)
             fastest = gw_max(fastest, gw_length(velocity));
         }
         CHECK(fastest <= ((rows[i].rejoining ? R(0.1) : R(0.5)) + ROUNDING));
-        /* Following approaches by 2/s: e^-16 of half a metre is left; rejoining arrives. */
+        /* Following approaches with 2/s: e^-16 of half a metre is left; rejoining arrives exactly. */
         CHECK(gw_reference_distance(&reference, &plan) < R(1e-6));
         CHECK(gw_reference_angle(&reference, &plan) < R(1e-6));
     }

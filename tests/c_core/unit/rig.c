@@ -9,7 +9,7 @@ void rig_set_up(void)
 {
     static const gw_controller_input_t nothing;
     gw_controller_config_trikey(&rig_config);
-    /* So light and smooth that moving it needs no torque: what the sensors show is a push. */
+    /* So light and smooth that moving it needs no torque: the sensors show only a push. */
     rig_config.base.mass_kg = R(0.1);
     rig_config.base.yaw_inertia_kgm2 = R(0.0001);
     rig_config.base.wheel_inertia_kgm2 = GW_ZERO;
@@ -43,7 +43,7 @@ void rig_begin(void)
     gw_controller_safe_output(&rig_output);
 }
 
-/* Outputs are finite and within their limits, whatever happens. */
+/* Outputs are always finite and within their limits. */
 static void check_output(void)
 {
     const gw_vector_t velocity = {rig_output.reference_twist.vx_mps, rig_output.reference_twist.vy_mps};

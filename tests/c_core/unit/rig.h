@@ -1,5 +1,5 @@
-/* One controller of the paper's robot with short times, stepped tick by tick; every step is checked for what has to
- * hold after any step whatever. */
+/* One controller of the paper's robot with short times, stepped tick by tick; every step is checked for the properties
+ * that always hold. */
 #ifndef RIG_H
 #define RIG_H
 

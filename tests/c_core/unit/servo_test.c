@@ -147,7 +147,7 @@ static void a_reference_that_is_not_finite_holds_the_last_angle(void)
     }
 }
 
-/* Disabled, without a reference, turned by hand by 100 counts: enabling must not pull it back. */
+/* Disabled and without a reference it is turned by hand by 100 counts: enabling must not pull it back. */
 static void a_disabled_servo_has_no_torque_and_no_memory(void)
 {
     gw_servo_t servo = of_config(&config);

@@ -39,7 +39,7 @@ static void half_a_turn_has_one_name(void)
     CHECK(gw_sum_add_angle(gw_sum_of(-GW_PI), GW_ZERO).value == -GW_PI);
 }
 
-/* The invariant allows any excess within 1024, though no sum of angles comes to one: an angle it stays. */
+/* The invariant allows any excess within 1024, although no sum of angles reaches it: the result is still an angle. */
 static void any_excess_leaves_an_angle(void)
 {
     const gw_sum_t low = {GW_ONE, R(-1024.0)};

@@ -12,7 +12,7 @@ static gw_supervisor_t in_mode(gw_mode_t mode)
     return supervisor;
 }
 
-/* Nothing happens, on good sensors and a valid plan. */
+/* No event, with good sensors and a valid plan. */
 static const gw_supervisor_events_t quiet_tick = {true, false, false, false, false, false, false, true};
 
 static gw_mode_t step(gw_supervisor_t *supervisor, const gw_supervisor_events_t *events)
@@ -183,7 +183,7 @@ static void the_path_clock_runs_in_tracking_on_a_valid_plan_only(void)
     CHECK(supervisor.path_ticks == 0U);
 }
 
-/* A mode that is none, after a flipped bit: goes on where an interruption would. */
+/* An invalid mode after a flipped bit: it continues as after an interruption. */
 static void a_corrupt_mode_leads_back_to_a_known_one(void)
 {
     gw_supervisor_t supervisor = in_mode(GW_MODE_TRACKING);

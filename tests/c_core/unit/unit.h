@@ -1,6 +1,6 @@
-/* The harness of the unit tests: counts tests, says what failed, closes with "N passed, N failed".
+/* The harness of the unit tests: counts tests, prints failures, ends with "N passed, N failed".
  *
- * It needs a printf and nothing else, so that the same tests run on a PC and on the microcontroller.
+ * It needs only a printf, so that the same tests run on a PC and on the microcontroller.
  */
 #ifndef UNIT_H
 #define UNIT_H
@@ -20,8 +20,8 @@ typedef void (*unit_test_t)(void);
 #define CHECK_STATUS(actual, expected) \
     unit_check_equal((int32_t)(actual), (int32_t)(expected), #actual, __FILE__, __LINE__)
 
-/* Relative tolerance of a quantity that some twenty roundings go into: 4500 ulp in double and 84 ulp in float. To be
- * multiplied by the size of the largest term. */
+/* Relative tolerance of a quantity computed with about twenty roundings: 4500 ulp in double and 84 ulp in float. To be
+ * multiplied by the magnitude of the largest term. */
 #if (GW_REAL_DOUBLE == 1)
 #define ROUNDING ((gw_real_t)1e-12)
 #define ULP DBL_EPSILON

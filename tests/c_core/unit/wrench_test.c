@@ -23,7 +23,7 @@ static void a_wrench_beyond_any_robot_is_not_valid(void)
     }
 }
 
-/* (40): the torques that are missing in the sensors are those of the push. */
+/* (40): the difference between expected and sensed torques is the push. */
 static void the_wrench_of_a_known_push_is_recovered(void)
 {
     const gw_kinematics_t kinematics = made();

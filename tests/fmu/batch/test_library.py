@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import re
 import subprocess
 from pathlib import Path
-
-from giveway.base.gravity import GRAVITY_MPS2
 
 ROOT = Path(__file__).parents[3]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))
@@ -47,7 +44,7 @@ def test_an_ordinary_library_would_be_noticed() -> None:
 
 
 def shared_with_other_files(lanes: int) -> set[str]:
-    """Functions in the object of the lanes that the linker might take for other files, too."""
+    """Functions in the object file of the lanes that the linker might also use for other files."""
     (found,) = BUILD.glob(f"fmu/batch/CMakeFiles/giveway_batch.dir/lanes_{lanes}.cpp.o")
     listing = subprocess.run(["nm", "--demangle", found], check=True, capture_output=True, text=True)
     symbols = [line.split(maxsplit=2) for line in listing.stdout.splitlines() if not line.startswith(" ")]
@@ -57,19 +54,14 @@ def shared_with_other_files(lanes: int) -> set[str]:
 
 
 def test_code_for_wide_registers_stays_with_the_lanes() -> None:
-    """An inline function compiled for AVX could otherwise become that of all files, and stop other processors."""
+    """Otherwise the linker might use an inline function compiled for AVX for all files, which fails on other
+    processors."""
     assert shared_with_other_files(4) == set()
     assert shared_with_other_files(8) == set()
 
 
 def test_no_product_and_sum_are_rounded_as_one() -> None:
-    """Fused operations would give a design other bits where they are used than where they are not."""
+    """With fused operations a design would have other bits than without them."""
     listing = subprocess.run(["objdump", "--disassemble", LIBRARY], check=True, capture_output=True, text=True).stdout
     assert "vmulpd" in listing  # it has been disassembled, lanes and all
     assert re.search(r"\bvfn?m(add|sub)", listing) is None
-
-
-def test_python_has_the_plants_gravity() -> None:
-    library = ctypes.CDLL(str(LIBRARY))
-    library.gwb_gravity.restype = ctypes.c_double
-    assert library.gwb_gravity() == GRAVITY_MPS2

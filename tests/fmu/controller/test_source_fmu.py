@@ -66,7 +66,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def unpacked(version: int, folder: Path) -> Path:
-    """The sources and the model description, and nothing else of the FMU."""
+    """Only the sources and the model description of the FMU."""
     with zipfile.ZipFile(packed(version)) as archive:
         names = [n for n in archive.namelist() if n.startswith("sources/") or n == "modelDescription.xml"]
         archive.extractall(folder, names)
@@ -87,7 +87,7 @@ def described(sources: Path) -> tuple[list[str], list[str]]:
 MACHINES = {
     "64 bits, all as C++": ("gcc", ["-std=c++17", "-x", "c++"], 8),
     "64 bits": ("gcc", [], 8),
-    # Without SSE, x86 computes with more digits than float has; c_core refuses that.
+    # Without SSE, x86 computes with more digits than float has, which c_core refuses.
     "32 bits": ("i686-linux-gnu-gcc", ["-msse2", "-mfpmath=sse"], 4),
 }
 
@@ -120,7 +120,7 @@ def test_statically_linked_sources_give_the_bits_of_the_binary(machine: str, shi
 def test_an_importer_builds_a_binary_from_the_sources(
     version: int, shipped: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """FMPy's own builder; what comes out has the same functions and, in FMI 3, the same bits."""
+    """FMPy's own builder; the result has the same functions and, in FMI 3, the same bits."""
     unpacked(version, tmp_path / "fmu")
     monkeypatch.setenv("PATH", str(Path(sys.executable).parent), prepend=":")
     monkeypatch.setenv("CMAKE_GENERATOR", "Ninja")
@@ -150,7 +150,7 @@ def test_an_importer_builds_a_binary_from_the_sources(
 
 
 def test_another_source_would_be_noticed(shipped: str, tmp_path: Path) -> None:
-    """The planted fault: torques that are one part in ten million off."""
+    """The planted fault: torques with a relative error of 1e-7."""
     sources = unpacked(3, tmp_path)
     values = sources / "controller_members.hpp"
     right = "torque_nm[i], v.sensor_torque[i]"

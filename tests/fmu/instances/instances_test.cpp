@@ -1,5 +1,4 @@
-// Many instances of one FMU in one process: they do not influence each other, in threads neither, and leave no memory
-// behind.
+// Many instances of one FMU in one process: they do not influence each other, also not in threads, and free all memory.
 //
 // Built once per FMU with the address sanitiser's allocator, whose leak check at exit fails the test if a single block
 // is left (Leaks.AreSeen plants one to see that it would).
@@ -209,9 +208,8 @@ TEST(Instances, LeaveNoMemoryBehind) {
     EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
 }
 
-// More saved states than the table of handles holds by itself: each is found again, and none, freed, is followed or
-// comes back. When all are freed the table holds no memory of the heap: nobody would free it when the library is
-// unloaded.
+// More saved states than the built-in table of handles holds: each is found again, and a freed one is never used again.
+// When all are freed the table uses no heap memory, which nobody would free when the library is unloaded.
 TEST(Instances, KeepManyStatesAndGiveTheirMemoryBack) {
     fmi3Instance fmu = instantiate3();
     ASSERT_NE(fmu, nullptr);
@@ -242,10 +240,10 @@ TEST(Instances, KeepManyStatesAndGiveTheirMemoryBack) {
 TEST(Leaks, AreSeen) {
     fmi3Instance forgotten = instantiate3();
     ASSERT_NE(forgotten, nullptr);
-    // Out of the checker's sight: only the complement is kept.
+    // Hidden from the leak checker: only the complement is stored.
     volatile std::uintptr_t hidden = ~reinterpret_cast<std::uintptr_t>(forgotten);
     forgotten = nullptr;
-    std::thread([] { std::vector<double>(1000, 1.0); }).join(); // overwrites what registers and stack may still hold
+    std::thread([] { std::vector<double>(1000, 1.0); }).join(); // overwrites copies in registers and on the stack
     const int leaks = __lsan_do_recoverable_leak_check();
     fmi3FreeInstance(reinterpret_cast<fmi3Instance>(~hidden));
     EXPECT_NE(leaks, 0);

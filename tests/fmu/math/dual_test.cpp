@@ -1,4 +1,4 @@
-// Dual numbers: values are double's bit for bit, derivatives are the closed forms and what finite differences find.
+// Dual numbers: values equal those of double bit for bit, derivatives equal closed forms and finite differences.
 #include <cmath>
 #include <cstring>
 #include <random>

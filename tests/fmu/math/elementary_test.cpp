@@ -12,7 +12,7 @@ namespace {
 
 constexpr double ulp = 2.220446049250313e-16;
 
-// Dense and irregular: the step is no dyadic number, so arguments have full mantissas.
+// Dense and irregular: the step is not a dyadic number, so arguments have full mantissas.
 template <class Check> void sweep(double low, double high, Check check) {
     constexpr int count = 400'000;
     for (int i = 0; i <= count; ++i) {

@@ -1,4 +1,4 @@
-"""Steps an FMU through piecewise constant inputs and keeps what comes out."""
+"""Steps an FMU through piecewise constant inputs and records its outputs."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def co_simulate(
 
 
 def refusal(model: str, parameters: Mapping[str, float]) -> str:
-    """What the FMU says when it refuses to initialise with these parameters."""
+    """The FMU's message when it refuses to initialise with these parameters."""
     with tempfile.TemporaryDirectory() as folder:
         fmu = Fmu(fmu_path(model, 3), 3, Path(folder))
         assert fmu.instantiate()

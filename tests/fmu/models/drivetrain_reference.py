@@ -1,7 +1,7 @@
 """Fig. 6 once more, from its equations: scipy, restarted at every event, every servo tick and every change of torque.
 
-Not from the C++: gear friction is a set of three smooth systems (stuck, turning forwards, turning backwards) that
-hand over to each other, and the servo is the text of gw_servo.h in double precision.
+It is not derived from the C++: gear friction is a set of three smooth systems (stuck, turning forwards, turning
+backwards) with transitions, and the servo implements the text of gw_servo.h in double precision.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def simulate(
 ) -> Trace:
     """``torques(t)``: motor and environment, constant from one point of the grid to the next.
 
-    ``reference(t)``: angle and speed for a servo beside it, which ticks at every point of the grid.
+    ``reference(t)``: angle and speed for the servo, which ticks at every point of the grid.
     """
     state = np.array(start)
     mode = int(np.sign(state[1]))

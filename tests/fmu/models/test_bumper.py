@@ -1,4 +1,4 @@
-"""The bumper FMU against closed forms, and as a piece of a system that scipy solves in one."""
+"""The bumper FMU against closed forms, and as a part of a system that scipy solves as a whole."""
 
 from __future__ import annotations
 
@@ -108,14 +108,14 @@ def test_the_ideal_latch_snaps_at_full_extension() -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_energy_over_whole_strokes(kind: str) -> None:
-    """There and back: what went in is heat, in closed form; the latch and the spring give back what they took."""
+    """Back and forth: the absorbed energy is heat, in closed form; latch and spring return the energy they stored."""
     speed, top, bottom = 0.25, 0.04, -0.0005
     half = (top - bottom) / speed
     outputs = [*FORCES, *ACCOUNT]
     run = co_simulate("bumper", parameters(kind), moved(triangle(speed, top, bottom)), 4 * half, half / 100, outputs)
     drag = DAMPING * speed + FRICTION * math.tanh(speed / FRICTION_SPEED)
     rubbing = drag * speed * 4 * half
-    # The end stop's own damping, over the way that it is pressed in each of four passes: it pushes k x (1 -+ e v).
+    # The end stop's damping over its compression in each of four passes: it pushes k x (1 -+ e v).
     stop = 4 * 0.5 * STOP * bottom**2 * STOP_DAMPING * speed
     assert run["energy.dissipated"][-1] == pytest.approx(rubbing + stop, rel=1e-8)
     assert run["energy.work_in"][-1] == pytest.approx(rubbing + stop, rel=1e-8)
@@ -175,7 +175,7 @@ def rest(kind: str) -> float:
 
 
 def whole_drop(kind: str, mass: float, speed: float, times: np.ndarray) -> np.ndarray:
-    """The same in one, restarted where the law has corners."""
+    """The same as one system, restarted where the law has corners."""
 
     def rate(_: float, y: np.ndarray) -> list[float]:
         return [y[1], law(kind, -y[0], -y[1]) / mass - 9.81]

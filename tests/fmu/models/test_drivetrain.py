@@ -52,7 +52,7 @@ def test_it_follows_the_reference(stiction: float) -> None:
 
 
 def test_a_wrong_reference_is_noticed() -> None:
-    """The tolerance above is far below what a forgotten element would change."""
+    """The tolerance above is far below the effect of a missing element."""
     p = Parameters()
     run = co_simulate("drivetrain", {**p.as_variables(), **TIGHT}, named(shove), 0.3, 1e-3, [*STATES, "sensor.torque"])
     for change in ({"gear_viscous": 0.0201}, {"coulomb": 1.501}, {"damping": 1.001}, {"gear_coulomb": 2.801}):
@@ -61,7 +61,7 @@ def test_a_wrong_reference_is_noticed() -> None:
 
 
 def test_the_gear_holds_without_creeping() -> None:
-    """5.1's push on a robot without power: a stuck gear does not move at all."""
+    """The push of 5.1 on an unpowered robot: a stuck gear does not move at all."""
     outputs = [*STATES, "gear.stuck", "sensor.torque"]
     run = co_simulate("drivetrain", {}, lambda t: {"environment.torque": -2.7 * min(1.0, t / 2.0)}, 6.0, 0.01, outputs)
     assert set(run["gear.stuck"]) == {1.0}
@@ -104,7 +104,8 @@ def test_without_friction_the_torque_becomes_momentum() -> None:
 
 @pytest.mark.parametrize("delay", [0, 3])
 def test_the_servo_follows_the_reference(delay: int) -> None:
-    """Beside a servo written from its description; single against double precision is what remains."""
+    """Compared with a servo written from its description; the remaining difference is single against double
+    precision."""
     p = Parameters(delay=delay, load_inertia=0.1)
 
     def reference(t: float) -> tuple[float, float]:

@@ -144,7 +144,7 @@ def test_nothing_depends_on_what_is_not_declared(model: str, make: Callable[...,
                     assert fmu.set(moved, there[moved] + 1e-3) == OK
                 for name in outputs:
                     now = fmu.get(name)
-                    # Rounding: some quantities are sums in which a term cancels.
+                    # Rounding: in some sums a term cancels.
                     if abs(now - before[name]) > 1e-9 * max(1.0, abs(before[name])):
                         seen.setdefault(name, set()).add(moved)
                 if i < len(states):
@@ -159,7 +159,8 @@ def test_nothing_depends_on_what_is_not_declared(model: str, make: Callable[...,
     assert declared[2] == declared[3]
     undeclared = {name: sorted(moved - declared[3][name]) for name, moved in seen.items() if moved - declared[3][name]}
     assert undeclared == {}
-    # Groups declare for all their elements: between different ones nothing need follow. Booleans seldom move.
+    # Groups declare dependencies for all their elements, so different elements need not depend on each other. Booleans
+    # seldom change.
     pairs = {
         (name, on)
         for name, known in declared[3].items()
@@ -173,7 +174,7 @@ def test_nothing_depends_on_what_is_not_declared(model: str, make: Callable[...,
 
 @VERSIONS
 def test_an_event_that_happened_does_not_happen_again(version: int, make: Callable[..., Fmu]) -> None:
-    """The gear at its break-away: past it within the hysteresis is no event, past that it is, and then no more."""
+    """The gear at its break-away: within the hysteresis there is no event; beyond it there is exactly one."""
     fmu = make("drivetrain", version)
     enter_continuous_time(fmu)
     stiction = fmu.get("drivetrain.gear_stiction")
@@ -249,7 +250,7 @@ def test_sensors_come_before_the_command_is_taken(version: int, make: Callable[.
 
 
 def test_a_simple_importer_without_root_finding(make: Callable[..., Fmu]) -> None:
-    """FMPy's Euler stops at no event; the completed step tells it. Of first order, so coarse."""
+    """FMPy's Euler does not stop at events; the completed step reports them. It is of first order, so coarse."""
     start = {"load.inertia": 0.2, "start.motor_speed": 3.0, "start.load_speed": 3.0}
     coasting = fmpy.simulate_fmu(
         str(fmu_path("drivetrain", 3)), fmi_type="ModelExchange", solver="Euler", step_size=1e-5, output_interval=1e-3,

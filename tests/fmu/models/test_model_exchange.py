@@ -21,12 +21,12 @@ from test_drivetrain import shove
 
 SIGNALS = 1e-4  # of the peak
 INSTANTS = 10e-6  # s
-# CVODE's norm is a mean over all states: the testbed's twelve of tipping, at rest without it, and the count of
+# CVODE's norm is a mean over all states: the testbed's twelve tipping states, which are at rest here, and the count of
 # discontinuities would dilute it.
 IMPORTER_TOLERANCE = 1e-8 * (28 / 41) ** 0.5
-# Ours is held tighter than what it is compared to, so that what is seen is the importer's error.
+# Our run has a tighter tolerance, so that the difference is the importer's error.
 CO_SIMULATION = {"solver.relative_tolerance": 1e-8, "solver.absolute_scale": 1e-2}
-# Set at a tick: an importer that integrates sees it there, a co-simulation at the end of the step that it acts in.
+# Set at a tick: an integrating importer sees it there, a co-simulation at the end of the step in which it acts.
 ACTS_FROM_THE_TICK = ("servo.torque", "truth.motor_torque", "gear.stuck", "truth.gear_stuck")
 
 
@@ -58,7 +58,7 @@ def servoed(t: float) -> dict[str, float]:
 
 
 def pushed(t: float) -> dict[str, float]:
-    """The slider hits, then somebody pushes at a corner; the drives are told to turn a little."""
+    """The slider hits, then a corner is pushed; the drives are commanded to turn a little."""
     speeds = {f"command.wheel_speed[{i}]": 0.0 for i in range(3)}
     angles = {f"command.wheel_angle[{i}]": (0.02 if t > 0.25 else 0.0) * (i - 1) for i in range(3)}
     push = {"push.force_x": 30.0 if t > 0.2 else 0.0, "push.force_y": -50.0 if t > 0.21 else 0.0}
@@ -66,7 +66,7 @@ def pushed(t: float) -> dict[str, float]:
 
 
 ON_THE_ROBOT = {"bumper.mount": 1, "slider.target_x": 0.153046, "slider.target_y": 0.265083}
-SMOOTH = {"electronics.torque_resolution": 0.0}  # a quantum more or less says nothing
+SMOOTH = {"electronics.torque_resolution": 0.0}  # a quantum more or less has no meaning
 CASES = {
     "drivetrain": Case("drivetrain", Parameters().as_variables(), shoved, stop=0.5),
     "drivetrain with servo": Case(
@@ -109,7 +109,7 @@ CASES = {
             "wall.present": True,
             "wall.distance": 0.01,
         },
-        importer_tolerance=1e-10,  # thrown to and fro its errors grow with every bounce: 4e-4 at 1e-8, 4e-5 so
+        importer_tolerance=1e-10,  # its errors grow with every bounce: 4e-4 at 1e-8, 4e-5 with this tolerance
     ),
     "testbed, long edge": Case(
         "testbed",
@@ -140,7 +140,7 @@ def signals(case: Case) -> np.ndarray:
     for time in grid:
         now = tuple(case.inputs(time).values())
         if rows:
-            # Positions get here by their speeds; everything else stays as it was.
+            # Positions are integrated from their speeds; everything else is held.
             before = dict(zip(names, rows[-1][1:], strict=True))
             arrived = {n: v + before.get(n.replace("position", "velocity"), 0.0) * (time - rows[-1][0])
                        if n.endswith("position") else v for n, v in before.items()}  # fmt: skip
@@ -163,7 +163,8 @@ def exchange(case: Case, version: int, outputs: list[str]) -> np.ndarray:
 
 @pytest.fixture
 def inputs_at_every_evaluation(monkeypatch: pytest.MonkeyPatch) -> None:
-    """FMPy's CVODE sets the inputs after a step only; what moves between must be set for each evaluation."""
+    """FMPy's CVODE sets the inputs only after a step; inputs that change continuously must be set for each
+    evaluation."""
     evaluate = CVodeSolver.f
 
     def with_inputs(self: CVodeSolver, t: float, y: object, ydot: object, user_data: object) -> int:
@@ -192,7 +193,7 @@ def compare(case: Case, version: int, changes: Mapping[str, float] | None = None
     assert np.allclose(theirs["time"], ours["time"], rtol=0, atol=1e-9)
 
     near_event = np.min(np.abs(ours["time"][:, None] - np.unique(ours["last_event_time"])), axis=1) < INSTANTS
-    # Where inputs jump, one shows what follows them and the other what they ended.
+    # At a jump of the inputs, one run shows the values after it and the other the values before it.
     times = signals(case)["time"] if case.inputs(0.0) else np.array([])
     jumps = times[1:][np.diff(times) == 0]
     clear = ~near_event & ~np.isclose(ours["time"][:, None], jumps, rtol=0, atol=1e-9).any(axis=1)
@@ -295,7 +296,7 @@ def test_an_importer_that_never_restarts_would_be_noticed(
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_change_of_states_is_told_to_the_letter(version: int, tmp_path: Path) -> None:
-    """Told if and only if a state has changed; one changes in every event after which a derivative is another."""
+    """Reported if and only if a state has changed; a state changes in every event that changes a derivative."""
     case = CASES["drivetrain with servo"]
     fmu = Fmu(fmu_path(case.model, version), version, tmp_path)
     assert fmu.instantiate_exchange()

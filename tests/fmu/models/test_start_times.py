@@ -1,4 +1,4 @@
-"""A run that starts years after zero is the run that starts at zero: drives, bus and controller tick as there."""
+"""A run that starts years after zero equals the run that starts at zero: drives, bus and controller tick alike."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The plant once more, in multiplier (KKT) form, to hold fmu/plant against.
+"""A second implementation of the plant, in multiplier (KKT) form, as a reference for fmu/plant.
 
 Written from (9)-(31) of Kim, Llado, Sentis 2016, with `F_ext` as the wrench of the environment ON
 the robot, and from the element laws in fmu/plant/README.md; not from the C++. It is built
@@ -514,7 +514,7 @@ class Reference:
                 s = p.fault_external_sign
                 load[9 if self.on_robot else 11] -= fx
                 load[10 if self.on_robot else 12] -= fy
-                # On the robot the plate takes the force, its guide the moment about the plate.
+                # On the robot, the plate takes the force and its guide the moment about the plate.
                 taker, ax, ay = (11, px, py) if self.on_robot else (0, x[0], x[1])
                 load[taker] += s * fx
                 load[taker + 1] += s * fy
@@ -597,7 +597,7 @@ class Reference:
     # --- Events -----------------------------------------------------------------------------------
 
     def gear_surplus(self, i: int, x: np.ndarray, u: Inputs) -> float:
-        """Motor torque less drivetrain torque: what the gear friction has to hold."""
+        """Motor torque minus drivetrain torque: the torque that the gear friction has to hold."""
         p = self.p
         ci, si = math.cos(x[2] + 2.0 * math.pi * i / 3.0), math.sin(x[2] + 2.0 * math.pi * i / 3.0)
         wheel_speed = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
@@ -685,7 +685,7 @@ class Reference:
         x[22] = 0.0
         still = Modes()
         before = self.stored_energy(x, still)
-        # J at this instant, the plate's lock closed; the locks of weight and carriage do not exist.
+        # J at this instant, with the plate locked; weight and carriage are never locked.
         theta = x[2]
         rows = np.zeros((9, self.N_Q))
         for i in range(3):

@@ -65,7 +65,7 @@ COLLISIONS = {
         LATCH_CONTINUOUS,
         {"bumper_spring_rate": 150.0, "bumper_travel": 0.03, "rope_drop_height": 0.05},
     ),
-    # Low enough that the wheels are all there is: the nose meets the end of wheel 1, off its middle, and slips off it.
+    # So low that only the wheels can be hit: the nose hits the end of wheel 1 off its middle and slips off.
     "on a wheel, rubbing": (
         KIND_NONE,
         MOUNT_SLIDER,
@@ -79,7 +79,7 @@ COLLISIONS = {
             "slider_target_y": 0.25,
         },
     ),
-    # Between the wheels, body and all: the nose comes to lie in the corner of body and wheel.
+    # Between the wheels, with the body: the nose ends up in the corner of body and wheel.
     "beside a wheel": (
         KIND_SPRING,
         MOUNT_SLIDER,

@@ -1,7 +1,7 @@
 // The plant behind a flat C interface, for the Python tests in this folder only (loaded by ctypes).
 //
-// Parameters are set by the names they have in the plant. Those that were never set are NaN
-// (reals) or 255 (choices), so that a forgotten one shows in every comparison.
+// Parameters are set by the names they have in the plant. Parameters that were never set are NaN (reals) or 255
+// (choices), so that every comparison shows a missing one.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// What the C functions of this folder's library hand around.
+// The types that the C functions of this folder's library pass around.
 #pragma once
 
 #include "parameters.hpp"

@@ -1,4 +1,4 @@
-"""What the C++ plant must keep by itself, whoever writes it: energy and momentum."""
+"""Energy and momentum, which any implementation of the plant must conserve."""
 
 from dataclasses import replace
 
@@ -21,8 +21,8 @@ from plant_scenarios import COLLISIONS, all_runs, collision, disconnected
 RUNS = all_runs()
 # (relative, absolute tolerance of the solver, bound of the residual over the energy turned over)
 PRODUCTION, TIGHT = (1e-6, 1e-9, 1e-6), (1e-9, 1e-11, 1e-8)
-# Corners of an edge that come to press and parts of the outline that become the nearest one are kinks of the force
-# within a step, not events: the step that meets one errs by more than its share. Measured: 6e-6 and 1.3e-7.
+# When a corner of an edge begins to press, or another part of the outline becomes the nearest, the force has a kink
+# within a step, which is not an event: that step has a larger error. Measured: 6e-6 and 1.3e-7.
 KINKED = {PRODUCTION: 1e-5, TIGHT: 2e-7}
 
 
@@ -46,8 +46,7 @@ def test_energy_balance_closes(library, name, rtol, atol, bound):
 
 
 def test_the_velocity_term_does_no_work(library):
-    """Without drive, friction and input the base's acceleration is c(nu) alone, as physics has it
-    in closed form."""
+    """Without drive, friction and input the base's acceleration is c(nu) alone, as in the closed form."""
     rng = np.random.default_rng(5)
     for _ in range(300):
         p = disconnected(random_cases.parameters(rng, KIND_SPRING, MOUNT_SLIDER, 0, 0))

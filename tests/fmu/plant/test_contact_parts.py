@@ -40,7 +40,7 @@ def sampled_sections(p: Parameters) -> np.ndarray:
 
 
 def rectangle(p: Parameters, q: np.ndarray) -> bool:
-    """Whether q lies within a wheel's plan at full width: the inside is tested by the multiplier form."""
+    """Whether q is inside a wheel's rectangle seen from above: points inside are tested by the multiplier form."""
     for azimuth in (0.0, 2.0 * math.pi / 3.0, -2.0 * math.pi / 3.0):
         u = q[0] * math.cos(azimuth) + q[1] * math.sin(azimuth) - p.wheel_distance
         w = q[1] * math.cos(azimuth) - q[0] * math.sin(azimuth)

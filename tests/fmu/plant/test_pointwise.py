@@ -85,7 +85,7 @@ def test_a_planted_fault_turns_the_comparison_red(library, fault):
 
 
 def test_the_random_states_reach_every_element():
-    """Else the comparison could agree on nothing happening."""
+    """Otherwise the comparison might agree only because nothing happens."""
     seen: Counter[str] = Counter()
     for reference, states in cases(1):
         p = reference.p
@@ -220,8 +220,8 @@ def test_a_jump_of_the_motor_torque_breaks_stuck_gears_away(library):
 def test_initial_state_is_steady(library):
     """The reference finds the start in equilibrium: no net force on anything, bristles settled.
 
-    A base that turns while it moves is left with c(nu), one that turns a plate with its centrifugal force: neither is
-    asked to be held.
+    For a base that turns while it moves c(nu) remains, for one that turns a plate the centrifugal force: neither has to
+    be in equilibrium.
     """
     rng = np.random.default_rng(6)
     for combination in itertools.product(COMBINATIONS, ("rest", "moving", "turning")):
@@ -232,7 +232,7 @@ def test_initial_state_is_steady(library):
             continue
         motion = rng.uniform(-1.0, 1.0, 7)
         motion[6] = 0.0
-        # At rest stuck rollers may be loaded, by up to half of what they bear.
+        # At rest stuck rollers may be loaded, up to half of their limit.
         bear = p.roller_coulomb_torque / p.roller_radius / np.array(p.roller_presliding_stiffness)
         offset = rng.uniform(-0.5, 0.5, 3) * bear if combination[1] == "rest" else np.zeros(3)
         motion[3:6] *= {"rest": 0.0, "moving": (1.0, 1.0, 0.0), "turning": (0.0, 0.0, 1.0)}[combination[1]]

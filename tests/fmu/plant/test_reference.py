@@ -1,4 +1,4 @@
-"""The reference stands on its own feet: closed forms and balances, without any C++."""
+"""The reference by itself: closed forms and balances, without any C++."""
 
 import math
 
@@ -69,8 +69,8 @@ def test_unloaded_state_is_an_equilibrium():
 
 @pytest.mark.parametrize("name", ["none", "magnetic continuous on robot", "magnetic idealised on slider"])
 def test_energy_closes(name):
-    """D sums what every element takes; stored energy is built from the state alone: nothing makes
-    them agree but physics."""
+    """D sums the dissipation of every element; the stored energy is computed from the state alone: only correct physics
+    makes them agree."""
     r, x, modes, inputs = collision(COLLISIONS[name])
     run = r.simulate(x, modes, np.linspace(0.0, 0.6, 31), inputs)
     start = r.stored_energy(x, modes)

@@ -167,7 +167,7 @@ def test_it_starts_in_steady_motion(library: ctypes.CDLL, motion: tuple[float, f
 
 
 def tilted(plant: TippingPlant, push: float, seconds: float = 3.0) -> TippingRun:
-    """Pushed backwards at the push's height, slowly: in 200 steps over the first two thirds, then held."""
+    """Pushed backwards slowly at the push's height: in 200 steps over the first two thirds, then constant."""
     x, modes = plant.start()
     inputs = [(2.0 * seconds / 3.0 * k / 200.0, Inputs(push_force=(-push * (k + 1) / 200.0, 0.0))) for k in range(200)]
     return plant.run(x, modes, np.linspace(0.0, seconds, 301), inputs, rtol=1e-7)
@@ -202,7 +202,7 @@ def test_the_front_wheel_lifts_where_force_times_height_is_weight_times_half_the
 
 
 def test_thrown_up_it_falls_freely(library: ctypes.CDLL) -> None:
-    """In the air: height by g t^2/2, no force on the wheels, touching down at the instant of the parabola."""
+    """In the air: height follows g t^2/2, no force on the wheels, touch-down at the instant of the parabola."""
     plant = TippingPlant(library, replace(ROBOT, slider_present=0))
     x, modes = plant.start()
     modes[4:7] = 0.0

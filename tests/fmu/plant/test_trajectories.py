@@ -44,8 +44,8 @@ def test_run(library, name, record_property):
 
 
 def test_the_collisions_are_collisions():
-    """Each bumper gives way, each latch lets go, the light dummy's latch closes again: the runs
-    above mean something."""
+    """Each bumper is compressed, each latch releases, the light dummy's latch closes again: the runs above are
+    meaningful."""
     for name, case in COLLISIONS.items():
         reference, x, modes, inputs = collision(case)
         run = reference.simulate(x, modes, TIMES, inputs)

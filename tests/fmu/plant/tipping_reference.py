@@ -1,9 +1,9 @@
-"""The base that tips once more, by Lagrange's equations, to hold fmu/plant/tipping.hpp against; not written from it.
+"""A second implementation of the tipping base, by Lagrange's equations, as a reference for fmu/plant/tipping.hpp; not
+derived from it.
 
 Coordinates: x, y, height of the body's point at floor level in its middle; heading, pitch, roll (turned in this order);
-the wheels' angles against the body. Kinetic energy is that of a rigid body and three spinning discs; what Lagrange's
-equations need of it (mass matrix and its derivatives) is got by complex steps, exact to rounding: no equation is worked
-out by hand.
+the wheels' angles against the body. Kinetic energy is that of a rigid body and three spinning discs; the mass matrix
+and its derivatives come from complex steps, exact to rounding: no equation is derived by hand.
 
 Forces enter by virtual work at the points where they act. Element laws are those of fmu/plant/README.md, shared with
 kkt_reference.py where the planar plant has them too.
@@ -65,7 +65,7 @@ class TippingReference:
         w = rotation_rates(q)
         m = p.base_mass * centre.T @ centre + w.T @ self.inertia @ w
         for i, axle in enumerate(self.axles):
-            spin = -(axle @ w)  # in space: against the body, less what the body turns about the axle
+            spin = -(axle @ w)  # absolute: relative to the body, minus the body's rotation about the axle
             spin[6 + i] += 1.0
             m = m + p.wheel_inertia * np.outer(spin, spin)
         return m
@@ -149,7 +149,8 @@ class TippingReference:
             radial = np.array([axle[0], axle[1], 0.0]) / math.hypot(axle[0], axle[1])
             rolling = np.cross([0.0, 0.0, 1.0], radial)
             point = self.lowest(q, i)
-            # Of the rim's material there: the body's motion, and the wheel's against it (positive about -axle).
+            # Velocity of the rim's material there: the body's motion plus the wheel's relative motion (positive about
+            # -axle).
             rates = point_rates(q, point)
             hub = p.wheel_distance * self.axles[i] + np.array([0.0, 0.0, p.wheel_radius])
             rates[:, 6 + i] = r @ np.cross(-self.axles[i], point - hub)

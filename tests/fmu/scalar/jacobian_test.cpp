@@ -1,4 +1,4 @@
-// Dual numbers through the plant: the values are double's, and the derivatives are those that finite differences find.
+// Dual numbers through the plant: the values equal those of double, and the derivatives equal finite differences.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -16,7 +16,7 @@ using giveway::plant::random_cases::Case;
 using giveway::plant::random_cases::random_case;
 using giveway::plant::random_cases::random_tipping_case;
 
-// The shared cases, moved to where the plant's parts are at work: bristles around their sliding limit, motions slow
+// The shared cases, moved to where the plant's parts are active: bristles around their sliding limit, motions slow
 // enough for friction that is smooth over millimetres per second, and every structural choice.
 Case<double> working_case(unsigned seed) {
     auto c = random_case<double>(seed);
@@ -91,8 +91,8 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
         jacobian.set_parameters(c.p, c.d);
         std::array<double, At::state_count * At::state_count> matrix{};
         jacobian.evaluate(c.x, c.u, c.m, matrix.data());
-        // Rounding of a rate: of the terms that it is the sum of, which may cancel. The largest, a stop that presses,
-        // is of this size.
+        // Rounding of a rate is that of its terms, which may cancel. The largest term, the force of a stop, has this
+        // magnitude.
         std::array<double, At::state_count> magnitude{};
         const auto centre = rate(c, c.x);
         for (int row = 0; row < At::state_count; ++row) {
@@ -116,7 +116,7 @@ TEST(PlantJacobian, IsWhatFiniteDifferencesFind) {
             for (int row = 0; row < At::state_count; ++row) {
                 const double exact = matrix[column * At::state_count + row];
                 const double extrapolated = (4.0 * fine.slope(row) - coarse.slope(row)) / 3.0;
-                // What the differences know of their own error. Curvature and a kink between the points show in the
+                // An estimate of the differences' error. Curvature and a kink between the points show in the
                 // disagreement of the two steps; a kink right at the centre shows in the second differences, which are
                 // 4 to 1 of a smooth function, 2 to 1 there.
                 const double kink = std::fabs(coarse.second(row, centre) - 4.0 * fine.second(row, centre)) / step;

@@ -54,7 +54,7 @@ template <int N> void operations(Report report) {
         expect("round", math::round(x), [](double p, double) { return math::round(p); });
         expect("sign", math::sign(x), [](double p, double) { return math::sign(p); });
         expect("select", math::select(math::less(x, y), x, y), [](double p, double q) { return p < q ? p : q; });
-        // Lanes have an exp and a tanh of their own, the same ones in every width.
+        // Lanes have their own exp and tanh, identical in every width.
         expect("exp", math::exp(x), [](double p, double) { return math::exp(math::Lanes<1>(p)).value; });
         expect("expm1", math::expm1(x), [](double p, double) { return math::expm1(p); });
         expect("tanh", math::tanh(x), [](double p, double) { return math::tanh(math::Lanes<1>(p)).value; });
@@ -120,7 +120,7 @@ template <int N> void own_functions(Report report) {
     compare(report, "tanh saturates", Rows<N>(math::tanh(L(-1e300))).value[0], -1.0, 0);
 }
 
-// The noise of a design, whatever its lane and its neighbours.
+// The noise of a design, independent of its lane and its neighbours.
 template <int N> void noise_in_lanes(Report report) {
     std::int64_t seeds[N];
     for (unsigned index = 0; index < 1000U; ++index) {
@@ -138,7 +138,7 @@ template <int N> void noise_in_lanes(Report report) {
     }
 }
 
-// A design of the plant gives the same bits in Lanes<1> and, with others beside it, in every lane.
+// A design of the plant gives the same bits in Lanes<1> and in every lane among other designs.
 template <int N> void plant_in_lanes(Report report) {
     using L = math::Lanes<N>;
     using One = math::Lanes<1>;

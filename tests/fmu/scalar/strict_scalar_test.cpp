@@ -1,5 +1,5 @@
 // The plant compiles for a scalar that has no comparison operators and no conversion to bool, so no branch on T can
-// hide in it, and gives the same bits as with double: what lanes and derivatives will rely on.
+// hide in it, and gives the same bits as with double: lanes and derivatives rely on this.
 #include <cstring>
 
 #include <gtest/gtest.h>

@@ -53,7 +53,7 @@ class Call:
         arguments: of a call that is right but for, perhaps, its state.
         allowed: where it succeeds.
         interface: "CS" or "ME" if only that has it.
-        discarded: where it is allowed, but has nothing to give (status "discard").
+        discarded: states where it is allowed but has no result (status "discard").
         prepare: the function that must come before it in an allowed state.
     """
 
@@ -338,7 +338,7 @@ def enter(fmu: Fmu, interface: str, state: str) -> None:
 
 
 def _fail(fmu: Fmu) -> None:
-    """What the model refuses makes the instance fail: a saved state whose header is in order, but which ends early."""
+    """An instance fails if the model refuses something: here a saved state with a valid header that ends early."""
     data = serialised(fmu)
     header, body = data[:40], data[40:-8]
     checksum = 0xCBF29CE484222325

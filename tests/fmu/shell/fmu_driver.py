@@ -163,9 +163,9 @@ class Fmu:
         return self.call("DoStep", *times, *(ctypes.byref(flag) for flag in flags), ctypes.byref(self.last_time))
 
     def update(self) -> tuple[int, dict[str, float]]:
-        """One update of discrete states: status and what it says."""
+        """One update of discrete states: status and results."""
         if self.version == 2:
-            info = _Fmi2EventInfo(1, 1, 1, 1, 1)  # what is not written would show
+            info = _Fmi2EventInfo(1, 1, 1, 1, 1)  # so that an unwritten value is noticed
             status = self.call("NewDiscreteStates", ctypes.byref(info))
             return status, {name: getattr(info, name) for name, _ in _Fmi2EventInfo._fields_}
         flags = [ctypes.c_bool(True) for _ in range(5)]
@@ -175,7 +175,7 @@ class Fmu:
         return status, dict(zip((name for name, _ in _Fmi2EventInfo._fields_), values, strict=True))
 
     def settle(self) -> dict[str, float]:
-        """Updates until none is asked for; what the last one said."""
+        """Updates until no further one is requested; results of the last one."""
         for _ in range(100):
             status, said = self.update()
             assert status == OK, self.last_message
@@ -186,7 +186,7 @@ class Fmu:
         raise AssertionError("updates without end")
 
     def array(self, name: str, size: int) -> list[float]:
-        """What a function gives that fills an array: ``array("GetContinuousStates", 6)``."""
+        """The result of a function that fills an array: ``array("GetContinuousStates", 6)``."""
         values = (ctypes.c_double * size)()
         assert self.call(name, values, ctypes.c_size_t(size)) == OK, self.last_message
         return list(values)
@@ -201,7 +201,7 @@ class Fmu:
     def completed_step(self) -> tuple[int, bool]:
         """Status, and whether an event is needed."""
         kind = ctypes.c_int if self.version == 2 else ctypes.c_bool
-        event, terminate = kind(True), kind(True)  # what is not written would show
+        event, terminate = kind(True), kind(True)  # so that an unwritten value is noticed
         status = self.call("CompletedIntegratorStep", True, ctypes.byref(event), ctypes.byref(terminate))
         assert not terminate.value
         return status, bool(event.value)
@@ -225,7 +225,7 @@ class Fmu:
         return _TYPE_NAMES[self.variables[name].type]
 
     def nominal(self, name: str) -> float:
-        """The variable's own, else that of its type."""
+        """The variable's own attribute, or else that of its type."""
         variable = self.variables[name]
         return float(variable.nominal or variable.declaredType.nominal)
 

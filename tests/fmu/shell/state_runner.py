@@ -16,13 +16,13 @@ from pathlib import Path
 from fmu_driver import OK, Fmu, fmu_path
 
 STEP_S = 1e-3
-# Small enough for the models to live with, large enough to matter.
+# Small enough for the models, large enough to have an effect.
 AMPLITUDES = {"controller": 0.5, "testbed": 0.02, "drivetrain": 6.0, "bumper": 0.02, "lag": 0.5}
 _TWO_NAMES = {2: ("FMUstate", "DeSerializeFMUstate"), 3: ("FMUState", "DeserializeFMUState")}
 
 
 class StatefulFmu(Fmu):
-    """An FMU whose state can be had."""
+    """An FMU with a state that can be saved."""
 
     def __init__(self, model: str, version: int, folder: Path) -> None:
         super().__init__(fmu_path(model, version), version, folder)

@@ -1,4 +1,4 @@
-"""The FMU files: valid, reproducible, nothing exported but FMI and nothing needed but the C library."""
+"""The FMU files: valid, reproducible, exporting only FMI functions and needing only the C library."""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ Row = tuple[int, str, str]  # reference, name, type
 
 
 def reference_faults(golden: list[Row], now: list[Row]) -> tuple[list[Row], list[Row]]:
-    """Published rows that are gone, and rows that are not published yet."""
+    """Published rows that are missing, and rows that are not published yet."""
     return [row for row in golden if row not in now], [row for row in now if row not in golden]
 
 
@@ -229,7 +229,7 @@ def references(model: str) -> tuple[list[Row], list[Row]]:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_references_are_append_only(model: str) -> None:
-    """An importer's project stores references: those that were ever published keep their name and type."""
+    """An importer's project stores references, so all references ever published keep their name and type."""
     golden, now = references(model)
     assert golden
     gone, missing = reference_faults(golden, now)

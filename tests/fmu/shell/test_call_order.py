@@ -62,7 +62,7 @@ def test_a_wrong_step_is_refused(lag: Fmu, time: float, size: float, text: str) 
 
 
 def test_summed_up_times_are_accepted(lag: Fmu) -> None:
-    """An importer that adds up 0.001 is off by rounding after a while, also from the stop time."""
+    """An importer that sums up 0.001 deviates by rounding after a while, also from the stop time."""
     assert lag.instantiate()
     assert lag.setup(stop=1.0) == OK
     assert lag.exit_initialisation() == OK
@@ -75,7 +75,7 @@ def test_summed_up_times_are_accepted(lag: Fmu) -> None:
 @pytest.mark.parametrize("added_up", [True, False])
 @pytest.mark.parametrize("start", [1e7, 1e9, -1e9])
 def test_times_of_any_size_are_accepted(lag: Fmu, start: float, added_up: bool) -> None:
-    """What differs by more than rounding is refused, with digits enough to see it."""
+    """A difference beyond rounding is refused, with enough digits in the message to see it."""
     assert lag.instantiate()
     assert lag.setup(start, start + 1.001) == OK
     assert lag.exit_initialisation() == OK

@@ -305,7 +305,7 @@ description = "An angle"
 reference = 4000
 name = "indicator.stop"
 count = 2
-description = "Way to the stops"
+description = "Travel to the stops"
 """
 
 
@@ -361,7 +361,7 @@ WRONG_LOCALS = {
     ),
     "start of a state": (STATE.replace("nominal", "start = 1.0\nnominal"), "start: unknown key"),
     "unit of an indicator": (STATE + 'unit = "m"', "unit: unknown key"),
-    "indicator without description": (STATE.replace('"Way to the stops"', '""'), "description: missing"),
+    "indicator without description": (STATE.replace('"Travel to the stops"', '""'), "description: missing"),
 }
 
 

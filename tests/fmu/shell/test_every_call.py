@@ -154,7 +154,7 @@ def test_wrong_counts_and_references_are_refused(fmu: Fmu, model: str, version: 
 
 @every_kind
 def test_an_instance_that_was_freed_is_gone(fmu: Fmu, model: str, version: int, interface: str) -> None:
-    """Freed twice, or used afterwards, or never made: an error, not a crash; and others are not touched."""
+    """A state freed twice, used afterwards, or never made: an error, not a crash; other states are unaffected."""
     enter(fmu, interface, "initialisation mode")
     living = fmu.twin()
     enter(living, interface, "initialisation mode")
@@ -194,7 +194,7 @@ def test_a_saved_state_that_was_freed_is_gone(fmu: Fmu, model: str, version: int
     fmu.free()
 
 
-# What a pointer that nobody initialised may hold: addresses of code, heap and stack, small and negative numbers.
+# Possible values of an uninitialised pointer: addresses of code, heap and stack, small and negative numbers.
 NEVER_A_STATE = (7, 0x401136, 0x55D1_2345_6789, 0x7FFD_1234_5671, 2**64 - 1)
 
 
@@ -264,7 +264,8 @@ def beyond(variable: object, kind: str) -> list[tuple[float, bool]]:
 
 @pytest.mark.parametrize(("model", "version"), [(m, v) for m in MODELS for v in (2, 3)])
 def test_every_bound_of_every_variable_holds(fmu: Fmu, model: str, version: int) -> None:
-    """On the bound a value is taken, one floating-point number beyond it is refused by name, value and range."""
+    """A value on the bound is accepted; the next floating-point number beyond it is refused by name, value and
+    range."""
     assert fmu.instantiate()
     bounded = 0
     for name, variable in fmu.variables.items():

@@ -1,4 +1,4 @@
-"""An FMU gives back what it took."""
+"""An FMU frees all its memory."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def test_a_freed_instance_leaves_nothing_behind(lag: Fmu) -> None:
             assert lag.instantiate()
             lag.free()
 
-    make_and_free(10)  # what is made once and kept
+    make_and_free(10)  # allocations that are made once and kept
     before = bytes_in_use()
     make_and_free(INSTANCES)
-    # An instance takes some thousand bytes; what Python itself keeps of the calls is far less than 100 each.
+    # An instance takes some thousand bytes; Python itself keeps far less than 100 bytes per call.
     assert bytes_in_use() - before < 100 * INSTANCES

@@ -1,4 +1,4 @@
-"""What is packed beside the binary: platforms, icon, page, licences, and the types and units of the descriptions."""
+"""What is packed with the binary: platforms, icon, page, licences, and the types and units of the descriptions."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def variables(model: str, version: int) -> list[dict[str, str]]:
 
 
 def effective(variable: dict[str, str], types: dict[str, dict[str, str]], name: str) -> str:
-    """What holds for a variable: its own attribute, else that of its type."""
+    """An attribute of a variable: its own, or else that of its type."""
     return variable.get(name) or types.get(variable.get("declaredType", ""), {}).get(name, "")
 
 
@@ -77,7 +77,7 @@ def test_every_variable_has_type_unit_nominal_and_description(model: str, versio
         if variable["causality"] == "independent" or name.startswith(("indicator.", "event.")):
             continue
         declared = types[variable["declaredType"]]
-        # What the type says holds for the variable, which says no unit of its own, and no nominal again.
+        # The variable takes unit and nominal from its type and does not repeat them.
         assert not {"unit", "displayUnit"} & set(variable), name
         assert "nominal" not in variable or variable["nominal"] != declared.get("nominal"), name
         if "min" in declared:
@@ -91,7 +91,7 @@ def test_every_variable_has_type_unit_nominal_and_description(model: str, versio
 
 @pytest.mark.parametrize("model", MODELS)
 def test_bounded_types_bound(model: str) -> None:
-    """Some types are for what is never negative, and starts below would break them."""
+    """Some types are for quantities that are never negative; starts below zero would violate them."""
     types = type_definitions(model, 3)
     bounded = {name for name, attributes in types.items() if attributes.get("min") == "0.0"}
     assert bounded
@@ -102,7 +102,7 @@ def test_bounded_types_bound(model: str) -> None:
 
 @pytest.mark.parametrize(("model", "version"), EVERY_FMU)
 def test_units_are_si_and_display_units_convert(model: str, version: int) -> None:
-    """Against the definitions of the units, written down here once more."""
+    """Against the definitions of the units, repeated here."""
     units = {unit.name: unit for unit in fmpy.read_model_description(str(fmu_path(model, version))).unitDefinitions}
     exact = {
         "mm": 1000.0, "cm": 100.0, "deg": 180 / np.pi, "deg/s": 180 / np.pi, "rpm": 60 / (2 * np.pi), "ms": 1000.0,
@@ -176,7 +176,7 @@ def test_the_page_has_equations_and_every_variable(model: str, version: int) -> 
     assert page.equations >= 4
     names = {variable["name"] for variable in variables(model, version)} - {"time"}
     assert names <= set(page.code)
-    with zipfile.ZipFile(fmu_path(model, version)) as archive:  # nothing from a network
+    with zipfile.ZipFile(fmu_path(model, version)) as archive:  # no network resources
         assert {f"documentation/{link}" for link in page.links} <= set(archive.namelist())
 
 
@@ -202,7 +202,7 @@ def test_the_icon_is_a_picture(model: str, tmp_path: Path) -> None:
     pixels = matplotlib.image.imread(tmp_path / "icon.png")
     assert pixels.shape == (128, 128, 4)
     drawn = pixels[..., 3] > 0.5
-    assert 0.15 < drawn.mean() < 0.7  # a drawing on a transparent ground
+    assert 0.15 < drawn.mean() < 0.7  # a drawing on a transparent background
     assert not drawn[0].any()
     assert not drawn[-1].any()
     assert len({tuple(colour) for colour in (pixels[drawn] * 255).astype(int)}) >= 3

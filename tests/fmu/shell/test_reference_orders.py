@@ -1,5 +1,5 @@
-"""Variables asked for together are those asked for one by one, in whatever order: the shell has a way of its own for
-references that follow each other, and another for more than 16 at once."""
+"""Variables read together equal those read one by one, in any order: the shell has one path for consecutive references,
+and another for more than 16 at once."""
 
 from __future__ import annotations
 

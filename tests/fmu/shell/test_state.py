@@ -1,4 +1,4 @@
-"""The state of every FMU: taken, put back, carried to another process; refused when not whole or not its own."""
+"""The state of every FMU: saved, restored, moved to another process; refused when incomplete or of another FMU."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_state_put_back_repeats_the_run(model: str, version: int, make) -> Non
     once = fmu.run(SAVED, LAST)
     assert fmu.set_state(state) == OK, fmu.last_message
     assert fmu.run(SAVED, LAST) == once
-    # An instance that was never started takes it too, and the handle can be filled anew.
+    # An instance that was never started accepts it too, and the handle can be filled again.
     other = make(model)
     assert other.instantiate()
     assert other.set_state(state) == OK, other.last_message

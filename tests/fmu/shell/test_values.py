@@ -1,4 +1,5 @@
-"""Variables: exactly what was set comes back, and what must not be set is refused by name, value and range."""
+"""Variables: a get returns exactly the value that was set, and a forbidden value is refused by name, value and
+range."""
 
 import ctypes
 import math

@@ -1,5 +1,5 @@
-// The integrator against closed forms: a bouncing ball's impact times, an oscillator under switched input, failures
-// that say so.
+// The integrator against closed forms: impact times of a bouncing ball, an oscillator with switched input, reported
+// failures.
 #include <cmath>
 #include <string>
 
@@ -75,7 +75,7 @@ TEST(HybridIntegrator, LocatesImpactsOfABouncingBall) {
     ASSERT_TRUE(integrator.advance(1.2)) << integrator.error();
     const double fall = std::sqrt(2.0 / gravity);
     const double speed = gravity * fall;
-    // Parabolas are integrated exactly: what is left is root finding, to about 100 roundings of the step.
+    // Parabolas are integrated exactly; the remaining error is that of root finding, about 100 roundings of the step.
     EXPECT_NEAR(ball.first_bounce_s, fall, 1e-12);
     EXPECT_EQ(ball.bounces, 3); // impacts at fall * (1, 2, 2.5, 2.75 ..): three before 1.2 s = 2.66 fall
     const double since = 1.2 - 2.5 * fall;
@@ -132,7 +132,7 @@ TEST(HybridIntegrator, StopsWhereEventsFollowEachOtherWithoutEnd) {
     HybridIntegrator integrator;
     ASSERT_TRUE(integrator.create(ticking, 0.0, start, IntegratorOptions{}));
     EXPECT_FALSE(integrator.advance(1.0));
-    // 2001 events are let pass. No code of SUNDIALS behind the time: it has not failed.
+    // 2001 events are allowed. There is no SUNDIALS code after the time, as SUNDIALS has not failed.
     EXPECT_EQ(integrator.statistics().events, 2001);
     EXPECT_STREQ(integrator.error(), "ERK stops: events follow each other without end at t = 0.002001 s");
 }

@@ -1,5 +1,5 @@
-// Every method on the same ground: events, switched inputs, stiffness, and failures that end with time, reason and the
-// last good state.
+// Every method on the same problems: events, switched inputs, stiffness, and failures that end with time, reason and
+// the last good state.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -54,7 +54,7 @@ struct Pendulum final : HybridSystem {
     [[nodiscard]] double absolute_tolerance(int) const override { return 1e-10; }
 };
 
-// x' = -rate (x - cos t) - sin t: x = cos t, whatever the rate; the faster, the stiffer.
+// x' = -rate (x - cos t) - sin t: x = cos t for any rate; the higher the rate, the stiffer.
 struct Stiff final : Smooth {
     double decay = 1e6;
     void rhs(double t, const double *x, double *rate) override {

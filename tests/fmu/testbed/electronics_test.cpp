@@ -1,4 +1,4 @@
-// Sensors, bus delay and drives of the testbed: each against what its definition says.
+// Sensors, bus delay and drives of the testbed, each against its definition.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -157,7 +157,7 @@ TEST(Drives, BeforeTheStartTheWheelsTurnedAtTheirSpeed) {
     for (int cycle = 0; cycle < 2; ++cycle) {
         drives.receive({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true});
         const int ago = 2 - cycle;
-        // Kp times the reference's angle, which was the wheel's then; float rounding.
+        // Kp times the reference's angle, which equalled the wheel's angle then; float rounding.
         EXPECT_NEAR(drives.regulate({0.0, 0.0, 0.0})[2], 200.0 * 50.0 * count * ago, 1e-5);
     }
 }
@@ -180,13 +180,13 @@ TEST(Drives, BetweenCommandsTheReferenceMovesOnAndThenStops) {
     constexpr double angle_rad = 0.01;
     constexpr double speed_radps = 2.0;
     constexpr double tick_s = 1.0 / servo_rate_hz;
-    for (int cycle = 0; cycle < 3; ++cycle) { // each command starts anew from its own angle
+    for (int cycle = 0; cycle < 3; ++cycle) { // each command starts from its own angle
         drives.receive({{angle_rad, 0.0, 0.0}, {speed_radps, 0.0, 0.0}, true});
         for (int tick = 0; tick < servo_ticks_per_cycle; ++tick) {
             EXPECT_NEAR(drives.regulate({0.0, 0.0, 0.0})[0], 200.0 * (angle_rad + speed_radps * tick_s * tick), 1e-5);
         }
     }
-    // 10 ms after the last one came, at its twentieth tick without, it holds.
+    // 10 ms after the last command, at the twentieth tick without one, it holds.
     for (int tick = servo_ticks_per_cycle; tick < 60; ++tick) {
         const double moved_s = tick_s * std::min(tick, 19);
         EXPECT_NEAR(drives.regulate({0.0, 0.0, 0.0})[0], 200.0 * (angle_rad + speed_radps * moved_s), 1e-4)

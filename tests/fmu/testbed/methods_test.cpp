@@ -1,4 +1,4 @@
-// One collision, three integration methods: events, states and energy agree to what the tolerance promises.
+// One collision, three integration methods: events, states and energy agree within the tolerance.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -24,7 +24,7 @@ struct Event {
     double time_s;
 };
 
-// The plant, with a diary of its events.
+// The plant with a log of its events.
 class Recorder final : public HybridSystem {
 public:
     PlantSystem system;

@@ -149,7 +149,7 @@ TEST(Testbed, StepsAcrossTicksAgreeToTheTolerance) {
     Bench odd;
     one.initialise();
     odd.initialise();
-    // Into the first contact: each bounce of the plate after it would multiply the deviation.
+    // Up to the first contact: each later bounce of the plate would multiply the deviation.
     one.step_to(0.168, 1e-3);
     odd.step_to(0.168, 7e-4);
     // The integrator stops at other instants, 1e-6 of a rate off at most, and far less where it stops 1400 times: 1e-9
@@ -297,7 +297,7 @@ TEST(Testbed, RefusesWhatDoesNotFitTogether) {
               std::string::npos);
     EXPECT_NE(refusal([](Variables &v) { v.slider_target_x = 0.0; }).find("slider.run_up = "), std::string::npos);
     EXPECT_NE(refusal([](Variables &v) {
-                  // A pentagram: every corner turns left, yet it is not convex.
+                  // A pentagram: every corner turns left, but it is not convex.
                   v.outline_count = 5;
                   for (int i = 0; i < 5; ++i) {
                       v.outline_x[i] = 0.3 * std::cos(0.8 * M_PI * i);
@@ -327,7 +327,7 @@ TEST(Testbed, MethodsAgreeWithTheServosAtWork) {
         // errors add up to some hundredths of it, as signs differ (2e-6 and 1e-5 J).
         constexpr double residual_j[] = {5e-9, 8e-6, 5e-5};
         EXPECT_LT(std::fabs(v.energy_residual), residual_j[method]) << "method " << method;
-        // Others than ERK are late by what BDF's errors of position, 0.15 um, are at 0.5 m/s.
+        // Methods other than ERK are late by the time that BDF's position error, 0.15 um, takes at 0.5 m/s.
         EXPECT_NEAR(v.truth_first_contact_time, erk.truth_first_contact_time, 1e-6);
         EXPECT_EQ(v.truth_latched, erk.truth_latched);
         // A count of the encoder is 6 urad, 0.6 um at the wheel's rim, which the servo follows softly. Four

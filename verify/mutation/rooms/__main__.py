@@ -23,7 +23,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="verify.mutation.rooms", description=__doc__)
     names = [room.folder for room in ROOMS]
     parser.add_argument("--room", action="append", choices=names, help="only mutants of this room")
-    parser.add_argument("--few", action="store_true", help="only those that `make verify` tries")
+    parser.add_argument("--few", action="store_true", help="only the mutants that `make verify` tries")
     given = parser.parse_args()
     work = ROOT / "build" / "verify" / "mutate_rooms"
     shutil.rmtree(work, ignore_errors=True)

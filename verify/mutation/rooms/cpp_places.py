@@ -1,4 +1,4 @@
-"""Where small faults can be planted in C++: expressions, found by libclang, each with what may stand in its place.
+"""Where small faults can be planted in C++: expressions found by libclang, each with its replacements.
 
 Runs in the environment of verify/requirements.lock, which has libclang.
 """
@@ -32,13 +32,13 @@ NUMBER = re.compile(r"(?:\d[\d']*\.?[\d']*|\.\d+)(?:[eE][-+]?\d+)?[fFuUlLzZ]*")
 STATEMENT_PARENTS = (CursorKind.COMPOUND_STMT, CursorKind.CASE_STMT, CursorKind.DEFAULT_STMT)
 REAL = (TypeKind.FLOAT, TypeKind.DOUBLE, TypeKind.LONGDOUBLE)
 WHOLE = (TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind.SHORT, TypeKind.USHORT)
-GCC_HEADERS = "/usr/lib/gcc/x86_64-linux-gnu/*/include"  # stddef.h and its like, which libclang's wheel has not
+GCC_HEADERS = "/usr/lib/gcc/x86_64-linux-gnu/*/include"  # stddef.h and similar headers, which libclang's wheel lacks
 
-Fault = tuple[int, int, str, str]  # from, to, what instead, and what that is called
+Fault = tuple[int, int, str, str]  # from, to, replacement, and its name
 
 
 def cpp_mutants(root: Path, build: Path, folders: list[str]) -> list[Mutant]:
-    """Of the files in ``folders`` of ``root``, as the translation units that ``build`` compiles see them."""
+    """Places in the files of ``folders`` below ``root``, as seen by the translation units that ``build`` compiles."""
     faults: dict[Path, dict[Fault, str]] = {}
     seen: set[tuple[Path, int]] = set()
     index = Index.create()
@@ -49,7 +49,7 @@ def cpp_mutants(root: Path, build: Path, folders: list[str]) -> list[Mutant]:
 
 
 def _units(build: Path) -> Iterator[tuple[Path, list[str]]]:
-    """Sources with those of their arguments that matter to a parser."""
+    """Sources with the compiler arguments that matter to a parser."""
     headers = [f"-isystem{folder}" for folder in Path("/").glob(GCC_HEADERS.lstrip("/"))]
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
         words = shlex.split(entry["command"])
@@ -61,7 +61,7 @@ def _units(build: Path) -> Iterator[tuple[Path, list[str]]]:
 def _collect(
     top: Cursor, root: Path, folders: list[str], faults: dict[Path, dict[Fault, str]], seen: set[tuple[Path, int]]
 ) -> None:
-    """``seen``: functions of which an earlier translation unit told already."""
+    """``seen``: functions already found in an earlier translation unit."""
     places: dict[str, Path | None] = {}
     for cursor in top.get_children():
         name = cursor.location.file.name if cursor.location.file else ""
@@ -147,7 +147,7 @@ def _other_number(start: int, end: int, own: str) -> Iterator[Fault]:
 
 
 def _is_constant(declared: Cursor | None) -> bool:
-    """A named number that the compiler computes: where it is used it can be another at run time."""
+    """A named number that the compiler computes: each use of it can be replaced at run time."""
     if declared is None or declared.kind != CursorKind.VAR_DECL or declared.type.get_canonical().kind not in REAL:
         return False
     is_global = declared.semantic_parent.kind not in FUNCTIONS or declared.storage_class == StorageClass.STATIC
@@ -155,7 +155,7 @@ def _is_constant(declared: Cursor | None) -> bool:
 
 
 def _negated(text: bytes, condition: Cursor) -> Iterator[Fault]:
-    """Nothing where another fault is the same: a single relation turned round, a `!` left out."""
+    """Empty where another fault is the same: a single relation reversed, a `!` left out."""
     if not condition.kind.is_expression():
         return
     start, end = condition.extent.start.offset, condition.extent.end.offset

@@ -1,6 +1,7 @@
 """What mutmut's trampolines call in a build with mutants: the same choice as mutant.hpp makes in C++.
 
-GIVEWAY_MUTANT chooses a mutant; GIVEWAY_MUTANTS_REACHED names a file with one byte for each, set when it is come by.
+GIVEWAY_MUTANT chooses a mutant; GIVEWAY_MUTANTS_REACHED names a file with one byte per mutant, set when the mutant is
+reached.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 // Included first in every C++ file of a build with mutants: giveway_mutant(k) asks whether mutant k is chosen.
-// GIVEWAY_MUTANT=k chooses one; GIVEWAY_MUTANTS_REACHED names a file with one byte for each mutant, which is set when
-// a program comes by it. Both are read once, when a program or library is loaded.
+// GIVEWAY_MUTANT=k chooses one; GIVEWAY_MUTANTS_REACHED names a file with one byte per mutant, set when a program
+// reaches it. Both are read once, when a program or library is loaded.
 #pragma once
 #ifdef __cplusplus
 
@@ -43,7 +43,7 @@ inline const Choice choice;
 
 } // namespace giveway_mutation
 
-// Not constexpr: what the compiler computes cannot be chosen at run time, so a mutant there does not compile.
+// Not constexpr: a value that the compiler computes cannot be chosen at run time, so a mutant there does not compile.
 inline bool giveway_mutant(long number) noexcept
 {
     if (giveway_mutation::choice.reached != nullptr && number < giveway_mutation::choice.count) {

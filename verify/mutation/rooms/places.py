@@ -1,4 +1,4 @@
-"""Finds every mutant, plants those of Python, and tells of all in a JSON file.
+"""Finds every mutant, plants those of Python, and lists all in a JSON file.
 
 Runs in the environment of verify/requirements.lock; `verify.mutation.rooms.planted` calls it there.
 """
@@ -20,7 +20,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--root", type=Path, required=True, help="the sources, built in its folder build")
     parser.add_argument("--tree", type=Path, required=True, help="where mutants of Python are planted")
-    parser.add_argument("--few", action="store_true", help="only so many as `make verify` tries")
+    parser.add_argument("--few", action="store_true", help="only as many as `make verify` tries")
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     cpp = cpp_mutants(given.root, given.root / "build", [room.folder for room in CPP])

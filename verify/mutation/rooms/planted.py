@@ -1,4 +1,4 @@
-"""A copy of the repository with all drawn mutants of all rooms, built once; which one lives is chosen at run time."""
+"""A copy of the repository with all drawn mutants of all rooms, built once; one is chosen at run time."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ __all__ = ["Planted", "plant"]
 
 HERE = Path(__file__).parent
 NOT_COPIED = (".git", ".venv", "__pycache__", "build", "native", "out")
-SPARE = 2  # so many times more are planted in C++ than wanted: some do not compile
+SPARE = 2  # factor by which more are planted in C++ than wanted, as some do not compile
 ERROR = re.compile(r"^(/[^:\n]+):(\d+):\d+: (?:fatal )?error: ", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Planted:
-    """``drawn``: the mutants to try, with the number by which each is chosen."""
+    """``drawn``: the mutants to try, each with the number that chooses it."""
 
     tree: Path
     drawn: Mapping[Mutant, int]
@@ -41,12 +41,12 @@ class Planted:
 
     @property
     def python(self) -> Path:
-        """An interpreter that has what is installed, but giveway from the copy."""
+        """An interpreter with the installed packages, but giveway from the copy."""
         return self.tree.parent / "python" / "bin" / "python"
 
 
 def plant(context: Context, *, few: bool) -> Planted:
-    """Draw, plant and build; ``few``: only so many as `make verify` tries."""
+    """Draw, plant and build; ``few``: only as many as `make verify` tries."""
     tree = context.work / "tree"
     shutil.copytree(context.root, tree, ignore=shutil.ignore_patterns(*NOT_COPIED), symlinks=True)
     document = _places(context, tree, few)
@@ -75,7 +75,7 @@ def plant(context: Context, *, few: bool) -> Planted:
 
 
 def _places(context: Context, tree: Path, few: bool) -> dict[str, Any]:
-    """What mutants there are, found with tools that only the environment of verify has; plants those in Python."""
+    """Finds all mutants with tools that only the environment of verify has, and plants those in Python."""
     out = context.work / "places.json"
     python = context.root / "build/verify/tools/bin/python"
     if not python.exists():
@@ -115,7 +115,7 @@ def _configure(context: Context, tree: Path) -> None:
         f"-DCMAKE_MAKE_PROGRAM={tools / 'ninja'}",
         f"-DGIVEWAY_SUNDIALS_VENDOR={context.root / 'build/sundials-source'}",
         "-DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST",  # ctest does not run them
-        "-DGIVEWAY_NATIVE_FMUS=ON",  # with the flags of this tree
+        "-DGIVEWAY_NATIVE_FMUS=ON",  # with the compiler flags of this tree
         f"-DCMAKE_CXX_FLAGS=-w -include {HERE / 'mutant.hpp'}",
     )
     targets = context.run(tools / "ninja", "-C", tree / "build", "-t", "targets", "all").stdout
@@ -132,7 +132,7 @@ def _build(context: Context, tree: Path) -> None:
 
 
 def _make_python(context: Context, tree: Path) -> None:
-    """Paths that a .pth file names are searched, but their own .pth files are not read: one of them is giveway's."""
+    """Paths in a .pth file are searched, but .pth files inside them are not read: one of those is giveway's."""
     python = context.root / ".venv/bin/python"
     context.run(python, "-m", "venv", "--without-pip", context.work / "python")
     (installed,) = (context.root / ".venv").glob("lib/python3*/site-packages")
@@ -192,7 +192,7 @@ class _Cpp:
             (self.tree / path.relative_to(self.context.root)).write_bytes(text)
 
     def _to_blame(self, planted: list[Mutant], failed: Mapping[str, Finished]) -> set[Mutant]:
-        """Those in whose lines the errors are; of several in a line, those that fail alone."""
+        """The mutants in the lines with errors; if a line has several, those that fail alone."""
         bad: set[Mutant] = set()
         for unit, answer in failed.items():
             suspects: dict[tuple[str, int], list[Mutant]] = {}

@@ -1,4 +1,4 @@
-"""Processes that stand ready to run tests in Python: each forks for every run (see warm.py)."""
+"""Processes that wait to run tests in Python: each forks for every run (see warm.py)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["WarmProcesses"]
 
 
 class WarmProcesses:
-    """``count`` of them with the interpreter ``python`` in ``folder``; may be used from so many threads."""
+    """``count`` processes with the interpreter ``python`` in ``folder``, for use from ``count`` threads."""
 
     def __init__(self, python: Path, folder: Path, count: int) -> None:
         self._free: queue.Queue[subprocess.Popen[str]] = queue.Queue()
@@ -24,7 +24,7 @@ class WarmProcesses:
             self._free.put(_started(python, folder))
 
     def ask(self, request: Mapping[str, Any]) -> Any:
-        """pytest's exit code, or "time" where the tests took too much."""
+        """pytest's exit code, or "time" if the tests took too long."""
         process = self._free.get()
         assert process.stdin is not None
         assert process.stdout is not None

@@ -1,5 +1,5 @@
-"""Where small faults can be planted in Python, and planting them: both by mutmut, whose mutants are copies of a
-function behind a trampoline that chooses one of them at run time.
+"""Finds and plants small faults in Python. mutmut does both: its mutants are copies of a function behind a trampoline
+that chooses one of them at run time.
 
 Runs in the environment of verify/requirements.lock, which has mutmut.
 """
@@ -23,7 +23,7 @@ OUR_TRAMPOLINE = "\nfrom giveway_mutants import MutantDict, trampoline as _mutmu
 
 
 class PythonPlaces:
-    """The mutants of the files in ``folders``, which lie in ``searched``, where Python looks; without ``left_out``."""
+    """The mutants of the files in ``folders`` (below ``searched``, which is on Python's path), without ``left_out``."""
 
     def __init__(self, root: Path, folders: Iterable[str], searched: Iterable[str], left_out: Iterable[str]) -> None:
         self.root = root
@@ -82,12 +82,12 @@ class PythonPlaces:
 
 
 def _tells(mutation: Mutation) -> bool:
-    """Not those of words, which are for people to judge, and not a value or argument taken away: such a mutant crashes
-    as soon as it is reached, so it says no more than line coverage does."""
+    """Leaves out mutants of texts, which people have to judge, and of removed values or arguments: those crash as soon
+    as they are reached, so they tell no more than line coverage."""
     if isinstance(mutation.original_node, libcst.BaseString | libcst.Assign | libcst.AnnAssign | libcst.Lambda):
         return False
     if isinstance(mutation.original_node, libcst.Call):
-        return bool(mutation.original_node.args == mutation.mutated_node.args)  # the function is another
+        return bool(mutation.original_node.args == mutation.mutated_node.args)  # it is a different function
     return True
 
 

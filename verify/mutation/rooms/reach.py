@@ -1,6 +1,6 @@
-"""A plugin of pytest: which mutants each test comes by, from the file that the mutants mark (GIVEWAY_MUTANTS_REACHED).
+"""A pytest plugin: which mutants each test reaches, from the file that the mutants mark (GIVEWAY_MUTANTS_REACHED).
 
-What a fixture comes by counts for every test that uses it, and what a file's import comes by for every test in it.
+Mutants reached by a fixture count for every test that uses it, those reached by a file's import for all its tests.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Reach:
         self.failed = False
 
     def _taken(self) -> set[int]:
-        """The marks, which are wiped."""
+        """Reads and clears the marks."""
         found = {at for at, mark in enumerate(self.marks[:]) if mark}
         self.marks[:] = bytes(len(self.marks))
         return found

@@ -1,4 +1,4 @@
-"""The rooms outside c_core, and what has to see faults in each."""
+"""The rooms outside c_core, and the tests that have to see faults in each."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ CPP = (
 PYTHON = (Room("cosim/giveway", 115, few=10),)  # fmu/codegen runs in the build: its mutants would need one each
 ROOMS = (*CPP, *PYTHON)
 PYTHON_PATH = ("cosim",)
-# Pictures: how they look is for people to judge.
+# Figures: people have to judge how they look.
 LEFT_OUT = (
     *("cosim/giveway/report", "cosim/giveway/experiments/figures", "cosim/giveway/experiments/reproduction/page.py"),
     *("cosim/giveway/drivetrain/pictures.py", "cosim/giveway/identification/figures.py"),
     *("cosim/giveway/study/figures.py", "cosim/giveway/study/gallery.py"),
 )
 
-# Programs of GoogleTest, and what else the tests in Python use.
+# GoogleTest programs, and other targets that the Python tests use.
 PROGRAMS = (
     *("tests/fmu/math/math_test", "tests/fmu/scalar/strict_scalar_test", "tests/fmu/scalar/jacobian_test"),
     *("tests/fmu/scalar/lanes_test", "tests/fmu/solver/solver_test", "tests/fmu/testbed/testbed_test"),
@@ -58,7 +58,7 @@ PLAIN_PROGRAMS = ("tests/fmu/batch/batch_test",)  # one test each
 LIBRARIES = ("c_master", "fmus", "giveway_batch", "giveway_plant_probe", "fmu_lag")
 TARGETS = (*(program.rsplit("/", 1)[1] for program in (*PROGRAMS, *PLAIN_PROGRAMS)), *LIBRARIES)
 TESTS = ("tests/fmu", "tests/cosim")
-# Whole experiments, compilers, other processes: they are asked only about mutants that the others do not see.
+# Whole experiments, compilers, other processes: run only on mutants that the other tests do not see.
 SLOW_TESTS = (
     *("test_bench_solvers.py", "test_c_master.py", "test_experiment_circle.py", "test_experiment_clamping.py"),
     *("test_experiment_impulse_share.py", "test_experiment_roller_calibration.py", "test_experiment_scenes.py"),

@@ -10,7 +10,7 @@ __all__ = ["with_all"]
 
 
 def with_all(text: bytes, numbers: Mapping[Mutant, int]) -> bytes:
-    """Of one file; lines keep their numbers. A mutant around others holds the original of those."""
+    """The text of one file; lines keep their numbers. A mutant that encloses others contains their original."""
     places: dict[tuple[int, int], list[Mutant]] = {}
     for mutant in numbers:
         places.setdefault((mutant.start, mutant.end), []).append(mutant)
@@ -39,7 +39,7 @@ def _rendered(
 
 
 def _choice(original: bytes, mutants: list[Mutant], numbers: Mapping[Mutant, int]) -> bytes:
-    if any(mutant.replacement == "void()" for mutant in mutants):  # a statement, whose value nobody takes
+    if any(mutant.replacement == "void()" for mutant in mutants):  # a statement, whose value is not used
         original = b"void(" + original + b")"
     for mutant in sorted(mutants, key=lambda mutant: numbers[mutant]):
         instead = " ".join(mutant.replacement.split())

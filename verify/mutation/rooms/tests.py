@@ -1,4 +1,5 @@
-"""The tests of a build with mutants: which mutants each comes by, and what a mutant meets, quickest first."""
+"""The tests of a build with mutants: which mutants each test reaches, and the tests to run on a mutant, fastest
+first."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ from verify.mutation.rooms.room import PLAIN_PROGRAMS, PROGRAMS, SLOW_TESTS, TES
 
 __all__ = ["Fate", "RoomTests", "Test"]
 
-# Of tests that end: time and processor time that a mutant may take, from those that the original took.
+# Limits of time and processor time for a mutant, from the times of the original.
 SLOWER, AT_LEAST_S = 2.0, 10.0
 SLOWER_ON_A_BUSY_MACHINE = 4.0
 RECORD_S = 600.0
@@ -34,13 +35,13 @@ ALL_PROGRAMS = (*PROGRAMS, *PLAIN_PROGRAMS)
 
 class Fate(enum.Enum):
     KILLED = "killed"
-    UNREACHED = "no test comes by it"
+    UNREACHED = "no test reaches it"
     SURVIVED = "survived"
 
 
 @dataclass(frozen=True)
 class Test:
-    """``group``: a program of GoogleTest, or a file of pytest's; ``name`` within it."""
+    """``group``: a GoogleTest program or a pytest file; ``name`` within it."""
 
     group: str
     name: str
@@ -49,7 +50,8 @@ class Test:
 
 
 class RoomTests:
-    """Records on creation what every test reaches; one that fails on the original is told of and left out."""
+    """Records on creation which mutants every test reaches; a test that fails on the original is reported and left
+    out."""
 
     def __init__(self, context: Context, planted: Planted) -> None:
         self.context = context
@@ -65,11 +67,11 @@ class RoomTests:
 
     @functools.cached_property
     def slow(self) -> list[Test]:
-        """Recorded when first asked for: a trial in which all other survivors are listed does without."""
+        """Recorded on first use: a trial in which all other survivors are listed does not need it."""
         return self._of_files(self.slow_files)
 
     def fates(self, mutants: Sequence[Mutant], listed: Container[Key]) -> dict[Mutant, Fate]:
-        """A listed mutant meets the quick tests only: what is known to survive all is not asked of all again."""
+        """A listed mutant is run on the quick tests only, since it is known to survive all tests."""
         found = self._met(mutants, self.quick)
         left = [mutant for mutant in mutants if found[mutant] is not Fate.KILLED and mutant.key not in listed]
         of_slow = self._met(left, self.slow) if left else {}
@@ -190,7 +192,7 @@ class RoomTests:
         return marks
 
     def _pytest(self, arguments: Sequence[str], environment: Mapping[str, str], seconds: float, name: str) -> Any:
-        """pytest's exit code, or "time"; what it printed is in the folder, under the name."""
+        """pytest's exit code, or "time"; its output is in the folder, under this name."""
         request = {
             "arguments": ["-q", f"--basetemp={self.folder / name}", *arguments],
             "environment": dict(environment),

@@ -1,4 +1,4 @@
-"""A trial of the mutants drawn from the rooms outside c_core: the score of each room, and whether the list is true."""
+"""A trial of the mutants drawn from the rooms outside c_core: the score per room, and a check of the list."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ class RoomsTrial:
         return (
             f"{self.killed} of {len(self.fates)} mutants killed ({self.killed / len(self.fates):.1%}); "
             f"{len(self.of(Fate.SURVIVED, Fate.UNREACHED))} survivors, each with a reason, "
-            f"{len(self.of(Fate.UNREACHED))} of them where no test comes by; "
+            f"{len(self.of(Fate.UNREACHED))} of them reached by no test; "
             f"not counted: {self.planted.not_compiled} that do not compile"
         )
 
 
 def try_all(tests: RoomTests, rooms: Iterable[Room] = ROOMS, say: Callable[[str], None] = print) -> RoomsTrial:
-    """Room by room; says the score of each, and its survivors."""
+    """Room by room; prints the score and the survivors of each."""
     listed = survivors.read(tests.context.root, LIST)
     fates: dict[Mutant, Fate] = {}
     for room in rooms:
@@ -56,7 +56,7 @@ def try_all(tests: RoomTests, rooms: Iterable[Room] = ROOMS, say: Callable[[str]
 
 
 def judge(context: Context, trial: RoomsTrial) -> None:
-    """`RungFailed` unless enough were killed and every survivor is listed; entries in the form of the list."""
+    """`RungFailed` unless enough were killed and every survivor is listed; prints entries in the form of the list."""
     reasons = survivors.read(context.root, LIST)
     survived = trial.of(Fate.SURVIVED, Fate.UNREACHED)
     evidence = survivors.wrong(reasons, trial.planted.everything, trial.of(Fate.KILLED), survived)

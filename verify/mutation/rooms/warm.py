@@ -1,7 +1,7 @@
-"""A process that has imported what every test needs, and forks for each run of tests.
+"""A process that has imported the modules that every test needs, and forks for each run of tests.
 
 It reads requests from standard input and answers on standard output, a line of JSON each. giveway itself is not
-imported before the fork: what it computes on import has to meet the mutant, too.
+imported before the fork, since its code that runs on import must contain the mutant, too.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def _run(request: dict[str, Any]) -> dict[str, Any]:
         done, status = os.waitpid(pid, os.WNOHANG)
         ended = done != 0
     with contextlib.suppress(ProcessLookupError):
-        os.killpg(pid, signal.SIGKILL)  # whatever is left, also when the tests ended by themselves
+        os.killpg(pid, signal.SIGKILL)  # any remaining processes, also when the tests have ended normally
     if not ended:
         os.waitpid(pid, 0)
         return {"code": "time"}

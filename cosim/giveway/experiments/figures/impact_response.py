@@ -1,4 +1,4 @@
-"""The paper's Fig. 10: one hit with each bumper; travel, forces and the torque of wheel 0, overlaid."""
+"""The paper's Fig. 10: one hit with each bumper; travel, forces and the torque of wheel 0 in common panels."""
 
 from __future__ import annotations
 
@@ -51,5 +51,5 @@ def _panel(axes: Axes, runs: list[Run], title: str, values: Callable[[Run], NDAr
 
 
 def _torque(run: Run) -> NDArray[np.float64]:
-    sign = run.hit.loaded_wheels().get(WHEEL, 1.0)
+    sign = run.hit.impact_sign(WHEEL)
     return np.asarray(sign * run.hit[f"testbed.sensor.torque[{WHEEL}]"])

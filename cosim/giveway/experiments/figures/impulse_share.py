@@ -1,4 +1,4 @@
-"""True impulse of a hit over time, and what forms of the estimator see of it, one panel per kind of hit."""
+"""True impulse of a hit over time, and the part that variants of the estimator see, one panel per kind of hit."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def _positions(axes: Axes, run: Run) -> None:
     slider = run.hit["testbed.truth.slider_position"]
     wheel = run.hit[f"testbed.truth.wheel_angle[{WHEEL}]"]
     turned = wheel - wheel[run.contact_row]
-    # A wheel at 30 deg to the way turns by cos(30 deg) of it.
+    # A wheel at 30 deg to the direction of travel turns by cos(30 deg) of it.
     sign = 1.0 if turned[run.contact_row - 1] < 0.0 else -1.0
     radius = float(run.parameters["testbed"]["wheel.radius"])
     _plot(axes, run, -1e3 * run.position("testbed.truth"), "robot", run.colour)
@@ -73,7 +73,7 @@ _SOURCES = ("testbed.truth", "controller.reference")
 
 
 def _torques(axes: Axes, run: Run) -> None:
-    sign = run.hit.loaded_wheels().get(WHEEL, 1.0)
+    sign = run.hit.impact_sign(WHEEL)
     _plot(axes, run, sign * run.hit[f"testbed.sensor.torque[{WHEEL}]"], f"torque of wheel {WHEEL} (N m)", run.colour)
     _plot(axes, run, run.hit["controller.estimate.force"] / 10.0, "force, estimated (10 N)", INK)
     _plot(axes, run, run.hit["testbed.truth.contact_force"] / 10.0, "force, true (10 N)", TRUTH_COLOUR)

@@ -1,4 +1,4 @@
-"""Scenes from above: the robot with its wheels, what it hits, and where it thinks it was hit."""
+"""Scenes from above: the robot with its wheels, the obstacle, and the estimated contact point."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def scenes_figure(results: Mapping[str, Result]) -> Figure:
 
 
 def _draw(axes: Axes, hit: Collision, testbed: Mapping[str, Any]) -> None:
-    contact = hit.until_detection().start
+    contact = hit.start
     corners = np.concatenate([
         _draw_robot(axes, hit, testbed, row, alpha) for row, alpha in ((-1, 0.3), (contact, 1.0))
     ])  # fmt: skip
@@ -68,7 +68,7 @@ def _draw(axes: Axes, hit: Collision, testbed: Mapping[str, Any]) -> None:
     axes.plot(*path[:, :contact], ":", color=INK, linewidth=1.0, label="way to it")
     axes.plot(*path[:, contact:], color=ESTIMATE_COLOUR, linewidth=1.2, label="way away")
     axes.set_aspect("equal")
-    # Panels of one size, whatever the escape.
+    # Panels of equal size for any escape.
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     axes.set(xlim=middle[0] + np.array([-0.5, 0.5]) * WIDTH_M, ylim=middle[1] + np.array([-0.5, 0.5]) * HEIGHT_M)
     axes.set_xlabel("x (m)")

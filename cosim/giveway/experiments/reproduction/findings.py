@@ -1,7 +1,7 @@
-"""What an experiment gives to the reproduction of the paper: rows of its table and figures of its report.
+"""An experiment's part in the reproduction of the paper: rows of its table and figures of its report.
 
-An experiment's module defines ``EXPERIMENT`` with a ``reproduce`` function from an `Effort` to `Findings`. Rows are
-computed by that function, never typed in; what the paper printed is typed in, once, beside the quantity it belongs to.
+An experiment's module defines ``EXPERIMENT`` with a ``reproduce`` function from an `Effort` to `Findings`. That
+function computes the rows; only the paper's printed numbers are typed in, once, next to their quantity.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["PROVENANCES", "Effort", "Findings", "Picture", "Row", "Target", "war
 _T = TypeVar("_T")
 
 PROVENANCES = ("given", "sourced", "fitted", "assumed", "computed")
-"""How a row's number came about: the weakest of what decides it, in this order; computed needs none of them."""
+"""Provenance of a row's number: the weakest of its inputs, in this order; computed has no such input."""
 
 Progress = Callable[[float], None]
 """Called now and then with the finished share of the experiment, 0 to 1."""
@@ -54,7 +54,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Target:
-    """What a number has to be.
+    """The target of a number.
 
     Attributes:
         minimum, maximum: inclusive bounds in the row's unit.
@@ -79,7 +79,7 @@ class Target:
             object.__setattr__(self, "text", " and ".join(part for part in (low, high) if part) or "any")
 
     def met(self, value: float | None) -> bool:
-        """Whether ``value`` lies within; what did not happen (None) does not."""
+        """Whether ``value`` lies within; None (it did not happen) does not."""
         return value is not None and self.minimum <= value <= self.maximum
 
 
@@ -93,8 +93,8 @@ class Row:
         unit: of paper, ours and target; "1" if there is none.
         provenance: one of `PROVENANCES`.
         paper: what the paper printed, or None where it says nothing.
-        target: what ours has to be, or None for a number that is only shown.
-        reason: why a target is missed, found by experiment: which parameter would have to be what. A miss needs one.
+        target: required range of ours, or None for a number that is only shown.
+        reason: why a target is missed, found by experiment: the parameter values that would meet it. A miss needs one.
         decimals: digits after the point that are worth printing.
     """
 
@@ -145,7 +145,7 @@ class Findings:
     Attributes:
         rows: in the order of the table.
         pictures: in the order of the report.
-        notes: sentences for the report: what does not fit, and why.
+        notes: sentences for the report about deviations and their reasons.
     """
 
     rows: Sequence[Row]
@@ -154,5 +154,5 @@ class Findings:
 
 
 def warning_notes(results: Mapping[str, Result]) -> list[str]:
-    """What happened in runs otherwise than asked, as notes; ``results`` by what each is called."""
+    """Warnings of the runs as notes; ``results`` by name."""
     return [f"{name}: {one.text}." for name, result in results.items() for one in result.warnings]

@@ -45,7 +45,7 @@ def write_report(path: Path, reproduction: Reproduction) -> None:
 
 
 def render(reproduction: Reproduction) -> str:
-    """The report as HTML text; it refers to nothing outside itself."""
+    """The report as HTML text; it has no external references."""
     import jinja2
     from matplotlib.style import context
 

@@ -1,6 +1,6 @@
 """The paper in one run: every experiment's part of the reproduction, its table, and the table as JSON.
 
-Experiments fail and are interrupted one by one: what was found is kept and written.
+Failures and interruptions affect single experiments: the findings of the others are kept and written.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ class Reproduction:
     """What `reproduce` found.
 
     Attributes:
-        chapters: the experiments in the order of the paper's sections, as far as they were run.
-        interrupted: names of those that were not, after an interruption by the user.
+        chapters: the experiments that were run, in the order of the paper's sections.
+        interrupted: names of those that were not run, after an interruption by the user.
         manifest: versions, hashes and effort.
     """
 
@@ -94,7 +94,7 @@ def chosen(names: Sequence[str] = ()) -> list[Experiment]:
     for name in names:
         if name not in able:
             raise UnknownNameError("--only", name, able)
-    # What the paper has not comes last.
+    # Experiments that are not in the paper come last.
     picked = [entry for name, entry in able.items() if not names or name in names]
     return sorted(picked, key=lambda entry: (entry.section == "", entry.section, entry.name))
 
@@ -110,7 +110,7 @@ def reproduce(
         threads: native threads, 1 to 256.
         progress: told the experiment and its finished share.
 
-    An experiment that fails is a chapter with its reason. Ctrl-C ends the run; what was found so far is returned.
+    An experiment that fails gives a chapter with the reason. Ctrl-C ends the run; the findings so far are returned.
     """
     if not 1 <= threads <= 256:
         raise GivewayError("threads", threads, "1 to 256")
@@ -119,7 +119,7 @@ def reproduce(
     with _interruption() as interrupted:
         for experiment in picked:
             chapter = _chapter(experiment, full, threads, progress)
-            if interrupted.is_set():  # whatever it then returned or raised is not what it would have found
+            if interrupted.is_set():  # its result or exception after an interruption is meaningless
                 break
             chapters.append(chapter)
     left = [experiment.name for experiment in picked[len(chapters) :]]
@@ -151,7 +151,8 @@ def _chapter(experiment: Experiment, full: bool, threads: int, progress: Progres
 
 @contextmanager
 def _interruption() -> Iterator[threading.Event]:
-    """An event that is set by Ctrl-C, which goes on to interrupt what runs; where Ctrl-C is ignored, it stays so."""
+    """An event that is set by Ctrl-C, which also interrupts the running code; if Ctrl-C is ignored, it stays
+    ignored."""
     event = threading.Event()
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or before is signal.SIG_IGN:
@@ -185,7 +186,7 @@ def _manifest(full: bool, threads: int) -> dict[str, Any]:
 
 
 def number(value: float | str | None, decimals: int) -> str:
-    """A cell: fixed digits after the point, words as they are, "-" for what is not there."""
+    """A cell: fixed digits after the point, words as they are, "-" for a missing value."""
     if value is None:
         return "-"
     return value if isinstance(value, str) else f"{value:z.{decimals}f}"

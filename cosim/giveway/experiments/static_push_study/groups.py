@@ -1,4 +1,4 @@
-"""Groups of four pushes on one robot, as in 5.1, and where the paper's numbers lie among them."""
+"""Groups of four pushes on one robot, as in 5.1, and the rank of the paper's numbers among them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 __all__ = ["GROUP", "PRINTED", "Printed", "group_values", "percentile_of"]
 
 GROUP = 4
-PAPER_FORCE_N = 10.0  # what the paper calls the weight of 1 kg, and compares with
+PAPER_FORCE_N = 10.0  # the paper's value for the weight of 1 kg, used in its comparisons
 
 
 @dataclass(frozen=True)
 class Printed:
-    """What the paper prints of its four pushes.
+    """A number that the paper prints for its four pushes.
 
     Attributes:
         name: the quantity.

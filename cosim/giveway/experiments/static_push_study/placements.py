@@ -1,4 +1,4 @@
-"""Where a robot is pushed: points on its outline and directions into its body."""
+"""Points on a robot's outline and directions of pushes into its body."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["CONE_RAD", "Placement", "default_outline", "middles", "paper_placements", "random_placements"]
 
-# How far a push leans from the inward normal at most: beyond the friction angle of the cover's polyurethane (friction
-# 0.6: 31 deg) whatever pushes slips along the side instead.
+# Largest angle of a push to the inward normal: beyond the friction angle of the cover's polyurethane (friction 0.6: 31
+# deg) the pushing body slips along the side.
 CONE_RAD = math.radians(30.0)
 # Fig. 9 shows four orientations of the robot before a dummy that pushes the same side, and prints no numbers. These
 # four do the same: at the middle and towards both corners, straight on and leaning to either side.

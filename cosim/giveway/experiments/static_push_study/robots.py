@@ -1,4 +1,4 @@
-"""Simulated robots that differ in their rollers, and the pushes that each gets."""
+"""Simulated robots with different rollers, and the pushes on each."""
 
 from __future__ import annotations
 
@@ -30,10 +30,11 @@ SEED = 51
 # robot. The spread in the paper decides it: at 0.2 no group of four comes near -45 % or 12 deg, at 0.6 it is in reach.
 SCATTER = 0.6
 # Loads that earlier motion left in the rollers, uniform up to this share of their friction limit. The mean is that of
-# driving at 0.02 to 0.2 m/s and stopping in this plant, a third of the limit; hardly a stop leaves more than the most.
+# driving at 0.02 to 0.2 m/s and stopping in this plant, a third of the limit; hardly any stop leaves more than the
+# maximum.
 LOAD_SHARE = 0.6
 DRAWS = 1000
-HOLD_SHARE = 0.95  # of the stiction: the push arrives with a remnant of ringing, 1 to 2 % of it
+HOLD_SHARE = 0.95  # of the stiction: the push begins with residual oscillations of 1 to 2 % of it
 
 
 def presliding_stiffness_n_per_m() -> float:
@@ -45,7 +46,7 @@ def roller_loads(placement: Placement, share: float, draw: np.random.Generator) 
     """Loads (N) up to ``share`` of the rollers' friction limit B_r/r_r that earlier motion may have left.
 
     Drawn again where loads and push together would turn a gear: the paper's robot was not pushed away.
-    GivewayError if hardly any loads leave the gears that hold.
+    GivewayError if hardly any loads are within the gears' stiction.
     """
     variables = table("testbed")
     limit = float(variables["roller.coulomb_torque"].start or 0.0) / float(variables["roller.radius"].start or 1.0)

@@ -1,6 +1,7 @@
-"""Groups of four pushes in the static model alone: quick enough to ask which parameter would have to be what.
+"""Groups of four pushes in the static model alone: fast enough to search for the parameter values that would explain a
+number.
 
-No dynamics, noise, slipping or outline: magnitudes and directions only. `trials` runs the real thing.
+No dynamics, noise, slipping or outline: magnitudes and directions only. `trials` runs the full simulation.
 """
 
 from __future__ import annotations

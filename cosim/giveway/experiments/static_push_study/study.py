@@ -1,4 +1,4 @@
-"""All runs of the static-push study: before and after compensation, and two questions put to the plant."""
+"""All runs of the static-push study: before and after compensation, and two further cases."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 __all__ = ["KNOWN_PUSHES", "Sizes", "Study", "run_study"]
 
 SEED = 52
-KNOWN_PUSHES = 3  # that the robots are calibrated with
+KNOWN_PUSHES = 3  # number of pushes to calibrate a robot with
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """How much is run.
+    """The size of a study.
 
     Attributes:
         robots: at least 1.
@@ -39,14 +39,14 @@ class Sizes:
 
 @dataclass(frozen=True)
 class Study:
-    """What was found. Readings of all robots come robot by robot.
+    """The results. Readings of all robots are ordered by robot.
 
     Attributes:
         robots: the robots and their pushes.
         known: the pushes to calibrate with.
-        paper, random: pushes as the paper's controller feels them.
+        paper, random: pushes as felt by the paper's controller.
         calibrations: of each robot, from its first `KNOWN_PUSHES` known pushes.
-        paper_compensated, random_compensated: the very same pushes as the calibrated controller feels them.
+        paper_compensated, random_compensated: the same pushes as felt by the calibrated controller.
         loaded, loaded_compensated: four pushes on each robot whose rollers carry any load up to their friction limit.
         drifted: four pushes on each robot with zeros that drifted by ``drift_nm`` (standard deviation).
     """
@@ -75,7 +75,7 @@ class Study:
 
 
 def run_study(sizes: Sizes, drift_nm: float, progress: Callable[[float], None]) -> Study:
-    """Run everything; ``progress`` is told the finished share."""
+    """Run everything; ``progress`` gets the finished share."""
     robots = [pushed_robot(number, sizes.pushes) for number in range(sizes.robots)]
     draw = np.random.default_rng(SEED)
     groups = {

@@ -1,7 +1,7 @@
-"""Static pushes on simulated robots that differ in their rollers, and what the controller makes of them.
+"""Static pushes on simulated robots with different rollers, and the controller's estimates of them.
 
-The robot stands unpowered. After its tare the push grows smoothly, so that nothing rings on the drivetrains, and stays;
-the estimate is read when it has settled.
+The robot stands unpowered. After the tare the push grows smoothly, so that the drivetrains do not oscillate, and is
+held; the estimate is read when it has settled.
 """
 
 from __future__ import annotations
@@ -72,10 +72,10 @@ class Trial:
     Attributes:
         placement: where and which way.
         stiffness_n_per_m: presliding stiffness of each wheel's roller: the robot.
-        roller_load_n: what earlier motion left in each roller, along the wheel's radial direction.
+        roller_load_n: load that earlier motion left in each roller, along the wheel's radial direction.
         seed: of the sensor noise.
-        zero_drift_nm: what the zeros of the three torque signals drifted by since the tare; without roller loads only.
-        controller: parameter overrides beside those that every trial has.
+        zero_drift_nm: drift of the zeros of the three torque signals since the tare; only without roller loads.
+        controller: parameter overrides in addition to those of every trial.
     """
 
     placement: Placement
@@ -93,7 +93,7 @@ class Trial:
             testbed[f"start.bristle[{wheel}]"] = load / stiffness
         controller = {**CONTROLLER, **self.controller}
         if any(self.zero_drift_nm):
-            # Without a tare an offset is what a drift since the tare would be.
+            # Without a tare an offset has the effect of a drift since the tare.
             controller["estimator.tare_ticks"] = 0
             testbed |= {f"electronics.torque_offset[{wheel}]": drift for wheel, drift in enumerate(self.zero_drift_nm)}
         push = SteadyPush(self.placement)
@@ -104,7 +104,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Readings:
-    """What the controller said of each trial, and how far that is from the truth.
+    """The controller's estimates for each trial, and their errors.
 
     Attributes:
         trials: n of them.
@@ -159,7 +159,7 @@ class Readings:
 
 
 def run_trials(trials: Sequence[Trial], threads: int, progress: Callable[[int], None] = lambda _done: None) -> Readings:
-    """Run ``trials`` natively in ``threads`` threads; ``progress`` is told how many are done.
+    """Run ``trials`` natively in ``threads`` threads; ``progress`` gets the number of finished trials.
 
     SimulationError if a run fails, or a push is so weak that the controller does not locate it.
     """

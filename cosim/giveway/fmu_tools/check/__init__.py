@@ -1,7 +1,7 @@
-"""`giveway fmu check`: what is wrong with an FMU, from the zip file down to the libraries its binaries need.
+"""`giveway fmu check`: faults of an FMU, from the zip file to the libraries its binaries need.
 
-What each finding means is in `severity`. `refusals` is the part of it that `giveway fmu run` and `info` ask for: what
-makes a file unsafe to unpack, or unreadable.
+`severity` explains the severities. `refusals` is the part that `giveway fmu run` and `info` use: findings that make a
+file unsafe to unpack, or unreadable.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FMI_XML = (DESCRIPTION, documents.BUILD_DESCRIPTION, documents.TERMINALS)
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that a check found.
+    """One finding of a check.
 
     Attributes:
         check: its name, a key of `CHECKS`, or "limits", "XML" or "FMI version".
@@ -52,7 +52,7 @@ class Check:
     """One check.
 
     Attributes:
-        needs_description: it is left out if there is no model description that can be read.
+        needs_description: it is skipped without a readable model description.
         refuses: its faults make a file unsafe to unpack or impossible to run: `giveway fmu run` refuses it.
     """
 
@@ -61,7 +61,7 @@ class Check:
     refuses: bool = False
 
     def findings(self, name: str, file: TestedFile) -> Iterator[Finding]:
-        """Of each severity at most `MOST_OF_ONE_KIND`, and how many more there are."""
+        """At most `MOST_OF_ONE_KIND` findings of each severity, and the number of the others."""
         count: Counter[Severity] = Counter()
         for severity, text in self.function(file):
             count[severity] += 1
@@ -110,7 +110,7 @@ def open_safely(path: Path, limits: Limits | None = None) -> tuple[Archive, Desc
 
 
 def _read(opened: Archive) -> tuple[TestedFile, list[Finding]]:
-    """FMI's own XML files as a stream, and what is wrong with them. No entity is expanded and nothing is fetched."""
+    """FMI's own XML files as a stream, and their faults. No entity is expanded and nothing is fetched."""
     file = TestedFile(opened)
     found: list[Finding] = []
     budget = Budget(opened.limits)

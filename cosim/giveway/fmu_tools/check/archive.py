@@ -24,11 +24,11 @@ def limits(file: TestedFile) -> Found:
 
 
 def zip_method(file: TestedFile) -> Found:
-    """Importers unpack with small libraries that know deflate and nothing else. Everything is unpacked once here."""
+    """Importers unpack with small libraries that only know deflate. Everything is unpacked once here."""
     try:
         file.archive.check_unpacked_size()
     except OverLimitError:
-        return  # said already
+        return  # already reported
     for info in file.archive.infos:
         try:
             for _ in file.archive.chunks(info):
@@ -74,7 +74,7 @@ def _parts(name: str) -> tuple[str, ...]:
 
 
 def links(file: TestedFile) -> Found:
-    """Unpacked as what it says, a link makes the next entry land wherever it points."""
+    """If a link is unpacked as a link, the next entry is written to its target."""
     for info in file.archive.infos:
         if is_link(info):
             yield FAULT, f"{shown(info.filename)} is a symbolic link or a device, neither file nor folder"

@@ -1,4 +1,4 @@
-"""The shared libraries: there, for the right machine, exporting FMI and needing nothing but the C library."""
+"""The shared libraries: present, for the right machine, exporting FMI and needing only the C library."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def platforms(file: TestedFile) -> Found:
 
 
 def _each_binary(file: TestedFile) -> Iterator[tuple[str, str, Binary | FileError]]:
-    """(name, platform, what was read of it) for the model's binary of every known platform."""
+    """(name, platform, content) for the model's binary of every known platform."""
     from giveway.fmu_tools.binaries import PLATFORMS
 
     description = file.described()
@@ -62,11 +62,11 @@ def _each_binary(file: TestedFile) -> Iterator[tuple[str, str, Binary | FileErro
 
 
 def binary_of(archive: Archive, name: str) -> Binary | FileError:
-    """What is in one shared library of the FMU, or why it cannot be told."""
+    """The content of one shared library of the FMU, or why it cannot be read."""
     from giveway.fmu_tools.binaries import read_binary
 
     with TemporaryDirectory(prefix="giveway-check-") as folder:
-        path = Path(folder) / "library"  # not the name, which may lead anywhere
+        path = Path(folder) / "library"  # not the name, which may point anywhere
         try:
             with path.open("wb") as stream:
                 for piece in archive.chunks(archive.files[name]):
@@ -108,7 +108,7 @@ def exports(file: TestedFile) -> Found:
             )
 
 
-# What belongs to one interface alone; an FMU without it need not export it.
+# Functions of one interface only; an FMU without the interface need not export them.
 _ONLY_EXCHANGE = (
     "EnterContinuousTimeMode",
     "CompletedIntegratorStep",
@@ -139,7 +139,7 @@ _ONLY_STEPPING = (
 
 
 def needed_functions(version: int, interfaces: Collection[str]) -> frozenset[str]:
-    """What an importer may look up: FMI 2 has all functions of an interface; FMI 3 all functions whatsoever."""
+    """The functions that an importer may look up: in FMI 2 those of the interface, in FMI 3 all functions."""
     from giveway.fmu_tools.binaries import fmi_functions
 
     every = fmi_functions(version)
@@ -172,7 +172,7 @@ def imports(file: TestedFile) -> Found:
 def unloading(file: TestedFile) -> Found:
     """Destructors that Linux would call at the end of the process, after an importer has unloaded the library."""
     for name, _, binary in _each_binary(file):
-        # __cxa_finalize, which start files call when the library is unloaded, runs them in time.
+        # The start files call __cxa_finalize when the library is unloaded, which runs them in time.
         if (
             not isinstance(binary, FileError)
             and "__cxa_atexit" in binary.imported

@@ -1,4 +1,4 @@
-"""What every check gets, and what it gives back."""
+"""Input and output of every check."""
 
 from __future__ import annotations
 
@@ -53,14 +53,14 @@ class TestedFile:
         return tuple(self.archive.files)
 
     def read(self, name: str) -> bytes:
-        """The content of a file; nothing if it cannot be unpacked, which the check of the zip file says."""
+        """The content of a file; empty if it cannot be unpacked, which the check of the zip file reports."""
         try:
             return self.archive.read(name)
         except ArchiveError:
             return b""
 
     def tree(self, name: str) -> Any:
-        """The root of an XML file that is sound; it is small, or whoever asks takes care."""
+        """The root of a sound XML file; the caller makes sure that it is small."""
         from lxml import etree
 
         return etree.fromstring(self.read(name), etree.XMLParser(resolve_entities=False, no_network=True))
@@ -71,7 +71,7 @@ class TestedFile:
 
     @cached_property
     def by_key(self) -> dict[int, VariableEntry]:
-        """Variable by what ModelStructure calls it."""
+        """Variable by its key in ModelStructure."""
         description = self.described()
         return {description.key(v): v for v in description.variables}
 

@@ -1,4 +1,4 @@
-"""The model description: identity, names, start values; and what FMPy says of it."""
+"""The model description: identity, names, start values; and FMPy's findings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = [
 
 _SIGNED = {"Int8": 8, "Int16": 16, "Int32": 32, "Int64": 64, "Integer": 32, "Enumeration": 64}
 _UNSIGNED = {"UInt8": 8, "UInt16": 16, "UInt32": 32, "UInt64": 64}
-MOST_STARTS = 200_000  # numbers in start values that are looked at, all arrays together
+MOST_STARTS = 200_000  # checked numbers in start values, of all arrays together
 MOST_FOR_FMPY = 5_000  # variables; its reader takes some 20 us and kB for each
 
 # Naming convention "structured": a.b[1,2].c or der(a.b, 2); a part may be any text in single quotes.
@@ -39,7 +39,7 @@ _STRUCTURED = re.compile(rf"{_IDENTIFIER}|der\({_IDENTIFIER}(?:,[0-9]+)?\)")
 
 
 def numbers(file: TestedFile) -> Found:
-    """What is a number by the standard is one in the file, and no section is missing."""
+    """Every number of the standard is a number in the file, and no section is missing."""
     for problem in file.described().problems:
         yield FAULT, shown(problem, 200)
 
@@ -86,7 +86,7 @@ def names_and_references(file: TestedFile) -> Found:
             yield FAULT, f"{times} variables are called {shown(name)}"
     same: dict[tuple[str, int], list[VariableEntry]] = {}
     for variable in description.variables:
-        # In FMI 2 each base type counts for itself, and an alias has the reference of another variable.
+        # In FMI 2 references are unique per base type, and an alias has the reference of another variable.
         kind = variable.type if description.version == 2 else ""
         same.setdefault((kind, variable.reference), []).append(variable)
     for (_, reference), variables in same.items():
@@ -150,7 +150,7 @@ def start_presence(file: TestedFile) -> Found:
 
 
 def fmpy_validation(file: TestedFile) -> Found:
-    """What FMPy's own validation says; it knows rules for pairs of causality and variability."""
+    """Findings of FMPy's own validation; it knows rules for pairs of causality and variability."""
     from fmpy import read_model_description
     from fmpy.model_description import ValidationError
 
@@ -159,7 +159,7 @@ def fmpy_validation(file: TestedFile) -> Found:
         yield NOTE, f"FMPy was not asked: {count:,} variables are more than {MOST_FOR_FMPY:,}"
         return
     with TemporaryDirectory(prefix="giveway-check-") as folder:
-        # The two files that it reads, from a folder: it unpacks without limits.
+        # It gets a folder with the two files that it reads, since it unpacks without limits.
         for name in {DESCRIPTION, BUILD_DESCRIPTION} & file.sound:
             path = Path(folder) / name
             path.parent.mkdir(exist_ok=True)
@@ -174,5 +174,5 @@ def fmpy_validation(file: TestedFile) -> Found:
             reason = shown(" ".join(str(error).split()), 400)
             if type(error) is Exception:  # its own words
                 yield FAULT, reason
-            else:  # it stumbles where it expects something else
+            else:  # it fails on unexpected content
                 yield WARNING, f"FMPy {version_of('fmpy')} cannot read it ({type(error).__name__}: {reason})"

@@ -13,14 +13,14 @@ __all__ = ["BUILD_DESCRIPTION", "TERMINALS", "build_description", "is_manifest",
 
 BUILD_DESCRIPTION = "sources/buildDescription.xml"
 TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
-LARGEST_TREE_BYTES = 8_000_000  # of an XML file that is held as a tree, which takes up to twenty times as much
+LARGEST_TREE_BYTES = 8_000_000  # of an XML file that is read as a tree, which takes up to twenty times as much memory
 _SCHEMAS = {
     3: {
         DESCRIPTION: "fmi3ModelDescription.xsd",
         BUILD_DESCRIPTION: "fmi3BuildDescription.xsd",
         TERMINALS: "fmi3TerminalsAndIcons.xsd",
     },
-    # FMI 2 has a schema of its own for the description alone; the other two came with 2.0.4 as FMI 3 has them.
+    # FMI 2 has its own schema only for the description; for the other two 2.0.4 uses those of FMI 3.
     2: {DESCRIPTION: "fmi2ModelDescription.xsd"},
 }
 _CODE = (".c", ".cpp", ".cc", ".h", ".hpp", ".inc", ".inl")
@@ -51,7 +51,7 @@ def schema(file: TestedFile) -> Found:
 
 
 def _against_schema_as_stream(file: TestedFile, name: str, validator: Any) -> Found:
-    """Without a tree; it finds the same, but knows no lines."""
+    """Without a tree; it finds the same faults, but no line numbers."""
     from lxml import etree
 
     parser = etree.XMLPullParser(events=("end",), schema=validator, resolve_entities=False, no_network=True)
@@ -92,7 +92,7 @@ def manifests(file: TestedFile) -> Found:
 
 
 def build_description(file: TestedFile) -> Found:
-    """Source files that are named exist, and those that exist are named."""
+    """Listed source files exist, and existing source files are listed."""
     description = file.described()
     sources = {n.removeprefix("sources/") for n in file.names if n.startswith("sources/")}
     named: set[str] = set()
@@ -131,7 +131,7 @@ def _small_tree(file: TestedFile, name: str) -> Any:
         try:
             return file.tree(name)
         except etree.XMLSyntaxError:
-            pass  # the check of schemas says it
+            pass  # the check of schemas reports it
     return etree.Element("empty")
 
 

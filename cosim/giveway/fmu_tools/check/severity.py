@@ -1,4 +1,4 @@
-"""How bad a finding is: the one place that says what the three words mean."""
+"""Severity of findings: the definition of the three words."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ __all__ = ["Severity"]
 
 
 class Severity(Enum):
-    """From bad to harmless."""
+    """From severe to harmless."""
 
     FAULT = "fault"
-    """An importer may refuse the file, or read something else than was meant."""
+    """An importer may refuse the file or misread it."""
     WARNING = "warning"
-    """Legal, but there are importers or machines that cannot take it."""
+    """Legal, but some importers or machines cannot handle it."""
     NOTE = "note"
-    """Legal and usual, and worth a look."""
+    """Legal and usual, but worth a look."""

@@ -1,4 +1,4 @@
-"""ModelStructure: complete, and nothing too much."""
+"""ModelStructure: complete, without superfluous entries."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def structure(file: TestedFile) -> Found:
 
 
 def _initial_unknowns(file: TestedFile, derived: list[VariableEntry]) -> list[VariableEntry]:
-    """Those that have to be there: of the clocked variables none."""
+    """The required ones, without clocked variables."""
     states = {state.name for v in derived if (state := file.state_of(v)) is not None}
     states_and_rates = states | {v.name for v in derived}
     return [
