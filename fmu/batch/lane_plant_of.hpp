@@ -181,6 +181,7 @@ private:
 
     // What the last step has led to. True if that changed the state or what decides, so that present_ has to be found
     // again.
+    // Long because modes that report and modes that decide are told apart on the same indicators, lane by lane.
     bool change_modes() {
         Evaluation &end = present_;
         const L zero(0.0);

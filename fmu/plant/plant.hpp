@@ -114,6 +114,7 @@ void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, con
 }
 
 // `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
+// Long because it is the equations of README.md in their order, each using what stands above it.
 template <class T, int Wheels>
 void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
                    const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, const Derived<T> &d) {

@@ -87,6 +87,7 @@ Nose<T> nose_at_height(const TippingVector<T, Wheels> &x, const Parameters<T, Wh
 
 } // namespace detail
 
+// Long because it is the equations of README.md in their order, each using what stands above it.
 template <class T, int Wheels>
 TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
                                       const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, const Derived<T> &d) {
