@@ -13,10 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+import xarray
 from giveway.base.errors import GivewayError
 from giveway.base.units import factor
-from giveway.experiments.figures import impact_response, reversal
-from giveway.report import figures, overview
+from giveway.experiments.figures import impact_response, impulse_share, reversal
+from giveway.experiments.impulse_trials import Seen
+from giveway.report import circle, figures, overview
 from giveway.report.runs import Run
 from giveway.report.style import COLOURS
 from giveway.scenario.scenario import BUMPERS
@@ -203,11 +205,13 @@ def test_curves_are_quantities_in_the_units_of_their_labels(name: str, full_runs
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_a_label_of_another_unit_would_be_noticed(name: str, full_runs: dict[str, Result]) -> None:
-    """The planted faults: each label in turn with another size of its unit."""
     results = by_label(full_runs)
-    runs = [known(result) for result in results.values()]
+    check_planted(DRAWN[name][0](results), [known(result) for result in results.values()])
+
+
+def check_planted(figure: Figure, runs: list[Known]) -> None:
+    """The planted faults: each label in turn with another size of its unit."""
     other = {"mm": "m", "m": "mm", "N": "kN", "N m": "N", "N s": "N", "ms": "s", "s": "ms", "m/s": "mm/s"}
-    figure = DRAWN[name][0](results)
     planted = 0
     for axes in figure.axes:
         labels = {
@@ -224,3 +228,37 @@ def test_a_label_of_another_unit_would_be_noticed(name: str, full_runs: dict[str
                 put(right)
                 planted += 1
     assert planted >= 1
+
+
+def of_impulse_share() -> tuple[Figure, list[Known]]:
+    """Four kinds of hit, each seen by three forms of the estimator with two seeds."""
+    time_s, rng, runs = np.linspace(0.0, 0.3, 301), np.random.default_rng(1), []
+    hits: dict[str, dict[str, Seen]] = {}
+    for hit in ("light", "hard", "oblique", "at a corner"):
+        true = rng.uniform(0.0, 3.0, (2, time_s.size))
+        hits[hit] = {form: Seen(time_s, true, rng.uniform(0.0, 3.0, true.shape)) for form in ("a", "b", "c")}
+        means = [true.mean(axis=0), *(form.seen.mean(axis=0) for form in hits[hit].values())]
+        runs.append(Known(time_s, math.nan, [("N.s", mean) for mean in means]))
+    return impulse_share.draw(hits, 0.1), runs
+
+
+def of_alarm() -> tuple[Figure, list[Known]]:
+    """The detector's statistic of three robots; the highest of each tenth of a second is drawn."""
+    time_s = np.arange(10_000) / 1000.0
+    statistic = np.random.default_rng(2).uniform(0.0, 0.5, (3, time_s.size))
+    traces = {"controller.detection.statistic": statistic, "controller.detection.count": np.zeros(statistic.shape)}
+    data = xarray.Dataset({name: (("run", "time"), values) for name, values in traces.items()}, {"time": time_s})
+    highest = statistic.reshape(3, -1, 100).max(axis=2)
+    runs = [Known(time_s[::100], math.nan, [("N.s", one) for one in highest])]
+    return circle.alarm({"by the paper": ((-0.1, 0.0, 0.1), data)}, 0.6), runs
+
+
+ALONE = {"impulse share": (of_impulse_share, 16), "alarm on the circle": (of_alarm, 3)}  # and how many curves
+
+
+@pytest.mark.parametrize("name", ALONE)
+def test_curves_of_figures_without_a_run_are_in_the_units_of_their_labels(name: str) -> None:
+    draw, curves = ALONE[name]
+    figure, runs = draw()
+    assert check(figure, runs)[0] == curves
+    check_planted(figure, runs)
