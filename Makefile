@@ -23,8 +23,8 @@ reproduce: product ## every experiment of the paper: table, table.json and repor
 	$(BIN)/giveway reproduce --out out/reproduce --threads $(JOBS)
 
 test: build lint ## every test
-	$(BIN)/ctest --test-dir build --output-on-failure -j $(JOBS)
-	$(BIN)/pytest
+	$(BIN)/ctest --test-dir build --output-on-failure --progress -j $(JOBS)
+	$(BIN)/pytest --numprocesses $(JOBS) --dist loadfile # a file stays whole: its fixtures may be dear
 
 verify: build build/verify/tools-installed build/verify/modelica-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
 	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
