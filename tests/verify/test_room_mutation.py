@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.mutation.mutants import Key, Mutant
+from verify.mutation.mutants import Key, Mutant, shuffled
+from verify.mutation.rooms.kept import KeptFates, digest, files_below, read_if_of, write_of
 from verify.mutation.rooms.schemata import with_all
 
 ROOT = Path(__file__).parents[2]
@@ -123,3 +124,41 @@ def test_a_mutant_of_python_is_chosen_and_each_test_that_comes_by_it_is_known(
     ]
     assert not found["test_subject.py::test_without"]["reached"]
     assert any(entry["failed"] for entry in found.values()) == (code == 1)
+
+
+def test_the_draw_stays_when_files_are_renamed() -> None:
+    def drawn(files: list[str]) -> list[str]:
+        mutants = [Mutant(Key(file, f"f{i}", "", "", 1), Path(), 1, 0, 1, "") for i, file in enumerate(files)]
+        return [mutant.key.function for mutant in shuffled(mutants, 1, by_file=False)]
+
+    assert drawn([f"cosim/{i}.py" for i in range(9)]) == drawn([f"cosim/moved/{8 - i}.py" for i in range(9)])
+
+
+def test_a_trial_goes_on_with_the_fates_of_the_same_tests(tmp_path: Path) -> None:
+    killed, survived, other = (Key("file", function, "", "", 1) for function in ("killed", "survived", "other"))
+    first = KeptFates(tmp_path / "fates", "tests", trust_killed=False)
+    first.add(killed, "quick", "killed")
+    first.add(survived, "quick", "survived")
+    again = KeptFates(tmp_path / "fates", "tests", trust_killed=False)
+    assert [again.get(key, "quick") for key in (killed, survived, other)] == ["killed", "survived", None]
+    assert again.get(survived, "slow") is None
+    changed = KeptFates(tmp_path / "fates", "changed tests", trust_killed=False)
+    assert [changed.get(key, "quick") for key in (killed, survived)] == [None, None]
+    trusting = KeptFates(tmp_path / "fates", "changed tests", trust_killed=True)
+    assert [trusting.get(key, "quick") for key in (killed, survived)] == ["killed", None]
+
+
+def test_what_was_found_counts_for_the_same_files_only(tmp_path: Path) -> None:
+    sources, kept = tmp_path / "sources", tmp_path / "kept"
+    (sources / "__pycache__").mkdir(parents=True)
+    (sources / "a.py").write_text("a = 1\n")
+    before = digest("words", *files_below(sources))
+    write_of(kept, before, {"drawn": [1]})
+    (sources / "__pycache__" / "a.pyc").write_text("")
+    assert digest("words", *files_below(sources)) == before
+    assert read_if_of(kept, before) == {"drawn": [1]}
+    for change in ({"a.py": "a = 2\n"}, {"a.py": "a = 1\n", "b.py": ""}):
+        for name, text in change.items():
+            (sources / name).write_text(text)
+        assert read_if_of(kept, digest("words", *files_below(sources))) is None
+    assert read_if_of(tmp_path / "none", before) is None

@@ -93,12 +93,15 @@ def every(root: Path) -> list[Mutant]:
     return [mutant for path in core_files(root) for mutant in mutants_of(path)]
 
 
-def shuffled(mutants: list[Mutant], seed: int) -> list[Mutant]:
-    """The same order for the same seed on every machine; adding or removing a mutant does not move the others."""
+def shuffled(mutants: list[Mutant], seed: int, *, by_file: bool = True) -> list[Mutant]:
+    """The same order for the same seed on every machine; what happens to one mutant does not move the others.
+
+    Without ``by_file`` the order stays also when files are renamed.
+    """
 
     def lot(mutant: Mutant) -> str:
         key = mutant.key
-        words = (str(seed), key.file, key.function, key.line, key.change, str(key.nth))
+        words = (str(seed), *((key.file,) if by_file else ()), key.function, key.line, key.change, str(key.nth))
         return hashlib.sha256("\0".join(words).encode()).hexdigest()
 
     return sorted(mutants, key=lot)

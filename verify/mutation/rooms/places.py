@@ -28,7 +28,7 @@ def main() -> None:
     numbers: dict[Mutant, int] = {}
     for room in PYTHON:
         of_room = [mutant for mutant in places.mutants if mutant.key.file.startswith(room.folder + "/")]
-        for mutant in shuffled(of_room, SEED)[: room.few if given.few else room.sample]:
+        for mutant in shuffled(of_room, SEED, by_file=False)[: room.few if given.few else room.sample]:
             numbers[mutant] = len(numbers) + 1
     names = places.plant(numbers, given.tree)
     document = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 import shlex
@@ -16,12 +17,21 @@ from verify.context import Context, Finished
 from verify.failure import RungFailed
 from verify.mutation.killers import AT_A_TIME
 from verify.mutation.mutants import SEED, Key, Mutant, shuffled
+from verify.mutation.rooms.kept import digest, files_below, read_if_of, write_of
 from verify.mutation.rooms.room import CPP, PYTHON_PATH, TARGETS, Room
 from verify.mutation.rooms.schemata import with_all
 
 __all__ = ["Planted", "plant"]
 
 HERE = Path(__file__).parent
+PLACES = "places.json"
+# A planted tree is used again if these are the same; tests that changed are copied into it and built anew.
+PLANTED_FROM = (
+    *("CMakeLists.txt", "c_core", "cmake", "cosim", "examples", "fmu", "pyproject.toml", "requirements.lock", "robots"),
+    *("verify/mutation/mutants.py", "verify/mutation/rooms/cpp_places.py", "verify/mutation/rooms/giveway_mutants.py"),
+    *("verify/mutation/rooms/mutant.hpp", "verify/mutation/rooms/planted.py", "verify/mutation/rooms/python_places.py"),
+    *("verify/mutation/rooms/room.py", "verify/mutation/rooms/schemata.py"),
+)
 NOT_COPIED = (".git", ".venv", "__pycache__", "build", "native", "out")
 SPARE = 2  # factor by which more are planted in C++ than wanted, as some do not compile
 ERROR = re.compile(r"^(/[^:\n]+):(\d+):\d+: (?:fatal )?error: ", re.MULTILINE)
@@ -46,20 +56,44 @@ class Planted:
 
 
 def plant(context: Context, *, few: bool) -> Planted:
-    """Draw, plant and build; ``few``: only as many as `make verify` tries."""
+    """Draw, plant and build; ``few``: only as many as `make verify` tries.
+
+    What is there already, of the same sources, is used again.
+    """
+    inputs = digest(str(few), *(path for name in PLANTED_FROM for path in files_below(context.root / name)))
+    drawn_file = context.work / "drawn.json"
     tree = context.work / "tree"
+    known = read_if_of(drawn_file, inputs)
+    if known is None:
+        shutil.rmtree(context.work)
+        context.work.mkdir()
+        known = _planted_anew(context, tree, few)
+    else:
+        shutil.rmtree(tree / "tests")
+        shutil.copytree(context.root / "tests", tree / "tests", ignore=shutil.ignore_patterns(*NOT_COPIED))
+    _build(context, tree)
+    _make_python(context, tree)
+    write_of(drawn_file, inputs, known)
+    document = json.loads((context.work / PLACES).read_text(encoding="utf-8"))
+    everything = [_mutant(entry) for entry in (*document["cpp"], *document["python"])]
+    by_key = {mutant.key: mutant for mutant in everything}
+    drawn = {by_key[Key(**entry["key"])]: entry["number"] for entry in known["drawn"]}
+    return Planted(tree, drawn, everything, known["not_compiled"])
+
+
+def _planted_anew(context: Context, tree: Path, few: bool) -> dict[str, Any]:
+    """Which mutants are drawn, with their numbers, and how many were passed over, because they do not compile."""
     shutil.copytree(context.root, tree, ignore=shutil.ignore_patterns(*NOT_COPIED), symlinks=True)
     document = _places(context, tree, few)
-    python = {_mutant(entry): entry["chosen"] for entry in document["python"]}
     _write_runtime(tree, document["names"])
     _configure(context, tree)
     cpp = [_mutant(entry) for entry in document["cpp"]]
-    drawn = {mutant: number for mutant, number in python.items() if number}
+    drawn = {_mutant(entry): entry["chosen"] for entry in document["python"] if entry["chosen"]}
     bad = 0
     planting = _Cpp(context, tree, first_number=len(drawn) + 1)
     for room in CPP:
         of_room = [mutant for mutant in cpp if mutant.key.file.startswith(room.folder + "/")]
-        planting.candidates += shuffled(of_room, SEED)[: SPARE * (room.few if few else room.sample)]
+        planting.candidates += shuffled(of_room, SEED, by_file=False)[: SPARE * (room.few if few else room.sample)]
     compiled = planting.that_compile()
     for room in CPP:
         of_room = [mutant for mutant in compiled if mutant.key.file.startswith(room.folder + "/")]
@@ -69,14 +103,13 @@ def plant(context: Context, *, few: bool) -> Planted:
         last = planting.candidates.index(of_room[wanted - 1])
         bad += sum(m not in compiled and m.key.file.startswith(room.folder + "/") for m in planting.candidates[:last])
         drawn |= {mutant: planting.numbers[mutant] for mutant in of_room[:wanted]}
-    _build(context, tree)
-    _make_python(context, tree)
-    return Planted(tree, drawn, [*cpp, *python], bad)
+    entries = [{"key": dataclasses.asdict(mutant.key), "number": number} for mutant, number in drawn.items()]
+    return {"drawn": entries, "not_compiled": bad}
 
 
 def _places(context: Context, tree: Path, few: bool) -> dict[str, Any]:
     """Finds all mutants with tools that only the environment of verify has, and plants those in Python."""
-    out = context.work / "places.json"
+    out = context.work / PLACES
     python = context.root / "build/verify/tools/bin/python"
     if not python.exists():
         raise RungFailed(f"missing: {python}; `make mutate` and `make verify` make it")
@@ -138,6 +171,9 @@ def _make_python(context: Context, tree: Path) -> None:
     (installed,) = (context.root / ".venv").glob("lib/python3*/site-packages")
     (folder,) = (context.work / "python").glob("lib/python3*/site-packages")
     (folder / "giveway_mutants.pth").write_text(f"{tree / PYTHON_PATH[0]}\n{installed}\n", encoding="utf-8")
+    command = context.work / "python" / "bin" / "giveway"
+    command.write_text(f'#!/bin/sh\nexec {command.parent / "python"} -m giveway "$@"\n', encoding="utf-8")
+    command.chmod(0o755)
 
 
 class _Cpp:

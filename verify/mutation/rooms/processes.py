@@ -53,4 +53,5 @@ def _started(python: Path, folder: Path) -> subprocess.Popen[str]:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
+        start_new_session=True,  # Ctrl-C must not look like tests that failed
     )

@@ -11,15 +11,16 @@ import resource
 import shutil
 import subprocess
 import time
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from verify.context import Context
 from verify.mutation.killers import AT_A_TIME
-from verify.mutation.mutants import Key, Mutant
+from verify.mutation.mutants import Mutant
+from verify.mutation.rooms.kept import KeptFates, digest, files_below, read_if_of, write_of
 from verify.mutation.rooms.planted import Planted
 from verify.mutation.rooms.processes import WarmProcesses
 from verify.mutation.rooms.room import PLAIN_PROGRAMS, PROGRAMS, SLOW_TESTS, TESTS
@@ -31,6 +32,8 @@ SLOWER, AT_LEAST_S = 2.0, 10.0
 SLOWER_ON_A_BUSY_MACHINE = 4.0
 RECORD_S = 600.0
 ALL_PROGRAMS = (*PROGRAMS, *PLAIN_PROGRAMS)
+
+Recorded = dict[str, Any]  # a test: name, seconds, failed, reached
 
 
 class Fate(enum.Enum):
@@ -51,13 +54,17 @@ class Test:
 
 class RoomTests:
     """Records on creation which mutants every test reaches; a test that fails on the original is reported and left
-    out."""
+    out. What an earlier call found in ``context.work`` about the same tests is used again.
+    """
 
-    def __init__(self, context: Context, planted: Planted) -> None:
+    def __init__(self, context: Context, planted: Planted, *, trust_killed: bool = False) -> None:
         self.context = context
         self.planted = planted
         self.folder = context.work / "trials"
-        self.folder.mkdir()
+        self.folder.mkdir(exist_ok=True)
+        tests = files_below(planted.tree / "tests")
+        self.kept = KeptFates(context.work / "fates.jsonl", digest(*tests), trust_killed=trust_killed)
+        self.helpers = digest(*(path for path in tests if path.suffix == ".py" and not path.match("test_*.py")))
         self.warm = WarmProcesses(planted.python, planted.tree, AT_A_TIME)
         self.failing: list[str] = []
         files = [path for folder in TESTS for path in (planted.tree / folder).rglob("test_*.py")]
@@ -70,16 +77,32 @@ class RoomTests:
         """Recorded on first use: a trial in which all other survivors are listed does not need it."""
         return self._of_files(self.slow_files)
 
-    def fates(self, mutants: Sequence[Mutant], listed: Container[Key]) -> dict[Mutant, Fate]:
-        """A listed mutant is run on the quick tests only, since it is known to survive all tests."""
-        found = self._met(mutants, self.quick)
-        left = [mutant for mutant in mutants if found[mutant] is not Fate.KILLED and mutant.key not in listed]
-        of_slow = self._met(left, self.slow) if left else {}
-        return found | {mutant: fate for mutant, fate in of_slow.items() if fate is not Fate.UNREACHED}
+    def take_away(self) -> None:
+        """Removes all tests, and what they found about the mutants."""
+        self.quick = self.slow = []
+        self.kept.fates.clear()
 
-    def _met(self, mutants: Sequence[Mutant], tests: Sequence[Test]) -> dict[Mutant, Fate]:
+    def by_quick(self, mutants: Sequence[Mutant]) -> dict[Mutant, Fate]:
+        """The fates of ``mutants`` with the quick tests."""
+        return self._met(mutants, "quick")
+
+    def by_slow(self, mutants: Sequence[Mutant]) -> dict[Mutant, Fate]:
+        """The fates of ``mutants`` with the slow tests."""
+        return self._met(mutants, "slow")
+
+    def _met(self, mutants: Sequence[Mutant], stage: Literal["quick", "slow"]) -> dict[Mutant, Fate]:
+        """A trial that is interrupted ends after the tests that are running."""
+        found = {mutant: Fate(fate) for mutant in mutants if (fate := self.kept.get(mutant.key, stage))}
+        left = [mutant for mutant in mutants if mutant not in found]
+        tests: list[Test] = getattr(self, stage) if left else []
+
+        def tried(mutant: Mutant) -> Fate:
+            fate = self._fate(mutant, tests)
+            self.kept.add(mutant.key, stage, fate.value)
+            return fate
+
         with ThreadPoolExecutor(AT_A_TIME) as pool:
-            return dict(zip(mutants, pool.map(lambda mutant: self._fate(mutant, tests), mutants), strict=True))
+            return found | dict(zip(left, pool.map(tried, left), strict=True))
 
     def _fate(self, mutant: Mutant, tests: Sequence[Test]) -> Fate:
         number = self.planted.drawn[mutant]
@@ -123,6 +146,7 @@ class RoomTests:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
+            start_new_session=True,  # Ctrl-C must not look like a mutant that was killed
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds))),
         )
         try:
@@ -133,9 +157,24 @@ class RoomTests:
             return False
 
     def _of_programs(self) -> list[Test]:
-        cases = [(program, name) for program in ALL_PROGRAMS for name in self._cases(program)]
         with ThreadPoolExecutor(AT_A_TIME) as pool:
-            return [test for test in pool.map(self._of_case, cases) if test]
+            found = list(pool.map(self._of_program, ALL_PROGRAMS))
+        return [test for tests in found for test in tests]
+
+    def _of_program(self, program: str) -> list[Test]:
+        of = digest(self.planted.tree / "build" / program)
+        return self._recorded(program, of, lambda: [self._of_case(program, name) for name in self._cases(program)])
+
+    def _recorded(self, group: str, of: str, record: Callable[[], list[Recorded]]) -> list[Test]:
+        """The tests of a group that pass, recorded now or earlier."""
+        path = self.folder / f"{_stem(group)}.recorded"
+        known = read_if_of(path, of)
+        if known is None:
+            known = record()
+            write_of(path, of, known)
+        self.failing += [f"{group} {entry['name']}" for entry in known if entry["failed"]]
+        passing = [entry for entry in known if not entry["failed"]]
+        return [Test(group, entry["name"], entry["seconds"], frozenset(entry["reached"])) for entry in passing]
 
     def _cases(self, program: str) -> Iterator[str]:
         if program in PLAIN_PROGRAMS:
@@ -150,40 +189,37 @@ class RoomTests:
             elif name.endswith("."):
                 suite = name
 
-    def _of_case(self, case: tuple[str, str]) -> Test | None:
-        program, name = case
-        marks = self._fresh_marks("-".join(case).replace("/", "."))
+    def _of_case(self, program: str, name: str) -> Recorded:
+        marks = self._fresh_marks(_stem(f"{program}-{name}"))
         start = time.perf_counter()
-        if not self._program(program, [name], {"GIVEWAY_MUTANTS_REACHED": str(marks)}, RECORD_S):
-            self.failing.append(f"{program} {name}")
-            return None
+        passed = self._program(program, [name], {"GIVEWAY_MUTANTS_REACHED": str(marks)}, RECORD_S)
         seconds = time.perf_counter() - start
-        reached = frozenset(at for at, mark in enumerate(marks.read_bytes()) if mark)
-        return Test(program, name, seconds, reached)
+        reached = [at for at, mark in enumerate(marks.read_bytes()) if mark]
+        return {"name": name, "seconds": seconds, "failed": not passed, "reached": reached}
 
     def _of_files(self, files: Iterable[str]) -> list[Test]:
         with ThreadPoolExecutor(AT_A_TIME) as pool:
             return [test for tests in pool.map(self._of_file, files) for test in tests]
 
     def _of_file(self, file: str) -> list[Test]:
+        of = digest(self.helpers, self.planted.tree / file)
+        return self._recorded(file, of, lambda: self._record_file(file))
+
+    def _record_file(self, file: str) -> list[Recorded]:
         """Of pytest."""
-        stem = file.removesuffix(".py").replace("/", ".")
-        report = self.folder / f"{stem}.reach"
+        report = self.folder / f"{_stem(file)}.reach"
+        report.unlink(missing_ok=True)
         environment = {
-            "GIVEWAY_MUTANTS_REACHED": str(self._fresh_marks(stem)),
+            "GIVEWAY_MUTANTS_REACHED": str(self._fresh_marks(_stem(file))),
             "GIVEWAY_REACH_REPORT": str(report),
         }
-        code = self._pytest(["-p", "verify.mutation.rooms.reach", file], environment, RECORD_S, stem)
-        if code not in (0, 1):
-            self.failing.append(f"{file} (ended with {code})")
-        found = []
+        code = self._pytest(["-p", "verify.mutation.rooms.reach", file], environment, RECORD_S, _stem(file))
+        found: list[Recorded] = []
         for line in report.read_text(encoding="utf-8").splitlines() if report.exists() else []:
             entry = json.loads(line)
-            if entry["failed"]:
-                self.failing.append(entry["test"])
-            else:
-                name = entry["test"].removeprefix(f"{file}::")
-                found.append(Test(file, name, entry["seconds"], frozenset(entry["reached"])))
+            found.append({**entry, "name": entry["test"].removeprefix(f"{file}::")})
+        if code not in (0, 1):
+            found.append({"name": f"(ended with {code})", "seconds": 0.0, "failed": True, "reached": []})
         return found
 
     def _fresh_marks(self, name: str) -> Path:
@@ -204,6 +240,10 @@ class RoomTests:
             return self.warm.ask(request)
         finally:
             shutil.rmtree(self.folder / name, ignore_errors=True)
+
+
+def _stem(group: str) -> str:
+    return group.removesuffix(".py").replace("/", ".")
 
 
 def _seconds(tests: Iterable[Test]) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from verify.context import Context
@@ -41,18 +41,28 @@ class RoomsTrial:
 
 
 def try_all(tests: RoomTests, rooms: Iterable[Room] = ROOMS, say: Callable[[str], None] = print) -> RoomsTrial:
-    """Room by room; prints the score and the survivors of each."""
+    """Room by room; prints the score and the survivors of each.
+
+    A listed mutant is run on the quick tests only, since it is known to survive all tests.
+    """
     listed = survivors.read(tests.context.root, LIST)
+    of_rooms = {room: tests.planted.of(room) for room in rooms}
     fates: dict[Mutant, Fate] = {}
-    for room in rooms:
-        of_room = tests.fates(tests.planted.of(room), listed)
-        for mutant, fate in of_room.items():
-            if fate is not Fate.KILLED:
-                say(f"  {fate.value}: {mutant}")
-        killed = sum(fate is Fate.KILLED for fate in of_room.values())
-        say(f"{room.folder}: {killed} of {len(of_room)} killed")
-        fates |= of_room
+    for room, mutants in of_rooms.items():
+        fates |= tests.by_quick(mutants)
+        say(f"{room.folder}: {_killed(fates, mutants)} of {len(mutants)} killed by the quick tests")
+    left = [mutant for mutant, fate in fates.items() if fate is not Fate.KILLED and mutant.key not in listed]
+    fates |= {mutant: fate for mutant, fate in tests.by_slow(left).items() if fate is not Fate.UNREACHED}
+    for room, mutants in of_rooms.items():
+        say(f"{room.folder}: {_killed(fates, mutants)} of {len(mutants)} killed by all tests")
+        for mutant in mutants:
+            if fates[mutant] is not Fate.KILLED:
+                say(f"  {fates[mutant].value}: {mutant}")
     return RoomsTrial(tests.planted, fates)
+
+
+def _killed(fates: Mapping[Mutant, Fate], mutants: Iterable[Mutant]) -> int:
+    return sum(fates[mutant] is Fate.KILLED for mutant in mutants)
 
 
 def judge(context: Context, trial: RoomsTrial) -> None:
