@@ -89,10 +89,11 @@ compile-all:
 
 C_SOURCES = $$(git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 
-lint: .venv/test-packages-installed ## ruff, mypy, clang-format
+lint: .venv/test-packages-installed ## ruff, mypy, clang-format, width of texts and files they cite
 	$(BIN)/ruff check --quiet .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
+	$(BIN)/python tests/lint_text.py
 	$(BIN)/clang-format --dry-run -Werror $(C_SOURCES)
 
 format: .venv/test-packages-installed ## format C, C++ and Python in place

@@ -1,13 +1,15 @@
 # giveway_add_fmu(NAME controller SOURCES ... [LIBRARIES ...] [TABLE file] [SHARES file] [ROBOT file] [OUTPUT dir]
 #                 [LICENCES NAME=FILE ...] [SHIP FILE ...])
 #
-# SHIP: the files of the model and of what it is linked to, for an FMU that an importer can compile; the shell's are added.
-# SHARES: the table that TABLE shares entries with.
-# The equations of the documentation page are read from equations.txt beside the caller's CMakeLists.txt, if there is one.
+# SHIP: the files of the model and of what it is linked to, for an FMU that an importer can compile; the shell's are
+# added.
+# SHARES: the table that TABLE shares entries with. The equations of the documentation page are read from equations.txt
+# beside the caller's CMakeLists.txt, if there is one.
 #
-# Builds the model as static library giveway_<name>_model (for the batch library and tests), takes the shared library, one for
-# FMI 2.0 and 3.0, from the trees of the platforms, and packs giveway_<name>_fmi2.fmu and giveway_<name>_fmi3.fmu: for this machine in
-# fmus/, for all platforms in fmus_all/. With OUTPUT, a folder, the FMU is one for tests, compiled in this tree and packed there.
+# Builds the model as static library giveway_<name>_model (for the batch library and tests), takes the shared library,
+# one for FMI 2.0 and 3.0, from the trees of the platforms, and packs giveway_<name>_fmi2.fmu and
+# giveway_<name>_fmi3.fmu: for this machine in fmus/, for all platforms in fmus_all/. With OUTPUT, a folder, the FMU is
+# one for tests, compiled in this tree and packed there.
 # Defaults: TABLE variables.toml beside the caller's CMakeLists.txt, ROBOT robots/trikey.toml.
 add_custom_target(fmus ALL)
 add_custom_target(fmus_all)
@@ -99,7 +101,8 @@ function(giveway_add_fmu)
   install(FILES "${_table_written_out}" DESTINATION giveway/native COMPONENT native)
 endfunction()
 
-# Target TARGET: MODULE_fmi2.fmu and MODULE_fmi3.fmu in FOLDER, with the libraries of PLATFORMS or, without, that of this tree.
+# Target TARGET: MODULE_fmi2.fmu and MODULE_fmi3.fmu in FOLDER, with the libraries of PLATFORMS or, without, that of
+# this tree.
 function(giveway_pack_fmu MODULE)
   cmake_parse_arguments(ARG "ALL" "TARGET;FOLDER;GENERATED" "PLATFORMS;LICENCES;GENERATED_FILES" ${ARGN})
   set(_arguments "")

@@ -1,6 +1,6 @@
-# The shared libraries of the FMUs. Each platform has a build tree of its own in platforms/PLATFORM, compiled by zig, and what an
-# FMU holds for a platform comes from there, whether it is packed for this machine alone (`make fmus`, the tests, the wheel) or for
-# all platforms (`make fmus ALL=1`): what is tested is what users get.
+# The shared libraries of the FMUs. Each platform has a build tree of its own in platforms/PLATFORM, compiled by zig,
+# and what an FMU holds for a platform comes from there, whether it is packed for this machine alone (`make fmus`, the
+# tests, the wheel) or for all platforms (`make fmus ALL=1`): what is tested is what users get.
 include(ExternalProject)
 
 option(GIVEWAY_NATIVE_FMUS "Compile the FMUs with this tree's own compiler instead of zig: for debuggers and sanitisers" OFF)

@@ -1,5 +1,5 @@
-# Toolchain file for the platforms that FMUs are built for: zig's clang, which brings the C libraries of all of them. Used by
-# FmuPlatforms.cmake with
+# Toolchain file for the platforms that FMUs are built for: zig's clang, which brings the C libraries of all of them.
+# Used by FmuPlatforms.cmake with
 #
 #   -DGIVEWAY_PLATFORM=x86_64-windows   an FMI 3 platform tuple, one of those below
 #   -DGIVEWAY_ZIG=FILE                  zig's binary

@@ -12,8 +12,8 @@ function(giveway_compile_options TARGET)
                                              CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
 endfunction()
 
-# Files that compute several designs side by side. gcc 12 contracts a * b +- c to one rounding when it makes vectors of scalar code by
-# itself (vfmsubadd), whatever -ffp-contract says: it must not do that here.
+# Files that compute several designs side by side. gcc 12 contracts a * b +- c to one rounding when it makes vectors of
+# scalar code by itself (vfmsubadd), whatever -ffp-contract says: it must not do that here.
 set(GIVEWAY_LANES_4 -mavx2 -fno-tree-slp-vectorize)
 set(GIVEWAY_LANES_8 -mavx512f -mavx512dq -mavx512vl -fno-tree-slp-vectorize)
 # gcc copies and clears a state of lanes (2 kB) with `rep`, whose start alone takes as long as a vector loop.

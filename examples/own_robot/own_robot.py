@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 SECONDS, REPORT_S = 0.3, 1e-3
 SLIDER_SPEED = 0.5  # m/s
 COUPLING_STEPS_S = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
-SIGNALS = ("base way", "plate way", "compression", "torque 1")
+SIGNALS = ("base travel", "plate travel", "compression", "torque 1")
 E = np.array([np.cos(-2 * np.pi / 3), np.sin(-2 * np.pi / 3)])  # the slider's direction; the blow is central
 
 # The robot: what the testbed is built with (`giveway variables testbed`).

@@ -92,8 +92,7 @@ int check_options(const gwb_options_t *options, char *message) {
 
 } // namespace
 
-// Workers take the next runs until none is left; each writes only its own runs' results, so the order in which they
-// come to it does not matter.
+// Workers take the next runs until none is left; each writes only its own runs' results, so the order does not matter.
 struct gwb_batch final : batch::RunDone {
     const gwb_spec_t *specs = nullptr;
     std::size_t count = 0;
@@ -111,7 +110,7 @@ struct gwb_batch final : batch::RunDone {
     std::uint32_t working = 0; // threads at work, guarded by mutex
 
     gwb_batch() {
-        // Waiting by the monotonic clock: setting the time of day must not stretch it.
+        // Waits by the monotonic clock, which a change of the time of day does not affect.
         pthread_condattr_t attributes;
         pthread_condattr_init(&attributes);
         pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
@@ -286,7 +285,7 @@ int gwb_start(const gwb_spec_t *specs, size_t count, const gwb_options_t *option
         if (options->lanes == 0) {
             made->options.lanes = gwb_widest_lanes();
         }
-        // Enough of them that designs of one kind meet, and some portions for each thread while there are few.
+        // Large enough that a portion has several designs of one kind, and small enough for some portions per thread.
         const std::size_t lanes = made->options.lanes;
         const std::size_t fair = count / (2U * std::size_t{options->threads}) / lanes * lanes;
         made->portion = std::clamp<std::size_t>(fair, lanes, largest_portion);
@@ -305,7 +304,7 @@ int gwb_wait(gwb_batch_t *running, double timeout_s, gwb_progress_t *progress) {
     if (running == nullptr) {
         return 1;
     }
-    constexpr double day_s = 86400.0; // keeps the sum in range; whoever wants more asks again
+    constexpr double day_s = 86400.0; // keeps the sum in range; the caller can wait again
     const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, day_s) : 0.0;
     timespec deadline{};
     clock_gettime(CLOCK_MONOTONIC, &deadline);

@@ -11,7 +11,7 @@
  *     gwb_result_t result;
  *     if (gwb_run(&spec, &result) == GWB_OK) { ... result.metric[GWB_PEAK_FORCE] ... }
  *
- * No function prints, exits, throws or keeps a pointer longer than it says. Units are SI unless a name says otherwise.
+ * No function prints, exits, throws or keeps a pointer longer than stated. Units are SI unless a name says otherwise.
  */
 #ifndef GIVEWAY_BATCH_H
 #define GIVEWAY_BATCH_H
@@ -56,8 +56,8 @@ enum { GWB_THREADS_MAX = 1024 };
 #define GWB_NONE UINT32_MAX /* no model, no reference */
 
 /* Windows of the metrics' definitions. */
-#define GWB_CAUSE_WINDOW_S 0.25       /* a detection is false if nothing touched the robot for so long */
-#define GWB_TRANSIENT_WINDOW_S 0.5    /* of a contact with a person; what lasts longer is quasi-static */
+#define GWB_CAUSE_WINDOW_S 0.25       /* a detection is false if nothing touched the robot for this time */
+#define GWB_TRANSIENT_WINDOW_S 0.5    /* of a contact with a person; a longer force is quasi-static */
 #define GWB_CONTACT_GAP_S 0.1         /* touches less than this apart are one contact */
 #define GWB_PEAK_TORQUE_WINDOW_S 0.35 /* from contact on: the impact's peak, not that of the escape */
 
@@ -65,7 +65,7 @@ enum { GWB_THREADS_MAX = 1024 };
 enum {
     GWB_OF_BATCH = 0,
     GWB_OF_COLLISION = 1, /* the table of a run in which something can be hit */
-    GWB_OF_DESIGN = 2,    /* what a bumper design is judged by, and what happened otherwise than asked */
+    GWB_OF_DESIGN = 2,    /* metrics of a bumper design, and of deviations from the request */
     GWB_OF_FREE_RUN = 4   /* the table of a run in which nothing can be hit */
 };
 
@@ -245,7 +245,7 @@ typedef struct gwb_result {
     double time_s;                  /* how far the run came: its end, or the last good time */
     double plant_step_s;            /* GWB_FIXED_STEP: the plant's step; else 0 */
     double value, minimum, maximum; /* of that variable; else NaN */
-    /* NaN for what did not happen; all NaN unless status is GWB_OK. */
+    /* NaN for events that did not happen; all NaN unless status is GWB_OK. */
     double metric[GWB_METRIC_COUNT];
     double truth[GWB_METRIC_COUNT]; /* NaN where there is none */
     char message[GWB_MESSAGE_SIZE]; /* empty if status is GWB_OK; one line, ends in a zero */
@@ -313,8 +313,35 @@ typedef struct gwb_force {
 GWB_API int gwb_judge_force(const double *time_s, const double *force_n, size_t rows, double touch_n,
                             gwb_force_t *judged);
 
-/* Many runs on threads of their own. There are no callbacks: whoever waits asks for progress as often as it likes,
- * on its own thread.
+/* Where a slider starts that is to have a speed when it meets the robot: the testbed's own equations of slider, rail
+ * friction, rope and weight up to the contact, before any bumper gives way.
+ *
+ * With the rope it is pulled from rest until it is so fast. Without, it slides for a given time against the rail's
+ * friction. */
+#define GWB_RUN_UP_LONGEST_S 60.0
+typedef struct gwb_run_up {
+    double end_speed_mps; /* asked: [0, 20], with the rope above 0 */
+    double duration_s;    /* without the rope asked, [0, GWB_RUN_UP_LONGEST_S]; with it found */
+    /* The testbed's variables of these names, in their ranges. */
+    double slider_mass, slider_friction, slider_friction_speed, slider_damping;
+    double rope_hanging_mass, rope_stiffness, rope_damping, rope_drop_height;
+    uint32_t rope_attached; /* 0 or 1 */
+    uint32_t status; /* found: GWB_OK; GWB_WRONG_SPEC; GWB_FAILED, the integrator's; GWB_NO_MEMORY; GWB_REFUSED: the
+                        weight has landed, or the longest time is over, at reached_mps (duration_s and travel_m are
+                        those of that moment), or without the rope the start would have to be faster than 1000 m/s */
+    /* Found. */
+    double start_speed_mps, travel_m, reached_mps;
+    /* Where it is in between, if GWB_OK: its travel from the start at `time_count` times, ascending and not negative;
+     * after duration_s that of the end. */
+    size_t time_count;
+    const double *times_s;
+    double *travels_m;
+} gwb_run_up_t;
+
+/* Answers `count` of them; returns how many are GWB_OK. */
+GWB_API size_t gwb_run_up(gwb_run_up_t *run_ups, size_t count);
+
+/* Many runs on separate threads. There are no callbacks: the waiting thread asks for the progress as often as needed.
  *
  *     gwb_options_t options = {.threads = 2, .method = GWB_FIXED_STEP};
  *     gwb_batch_t *batch;
@@ -331,10 +358,10 @@ typedef struct gwb_progress {
 } gwb_progress_t;
 
 /* GWB_FIXED_STEP trades a bounded error (README.md of fmu/batch has the figures) for speed. A design gives the same
- * bits in every lane, with any number of lanes, on any thread and in any batch. Its step follows from its own
- * parameters alone; the integrator's settings (solver.*) do not act. What it cannot do is run event-exact, and the
- * result's method says so: a base that tips, a communication step that is not a whole number of servo ticks (0.5 ms),
- * and designs so stiff that their step would be below 0.5 ms / 32. */
+ * bits in every lane, with any number of lanes, on any thread and in any batch. Its step follows from its parameters
+ * alone; the integrator's settings (solver.*) have no effect. The following runs are event-exact instead, which the
+ * result's method shows: a base that tips, a communication step that is not a whole number of servo ticks (0.5 ms), and
+ * designs so stiff that their step would be below 0.5 ms / 32. */
 typedef struct gwb_options {
     uint32_t threads;    /* [1, GWB_THREADS_MAX]; not more than runs are started */
     uint32_t method;     /* GWB_EVENT_EXACT or GWB_FIXED_STEP */
@@ -347,10 +374,10 @@ typedef struct gwb_options {
 /* Designs that this processor computes side by side: 8 with AVX-512 (F, DQ, VL), 4 with AVX2, else 1. */
 GWB_API uint32_t gwb_widest_lanes(void);
 
-/* Starts threads on `count` runs; results[i] is that of specs[i]. All that is passed must stay as it is until
- * gwb_finish returns, but the options, which are copied. A run that cannot be done says so in its result and does not
- * stop the others. 1 if the batch was started; else 0, *batch is null, and message (GWB_MESSAGE_SIZE bytes, or null)
- * says why. */
+/* Starts threads on `count` runs; results[i] is that of specs[i]. All arguments except the options, which are copied,
+ * must stay unchanged until gwb_finish returns. A run that is not possible is reported in its result and does not stop
+ * the others. 1 if the batch was started; else 0, *batch is null, and message (GWB_MESSAGE_SIZE bytes, or null) says
+ * why. */
 GWB_API int gwb_start(const gwb_spec_t *specs, size_t count, const gwb_options_t *options, gwb_result_t *results,
                       gwb_batch_t **batch, char *message);
 
@@ -360,7 +387,7 @@ GWB_API int gwb_wait(gwb_batch_t *batch, double timeout_s, gwb_progress_t *progr
 /* Ends running runs after their present step and starts no more; any thread may call it. */
 GWB_API void gwb_cancel(gwb_batch_t *batch);
 
-/* Cancels what is not done, waits for the threads' end and frees the batch. Every result is written then. Null is
+/* Cancels unfinished runs, waits for the threads' end and frees the batch. Then every result is written. Null is
  * allowed. */
 GWB_API void gwb_finish(gwb_batch_t *batch);
 

@@ -1,4 +1,4 @@
-// What a run and recorded traces share: both models' variables with the caller's settings, refusals in words, metrics.
+// Common to runs and recorded traces: both models' variables with the caller's settings, messages of refusals, metrics.
 #pragma once
 
 #include <array>

@@ -29,7 +29,7 @@ int ticks_in(double step_s) {
     return whole >= 1.0 && std::fabs(ticks - whole) < 1e-9 ? static_cast<int>(whole) : 0;
 }
 
-// One design of a group: everything of its run but the plant's motion.
+// One design of a group: its whole run except the plant's motion.
 class Lane {
 public:
     Lane(const gwb_spec_t &spec, Monitor &monitor, gwb_result_t &result)
@@ -56,7 +56,7 @@ public:
         return true;
     }
 
-    // What designs have to share to run side by side.
+    // The properties that designs have to share to run side by side.
     [[nodiscard]] auto key() const {
         return std::tuple(steps_per_tick_, ticks_per_step_, run_.spec().step_count, Structure(start_.parameters));
     }
@@ -214,7 +214,7 @@ private:
         return take<testbed::PerWheel<double>>(plant_.state() + plant::Layout<>::motor_angle * width_, i);
     }
 
-    // What the sensors measure in this bus cycle.
+    // The sensor values of this bus cycle.
     void sample() {
         std::array<double, testbed::Deviates{}.size() * widest> drawn{};
         if (noisy_) {
@@ -257,7 +257,7 @@ private:
     std::array<testbed::PerWheel<double>, widest> motor_torque_{};
 };
 
-// What is compiled for a width.
+// The functions compiled for a width.
 struct Width {
     LanePlant *(*new_plant)();
     LaneNoise noise;

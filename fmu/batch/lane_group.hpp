@@ -16,9 +16,8 @@ struct FixedStep {
 // Widest lanes of this processor.
 int widest_lanes();
 
-// Runs `count` specs one after the other or side by side; results[i] is that of specs[i], whatever the others are. A
-// design that cannot be run over fixed steps is run event-exact. Calls done() once for each run when its result is
-// written.
+// Runs `count` specs one after the other or side by side; results[i] is that of specs[i], independent of the others. A
+// design that cannot run with fixed steps runs event-exact. Calls done() once for each run when its result is written.
 class RunDone {
 public:
     virtual ~RunDone() = default;

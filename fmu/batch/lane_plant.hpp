@@ -19,8 +19,7 @@ struct LaneStart {
     double first_contact_s; // negative: none yet
 };
 
-// What decides which code a design runs through, every parameter that is a choice or a count: designs side by side
-// share it.
+// The parameters that select code, that is every choice and count: designs side by side share them.
 class Structure {
 public:
     explicit Structure(const plant::Parameters<double> &p) {

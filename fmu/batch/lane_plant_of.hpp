@@ -11,8 +11,8 @@
 
 namespace giveway::batch {
 
-// Where a number of the first design is; those of the others follow at the distance of a whole design. In place of a
-// scalar type it makes convert() gather designs into lanes.
+// Where a number of the first design is; those of the others follow at the distance of a whole design. As a scalar type
+// it makes convert() gather designs into lanes.
 template <int N> struct Strided {
     const double *first = nullptr;
     Strided() = default;
@@ -30,10 +30,10 @@ template <int N> struct Strided {
     }
 };
 
-// Contacts, stops and the rope see for themselves whether they act; their modes only report it. What a mode decides, a
-// gear that sticks or slides and an idealised latch, changes at the end of a step too, and the way the state would have
-// gone is made up for: the instant at which the indicator was zero and the state there are interpolated, the mode
-// changes there, and the rest of the step is done again.
+// Contacts, stops and the rope check themselves whether they act; their modes only report it. A mode that decides, that
+// of a gear or of an idealised latch, also changes at the end of a step, and the step is corrected: the instant at
+// which the indicator was zero and the state there are interpolated, the mode changes there, and the rest of the step
+// is repeated.
 template <int N> class LanePlantOf final : public LanePlant {
     using L = math::Lanes<N>;
     using State = plant::StateVector<L>;
@@ -60,7 +60,7 @@ public:
         present_ = {};
         evaluated_ = false;
         torques_are_new_ = false;
-        // Elements that there are.
+        // The existing elements.
         const auto there = [](bool yes) { return L(yes ? 1.0 : 0.0); };
         const bool rope = p_.slider_present != 0 && p_.rope_attached != 0;
         const bool plate = p_.slider_present != 0 && p_.has_plate();
@@ -120,7 +120,7 @@ private:
         return reinterpret_cast<const double *>(&block);
     }
 
-    // Not inlined, so that all who need it share one copy in the instruction cache.
+    // Not inlined, so that all callers share one copy in the instruction cache.
     [[gnu::noinline, gnu::flatten]] void evaluate(Evaluation &e, const State &x, const plant::Inputs<L> &u) {
         there_.gear_direction = m_.gear_direction;
         there_.latched = m_.latched;
@@ -179,8 +179,8 @@ private:
         return present_;
     }
 
-    // What the last step has led to. True if that changed the state or what decides, so that present_ has to be found
-    // again.
+    // Mode changes after the last step. True if the state or a deciding mode has changed, so that present_ has to be
+    // computed again.
     // Long because modes that report and modes that decide are told apart on the same indicators, lane by lane.
     bool change_modes() {
         Evaluation &end = present_;
@@ -193,7 +193,7 @@ private:
         }
         const Events g = plant::event_indicators(end, x_, m_, p_, d_);
 
-        // What only reports.
+        // The modes that only report.
         Events reported{};
         const auto follow = [&](int event, L mode) {
             reported[event] = math::select(math::less(zero, g[event]), one, zero) - mode;
@@ -206,7 +206,7 @@ private:
         if (!plant::bumper_holds(p_)) {
             follow(At::event_end_stop, one - m_.end_stop);
         }
-        // What decides.
+        // The modes that decide.
         constexpr auto deciding = [] {
             std::array<int, plant::table_wheels + 1> events{};
             for (int i = 0; i < plant::table_wheels; ++i) {
@@ -263,13 +263,13 @@ private:
         return true;
     }
 
-    // Takes the lanes in which something was decided back to `share` of the last step and forth again with new modes.
+    // Sets the lanes with a decided mode change back to `share` of the last step, and repeats the rest with new modes.
     template <class Mask> void redo(L share, Mask decided, const Events &fired) {
         const L step(last_step_s_);
         const L part = math::select(decided, share, L(0.0));
         State x;
         for (std::size_t i = 0; i < x.size(); ++i) {
-            // Through both ends, with the slope of the beginning.
+            // Interpolation through both ends with the slope of the beginning.
             const L straight = step * rate_before_[i];
             x[i] = before_[i] + part * (straight + part * (x_[i] - before_[i] - straight));
         }

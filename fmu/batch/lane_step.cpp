@@ -9,7 +9,7 @@ namespace giveway::batch {
 
 namespace {
 
-// Of a step: a vibration turns by at most this angle, and what decays on its own does so by at most this exponent. The
+// Limits for a step: a vibration advances by at most this angle, and a decay by at most this exponent. The
 // classic Runge-Kutta method is stable up to 2.8; these are its accuracy's bounds, from the comparison with the
 // event-exact method (README.md).
 constexpr double greatest_angle = 0.2;
@@ -33,7 +33,7 @@ double together(double a, double b) { return 1.0 / (1.0 / a + 1.0 / b); }
 void slider(Stiffest &s, const plant::Parameters<double> &p, double v) {
     const bool plate = p.has_plate();
     const double carriage = plate && !p.plate_on_robot() ? p.slider_mass - p.bumper_plate_mass : p.slider_mass;
-    const double nose = plate && !p.plate_on_robot() ? p.bumper_plate_mass : p.slider_mass; // what meets the robot
+    const double nose = plate && !p.plate_on_robot() ? p.bumper_plate_mass : p.slider_mass; // mass that hits the robot
     const double met = p.plate_on_robot() ? p.bumper_plate_mass : p.base_mass;
     const double contact = together(nose, met);
     s.vibration(p.contact_stiffness, contact);

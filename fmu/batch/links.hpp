@@ -1,4 +1,4 @@
-// What one model hands to the other, and the inputs that tables drive.
+// The values exchanged between the models, and the inputs that tables drive.
 #pragma once
 
 #include <array>

@@ -35,7 +35,7 @@ double degrees(double radians) { return radians * (180.0 / pi); }
 // Wrapped to [-180, 180).
 double wrapped(double deg) { return deg + 180.0 - 360.0 * std::floor((deg + 180.0) / 360.0) - 180.0; }
 
-// What the metrics need of the parameters.
+// The parameters that the metrics need.
 struct Parameters {
     Parameters(const testbed::Variables &t, const controller::Variables &c, const ForceLimits &force_limits)
         : wheel_radius_m(t.wheel_radius), wheel_distance_m(t.wheel_distance),
@@ -178,7 +178,7 @@ private:
         }
     }
 
-    // On a plane: how far the centre of pressure of the wheels' loads is from the nearest line between two of them. It
+    // On a plane: distance of the centre of pressure of the wheels' loads from the nearest line between two wheels. It
     // follows from the base's acceleration, the horizontal forces and their heights.
     void tip_margin() {
         double least = 1.0;
@@ -232,7 +232,7 @@ private:
         }
     }
 
-    // Where, and how fast the robot was.
+    // Contact point, and speed of the robot.
     void first_contact() {
         if (start_ < count_ && s_[start_].contact) {
             set(GWB_FIRST_CONTACT_X, 1e3 * s_[start_].contact_base_x);
@@ -243,7 +243,7 @@ private:
         }
     }
 
-    // How far the controller was from its plan before it reacted to anything, and what was at its limits.
+    // Distance of the controller's reference from its plan before the first reaction, and quantities at their limits.
     void otherwise_than_asked() {
         double distance = 0.0;
         double angle = 0.0;

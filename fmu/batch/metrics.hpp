@@ -1,4 +1,4 @@
-// What a collision is judged by, computed from samples of a run; each metric's definition is its line in GWB_METRICS.
+// The metrics of a collision, computed from samples of a run; each metric's definition is its line in GWB_METRICS.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ struct ForceLimits {
     double transient_n, lasting_n; // as in gwb_spec_t
 };
 
-// Fills value and truth ([GWB_METRIC_COUNT] each); NaN for what did not happen. At least one sample; the models'
+// Fills value and truth ([GWB_METRIC_COUNT] each); NaN for events that did not happen. At least one sample; the models'
 // variables hold the run's parameters.
 void evaluate(const Sample *samples, std::size_t count, const testbed::Variables &testbed,
               const controller::Variables &controller, const ForceLimits &limits, double *value, double *truth);

@@ -11,8 +11,7 @@
 
 namespace giveway::batch {
 
-// Memory for the samples of one run after the other: fresh pages for each would cost a twentieth of a run over fixed
-// steps.
+// Memory for the samples, reused by successive runs: new pages for each run would cost a twentieth of a fixed-step run.
 class SampleRoom {
 public:
     // Null when memory is short.
@@ -40,7 +39,7 @@ public:
     // Checks the spec, makes the controller and applies the settings to it and to the testbed's variables.
     bool prepare(testbed::Variables &testbed);
     bool start_controller();
-    // What is recorded lies in `room`, which is this run's alone until judge().
+    // The recorded samples are in `room`, which belongs to this run alone until judge().
     bool begin(SampleRoom &room);
     // At every step 0 .. step_count: sensors, plan, controller, commands, push, record.
     bool exchange(std::uint32_t step);
@@ -49,7 +48,7 @@ public:
     // After the last exchange: metrics.
     void judge();
 
-    // Another goes on with this run and counts its steps.
+    // Another object continues this run and counts its steps.
     void hand_over() { reported_ = spec_.step_count; }
     bool model_failed(std::uint32_t status, std::uint32_t model, Message &message);
 

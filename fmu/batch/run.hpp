@@ -8,7 +8,7 @@
 
 namespace giveway::batch {
 
-// What a run and those who wait for it tell each other.
+// Progress and cancellation, shared by a run and the waiting thread.
 struct Monitor {
     std::atomic<bool> cancelled{false};
     std::atomic<std::uint64_t> steps_done{0};

@@ -1,4 +1,4 @@
-// What the metrics read of a run: one sample per row of its traces.
+// The values of a run that the metrics read: one sample per row of its traces.
 #pragma once
 
 #include <algorithm>
@@ -91,7 +91,7 @@ template <class Visit> void each_trace(Visit &&visit) {
     visit(&Sample::mode, &C::mode);
 }
 
-// The sample of what the models' variables hold now.
+// The sample of the present values of the models' variables.
 inline void take_sample(Sample &sample, double now_s, const testbed::Variables &testbed,
                         const controller::Variables &controller) {
     sample.time_s = now_s;

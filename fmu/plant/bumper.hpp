@@ -43,7 +43,7 @@ BumperForce<T> bumper_force(const Parameters<T, Wheels> &p, const Modes<T, Wheel
     });
 }
 
-// Where the plate of a bumper that nothing holds rests against its end stop.
+// Rest position of a free bumper's plate against its end stop.
 template <class T, int Wheels> T resting_compression(const Parameters<T, Wheels> &p) {
     return with_bumper_law(p, [&](auto law) -> T {
         return T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness);

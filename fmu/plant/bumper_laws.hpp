@@ -5,7 +5,7 @@
 //   spring          force over compression and its rate that extends the bumper, and the energy stored
 //   latch           what a magnet adds, where the law has one (`has_latch`)
 //   rest_force, rest_stiffness  what presses the plate against its end stop at full extension, and its slope there
-//   greatest_stiffness  the steepest slope of all that, which the longest fixed step follows from
+//   greatest_stiffness  the steepest slope of all these, which limits the fixed step
 //   holds           true where a latch holds the plate at full extension without any travel, until it is pulled with
 //                   `holding_force` beyond the spring's
 //   is_latched      what an observer of the plate calls latched; for a law that holds its mode says so
@@ -81,7 +81,7 @@ concept BumperLaw = requires(const Parameters<double> &p, double c) {
     };
 };
 
-// use(law) for the bumper that there is, which has to have a plate.
+// use(law) for the present bumper, which has to have a plate.
 template <class T, int Wheels, class Use> auto with_bumper_law(const Parameters<T, Wheels> &p, Use &&use) {
     const auto checked = [&use]<BumperLaw Law>(Law law) { return use(law); };
     switch (p.bumper_kind) {
@@ -98,7 +98,7 @@ template <class T, int Wheels> bool bumper_holds(const Parameters<T, Wheels> &p)
     return with_bumper_law(p, [](auto law) { return decltype(law)::holds; });
 }
 
-// What the hold adds at full extension, beyond the spring; 0 where nothing holds.
+// Additional holding force at full extension, beyond the spring; 0 without a hold.
 template <class T, int Wheels> T bumper_holding_force(const Parameters<T, Wheels> &p) {
     return with_bumper_law(p, [&](auto law) -> T {
         if constexpr (decltype(law)::holds) {
@@ -109,7 +109,7 @@ template <class T, int Wheels> T bumper_holding_force(const Parameters<T, Wheels
     });
 }
 
-// What the plate has to be pulled with so that it leaves full extension.
+// The pull at which the plate leaves full extension.
 template <class T, int Wheels> T bumper_release_force(const Parameters<T, Wheels> &p) {
     return bumper_holding_force(p) + with_bumper_law(p, [&](auto law) -> T { return law.rest_force(p); });
 }

@@ -9,7 +9,7 @@ template <class T> struct Contact {
     T depth, depth_rate;
     Vector2<T> normal; // outward from the robot, base frame
     Vector2<T> point;  // on the robot, base frame
-    T slip;            // of the robot's material point past the nose, along turned(normal)
+    T slip;            // slip speed of the robot's material point relative to the nose, along turned(normal)
 };
 
 template <class T> struct ContactForce {
@@ -19,7 +19,7 @@ template <class T> struct ContactForce {
     T dissipation, stored;
 };
 
-// What slides towards the robot, in base axes, relative to the base's centre.
+// The sliding body, in base axes, relative to the base's centre.
 template <class T> struct Nose {
     Vector2<T> centre, velocity;
     Vector2<T> travel; // unit vector of its rail
@@ -63,9 +63,9 @@ template <class T> struct Touch {
     ContactForce<T> force;
 };
 
-// A long straight edge across the rail. Every corner that reaches beyond it is pressed by itself, so a side that lies
-// flat is held at both ends. The contact's depth is that of the farthest corner; its point the centre of pressure, or
-// that corner.
+// A long straight edge across the rail. It presses on every corner beyond it separately, so a side that lies flat is
+// held at both ends. The contact's depth is that of the farthest corner; its point the centre of pressure, or that
+// corner.
 template <class T, int Wheels>
 Touch<T> touch_edge(const Parameters<T, Wheels> &p, const Derived<T> &d, const Nose<T> &nose, Vector2<T> velocity,
                     T omega, T engaged) {

@@ -1,4 +1,4 @@
-// The plant's data in another scalar type: what is a number in From becomes a constant in To.
+// The plant's data in another scalar type: numbers of type From become constants of type To.
 // Where fields are named, the compiler's warning about a missing initialiser keeps the lists complete.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the equations need again and again and that never changes during a run.
+// Quantities that the equations need often and that are constant during a run.
 #pragma once
 
 #include "base.hpp"

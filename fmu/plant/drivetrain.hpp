@@ -5,13 +5,13 @@
 
 namespace giveway::plant {
 
-// Torque delivered to the wheel, which is what the sensor reads.
+// Torque on the wheel, which the sensor reads.
 template <class T, int Wheels>
 T sensed_torque(const Parameters<T, Wheels> &p, T motor_angle, T motor_speed, T wheel_angle, T wheel_speed) {
     return p.drivetrain_stiffness * (motor_angle - wheel_angle) + p.drivetrain_damping * (motor_speed - wheel_speed);
 }
 
-// What the gear friction has to hold while the motor is stuck.
+// The torque that the gear friction has to hold while the motor is stuck.
 template <class T, int Wheels> T net_motor_torque(const Parameters<T, Wheels> &p, T motor_torque, T sensed) {
     return math::clamp(motor_torque, T(-1.0) * p.drivetrain_torque_limit, p.drivetrain_torque_limit) - sensed;
 }

@@ -1,4 +1,5 @@
-// A consistent start: at rest, or in steady motion with rollers wound up; drivetrains carry what the rollers pull.
+// A consistent start: at rest, or in steady motion with deflected rollers; the drivetrains balance the rollers'
+// friction.
 #pragma once
 
 #include "tipping.hpp"
@@ -9,7 +10,8 @@ template <class T, int Wheels = table_wheels> struct InitialMotion {
     T x, y, theta; // world frame
     T vx, vy, omega;
     T slider_speed;
-    std::array<T, Wheels> bristle_offset; // beyond that of the motion, m: what earlier motion left in stuck rollers
+    std::array<T, Wheels> bristle_offset; // in addition to that of the motion, m: deflection that earlier motion left
+                                          // in stuck rollers
 };
 
 template <class T, int Wheels>
@@ -72,7 +74,7 @@ void initial_state(const InitialMotion<T, Wheels> &start, const Inputs<T, Wheels
     for (int i = 0; i < At::state_count; ++i) {
         x[i] = planar[i];
     }
-    // Level, on wheels that bear its weight in equal parts; each grips with what its drive gives.
+    // Level, on wheels that carry its weight in equal parts; the grip of each balances its drive.
     x[At::base_heave] = T(-gravity_mps2 / Wheels) * p.base_mass / p.wheel_floor_stiffness;
     m.on_floor.fill(T(1.0));
     for (int i = 0; i < Wheels; ++i) {

@@ -17,7 +17,7 @@ template <int Wheels = table_wheels> class Jacobian {
 public:
     using Scalar = math::Dual<jacobian_chunk>;
 
-    // Constant during a run; what changes between calls is handed to evaluate().
+    // Constant during a run; the arguments of evaluate() change between calls.
     void set_parameters(const Parameters<double, Wheels> &p, const Derived<double> &d) {
         parameters_ = convert<Scalar>(p);
         derived_ = convert<Scalar>(d);

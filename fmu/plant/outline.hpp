@@ -66,7 +66,7 @@ ClosestPoint<T> closest_on_wheel(const Parameters<T, Wheels> &p, const Derived<T
     return {distance, normal, q - distance * normal};
 }
 
-// Of several parts the nearest: unique but where two are equally near.
+// The nearest of several parts: unique except where two are equally near.
 template <class T, int Wheels>
 ClosestPoint<T> closest_point(const Parameters<T, Wheels> &p, const Derived<T> &d, Vector2<T> q) {
     if (p.outline_wheels == 0) {

@@ -1,4 +1,4 @@
-// What an observer with perfect sensors sees: the truth that estimates are judged against.
+// The truth for an observer with perfect sensors, with which estimates are compared.
 #pragma once
 
 #include "tipping.hpp"

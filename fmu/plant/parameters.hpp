@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-// Before any equation: `math::` names are looked up where a template is written, so every scalar type has to be known
-// here.
+// Included before any equation: `math::` names are looked up where a template is written, so every scalar type has to
+// be known here.
 #include "../math/dual.hpp"
 #include "../math/lanes_elementary.hpp"
 

@@ -10,7 +10,7 @@
 
 namespace giveway::plant {
 
-// Everything that the equations produce on the way to the state's rate.
+// All intermediate results of the equations for the state's rate.
 template <class T, int Wheels = table_wheels, std::size_t N = Layout<Wheels>::state_count> struct Evaluation {
     std::array<T, N> rate;
     math::SinCos<T> heading;
@@ -57,7 +57,7 @@ Nose<T> find_nose(const std::array<T, N> &x, const Parameters<T, Wheels> &p, con
 
 } // namespace detail
 
-// Slider, weight and bumper; `decelerating`: what the contact takes from the slider along its rail. Adds their losses
+// Slider, weight and bumper; `decelerating`: the contact force against the slider along its rail. Adds their losses
 // to `loss`.
 template <class T, int Wheels, std::size_t N>
 void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const Modes<T, Wheels> &m,
@@ -98,7 +98,7 @@ void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const 
     }
 }
 
-// What the motors' torques act on: all of it, so new torques at the same state need no more than this.
+// The quantities that depend on the motors' torques; new torques at the same state only need this function.
 template <class T, int Wheels>
 void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
                   const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p) {
@@ -113,7 +113,7 @@ void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, con
     e.rate[At::work_in] = work;
 }
 
-// `e`: zero, or from before with the same elements; what only elements that there are not would write is left as it is.
+// `e`: zero, or a previous result for the same elements; the members of absent elements are not written.
 // Long because it is the equations of README.md in their order, each using what stands above it.
 template <class T, int Wheels>
 void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
@@ -129,7 +129,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     e.push_power = dot(push, e.velocity + omega * turned(push_point));
 
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
-    // Of all wheels first: chains of operations side by side in the processor.
+    // First for all wheels, so that the processor can run independent chains of operations in parallel.
     std::array<T, Wheels> steady;
     for (int i = 0; i < Wheels; ++i) {
         steady[i] = steady_friction(
@@ -170,7 +170,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     const Vector2<T> force = e.contact_force.on_robot;
     wrench = wrench + Planar3<T>{force.x, force.y, e.contact_force.moment};
     const Vector2<T> force_world = to_world(e.heading, force);
-    // What the contact takes from the slider along its rail.
+    // Contact force against the slider along its rail.
     const T decelerating = force_world.x * d.rail_x + force_world.y * d.rail_y;
 
     slider_rates(e, x, m, p, d, decelerating, loss);
@@ -230,8 +230,8 @@ StateVector<T, Wheels> rhs(const StateVector<T, Wheels> &x, const Inputs<T, Whee
     return evaluate(x, u, m, p, d).rate;
 }
 
-// Of slider, weight and bumper. What cannot happen keeps a constant sign. internal_force() is asked for a bumper that
-// holds only.
+// Of slider, weight and bumper. Indicators of impossible events keep a constant sign. internal_force() is called only
+// for a bumper that holds.
 template <class T, int Wheels, std::size_t N, std::size_t E, class InternalForce>
 void slider_indicators(std::array<T, E> &g, const std::array<T, N> &x, const Modes<T, Wheels> &m,
                        const Parameters<T, Wheels> &p, const Derived<T> &d, T depth, InternalForce internal_force) {
@@ -278,7 +278,7 @@ EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const I
     return g;
 }
 
-// The same where everything has been evaluated already.
+// The same with an existing evaluation.
 template <class T, int Wheels>
 EventVector<T, Wheels> event_indicators(const Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x,
                                         const Modes<T, Wheels> &m, const Parameters<T, Wheels> &p,
@@ -321,7 +321,7 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
         m.end_stop = T(1.0) - follow(At::event_end_stop, T(1.0) - m.end_stop);
         return;
     }
-    // Either way the indicator falls: the latch lets go, or the plate is back and latches in a plastic impact.
+    // In both cases the indicator falls: the latch releases, or the plate is back and latches in a plastic impact.
     const auto now = math::less(fired[At::event_end_stop], T(0.0));
     const T latching = math::select(now, T(1.0) - m.latched, T(0.0));
     const T rate = latching * x[At::compression_rate];

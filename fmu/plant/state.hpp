@@ -7,7 +7,7 @@
 
 namespace giveway::plant {
 
-// Where a state and an event stand in their vectors.
+// Indices of states and events in their vectors.
 template <int Wheels = table_wheels> struct Layout {
     enum State : int {
         base_x,
@@ -73,7 +73,7 @@ template <class T, int Wheels = table_wheels> struct Modes {
     T contact, rope_taut, end_stop, bottom_stop, latched, landed, walled; // 0 or 1
     // Only with tipping.
     std::array<T, Wheels> on_floor = {};
-    T overturned = T(0.0); // tilted further than the model goes
+    T overturned = T(0.0); // tilted beyond the model's range
 };
 
 template <class T, int Wheels = table_wheels> using EventVector = std::array<T, Layout<Wheels>::event_count>;

@@ -1,5 +1,5 @@
 // The plant whose base can tip: a rigid body on wheels that press on the floor, grip it and leave it.
-// Everything but the base and its wheels is the planar plant's. README.md of this folder has the equations.
+// Everything except the base and its wheels comes from the planar plant. README.md of this folder has the equations.
 #pragma once
 
 #include "plant.hpp"
@@ -7,8 +7,8 @@
 
 namespace giveway::plant {
 
-// Beyond this tilt the model ends: 15 deg, a little short of where Trikey's centre of mass stands over the line between
-// two wheels.
+// Beyond this tilt the model ends: 15 deg, slightly less than the tilt at which Trikey's centre of mass is above the
+// line between two wheels.
 inline constexpr double cos_greatest_tilt = 0.9659258262890683;
 
 // Attitude and motion of the tilted base. Axes: those of the base turned by its heading alone, "base axes".
@@ -118,7 +118,7 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
         e.load[i] = floor.force;
         e.floor_stored = e.floor_stored + floor.stored;
 
-        // A bristle's deflection is that of nominal load; its force goes with the load.
+        // A bristle's deflection is that at nominal load; its force is proportional to the load.
         const T share = floor.force / nominal_load;
         const T axial_speed = dot(f.radial, f.velocity);
         const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
@@ -131,8 +131,8 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
         e.roller_force[i] = share * roller.force;
         const Vector3<T> at_floor =
             traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
-        // About its axle the wheel takes the floor's moment, and the body the drive's; and the body carries the spin
-        // around with it.
+        // About its axle the floor's moment acts on the wheel and the drive's moment on the body, and the spin turns
+        // with the body.
         const T spinning_up = e.sensed_torque[i] - p.wheel_radius * traction;
         force = force + at_floor;
         moment = moment + cross(f.point, at_floor) + spinning_up * f.axle +
@@ -161,13 +161,13 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
     e.contact_offset = axis_point.plan();
     const Vector3<T> hit{e.contact_force.on_robot.x, e.contact_force.on_robot.y, T(0.0)};
     force = force + hit;
-    // The outline turns with the heading alone; so its moment has to work on the heading's rate alone.
+    // The outline turns with the heading alone, so its moment may do work only through the heading's rate.
     moment = moment + cross(axis_point, hit) +
              e.contact_force.moment * Vector3<T>{T(-1.0) * s.forward.z / s.forward.x, T(0.0), T(1.0)};
     const Vector2<T> force_world = to_world(e.heading, e.contact_force.on_robot);
     slider_rates(e, x, m, p, d, force_world.x * d.rail_x + force_world.y * d.rail_y, loss);
 
-    // Newton and Euler at the centre of mass. A wheel's own spin is accounted for by itself.
+    // Newton and Euler at the centre of mass. A wheel's own spin is handled separately.
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector3<T> torque = moment - cross(mass_centre, force);
     const T tilting = p.base_tilt_inertia - T(0.5 * Wheels) * p.wheel_inertia;
@@ -252,7 +252,7 @@ void transition(TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T
         const auto landed = math::less(T(0.0), fired[At::event_floor + i]);
         const auto lifted = math::less(fired[At::event_floor + i], T(0.0));
         m.on_floor[i] = math::select(landed, T(1.0), math::select(lifted, T(0.0), m.on_floor[i]));
-        // In the air the bristles straighten; without load they held nothing any more.
+        // In the air the bristles are reset; without load they carried no force any more.
         x[At::bristle + i] = math::select(lifted, T(0.0), x[At::bristle + i]);
         x[At::grip + i] = math::select(lifted, T(0.0), x[At::grip + i]);
     }
@@ -273,9 +273,9 @@ void accept_inputs(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u
     }
 }
 
-// What is left, of all of it, before the base goes over if nothing but its weight acts from now on: 1 level and at
-// rest, 0 at the point of no return. Over the line between two wheels the base is an inverted pendulum; of its motion
-// the part that grows, tilt + rate / d.tip_rate, decides.
+// Remaining share of the margin before the base tips over if only its weight acts from now on: 1 level and at rest, 0
+// at the point of no return. Over the line between two wheels the base is an inverted pendulum; the growing part of its
+// motion, tilt + rate / d.tip_rate, decides.
 template <class T, int Wheels> T tip_margin(const Stance<T> &s, const Parameters<T, Wheels> &p, const Derived<T> &d) {
     const Vector3<T> mass_centre = p.base_com_height * s.up;
     const Vector2<T> bound = mass_centre.plan() + (T(1.0) / d.tip_rate) * cross(s.turning, mass_centre).plan();

@@ -1,4 +1,4 @@
-// Where the wheels stand around the base: the only place that knows their azimuths.
+// Arrangement of the wheels around the base: the only place with their azimuths.
 #pragma once
 
 #include <array>

@@ -52,7 +52,7 @@ struct Fmi2Instance {
 
 giveway::Handles instances;
 
-// Null if there is no such instance (any more): then nobody is left to tell but the caller.
+// Null if there is no such instance (any more): then the error can only be returned to the caller.
 Fmi2Instance *unwrap(fmi2Component component) { return static_cast<Fmi2Instance *>(instances.find(component)); }
 
 fmi2Status status(bool ok) { return ok ? fmi2OK : fmi2Error; }
@@ -70,7 +70,7 @@ fmi2Component refuse_instance(const fmi2CallbackFunctions *functions, const char
     return nullptr;
 }
 
-// FMI 2 knows the state of a step only as something to ask for afterwards.
+// In FMI 2 the result of a step can only be queried afterwards.
 bool allow_status(Fmi2Instance &self, const char *function) {
     return self.instance.allow_stepping(function, State::step_mode | State::terminated | State::failed);
 }
@@ -83,7 +83,7 @@ fmi2Status no_strings(fmi2Component component, const char *function, giveway::St
     return status(count == 0 || self->instance.refuse(function, "no variable is of type String"));
 }
 
-// Asynchronous steps have a status where a step can be over; this FMU has none to give.
+// Only asynchronous steps have a status; this FMU has none.
 fmi2Status no_step_status(fmi2Component component, const char *function) {
     Fmi2Instance *self = unwrap(component);
     if (self == nullptr || !allow_status(*self, function)) {
@@ -288,7 +288,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind ki
     return fmi2OK;
 }
 
-// What the model description does not offer.
+// Functions that the model description does not offer.
 
 fmi2Status fmi2GetStatus(fmi2Component component, const fmi2StatusKind, fmi2Status *) {
     return no_step_status(component, "fmi2GetStatus");

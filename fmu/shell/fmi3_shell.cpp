@@ -34,7 +34,7 @@ struct Fmi3Instance {
 
 giveway::Handles instances;
 
-// Null if there is no such instance (any more): then nobody is left to tell but the caller.
+// Null if there is no such instance (any more): then the error can only be returned to the caller.
 Instance *unwrap(fmi3Instance instance) {
     auto *self = static_cast<Fmi3Instance *>(instances.find(instance));
     return self == nullptr ? nullptr : &self->instance;
@@ -301,7 +301,7 @@ fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference[], size_
     return no_such_type(instance, "fmi3SetClock", giveway::writable, count, "Clock");
 }
 
-// What the model description does not offer.
+// Functions that the model description does not offer.
 
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
     return unsupported(instance, "fmi3EnterConfigurationMode", "a configuration mode");

@@ -1,11 +1,9 @@
-// What an importer holds instead of a pointer, so that a handle that was freed, or never was one, is noticed and not
-// followed.
+// Handles that importers get instead of pointers, so that a freed or invalid handle is noticed and not dereferenced.
 //
 // Making, finding and freeing may happen in several threads at once; finding one of the first thousand takes no lock.
 //
-// A table is a static object that nothing has to destroy: a destructor at exit needs start files in the shared library
-// that run it when the library is unloaded, and not every linker brings them. An empty table holds no memory of the
-// heap.
+// A table is a static object that needs no destructor: a destructor at exit needs start files in the shared library
+// that run it when the library is unloaded, and not every linker brings them. An empty table uses no heap memory.
 #pragma once
 
 #include <atomic>
@@ -27,8 +25,8 @@ public:
     // The object; null if the handle was freed, or was never given out.
     void *find(const void *handle);
 
-    // Whether it is a number that a handle has, or had: anything else was never one. An address of a pointer hardly
-    // ever is, being even.
+    // Whether it is the number of a present or former handle. The address of a pointer is hardly ever one, as it is
+    // even.
     bool was_given_out(const void *handle);
 
     // Frees the handle and gives the object back, to one caller only; null as above.
@@ -41,8 +39,8 @@ private:
     static constexpr std::size_t chunk_count = std::size_t{1} << (index_bits - chunk_bits);
 
     struct Slot {
-        // The complement of the object's address, 0 if there is none: a leak checker is not to take the table for an
-        // owner.
+        // The complement of the object's address, 0 if there is none, so that a leak checker does not treat the table
+        // as an owner.
         std::atomic<std::uintptr_t> object{0};
         std::atomic<std::uintptr_t> handle{0}; // of the object that is, or was last, in this slot
         std::size_t next_free = 0;             // index + 1; 0: none

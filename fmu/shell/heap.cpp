@@ -15,5 +15,5 @@ void operator delete(void *memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void *memory) noexcept { std::free(memory); }
 void operator delete[](void *memory, std::size_t) noexcept { std::free(memory); }
 
-// What a call of a virtual function without a body ends in: never, unless an object is used after it was freed.
+// Called for a virtual function without a body, which only happens if an object is used after it was freed.
 extern "C" [[noreturn]] void __cxa_pure_virtual() { std::abort(); }

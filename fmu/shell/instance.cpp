@@ -28,7 +28,7 @@ double time_tolerance(double time, double expected, double step_size) {
     return std::max(share_of_step * step_size, std::max(time_rounding(time), time_rounding(expected)));
 }
 
-// Two times with as few digits, from nine on, as tell them apart.
+// Two times with the smallest number of digits, at least nine, that distinguishes them.
 struct TwoTimes {
     char first[32];
     char second[32];
@@ -580,12 +580,12 @@ bool Instance::check_settable(const char *function, const VariableInfo &variable
         return refuse(function, "variable %s is a fixed parameter and cannot be set in state '%s'", variable.name,
                       state_name(state_));
     }
-    // In continuous time the standards allow continuous inputs only. FMPy 0.3.32 hands over all of them there, so a
-    // discrete one is taken, and waits for the next event.
+    // In continuous time the standards allow continuous inputs only. FMPy 0.3.32 passes all of them there, so a
+    // discrete one is accepted, and waits for the next event.
     return true;
 }
 
-// An importer that gives a wrong count would have us read what is not its own.
+// With a wrong count we would read beyond the importer's array.
 bool Instance::check_references(const char *function, const std::uint32_t *references, std::size_t count,
                                 const void *values) {
     const std::size_t all = model_info().variable_count + (has_time_variable_ ? 1 : 0);
@@ -634,7 +634,7 @@ bool Instance::get(const char *function, VariableType type, const std::uint32_t 
             if (state_ == State::initialisation_mode && !ensure_initialised(function)) {
                 return false;
             }
-            // Once a call: locals are evaluated all together.
+            // Once per call: all locals are evaluated together.
             bool &fresh = variable->causality == Causality::local ? locals_fresh : outputs_fresh;
             if (!fresh && state_ != State::failed) {
                 refresh(variable->causality);
@@ -654,7 +654,8 @@ bool Instance::set(const char *function, VariableType type, const std::uint32_t 
     if (!allow(function, writable) || !check_references(function, references, count, values)) {
         return false;
     }
-    // All are checked before the first is written. Few enough at a time are remembered, not looked up again.
+    // All are checked before the first is written. If they are few, their places are remembered and not looked up
+    // again.
     constexpr std::size_t remembered = 16;
     std::size_t offsets[remembered];
     const VariableInfo *variable = nullptr;

@@ -1,4 +1,4 @@
-// One FMU instance, whatever the FMI version: state machine, checked access to variables, messages.
+// One FMU instance of any FMI version: state machine, checked access to variables, messages.
 //
 // FMI's entry points (fmi2_shell.cpp, fmi3_shell.cpp) translate types and status codes and leave the
 // rest to this class. Every function that returns false has logged why, and has changed nothing
@@ -32,11 +32,11 @@ constexpr States operator|(States a, State b) { return a | static_cast<States>(b
 constexpr States any_state = ~0u;
 constexpr States only(State state) { return static_cast<States>(state); }
 
-// What the standards allow where; both versions alike but where an entry point says otherwise.
+// The calls that the standards allow in each state; the same for both versions unless an entry point says otherwise.
 constexpr States exchange_modes = State::event_mode | State::continuous_time_mode;
 constexpr States readable = State::initialisation_mode | State::step_mode | State::terminated | State::failed |
                             State::event_mode | State::continuous_time_mode;
-// Where equations can be evaluated: a model that failed may not have come that far.
+// States in which equations can be evaluated; a failed model may not have reached them.
 constexpr States evaluable =
     State::initialisation_mode | State::terminated | State::event_mode | State::continuous_time_mode;
 constexpr States writable = State::instantiated | State::initialisation_mode | State::step_mode | State::event_mode |
@@ -88,7 +88,7 @@ public:
     bool enter_event_mode(const char *function, States states);
     bool update_events(const char *function, EventUpdate &update);
     bool enter_continuous_time_mode(const char *function);
-    // `event_needed`: the step went past an event that no root finder stopped at.
+    // `event_needed`: the step passed an event at which no root finder has stopped.
     bool completed_step(const char *function, bool &event_needed);
     bool set_time(const char *function, double time);
     bool set_states(const char *function, const double *values, std::size_t count);
@@ -129,7 +129,7 @@ private:
     template <typename T, typename Theirs>
     bool set(const char *function, VariableType type, const std::uint32_t *references, std::size_t count,
              const Theirs *values);
-    // `previous`: what the last call gave, null if there was none.
+    // `previous`: the result of the last call, null if there was none.
     const VariableInfo *find(const char *function, std::uint32_t reference, VariableType type,
                              const VariableInfo *previous);
     const VariableInfo *search(const char *function, std::uint32_t reference, VariableType type);
@@ -165,8 +165,7 @@ private:
     bool outputs_fresh_ = true;   // Model Exchange: the outputs belong to time, states and inputs
     bool update_pending_ = false; // the last event update asked for another
     // The last of the states that an importer sees. It grows by one in every event at which inputs or equations jump:
-    // then a state has changed, to the letter, and an importer that starts its solver anew only when it hears that does
-    // so.
+    // then a state has formally changed, so an importer that restarts its solver only on such a change does so.
     double discontinuities_ = 0.0;
     bool discontinuity_seen_ = false; // it grows in the last update of this event
 };

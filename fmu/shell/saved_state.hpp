@@ -1,5 +1,4 @@
-// A saved FMU state: a header that says what it belongs to and whether it is whole, then the bytes of instance and
-// model.
+// A saved FMU state: a header with its FMU and a checksum, then the bytes of instance and model.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +27,7 @@ std::uint64_t checksum(const void *bytes, std::size_t size);
 // Writes the header in front of `size` bytes that are already in place behind it.
 void seal(unsigned char *bytes, std::size_t size);
 
-// nullptr if the bytes are a whole state of this FMU, else what is wrong with them.
+// nullptr if the bytes are a complete state of this FMU, otherwise the fault.
 const char *state_fault(const unsigned char *bytes, std::size_t size);
 
 } // namespace giveway

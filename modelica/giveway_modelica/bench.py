@@ -1,8 +1,8 @@
 """The bench of `BumperDrop` and `BumperSweep` beside Modelica: two masses and a floor around the bumper FMU.
 
 The FMU has the bumper and nothing else: it gives the force at every evaluation of an integration in double precision.
-The masses are those of physics.md, section 7: carriage m - m_p and plate m_p on one rail, the floor's cover of
-Hunt and Crossley.
+The masses are those of the plant (fmu/plant/README.md): carriage m - m_p and plate m_p on one rail. The floor's cover
+is that of Hunt and Crossley.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from giveway.base.units import factor
-from giveway.drivetrain import pictures as picture
+from giveway.drivetrain import pictures
 from giveway.drivetrain.analysis import Analysis, Margins, _margins, analyse, table_rows
 from giveway.drivetrain.model import read
 from matplotlib.axes import Axes
@@ -109,8 +109,8 @@ def drawn(analysis: Analysis, tmp_path_factory: pytest.TempPathFactory) -> Figur
             super().savefig(*arguments, **options)  # type: ignore[arg-type]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(picture, "Figure", Kept)
-        picture.write_picture(tmp_path_factory.mktemp("picture") / "curves.svg", "title", analysis)
+        patch.setattr(pictures, "Figure", Kept)
+        pictures.write_picture(tmp_path_factory.mktemp("picture") / "curves.svg", "title", analysis)
     (figure,) = figures
     return figure
 

@@ -14,7 +14,7 @@ from cosim_helpers import short
 from giveway import batch
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.batch import LANES
-from giveway.bench import collisions as bench_batch
+from giveway.bench import collisions
 from giveway.scenario.random_collisions import random_collisions
 from giveway.scenario.scenario import BUMPERS
 
@@ -186,7 +186,7 @@ def test_the_noise_of_each_sensor_is_that_of_the_event_exact_method() -> None:
 
 
 def test_the_benchmark_counts_what_differs() -> None:
-    rows, lines = bench_batch.accuracy(12, seed=8)
+    rows, lines = collisions.accuracy(12, seed=8)
     found = dict(rows)
     assert found["designs; with a collision; detected"].startswith("12; ")
     assert found["designs above 0.5 %"] == "0"
@@ -201,7 +201,7 @@ def test_the_benchmark_of_scale_reports_its_progress_and_ends_by_ctrl_c() -> Non
         assert name == "20 designs"
         shares.append(share)
 
-    ((count, *_),) = bench_batch.scale((20,), note)
+    ((count, *_),) = collisions.scale((20,), note)
     assert count == "20"
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
@@ -210,7 +210,7 @@ def test_the_benchmark_of_scale_reports_its_progress_and_ends_by_ctrl_c() -> Non
         if share == 1.0:
             raise KeyboardInterrupt
 
-    rows = bench_batch.scale((20, 30), press)
+    rows = collisions.scale((20, 30), press)
     with pytest.raises(KeyboardInterrupt):
         next(rows)
 

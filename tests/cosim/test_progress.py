@@ -13,7 +13,7 @@ import pytest
 from giveway.base.terminal import progress_bars, working
 from giveway.base.words import counted
 from giveway.cli import _main
-from giveway.drivetrain import frequency_response as sweep
+from giveway.drivetrain import frequency_response
 from giveway.drivetrain.analysis import analyse
 from giveway.drivetrain.model import read
 from giveway.study import answers
@@ -61,15 +61,19 @@ def test_elsewhere_every_part_of_the_work_is_a_line(capsys: pytest.CaptureFixtur
 def test_a_sweep_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     analysis = analyse(*read(None, "base", 0))
     said: list[tuple[str, str, float]] = []
-    monkeypatch.setattr(sweep, "_measure_one", lambda setup, frequency_hz, version: (frequency_hz, 1.0 + 0.0j))
-    found = sweep.measure_all(analysis, 2.75, points=4, progress=lambda *words: said.append(words))
+    monkeypatch.setattr(
+        frequency_response, "_measure_one", lambda setup, frequency_hz, version: (frequency_hz, 1.0 + 0.0j)
+    )
+    found = frequency_response.measure_all(analysis, 2.75, points=4, progress=lambda *words: said.append(words))
     cases = [(one.case, one.source) for one in found]
-    assert cases == sweep.measurable(analysis, 2.75)
+    assert cases == frequency_response.measurable(analysis, 2.75)
     assert said == [(*case, share) for case in cases for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
 
 
 def test_the_command_s_sweep_says_so_too(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(sweep, "_measure_one", lambda setup, frequency_hz, version: (frequency_hz, 1.0 + 0.0j))
+    monkeypatch.setattr(
+        frequency_response, "_measure_one", lambda setup, frequency_hz, version: (frequency_hz, 1.0 + 0.0j)
+    )
     assert _main(["drivetrain", "--sweep"]) == 0
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "linear model"

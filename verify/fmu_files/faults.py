@@ -42,17 +42,17 @@ def _leaves_behind() -> None:
 
 def _no_limits() -> None:
     """XML of any size is held in memory."""
-    from giveway.fmu_tools import xml_files as fmu_xml
+    from giveway.fmu_tools import xml_files
 
     kept: list[bytes] = []
-    fmu_xml.Budget.add_element = lambda _self: kept.append(bytes(1000))  # type: ignore[method-assign,assignment]
+    xml_files.Budget.add_element = lambda _self: kept.append(bytes(1000))  # type: ignore[method-assign,assignment]
 
 
 def _traceback() -> None:
     """A text is converted to a number without a check."""
-    from giveway.fmu_tools import description as fmu_description
+    from giveway.fmu_tools import description
 
-    fmu_description._Reader._number = lambda _self, text, *_: int(text)  # type: ignore[method-assign]
+    description._Reader._number = lambda _self, text, *_: int(text)  # type: ignore[method-assign]
 
 
 def _has_long_text(file: Any) -> bool:

@@ -1,4 +1,5 @@
-model Drivetrain "The sliding drivetrain of GiveWay.Components.Drivetrain and its load with (28), in the emitter's subset"
+model Drivetrain
+  "The sliding drivetrain of GiveWay.Components.Drivetrain and its load with (28), in the emitter's subset"
   parameter Real tau_m = 1;
   parameter Real direction = 1;
   parameter Real J = 1;

@@ -55,6 +55,7 @@ FORMER_NAMES = MappingProxyType({
     "presliding": "identification.presliding",
     "push_response": "simulation.push_response",
     "random_collisions": "scenario.random_collisions",
+    "report.circle": "report.push_path",
     "report.calibration": "identification.figures",
     "report.drivetrain": "drivetrain.pictures",
     "report.impact_response": "experiments.figures.impact_response",

@@ -21,34 +21,34 @@ def bench(
 ) -> None:
     """Measure speed: a co-simulated second over FMPy, runs per second, cost and error of the integration methods."""
     from giveway.base.checks import whole
-    from giveway.bench import collisions as bench_batch
+    from giveway.bench import collisions
     from giveway.bench.co_simulation import measure
     from giveway.bench.solvers import HEADER, measure_solvers
 
     whole("--repeats", repeats, 1, 100)
     if scale:
         title = "Random collisions of 0.6 s over fixed steps, all threads"
-        counts, found_rows = bench_batch.SCALE_COUNTS, []
+        counts, found_rows = collisions.SCALE_COUNTS, []
         try:
-            with progress_bars([bench_batch.scale_name(count) for count in counts]) as progress:
-                for row in bench_batch.scale(counts, progress):
+            with progress_bars([collisions.scale_name(count) for count in counts]) as progress:
+                for row in collisions.scale(counts, progress):
                     found_rows.append(row)
         except KeyboardInterrupt:
             raise typer.Abort from None
         finally:
-            print_columns(title, bench_batch.SCALE_HEADER, found_rows)
+            print_columns(title, collisions.SCALE_HEADER, found_rows)
         return
     with working("co-simulation over FMPy"):
         rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
     print_columns(title, ("part", "min (ms)", "median (ms)"), rows)
-    title = f"Collisions of {bench_batch.SIMULATED_S:g} s with metrics, best and median of {repeats}"
+    title = f"Collisions of {collisions.SIMULATED_S:g} s with metrics, best and median of {repeats}"
     with working("collisions per second"):
-        measured = bench_batch.measure(repeats)
-    print_columns(title, bench_batch.HEADER, measured)
+        measured = collisions.measure(repeats)
+    print_columns(title, collisions.HEADER, measured)
     with working("fixed steps against event-exact"):
-        found, lines = bench_batch.accuracy()
-    print_columns("Fixed steps against event-exact, random collisions", bench_batch.ACCURACY_HEADER, found)
+        found, lines = collisions.accuracy()
+    print_columns("Fixed steps against event-exact, random collisions", collisions.ACCURACY_HEADER, found)
     typer.echo("\n".join(["Detected on another tick:", *lines] if lines else ["All detected on the same tick."]))
     title = "Integration methods on stiffer designs: 1 s of the testbed FMU alone at relative tolerance 1e-6"
     with working("integration methods"):

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from giveway.experiments.reproduction.findings import Effort, Findings
     from giveway.scenario.scenario import Scenario
 
-__all__ = ["Experiment", "all_experiments", "get"]
+__all__ = ["PAPER_BUMPERS", "Experiment", "all_experiments", "get"]
+
+PAPER_BUMPERS = ("none", "spring", "magnetic")
 
 
 class _MakesScenario(Protocol):

@@ -211,7 +211,8 @@ def _mismatched(
 
 def reproduce(effort: Effort) -> Findings:
     """The paper's 5.4: a round with pushes, random pushes, an hour undisturbed, and rollers unlike the model."""
-    from giveway.report import circle as drawn
+    from giveway.experiments.figures.circle import alarm
+    from giveway.report import push_path
     from giveway.simulation.push_response import responses
     from giveway.simulation.runner import run
 
@@ -259,7 +260,7 @@ def reproduce(effort: Effort) -> Findings:
             "The path around the circle, pushed",
             "Motion of the base as the testbed knows it. Arrows: pushes; the robot is drawn as it stood when it felt "
             "them. It gives way along the push and comes back to where it left its path.",
-            drawn.path({name: (run.traces, found[name]) for name, run in runs.items()}),
+            push_path.path({name: (run.traces, found[name]) for name, run in runs.items()}),
             (("circle", f"{DIAMETER_M:g} m"), ("speed", f"{SPEED_MPS:g} m/s"), ("figure", "12")),
         ),
         Picture(
@@ -267,7 +268,7 @@ def reproduce(effort: Effort) -> Findings:
             "How far from a false alarm",
             "What the detector compares with its threshold (dashed) in one undisturbed round, with rollers that rub "
             "more or less than the estimator believes.",
-            drawn.alarm(
+            alarm(
                 {name: (shares, data) for name, data in mismatched.items()},
                 float(table("controller")["detector.impulse_threshold"].start or 0.0),
             ),

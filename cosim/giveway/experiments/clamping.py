@@ -14,12 +14,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.experiments import Experiment
+from giveway.experiments import PAPER_BUMPERS, Experiment
 from giveway.experiments.placement import before_resting, stated_contact, tare_s, testbed_of
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.robot.variables import table
 from giveway.scenario.body_regions import NOTICE, Judgement, body_region, contact_peak, judge
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     import xarray
@@ -92,13 +92,13 @@ def reproduce(effort: Effort) -> Findings:
 
     speeds = effort.pick(SPEEDS_MPS, (0.1, 0.5))
     cases: dict[tuple[object, ...], Scenario] = {
-        (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in BUMPERS
+        (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in PAPER_BUMPERS
     }
     cases |= {("no reflex", place): scenario("none", gap_m=gap, reflex=False) for place, gap in GAPS_M.items()}
     cases |= {
         (bumper, place, speed): scenario(bumper, speed, gap)
         for place, gap in GAPS_M.items()
-        for bumper in BUMPERS
+        for bumper in PAPER_BUMPERS
         for speed in speeds
     }
     longest = max(case.duration_s for case in cases.values())  # traces need one duration
@@ -112,7 +112,7 @@ def reproduce(effort: Effort) -> Findings:
     safe = {
         (bumper, place): _safe_speed({speed: forces[bumper, place, speed] for speed in speeds})
         for place in GAPS_M
-        for bumper in BUMPERS
+        for bumper in PAPER_BUMPERS
     }
     rows = [row for case in safe for row in _rows(*case, forces[case], safe[case])]
     rows += [
@@ -202,7 +202,7 @@ def _figure(forces: Mapping[tuple[object, ...], Clamped], speeds: Sequence[float
     with context(STYLE):
         figure = Figure(figsize=(9.6, 3.9), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
-        for bumper in BUMPERS:
+        for bumper in PAPER_BUMPERS:
             colour, label = COLOURS[LABELS[bumper]], LABELS[bumper]
             clamped = forces[bumper, place]
             left.plot(clamped.time_s, clamped.force_n, color=colour, label=label)
@@ -241,7 +241,7 @@ EXPERIMENT = Experiment(
     name="clamping",
     summary="The robot drives into a leg that stands in front of a wall; forces against ISO/TS 15066 limits.",
     section="",
-    bumpers=tuple(BUMPERS),
+    bumpers=PAPER_BUMPERS,
     scenario=scenario,
     reproduce=reproduce,
 )

@@ -188,8 +188,11 @@ def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenar
     chosen = experiments.get(what)
     if bumper is None:
         bumper = DEFAULT_BUMPER if DEFAULT_BUMPER in chosen.bumpers or not chosen.bumpers else chosen.bumpers[0]
-    elif chosen.bumpers and bumper not in chosen.bumpers:
-        raise UnknownNameError("--bumper", bumper, chosen.bumpers)
+    elif chosen.bumpers:
+        # An experiment that has the paper's three can also be run with any other.
+        allowed = tuple(BUMPERS) if chosen.bumpers == experiments.PAPER_BUMPERS else chosen.bumpers
+        if bumper not in allowed:
+            raise UnknownNameError("--bumper", bumper, allowed)
     return chosen.scenario(bumper, robot=robot), chosen.summary
 
 

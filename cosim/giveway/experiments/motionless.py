@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.experiments import Experiment
+from giveway.experiments import PAPER_BUMPERS, Experiment
 from giveway.experiments.placement import pulled_by_weight, stated_contact
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     from giveway.simulation.result import Result
@@ -182,7 +182,7 @@ EXPERIMENT = Experiment(
     name="motionless",
     summary="A pulled slider at 0.5 m/s hits the resting robot, which notices and gives way (paper, 5.2).",
     section="5.2",
-    bumpers=tuple(BUMPERS),
+    bumpers=PAPER_BUMPERS,
     scenario=scenario,
     reproduce=reproduce,
 )

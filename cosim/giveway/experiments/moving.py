@@ -14,10 +14,10 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.experiments import Experiment, motionless
+from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
 from giveway.experiments.placement import before_resting, stated_contact, tare_s
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     from giveway.simulation.result import Result
@@ -131,7 +131,7 @@ EXPERIMENT = Experiment(
     name="moving",
     summary="The robot drives at 0.22 m/s into a resting slider, notices, reverses and gives way (paper, 5.3).",
     section="5.3",
-    bumpers=tuple(BUMPERS),
+    bumpers=PAPER_BUMPERS,
     scenario=scenario,
     reproduce=reproduce,
 )

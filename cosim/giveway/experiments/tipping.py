@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.experiments import Experiment, motionless
+from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import Scenario
 from giveway.simulation.runner import run
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def _longest(where: NDArray[np.bool_], time_ms: NDArray[np.float64]) -> float:
 
 
 def _reproduce(effort: Effort) -> Findings:
-    bumpers: Sequence[str] = effort.pick(tuple(BUMPERS), ("none",))
+    bumpers: Sequence[str] = effort.pick(PAPER_BUMPERS, ("none",))
     heights = effort.pick(HEIGHTS_M, (0.42, CONTACT_HEIGHT_M))
     count = 2 * len(bumpers) + len(heights) + 1
     runs: list[_Run] = []
@@ -240,9 +240,9 @@ def _picture(planar: dict[str, _Run], tipping: dict[str, _Run]) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.style import context
 
-    from giveway.report.style import COLOURS, STYLE, TRUTH_COLOUR
+    from giveway.report.style import BUMPER_LABELS, COLOURS, STYLE, TRUTH_COLOUR
 
-    colours = dict(zip(BUMPERS, COLOURS.values(), strict=True))
+    colours = {bumper: COLOURS[BUMPER_LABELS[bumper]] for bumper in PAPER_BUMPERS}
     with context(STYLE):
         figure = Figure(figsize=(9.6, 6.4), layout="constrained")
         panels = figure.subplots(3, len(planar), sharex=True, sharey="row", squeeze=False)
@@ -281,7 +281,7 @@ EXPERIMENT = Experiment(
     name="tipping",
     summary="The collisions of 5.2 with a base that can tip: torque dip, plateau, tip margin (paper, Fig. 10).",
     section="5.2",
-    bumpers=tuple(BUMPERS),
+    bumpers=PAPER_BUMPERS,
     scenario=scenario,
     reproduce=_reproduce,
 )

@@ -19,11 +19,11 @@ from giveway.base import native
 from giveway.base.errors import GivewayError
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.batch import run_many
-from giveway.experiments import motionless, moving
+from giveway.experiments import PAPER_BUMPERS, motionless, moving
 from giveway.experiments.placement import has_default_outline
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import Value, table
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     import xarray
@@ -128,7 +128,7 @@ class Bench:
         read = read_robot(native.robot() if robot is None else robot)
         self._base = {model: table(model).robot_values(read) for model in native.MODELS}
         self._threads = threads
-        self._collisions = [motionless.scenario(bumper, motionless.IMPACT_S) for bumper in BUMPERS]
+        self._collisions = [motionless.scenario(bumper, motionless.IMPACT_S) for bumper in PAPER_BUMPERS]
         self._moving = moving.scenario(moving.PAPER_BUMPER, moving.REVERSAL_S)
         self._push = Scenario(
             "push",

@@ -38,7 +38,7 @@ METHODS = ("event-exact", "fixed-step")
 LANES = (1, 4, 8)
 PLANT_STEP_RANGE_S = (1e-6, 5e-4)
 STATUSES = ("ok", "cancelled", "wrong", "refused", "failed", "no memory")
-OK, CANCELLED, WRONG = 0, 1, 2
+OK, CANCELLED, WRONG, REFUSED = 0, 1, 2, 3
 NONE = 2**32 - 1  # no model, no reference
 MESSAGE_SIZE = 512
 OF_COLLISION, OF_DESIGN, OF_FREE_RUN = 1, 2, 4  # where a metric is shown
@@ -152,6 +152,7 @@ class Library:
         self.cancel = self._function("gwb_cancel", None, pointer)
         self.widest_lanes = self._function("gwb_widest_lanes", number)
         self.finish = self._function("gwb_finish", None, pointer)
+        self.run_up = self._function("gwb_run_up", size, pointer, size)
         self.evaluate = self._function("gwb_evaluate", number, pointer, pointer)
         force = (pointer, pointer, size, ctypes.c_double, pointer)
         self.judge_force = self._function("gwb_judge_force", ctypes.c_int, *force)

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.base.files import write_text
+from giveway.report.style import BUMPER_LABELS
 
 if TYPE_CHECKING:
     from giveway.simulation.result import Result
 
-__all__ = ["render", "write_picture", "write_report"]
-
-BUMPER_LABELS = {"none": "no bumper", "spring": "spring bumper", "magnetic": "magnetic spring bumper"}
+__all__ = ["BUMPER_LABELS", "render", "write_picture", "write_report"]
 
 
 def write_report(path: Path, title: str, summary: str, results: Sequence[Result]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.report import circle
+from giveway.report import push_path
 from giveway.report.figures import NamedFigure
 from giveway.report.inline_svg import inline_svg
 from giveway.report.style import STYLE, TRUTH_COLOUR
@@ -38,7 +38,7 @@ def figures(result: Result) -> list[NamedFigure]:
     name = result.manifest["scenario"]["name"]
     with context(STYLE):
         forces = inline_svg(_forces(result, found.pushes), "p0-")
-    above = inline_svg(circle.path({name: (result.traces, found)}, outline), "p1-")
+    above = inline_svg(push_path.path({name: (result.traces, found)}, outline), "p1-")
     return [
         NamedFigure(
             "Each push",

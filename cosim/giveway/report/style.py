@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-__all__ = ["COLOURS", "STYLE", "TRUTH_COLOUR"]
+__all__ = ["BUMPER_LABELS", "COLOURS", "STYLE", "TRUTH_COLOUR"]
 
-COLOURS = {"no bumper": "#c8500a", "spring bumper": "#0b64a8", "magnetic spring bumper": "#0a8a63"}
+# What figures call a bumper, and its colour.
+_BUMPERS = {
+    "none": ("no bumper", "#c8500a"),
+    "spring": ("spring bumper", "#0b64a8"),
+    "magnetic": ("magnetic spring bumper", "#0a8a63"),
+}
+BUMPER_LABELS = {bumper: label for bumper, (label, _) in _BUMPERS.items()}
+COLOURS = dict(_BUMPERS.values())
 TRUTH_COLOUR = "#8a8f98"
 STYLE = {
     "font.family": "sans-serif",

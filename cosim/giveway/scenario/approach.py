@@ -7,18 +7,18 @@ lags its plan by a few millimetres (compliance of servo and drivetrain), and so 
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError
-from giveway.base.gravity import GRAVITY_MPS2
-from giveway.robot.variables import Value
+from giveway.library.batch_library import OK, REFUSED, WRONG
+from giveway.library.run_up import LONGEST_RUN_UP_S, RUN_UP, find_run_ups
+from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Plan, Rest
 from giveway.scenario.stated_contact import StatedContact
 
@@ -44,9 +44,9 @@ ON_OUTLINE_M = 1e-3  # robot files give corners to micrometres; users give point
 STILL_MPS = 1e-6
 SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes over 4 mm penetrates by 0.1 mm
 SAMPLES_AT_ONCE = 200_000
-LONGEST_RUN_UP_S = 60.0
+# What the run-up depends on, of the testbed.
+SLIDER = ("mass", "friction", "friction_speed", "damping")
 ROPE = ("hanging_mass", "stiffness", "damping", "drop_height")
-_SURFACE = Callable[["Numbers"], "Numbers"]
 
 
 @dataclass(frozen=True)
@@ -84,19 +84,26 @@ class Approach:
 
 @dataclass(frozen=True)
 class _RunUp:
-    """Motions along the rail that end at the given speeds, one per run.
+    """Motions along the rail that end at the asked speeds, one per run, as the batch library finds them.
 
     Attributes:
         start_mps, length_m, duration_s: start speed, travel and time to contact, shape (n,).
-        travel: times of shape (k, n) from the start to travel in m, shape (k, n).
+        different, which: the answers (`RUN_UP`), each once, and that of each run, shape (n,).
         refused: why a contact is not possible, by index of the run.
     """
 
     start_mps: Numbers
     length_m: Numbers
     duration_s: Numbers
-    travel: _SURFACE
+    different: NDArray[Any]
+    which: NDArray[np.intp]
     refused: dict[int, GivewayError]
+
+    def sampled(self, shares: Numbers, before_s: float) -> tuple[Numbers, Numbers]:
+        """Times and travels from the start, shape (k, n), at ``shares`` (k,) of the time to ``before_s`` before it."""
+        times = np.maximum(self.different["duration_s"] - before_s, 0.0)[:, None] * shares
+        travels = find_run_ups(self.different.copy(), times)
+        return times[self.which].T, travels[self.which].T
 
 
 def outline_of(testbed: Mapping[str, Value]) -> NDArray[np.float64]:
@@ -223,7 +230,7 @@ def meet_many(
     count = len(approaches.speed_mps)
     values = {name: np.broadcast_to(np.asarray(value, dtype=np.float64), count) for name, value in testbed.items()}
     outline = outline_of({name: float(values[name][0]) for name in testbed if name.startswith("outline.")})
-    run_up = (_free if approaches.time_s is not None else _with_rope)(approaches, values)
+    run_up = _run_ups(approaches, values)
     refused = dict(run_up.refused)
     mounted = np.flatnonzero((values["bumper.kind"] != 0.0) & (values["bumper.mount"] != 0.0))
     for index in mounted:
@@ -284,88 +291,43 @@ def _off_outline(outline: Numbers, point: Numbers) -> GivewayError:
     return GivewayError("point_m", [float(value) for value in point], allowed)
 
 
-def _free(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
-    """Without the rope: the start speeds that rail friction reduces to the given speeds at the given times."""
-    assert approaches.time_s is not None
-    mass = testbed["slider.mass"]
-    end, duration = approaches.speed_mps, approaches.time_s
-    moves = end > 0.0
-    coulomb = np.where(moves, testbed["slider.friction"] / mass, 0.0)
-    viscous = np.where(moves, testbed["slider.damping"] / mass, 0.0)
-    # Backwards in time friction is growth: v' = a + c v, written with expm1 so that c may be small.
-    small = viscous * duration < 1e-9
-    rate = np.where(small, 1.0, viscous)
-    grown = end + (end + coulomb / rate) * np.expm1(rate * duration)
-    start = np.where(small, end + coulomb * duration, grown)
-
-    def travel(time_s: Numbers) -> Numbers:
-        slowing = -(start + coulomb / rate) * np.expm1(-rate * time_s) / rate - coulomb / rate * time_s
-        return np.where(small, start * time_s - 0.5 * coulomb * time_s**2, slowing)
-
-    return _RunUp(start, travel(duration[None, :])[0], duration, travel, {})
-
-
-def _with_rope(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
-    """With the rope: slider and weight integrated from rest until the slider has the given speed."""
-    names = ("slider.mass", "slider.friction", "slider.damping", *(f"rope.{name}" for name in ROPE))
-    rows = np.stack([approaches.speed_mps, *(testbed[name] for name in names)], axis=1)
+def _run_ups(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
+    """With the rope from rest until the slider is as fast as asked; without, until the rail has slowed it so far."""
+    rope = approaches.time_s is None
+    duration = np.zeros(len(approaches.speed_mps)) if approaches.time_s is None else approaches.time_s
+    names = [*(f"slider.{name}" for name in SLIDER), *(f"rope.{name}" for name in ROPE)]
+    rows = np.stack([approaches.speed_mps, duration, *(testbed[name] for name in names)], axis=1)
     # Most runs of a batch share theirs.
-    different, which = np.unique(rows, axis=0, return_inverse=True)
-    times, travels, refused = _pulled(different.tobytes(), len(different))
+    each, which = np.unique(rows, axis=0, return_inverse=True)
     which = which.ravel()
-    reasons = {i: refused[int(k)] for i, k in enumerate(which) if int(k) in refused} if refused else {}
+    different = np.zeros(len(each), dtype=RUN_UP)
+    for name, column in zip(("end_speed_mps", "duration_s", *names), each.T, strict=True):
+        different[name] = column
+    different["rope.attached"] = rope
+    find_run_ups(different)
+    reasons = {int(index): _refusal(different[index]) for index in np.flatnonzero(different["status"] != OK)}
+    refused = {run: reasons[int(index)] for run, index in enumerate(which) if int(index) in reasons} if reasons else {}
+    found = different[which]
+    return _RunUp(found["start_speed_mps"], found["travel_m"], found["duration_s"], different, which, refused)
 
-    def travel(time_s: Numbers) -> Numbers:
-        columns = np.broadcast_to(time_s, (len(time_s), len(which))).T
-        return np.stack([np.interp(t, times[:, k], travels[:, k]) for t, k in zip(columns, which, strict=True)], axis=1)
 
-    start = np.zeros(len(which))
-    return _RunUp(start, travels[-1, which], times[-1, which], travel, reasons)
-
-
-@functools.lru_cache(maxsize=8)
-def _pulled(packed: bytes, count: int) -> tuple[Numbers, Numbers, dict[int, GivewayError]]:
-    """Times and travels of ``count`` run-ups on the rope, shape (steps, count); each ends in its last value.
-
-    ``packed`` holds speed, slider mass, friction, damping and `ROPE`, shape (count, 9).
-    """
-    speed, slider, friction, viscous, weight, stiffness, damping, drop = np.frombuffer(packed).reshape(count, -1).T
-    pull = weight * GRAVITY_MPS2
-
-    def rate(state: Numbers) -> Numbers:
-        s, s_rate, h, h_rate = state
-        tension = np.maximum(0.0, pull + stiffness * (h - s) + damping * (h_rate - s_rate))
-        return np.stack([
-            s_rate, (tension - friction - viscous * s_rate) / slider, h_rate, GRAVITY_MPS2 - tension / weight,
-        ])  # fmt: skip
-
-    # Small against the rope's fastest motion, for the classical Runge-Kutta method.
-    reduced = 1.0 / slider + 1.0 / weight
-    fastest = np.minimum(0.3 / np.sqrt(stiffness * reduced), 1.0 / np.maximum(damping * reduced, 1e-9))
-    step = np.minimum(1e-3, fastest)
-    state, times, travels = np.zeros((4, count)), [np.zeros(count)], [np.zeros(count)]
-    refused: dict[int, GivewayError] = {}
-    pulling = state[1] < speed
-    while pulling.any():
-        for index in np.flatnonzero(
-            pulling & ((pull <= friction) | (state[2] > drop) | (times[-1] > LONGEST_RUN_UP_S))
-        ):
-            allowed = f"a speed that the hanging weight reaches: at most {max(0.0, float(state[1, index])):.3g} m/s"
-            refused[int(index)] = GivewayError("speed_mps", float(speed[index]), allowed)
-            pulling[index] = False
-        k1 = rate(state)
-        k2 = rate(state + 0.5 * step * k1)
-        k3 = rate(state + 0.5 * step * k2)
-        k4 = rate(state + step * k3)
-        after = state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        ends = pulling & (after[1] >= speed)
-        gain = np.where(ends, after[1] - state[1], 1.0)
-        share = np.where(ends, (speed - state[1]) / gain, 1.0)  # of the last step
-        times.append(np.where(pulling, times[-1] + share * step, times[-1]))
-        travels.append(np.where(pulling, state[0] + share * (after[0] - state[0]), travels[-1]))
-        state = np.where(pulling, after, state)
-        pulling &= ~ends
-    return np.array(times), np.array(travels), refused
+def _refusal(run_up: np.void) -> GivewayError:
+    """Why the library finds no start."""
+    speed = float(run_up["end_speed_mps"])
+    if run_up["status"] == WRONG:
+        for variable in (table("testbed")[name] for name in (run_up.dtype.names or ()) if "." in name):
+            low, high = variable.minimum, variable.maximum
+            value = float(run_up[variable.name])
+            if low is not None and high is not None and not low <= value <= high:
+                return GivewayError(variable.name, value, f"{low:g} to {high:g}")
+        return GivewayError("speed_mps", speed, "0 to 20 m/s, with the rope above 0, and a time of 0 to 60 s")
+    if run_up["status"] == REFUSED and run_up["rope.attached"]:
+        reached = max(0.0, float(run_up["reached_mps"]))
+        return GivewayError("speed_mps", speed, f"a speed that the hanging weight reaches: at most {reached:.3g} m/s")
+    if run_up["status"] == REFUSED:
+        allowed = "a time for which the rail's friction does not ask for a start at more than 1000 m/s"
+        return GivewayError("time_s", float(run_up["duration_s"]), allowed)
+    return GivewayError("speed_mps", speed, "a run-up whose equations can be integrated")
 
 
 def _at(plan: Plan, path_s: Numbers) -> Numbers:
@@ -391,8 +353,8 @@ def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: N
     moved = np.abs(np.diff(way, axis=0)).sum(axis=0) @ [1.0, 1.0, float(np.hypot(*outline.T).max())]
     moved += float(np.abs(nose.run_up.length_m).max(initial=0.0))
     samples = 1 + max(1, math.ceil(min(longest / SAMPLE_S, moved / SAMPLE_M)))
-    time_s = np.linspace(0.0, 1.0, samples)[:, None] * duration
-    travel = nose.run_up.travel(time_s) - nose.run_up.length_m
+    time_s, travel = nose.run_up.sampled(np.linspace(0.0, 1.0, samples), SAMPLE_S)
+    travel -= nose.run_up.length_m
     runs = max(1, SAMPLES_AT_ONCE // samples)
     for first in range(0, len(duration), runs):
         part = slice(first, first + runs)

@@ -35,27 +35,26 @@ def sweep_designs(
     ] = False,
 ) -> None:
     """Run a study of many designs, or go on with it; then tables, Pareto front, traces and a report in DIR."""
-    from giveway.study import messages as command
-    from giveway.study import study_file
+    from giveway.study import messages, study_file
     from giveway.study.engine import plan_runs
     from giveway.study.engine import sweep as run_study
 
     setup = study_file.read(study)
     folder = Path("out/studies") / study.stem if out is None else out
     if check:
-        typer.echo(command.sizes(setup, plan_runs(setup)))
+        typer.echo(messages.sizes(setup, plan_runs(setup)))
         return
-    with command.showing(setup.name) as progress:
+    with messages.showing(setup.name) as progress:
         outcome = run_study(setup, folder, threads=threads, progress=progress)
-    typer.echo(command.overview(setup, outcome))
+    typer.echo(messages.overview(setup, outcome))
     if outcome.interrupted:
         again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
         typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
         raise typer.Exit(INTERRUPTED)
     try:
         found = _load(folder)
-        with progress_bars((command.CHOSEN, command.REPORT)) as report_progress:
-            written = command.write_all(found, progress=report_progress)
+        with progress_bars((messages.CHOSEN, messages.REPORT)) as report_progress:
+            written = messages.write_all(found, progress=report_progress)
     except KeyboardInterrupt:
         typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
         raise typer.Exit(INTERRUPTED) from None
@@ -68,12 +67,12 @@ def study_show(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
 ) -> None:
     """Show the first answers of a study, also while it runs or after it was interrupted; writes its report."""
-    from giveway.study import messages as command
+    from giveway.study import messages
 
     found = _load(folder)
     _print_answers(found)
-    with working(command.REPORT) as progress:
-        written = command.write_all(found, simulate_chosen=False, progress=lambda _name, share: progress(share))
+    with working(messages.REPORT) as progress:
+        written = messages.write_all(found, simulate_chosen=False, progress=lambda _name, share: progress(share))
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
@@ -131,10 +130,10 @@ def study_gallery(
     ),
 ) -> None:
     """Run the example studies and draw the README's pictures of them."""
-    from giveway.study import messages as command
+    from giveway.study import messages
     from giveway.study.gallery import draw_all
 
-    for path, sentence in draw_all(examples, studies, out, command.showing):
+    for path, sentence in draw_all(examples, studies, out, messages.showing):
         typer.echo(f"{path}: {sentence}")
 
 

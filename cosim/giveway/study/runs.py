@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["KEY_SIZE", "MAGNET_PER_KELVIN", "Rows", "RunTable"]
 
 KEY_SIZE = 16
-MAGNET_PER_KELVIN = -0.0024  # change of a magnet's force (physics.md, section 7)
+MAGNET_PER_KELVIN = -0.0024  # change of a magnet's force (robots/trikey.toml, bumper.latch_force)
 COVER = "testbed.contact.stiffness"
 SLIDER = ("slider.direction", "slider.target_x", "slider.target_y", "slider.run_up", "slider.speed")
 

@@ -2,12 +2,24 @@
 
 #define PERIOD R(0.001)
 
-static const gw_detector_config_t impulse_config = {
-    GW_DETECTOR_IMPULSE, R(10.0), R(0.5), R(1.0), R(40.0), R(3.0), R(6.0), 5U};
+static gw_detector_config_t impulse_config(void)
+{
+    gw_detector_config_t config;
+    gw_detector_config_trikey(&config);
+    config.kind = GW_DETECTOR_IMPULSE;
+    config.force_threshold_n = R(10.0);
+    config.impulse_threshold_newton_s = R(0.5);
+    config.leak_rest_n = R(1.0);
+    config.leak_creep_n = R(40.0);
+    config.leak_motion_n = R(3.0);
+    config.release_force_n = R(6.0);
+    config.blanking_ticks = 5U;
+    return config;
+}
 
 static gw_detector_t made(uint32_t kind)
 {
-    gw_detector_config_t config = impulse_config;
+    gw_detector_config_t config = impulse_config();
     gw_detector_t detector;
     config.kind = kind;
     CHECK_STATUS(gw_detector_init(&detector, &config, PERIOD), GW_STATUS_OK);
@@ -34,15 +46,16 @@ static gw_detector_output_t step(gw_detector_t *detector, const gw_detector_inpu
 
 static void bad_arguments_are_refused(void)
 {
+    const gw_detector_config_t config = impulse_config();
     gw_detector_t detector = made(GW_DETECTOR_IMPULSE);
     const gw_detector_input_t input = push(R(1.0), GW_REGIME_REST);
     gw_detector_output_t output;
-    CHECK_STATUS(gw_detector_init(NULL, &impulse_config, PERIOD), GW_STATUS_NULL_POINTER);
+    CHECK_STATUS(gw_detector_init(NULL, &config, PERIOD), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_init(&detector, NULL, PERIOD), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_step(&detector, &input, NULL), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_step(&detector, NULL, &output), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_detector_step(NULL, &input, &output), GW_STATUS_NULL_POINTER);
-    CHECK_STATUS(gw_detector_init(&detector, &impulse_config, R(0.0)), GW_STATUS_CONFIG_INVALID);
+    CHECK_STATUS(gw_detector_init(&detector, &config, R(0.0)), GW_STATUS_CONFIG_INVALID);
     CHECK_STATUS(gw_detector_step(&detector, &input, &output), GW_STATUS_NOT_INITIALISED);
     CHECK(!output.tripped);
 }

@@ -553,6 +553,83 @@ static void test_wrong_batches(void) {
     gwb_finish(batch);
 }
 
+static gwb_run_up_t some_run_up(void) {
+    const gwb_run_up_t run_up = {.end_speed_mps = 0.5,
+                                 .duration_s = 0.3,
+                                 .slider_mass = 9.08,
+                                 .slider_friction = 1.0,
+                                 .slider_friction_speed = 0.005,
+                                 .rope_hanging_mass = 4.54,
+                                 .rope_stiffness = 1e4,
+                                 .rope_damping = 150.0,
+                                 .rope_drop_height = 0.2,
+                                 .rope_attached = 1};
+    return run_up;
+}
+
+static void test_run_ups(void) {
+    double times[] = {0.0, 0.05, 1.0};
+    double travels[3] = {-1.0, -1.0, -1.0};
+    gwb_run_up_t pulled = some_run_up();
+    pulled.times_s = times;
+    pulled.travels_m = travels;
+    pulled.time_count = 3;
+    CHECK(gwb_run_up(&pulled, 1) == 1 && pulled.status == GWB_OK);
+    /* Of a stiff rope: both masses take part of the weight less the friction. */
+    const double mean = (4.54 * gwb_gravity() - 1.0) / (4.54 + 9.08);
+    CHECK(fabs(pulled.duration_s / (0.5 / mean) - 1.0) < 0.1);
+    CHECK(pulled.start_speed_mps == 0.0 && fabs(pulled.reached_mps - 0.5) < 1e-9);
+    CHECK(travels[0] == 0.0 && travels[1] > 0.0 && travels[1] < pulled.travel_m && travels[2] == pulled.travel_m);
+
+    /* Free, friction alone slows it down. */
+    gwb_run_up_t slid = some_run_up();
+    slid.rope_attached = 0;
+    CHECK(gwb_run_up(&slid, 1) == 1 && slid.status == GWB_OK);
+    CHECK(fabs(slid.start_speed_mps - (0.5 + 0.3 / 9.08)) < 1e-9 && slid.duration_s == 0.3);
+    CHECK(fabs(slid.travel_m - 0.3 * (0.5 + slid.start_speed_mps) / 2.0) < 1e-9);
+
+    /* The weight has dropped 0.2 m before it is so fast. */
+    gwb_run_up_t slow = some_run_up();
+    slow.end_speed_mps = 5.0;
+    CHECK(gwb_run_up(&slow, 1) == 0 && slow.status == GWB_REFUSED);
+    CHECK(fabs(slow.reached_mps / sqrt(2.0 * mean * 0.2) - 1.0) < 0.05);
+    gwb_run_up_t stuck = some_run_up();
+    stuck.slider_friction = 100.0;
+    CHECK(gwb_run_up(&stuck, 1) == 0 && stuck.status == GWB_REFUSED && stuck.reached_mps < 0.005);
+    gwb_run_up_t fast = slid;
+    fast.slider_damping = 1000.0;
+    CHECK(gwb_run_up(&fast, 1) == 0 && fast.status == GWB_REFUSED);
+}
+
+static void test_wrong_run_ups(void) {
+    gwb_run_up_t wrong[8];
+    for (size_t i = 0; i < 8; ++i) {
+        wrong[i] = some_run_up();
+    }
+    double falling[] = {0.1, 0.05};
+    double early[] = {-0.1};
+    double travels[2] = {7.0, 7.0};
+    wrong[0].slider_mass = 0.0;
+    wrong[1].slider_friction = NAN;
+    wrong[2].end_speed_mps = 0.0; /* the rope pulls */
+    wrong[3].rope_attached = 0;
+    wrong[3].duration_s = 60.5;
+    wrong[4].rope_attached = 2;
+    wrong[5].time_count = 1; /* where to? */
+    wrong[6].time_count = 2;
+    wrong[6].times_s = falling;
+    wrong[6].travels_m = travels;
+    wrong[7].time_count = 1;
+    wrong[7].times_s = early;
+    wrong[7].travels_m = travels;
+    CHECK(gwb_run_up(wrong, 8) == 0);
+    for (size_t i = 0; i < 8; ++i) {
+        CHECK(wrong[i].status == GWB_WRONG_SPEC);
+    }
+    CHECK(travels[0] == 7.0);
+    CHECK(gwb_run_up(NULL, 1) == 0);
+}
+
 int main(void) {
     test_tables();
     test_metric_infos();
@@ -562,6 +639,8 @@ int main(void) {
     test_a_refusal_of_the_models();
     test_recorded_traces();
     test_forces();
+    test_run_ups();
+    test_wrong_run_ups();
     test_batches();
     test_wrong_batches();
     (void)printf("%d failures\n", failures);

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import re
 import subprocess
 from pathlib import Path
+
+from giveway.base.gravity import GRAVITY_MPS2
 
 ROOT = Path(__file__).parents[3]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))
@@ -65,3 +68,9 @@ def test_no_product_and_sum_are_rounded_as_one() -> None:
     listing = subprocess.run(["objdump", "--disassemble", LIBRARY], check=True, capture_output=True, text=True).stdout
     assert "vmulpd" in listing  # it has been disassembled, lanes and all
     assert re.search(r"\bvfn?m(add|sub)", listing) is None
+
+
+def test_python_has_the_plants_gravity() -> None:
+    library = ctypes.CDLL(str(LIBRARY))
+    library.gwb_gravity.restype = ctypes.c_double
+    assert library.gwb_gravity() == GRAVITY_MPS2

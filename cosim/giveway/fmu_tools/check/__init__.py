@@ -13,8 +13,7 @@ from pathlib import Path
 
 from giveway.base.errors import FileError
 from giveway.fmu_tools.archive import Archive, ArchiveError, OverLimitError, shown
-from giveway.fmu_tools.check import archive, binaries, description, documents, structure
-from giveway.fmu_tools.check import unit_definitions as units
+from giveway.fmu_tools.check import archive, binaries, description, documents, structure, unit_definitions
 from giveway.fmu_tools.check.common import DESCRIPTION, Found, TestedFile
 from giveway.fmu_tools.check.severity import Severity
 from giveway.fmu_tools.description import Description, VersionError, read_description
@@ -150,7 +149,7 @@ CHECKS: Mapping[str, Check] = {
     "names and references": Check(description.names_and_references),
     "start values": Check(description.start_values),
     "start presence": Check(description.start_presence),
-    "units": Check(units.units),
+    "units": Check(unit_definitions.units),
     "model structure": Check(structure.structure),
     "event indicators": Check(structure.event_indicators),
     "FMPy": Check(description.fmpy_validation),

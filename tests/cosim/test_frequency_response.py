@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cosim_helpers import Cli
 from giveway.base.errors import GivewayError, SimulationError
-from giveway.drivetrain import frequency_response as sweep
+from giveway.drivetrain import frequency_response
 from giveway.drivetrain.analysis import SOURCES, analyse
 from giveway.drivetrain.frequency_response import Sweep, measure
 from giveway.drivetrain.model import Drivetrain, Servo, read, response
@@ -83,7 +83,7 @@ def test_other_numbers_are_noticed() -> None:
 
 def test_a_gear_that_changes_its_mode_is_not_averaged_over(monkeypatch: pytest.MonkeyPatch) -> None:
     drivetrain, servo = read()
-    monkeypatch.setattr(sweep, "SHARE", 3.0)  # of what the gear can bear
+    monkeypatch.setattr(frequency_response, "SHARE", 3.0)  # of what the gear can bear
     for case in ("gear stuck", "unpowered"):
         with pytest.raises(SimulationError, match="the gear changed"):
             measure(drivetrain, servo, case, "environment", np.array([3.0]), gear_friction=0.3, bias_speed=0.1)

@@ -1,9 +1,9 @@
-"""Figures of the circle: the pushed path from above, as the paper's Fig. 12, and the detector's margin."""
+"""The pushed path from above, as the paper's Fig. 12."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,14 +21,12 @@ if TYPE_CHECKING:
 
     from giveway.simulation.push_response import PushResponse, Responses
 
-__all__ = ["alarm", "path"]
+__all__ = ["PUSH_COLOUR", "path"]
 
 # controller.mode: its name in the legend, and its colour
 MODES = {1: ("on the circle", "#0b64a8"), 2: ("giving way", "#c8500a"), 4: ("going back", "#0a8a63")}
 PUSH_COLOUR = "#2b2f36"
 METRES_PER_NEWTON = 0.006
-LESS, MORE = "#0b64a8", "#c8500a"
-BIN = 100  # samples per drawn point, which is their maximum
 
 
 def path(runs: Mapping[str, tuple[xarray.Dataset, Responses]], outline: NDArray[np.float64] | None = None) -> Figure:
@@ -89,30 +87,3 @@ def _draw_push(
     x, y = tail - 0.05 * along
     axes.update_datalim([(x, y)])  # arrows and text do not affect the limits automatically
     axes.text(x, y, str(number), ha="center", va="center", color=PUSH_COLOUR)
-
-
-def alarm(studies: Mapping[str, tuple[Sequence[float], xarray.Dataset]], threshold_newton_s: float) -> Figure:
-    """The detector's statistic over an undisturbed round, by estimator and mismatch of the rollers' friction."""
-    with context(STYLE):
-        figure = Figure(figsize=(9.6, 3.4), layout="constrained")
-        panels = figure.subplots(1, len(studies), sharex=True, sharey=True, squeeze=False)[0]
-        for axes, (name, (shares, data)) in zip(panels, studies.items(), strict=True):
-            largest = max(abs(share) for share in shares) or 1.0
-            for share, count, statistic in zip(
-                shares,
-                data["controller.detection.count"].values,
-                data["controller.detection.statistic"].values,
-                strict=True,
-            ):
-                rows = int((count == 0).sum()) // BIN * BIN  # up to the first false alarm
-                colour = LESS if share < 0.0 else MORE if share > 0.0 else PUSH_COLOUR
-                strength = 1.0 - 0.75 * abs(share) / largest
-                highest = statistic[:rows].reshape(-1, BIN).max(axis=1)
-                time_s = data["time"].values[:rows:BIN]
-                axes.plot(time_s, highest, color=colour, alpha=strength, linewidth=1.2, label=f"{100.0 * share:+g} %")
-            axes.axhline(threshold_newton_s, color=PUSH_COLOUR, linestyle=(0, (4, 3)), linewidth=1.0)
-            axes.set(title=name, xlabel="time (s)")
-        panels[0].set_ylabel("leaky impulse (N s)")
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside right center", title="roller friction")
-    return figure

@@ -128,7 +128,7 @@ def test_a_failure_costs_only_its_own_experiment(registry: Registry) -> None:
     registry(EARLIER, BROKEN, FIRST, REFUSED)
     found = reproduce()
     assert [bool(chapter.failure) for chapter in found.chapters] == [False, True, False, True]
-    assert re.fullmatch(r"ZeroDivisionError in test_reproduce.py:\d+: no wheels", found.chapters[1].failure)
+    assert re.fullmatch(r"ZeroDivisionError in test_reproduction.py:\d+: no wheels", found.chapters[1].failure)
     assert "slider.mass: -1.0 is not allowed" in found.chapters[3].failure
     assert found.failed
     assert "failed: ZeroDivisionError" in render(found)
