@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import os
 import signal
@@ -20,6 +21,7 @@ from cosim_helpers import short
 from giveway import batch
 from giveway.base import native
 from giveway.base.errors import FileError, GivewayError, SimulationError, UnknownNameError
+from giveway.base.gravity import GRAVITY_MPS2
 from giveway.library import batch_library, recorded
 from giveway.robot import variables
 from giveway.scenario.body_regions import body_region
@@ -360,6 +362,12 @@ def test_a_plan_out_of_range_is_named_with_its_row() -> None:
     wrong, right = batch.run_many([short(plan=far_away), short()])["message"].values
     assert wrong.startswith("plan, row 7: controller.plan.y = 20000 is not allowed")
     assert right == ""
+
+
+def test_gravity_is_that_of_the_plant() -> None:
+    plant = ctypes.CDLL(str(native.batch_library())).gwb_gravity
+    plant.restype = ctypes.c_double
+    assert plant() == GRAVITY_MPS2
 
 
 def test_a_library_of_another_table_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
