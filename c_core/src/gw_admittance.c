@@ -110,7 +110,7 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
     return status;
 }
 
-/* Moves on from the present velocity towards a wanted one, as far as the acceleration allows. */
+/* Changes the velocity towards the wanted one within the acceleration limit. */
 static gw_admittance_output_t approach_velocity(const gw_admittance_t *admittance, gw_vector_t wanted_mps)
 {
     gw_admittance_output_t next;

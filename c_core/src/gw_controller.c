@@ -45,7 +45,7 @@ static void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
-/* A tick without an estimate: nothing pushes as far as anyone can tell, and the model is not to be trusted. */
+/* A tick without an estimate: no push is known, and the model is not reliable. */
 static void blank_tick(gw_controller_t *controller)
 {
     static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
@@ -228,7 +228,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     }
 }
 
-/* The force that live admittance feels, world frame: what the detector does not forgive of the mean force. */
+/* Input of the live admittance, world frame: the mean force above the detector's leak. */
 static gw_vector_t live_force(const gw_controller_t *controller)
 {
     const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
@@ -267,7 +267,7 @@ static void give_way(gw_controller_t *controller)
     }
 }
 
-/* Puts the reference on the plan if it was never there, else lets it follow. The plan is valid; that its values are
+/* Places the reference on the plan at the first call, then follows the plan. The plan is valid; that its values are
  * within their ranges is said again, in a form that the provers understand. */
 static void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
 {
@@ -356,7 +356,7 @@ static bool is_quiet(const gw_controller_t *controller)
     return gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime);
 }
 
-/* Are the sensors good, what pushes, and is that a hit? */
+/* Checks the sensors, estimates the push, and decides whether it is a hit. */
 static gw_status_t sense(gw_controller_t *controller, const gw_controller_input_t *input, bool slow)
 {
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);

@@ -126,7 +126,7 @@ static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input,
         if (detector->samples < GW_TICK_MASK) {
             detector->samples++;
         }
-        /* What leaked away is part of the mean force. */
+        /* The leak is part of the mean force. */
         const gw_real_t mean_n = (left / ((gw_real_t)detector->samples * detector->period_s)) + leak_n;
         const gw_vector_t direction = gw_unit(sum.x, sum.y, length);
         output->mean_wrench.force_x_n = direction.x * mean_n;

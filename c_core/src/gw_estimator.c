@@ -130,7 +130,7 @@ void gw_estimator_start_tare(gw_estimator_t *estimator)
     gw_tare_start(&estimator->run_tare);
 }
 
-/* The zero that a tare gives: its mean torque, less what the deflected bristles contribute to it. */
+/* Zero of a tare: its mean torque minus the share of the deflected bristles. */
 static void take_zero(gw_estimator_t *estimator, const gw_wheels_t *mean_nm, gw_wheels_t *zero_nm)
 {
     *zero_nm = *mean_nm;
@@ -156,7 +156,7 @@ gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_
                                estimator->config.tare_variation_nm, &mean_nm);
     }
     if (progress == GW_TARE_DONE) {
-        if (estimator->config.tare_ticks > 0U) { /* else it stays zero */
+        if (estimator->config.tare_ticks > 0U) { /* otherwise it is zero */
             take_zero(estimator, &mean_nm, &estimator->run_zero_nm);
         }
         estimator->rest_zero_nm = estimator->run_zero_nm;

@@ -434,7 +434,7 @@ gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit)
     gw_vector_t result = vector;
     const gw_real_t length = gw_length(vector);
     if (length > limit) {
-        /* Rounding must not lead beyond the limit: what bounds a speed has to bound it exactly. */
+        /* Rounding must not exceed the limit: bounds on speeds have to be exact. */
         const gw_real_t factor = limit / length;
         result.x = gw_limited(vector.x * factor, limit);
         result.y = gw_limited(vector.y * factor, limit);

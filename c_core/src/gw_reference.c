@@ -114,7 +114,7 @@ void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool m
     }
 }
 
-/* One tick to these planar and yaw speeds, as far as the limits allow. The acceleration is that of the plan where the
+/* One tick towards these planar and yaw speeds, within the limits. The acceleration is that of the plan where the
  * plan is being followed freely (planned not NULL), else that of the step. */
 static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, const gw_acceleration_t *planned)
 {

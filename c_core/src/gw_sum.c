@@ -2,7 +2,7 @@
 
 #include "giveway/gw_math.h"
 
-/* 2 pi less twice GW_PI: what the real type's pi leaves out. */
+/* 2 pi minus twice GW_PI: the rounding error of the real type's pi. */
 #if (GW_REAL_DOUBLE == 1)
 #define TURN_REMAINDER ((gw_real_t)2.4492935982947063545e-16)
 #else

@@ -107,7 +107,7 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
 void gw_controller_safe_output(gw_controller_output_t *output);
 /* One control period. Call it once per period, soon after the sensors were sampled.
  *
- * Reads: the input, and the controller as the last step left it; no clock and nothing else.
+ * Reads: the input, and the controller as the last step left it; no clock.
  * Writes: every member of the output, and the controller. The output is safe in every case.
  *
  * In this order: check the sensors; estimate the external wrench; detect a hit; choose the mode; move the reference
@@ -118,7 +118,7 @@ void gw_controller_safe_output(gw_controller_output_t *output);
  *     GW_STATUS_SENSOR_... , GW_STATUS_ENCODER_JUMP       bad sensors: mode FAULT, the last wheel angles at zero speed
  *     GW_STATUS_INPUT_INVALID                             the same, for torques or motions that no robot has
  *     GW_STATUS_PLAN_INVALID                              the plan is not used, the reference slows to a stop
- *     GW_STATUS_TARE_REFUSED                              all else as usual, the old zero of the sensors stays
+ *     GW_STATUS_TARE_REFUSED                              otherwise as usual; the previous zero is kept
  *
  * Costs: at most 3,000 instructions on a Cortex-M4F, 4,000 with GW_FRICTION_BRISTLE, and 512 bytes of stack; measured,
  * see README.md. Loops run over the wheels and the outline's vertices only: a step takes no longer after a day. */

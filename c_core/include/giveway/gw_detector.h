@@ -66,7 +66,7 @@ typedef struct {
     bool active;
     /* |I| in N s or the averaged force in N, as the kind says. */
     gw_real_t statistic;
-    /* Mean wrench of what made the statistic, and the number of samples in it. */
+    /* Mean wrench and number of the samples in the statistic. */
     gw_wrench_t mean_wrench;
     uint32_t samples;
 } gw_detector_output_t;

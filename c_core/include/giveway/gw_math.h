@@ -69,7 +69,7 @@ static inline gw_real_t gw_clamp(gw_real_t x, gw_real_t low, gw_real_t high)
 #else
 #define GW_ARM_FLOAT 0
 #endif
-/* 1 where the square root is an instruction of its own. -DGW_HARDWARE_SQRT=0 takes the portable one, as provers do. */
+/* 1 if the processor has a square root instruction. -DGW_HARDWARE_SQRT=0 selects the portable one, as provers do. */
 #ifndef GW_HARDWARE_SQRT
 #if (GW_ARM_FLOAT == 1) || (defined(__GNUC__) && defined(__SSE2__))
 #define GW_HARDWARE_SQRT 1
@@ -220,7 +220,7 @@ static inline gw_vector_t gw_unit(gw_real_t x, gw_real_t y, gw_real_t length)
 /* The vector, shortened to the limit if it is longer; limit >= 0. */
 gw_vector_t gw_limit_length(gw_vector_t vector, gw_real_t limit);
 /* Highest speed at the end of a tick from which the deceleration still stops at the goal, for motion by trapezoids.
- * distance: what would be left if the tick ended at speed zero; 0 if that is negative or the goal cannot be met. */
+ * distance: remaining distance if the tick ended at speed zero; 0 if that is negative or the goal cannot be met. */
 gw_real_t gw_braking_speed(gw_real_t deceleration, gw_real_t period, gw_real_t distance);
 
 #ifdef __cplusplus

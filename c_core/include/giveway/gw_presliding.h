@@ -1,6 +1,6 @@
 /* Friction of the rollers with the elastic deflection before they slide: an elasto-plastic bristle per wheel.
  *
- *     g  = B_r/r_r (w + (1 - w) tanh(alpha |v|/r_r)),  w = exp(-(v/v_S)^2)       what the roller bears at speed v
+ *     g  = B_r/r_r (w + (1 - w) tanh(alpha |v|/r_r)),  w = exp(-(v/v_S)^2)       largest friction force at speed v
  *     z' = v (1 - A rho),  rho = sigma0 |z|/g          A: 0 up to rho_ba, smoothly to 1 at rho = 1; 0 unloading
  *     f  = sigma0 z + sigma1 z'                        on the base, against n_i
  *

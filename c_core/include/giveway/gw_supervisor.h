@@ -1,4 +1,4 @@
-/* Decides which mode the robot is in, and nothing else: what a mode does is in gw_controller.
+/* Selects the robot's mode; gw_controller implements what each mode does.
  *
  *     TARING --zero taken--> TRACKING --hit--> REACTING --quiet--> SETTLED --> REJOINING --on the path--> TRACKING
  *     any but FAULT --stop request--> STOPPED      any --bad sensors--> FAULT      a hit leads to REACTING from every
