@@ -8,9 +8,9 @@
 #define HALF_PI_HIGH ((gw_real_t)1.5707963267923333)
 #define HALF_PI_MIDDLE ((gw_real_t)2.5633441515839558e-12)
 #define HALF_PI_LOW ((gw_real_t)1.0562999066987428e-23)
-#define EXP_LOWEST ((gw_real_t) - 708.0)
+#define EXP_LOWEST (-(gw_real_t)708.0)
 #define EXP_HIGHEST ((gw_real_t)709.0)
-#define EXPM1_LOWEST ((gw_real_t) - 40.0) /* e^x is below half an ulp of 1 */
+#define EXPM1_LOWEST (-(gw_real_t)40.0) /* e^x is below half an ulp of 1 */
 #define TANH_SATURATED ((gw_real_t)20.0)
 typedef uint64_t tanh_power_t; /* beyond e^(2 TANH_SATURATED) */
 #define SQRT_SCALINGS 9U
@@ -25,9 +25,9 @@ typedef uint64_t tanh_power_t; /* beyond e^(2 TANH_SATURATED) */
 #define HALF_PI_HIGH ((gw_real_t)1.5703125)
 #define HALF_PI_MIDDLE ((gw_real_t)0.00048351287841796875)
 #define HALF_PI_LOW ((gw_real_t)3.139164786504813e-07)
-#define EXP_LOWEST ((gw_real_t) - 87.0)
+#define EXP_LOWEST (-(gw_real_t)87.0)
 #define EXP_HIGHEST ((gw_real_t)88.0)
-#define EXPM1_LOWEST ((gw_real_t) - 20.0)
+#define EXPM1_LOWEST (-(gw_real_t)20.0)
 #define TANH_SATURATED ((gw_real_t)10.0)
 typedef uint32_t tanh_power_t;
 #define SQRT_SCALINGS 6U

@@ -6,7 +6,7 @@
 #if (GW_REAL_DOUBLE == 1)
 #define TURN_REMAINDER ((gw_real_t)2.4492935982947063545e-16)
 #else
-#define TURN_REMAINDER ((gw_real_t) - 1.7484556000744971323e-7)
+#define TURN_REMAINDER (-(gw_real_t)1.7484556000744971323e-7)
 #endif
 
 gw_sum_t gw_sum_within_turn(gw_sum_t sum)

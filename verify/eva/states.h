@@ -77,7 +77,7 @@ static uint32_t highest_count(gw_config_field_t field)
 #ifdef NONFINITE_INPUTS
 #define REAL(place, low, high) ((place) = any_float)
 #else
-#define REAL(place, low, high) ((place) = draw_real((gw_real_t) - 1.0e18, (gw_real_t)1.0e18))
+#define REAL(place, low, high) ((place) = draw_real(-(gw_real_t)1.0e18, (gw_real_t)1.0e18))
 #endif
 #define COUNT(place, low, high) ((place) = any_count)
 #define INTEGER(place, low, high) ((place) = any_int)
