@@ -18,6 +18,7 @@ import numpy as np
 from giveway import batch
 from giveway.base.errors import SimulationError
 from giveway.robot.variables import table
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -65,7 +66,7 @@ class Form:
     def parameters(self, scenario: Scenario) -> dict[str, Value]:
         """The controller parameters for ``scenario``, stiffness included."""
         known = scenario.parameters("controller")
-        names = [f"estimator.presliding_stiffness[{wheel}]" for wheel in range(3)]
+        names = [f"estimator.presliding_stiffness[{wheel}]" for wheel in range(WHEELS)]
         stiffness = {name: self.softness * float(known.get(name, _start("controller", name))) for name in names}
         return {**WATCHING, **stiffness, **scenario.controller, **self.controller}
 

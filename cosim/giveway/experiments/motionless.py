@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from giveway.experiments import PAPER_BUMPERS, Experiment
 from giveway.experiments.placement import pulled_by_weight, stated_contact
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -165,7 +166,7 @@ def _remarks(results: Mapping[str, Result]) -> Iterator[str]:
         result = results[bumper]
         detection_ms, peak_ms = value(result, "detection time"), peak_torque_ms(result)
         if peak_ms > detection_ms:
-            torque = np.abs([result.traces[f"testbed.truth.wheel_torque[{wheel}]"].values for wheel in range(3)])
+            torque = np.abs([result.traces[f"testbed.truth.wheel_torque[{wheel}]"].values for wheel in range(WHEELS)])
             contact_s = float(result.traces["testbed.truth.first_contact_time"].values[-1])
             early = torque[:, result.traces["time"].values <= contact_s + 1e-3 * detection_ms].max()
             yield (

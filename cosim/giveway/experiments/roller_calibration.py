@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from giveway.base.checks import finite
 from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 from giveway.scenario.plan import PLAN_INPUTS
 from giveway.scenario.scenario import Scenario
 
@@ -38,7 +39,7 @@ ARCS: Mapping[str, tuple[float, float, float]] = {
 }
 PLANTS: Mapping[str, int] = {"bristle rollers": 0, "tanh rollers": 1}
 OFFSET_NM = 0.1  # sensors are off by up to this; three times their noise
-RECORDED = tuple(f"testbed.sensor.{what}[{wheel}]" for what in ("torque", "encoder") for wheel in range(3))
+RECORDED = tuple(f"testbed.sensor.{what}[{wheel}]" for what in ("torque", "encoder") for wheel in range(WHEELS))
 PLATEAU = 0.9  # of the largest wheel rate: the top of the wave
 EDGE = 0.9  # of the plateau: where a wave counts as risen
 
@@ -67,8 +68,11 @@ class WheelArc:
     def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
         import numpy as np
 
-        azimuth = np.arange(3) * (2.0 * math.pi / 3.0)
-        axes = np.stack([-2.0 * np.sin(azimuth), 2.0 * np.cos(azimuth), np.full(3, 1.0 / self.wheel_distance_m)]) / 3.0
+        azimuth = np.array(AZIMUTHS_RAD)
+        axes = (
+            np.stack([-2.0 * np.sin(azimuth), 2.0 * np.cos(azimuth), np.full(WHEELS, 1.0 / self.wheel_distance_m)])
+            / WHEELS
+        )
         vx, vy, turn = self.wheel_radius_m * axes @ np.array(self.wheels)  # base twist per wheel rate
         pivot = np.array([-vy, vx]) / turn  # pivot: the point of the base without velocity; it does not move
 
@@ -137,7 +141,7 @@ def reproduce(effort: Effort) -> Findings:
     cases = [(plant, seed) for plant in PLANTS for seed in seeds]
     scenarios = []
     for plant, seed in cases:
-        offset = np.random.default_rng(seed).uniform(-OFFSET_NM, OFFSET_NM, 3).tolist()
+        offset = np.random.default_rng(seed).uniform(-OFFSET_NM, OFFSET_NM, WHEELS).tolist()
         scenarios += [arc_scenario(arc, plant, robot, seed, offset) for arc in ARCS]
     table = batch.run_many(
         scenarios, threads=effort.threads, traces=RECORDED, progress=lambda done, of: effort.progress(0.5 * done / of)

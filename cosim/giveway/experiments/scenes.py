@@ -19,6 +19,7 @@ from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.robot.footprint import controller_outline, hull, wheel_corners
 from giveway.robot.variables import Value, table
+from giveway.robot.wheels import AZIMUTHS_RAD
 from giveway.scenario.approach import outline_of
 from giveway.scenario.body_regions import NOTICE, body_region, body_regions, judge
 from giveway.scenario.plan import Straight
@@ -238,7 +239,7 @@ def _creeping_roller(name: str, result: Result) -> list[str]:
     import numpy as np
 
     from giveway.library.recorded import windows
-    from giveway.simulation.metrics import WHEELS, Collision
+    from giveway.simulation.metrics import Collision
 
     hit = Collision(result.traces, result.manifest["parameters"])
     hits = np.flatnonzero(np.diff(hit["controller.detection.count"], prepend=0) > 0)
@@ -248,7 +249,7 @@ def _creeping_roller(name: str, result: Result) -> list[str]:
         return []
     row = int(late[0])
     testbed = result.manifest["parameters"]["testbed"]
-    azimuth = hit["testbed.truth.theta"][row] + np.arange(WHEELS) * 2.0 * math.pi / WHEELS
+    azimuth = hit["testbed.truth.theta"][row] + np.array(AZIMUTHS_RAD)
     speed = np.cos(azimuth) * hit["testbed.truth.vx"][row] + np.sin(azimuth) * hit["testbed.truth.vy"][row]
     slowest = int(np.abs(speed).argmin())
     held = float(hit[f"testbed.truth.roller_force[{slowest}]"][row])

@@ -18,6 +18,7 @@ import numpy as np
 
 from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
 from giveway.simulation.runner import run
 
@@ -96,7 +97,7 @@ class _Run:
 
     def airborne_ms(self) -> float:
         """Longest time that a wheel has no load."""
-        return max(_longest(self[f"truth.wheel_load[{wheel}]"] <= 0.0, self.time_ms) for wheel in range(3))
+        return max(_longest(self[f"truth.wheel_load[{wheel}]"] <= 0.0, self.time_ms) for wheel in range(WHEELS))
 
     def lean_deg(self) -> float:
         return math.degrees(float(np.hypot(self["truth.pitch"], self["truth.roll"]).max()))
@@ -220,7 +221,7 @@ def _agreement_row(planar: _Run, flat: _Run) -> Row:
     worst = 0.0
     for names in (
         ("truth.contact_force",),
-        tuple(f"truth.wheel_torque[{i}]" for i in range(3)),
+        tuple(f"truth.wheel_torque[{i}]" for i in range(WHEELS)),
         ("truth.x", "truth.y"),
     ):
         before = planar.time_ms < reacts

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from giveway.base.errors import FileError, nearest_names
 from giveway.robot.robot_file import Robot
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["MotionLog", "behind_drivetrain", "counts_to_rad", "read_log"]
 
-WHEELS = 3
 ROWS_MIN = 10  # a shorter file is wrong; the fit decides whether a log is long enough
 GAP_STEPS = 10.0  # a step longer than this many usual steps is a gap in the log
 COUNT_WRAP = 2.0**32

@@ -26,13 +26,13 @@ from giveway.base.checks import finite
 from giveway.base.errors import GivewayError
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
+from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Base", "Calibration", "KnownPush", "calibrate", "felt_wrench", "static_torques"]
 
-WHEELS = 3
 FORCE_MAXIMUM_N, LENGTH_MAXIMUM_M, TORQUE_MAXIMUM_NM = 1e4, 10.0, 1e4
 # The moment of a push is felt in full, so the felt one tells a wrong point, unit, sign or wheel order from presliding.
 # A quarter of R F is a push 6 cm from its stated point on Trikey: more than the error of a careful hand.
@@ -62,7 +62,7 @@ class Base:
     wheel_radius_m: float
     wheel_distance_m: float
     drivetrain_stiffness_nm_per_rad: float
-    azimuth_rad: tuple[float, float, float] = (0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0)
+    azimuth_rad: tuple[float, ...] = AZIMUTHS_RAD
 
     def __post_init__(self) -> None:
         for name in ("wheel_radius_m", "wheel_distance_m", "drivetrain_stiffness_nm_per_rad"):

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.identification.torque_model import WHEELS, TorqueModel
+from giveway.identification.torque_model import TorqueModel
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.robot.robot_file import Robot
 
-__all__ = ["WHEELS", "TorqueModel"]
-
-WHEELS = 3
+__all__ = ["TorqueModel"]
 
 
 @dataclass(frozen=True)
@@ -57,8 +56,7 @@ class TorqueModel:
 
     @property
     def _axes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        azimuth = np.arange(WHEELS) * (2.0 * math.pi / 3.0)
-        cos, sin = np.cos(azimuth), np.sin(azimuth)
+        cos, sin = np.cos(AZIMUTHS_RAD), np.sin(AZIMUTHS_RAD)
         return np.column_stack([cos, sin]), np.column_stack([-sin, cos])
 
     def motion(

@@ -14,7 +14,7 @@ from matplotlib.style import context
 from giveway.report.inline_svg import inline_svg
 from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
-from giveway.simulation.metrics import WHEELS
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,6 +16,7 @@ from matplotlib.transforms import Affine2D
 from giveway.report.obstacle import SLIDER_M
 from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
+from giveway.robot.wheels import AZIMUTHS_RAD
 from giveway.simulation.summary import table_rows
 
 if TYPE_CHECKING:
@@ -79,8 +80,8 @@ def _draw_robot(axes: Axes, run: Run, row: int, strength: float) -> None:
     parameters, pose = _parameters(run), _pose(run, row)
     corners = [[parameters[f"outline.{axis}[{i}]"] for axis in "xy"] for i in range(int(parameters["outline.count"]))]
     radius, distance = float(parameters["wheel.radius"]), float(parameters["wheel.distance"])
-    for wheel in range(3):
-        turn = Affine2D().translate(distance - WHEEL_WIDTH_M / 2, -radius).rotate_deg(120.0 * wheel) + pose
+    for azimuth in AZIMUTHS_RAD:
+        turn = Affine2D().translate(distance - WHEEL_WIDTH_M / 2, -radius).rotate(azimuth) + pose
         corner = Rectangle((0.0, 0.0), WHEEL_WIDTH_M, 2.0 * radius, color=TRUTH_COLOUR, alpha=0.6 * strength, lw=0)
         corner.set_transform(turn + axes.transData)
         axes.add_patch(corner)

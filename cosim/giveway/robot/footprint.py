@@ -10,13 +10,13 @@ import numpy as np
 
 from giveway.base.errors import GivewayError
 from giveway.robot.variables import Value
+from giveway.robot.wheels import AZIMUTHS_RAD
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["controller_outline", "hull", "wheel_corners"]
 
-WHEELS = 3
 CORNERS_MAX = 16  # of the controller's outline
 
 
@@ -39,9 +39,9 @@ def wheel_corners(testbed: Mapping[str, Value], height_m: float | None = None) -
         [distance + half_width, half_length],
         [distance - half_width, half_length],
     ])  # fmt: skip
-    turns = [2.0 * math.pi * wheel / WHEELS for wheel in range(WHEELS)]
     return np.stack([
-        corners @ np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]]) for turn in turns
+        corners @ np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+        for turn in AZIMUTHS_RAD
     ])  # fmt: skip
 
 

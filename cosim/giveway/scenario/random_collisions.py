@@ -15,6 +15,7 @@ import numpy as np
 from giveway.base.checks import whole
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.robot.variables import Value, table
+from giveway.robot.wheels import WHEELS
 from giveway.scenario.approach import Approach, edge_middle, meet, outline_of
 from giveway.scenario.plan import Rest
 from giveway.scenario.scenario import BUMPERS, Scenario
@@ -74,7 +75,7 @@ def random_collisions(count: int, seed: int, duration_s: float = DURATION_S) -> 
 def _scenario(rng: np.random.Generator, start: Mapping[str, Value], index: int, duration_s: float) -> Scenario:
     values: dict[str, Value] = {name: float(start[name]) * _factor(rng, factor) for name, factor in FACTORS.items()}
     values["drivetrain.gear_stiction"] = float(values["drivetrain.gear_coulomb"]) * rng.uniform(1.0, 1.5)
-    for wheel in range(3):
+    for wheel in range(WHEELS):
         name = f"roller.presliding_stiffness[{wheel}]"
         values[name] = float(start[name]) * _factor(rng, PRESLIDING_FACTOR)
     values["contact.friction"] = rng.uniform(0.0, 0.4)

@@ -29,6 +29,7 @@ import numpy as np
 from giveway.base import native
 from giveway.base.errors import GivewayError
 from giveway.robot.variables import Value, Variable, VariableTable, table
+from giveway.robot.wheels import WHEELS
 from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS
 from giveway.simulation.fmu import Instance, open_fmu
 
@@ -50,7 +51,7 @@ Progress = Callable[[float, float], None]
 
 
 def _indexed(name: str) -> tuple[str, ...]:
-    return tuple(f"{name}[{wheel}]" for wheel in range(3))
+    return tuple(f"{name}[{wheel}]" for wheel in range(WHEELS))
 
 
 # Variables that pass from one FMU to the other under the same name; per type, in the order of exchange.

@@ -15,6 +15,7 @@ import numpy as np
 
 from giveway.library import recorded
 from giveway.library.batch_library import OF_COLLISION, OF_DESIGN, OF_FREE_RUN, native_metrics
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     import xarray
@@ -26,7 +27,6 @@ __all__ = ["Collision", "Metric", "collision", "design", "evaluate", "without_co
 
 FIRST_PEAK = "peak force of the first contact"
 PUSH_FORCES = ("testbed.push.force_x", "testbed.push.force_y")
-WHEELS = 3
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,10 @@ from giveway.experiments.static_push_study.placements import (
     paper_placements,
     random_placements,
 )
-from giveway.experiments.static_push_study.trials import WEIGHT_N, WHEELS, Trial
+from giveway.experiments.static_push_study.trials import WEIGHT_N, Trial
 from giveway.identification.presliding import Base
 from giveway.robot.variables import table
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,8 +13,9 @@ import numpy as np
 
 from giveway.experiments.static_push_study.groups import GROUP, PAPER_FORCE_N
 from giveway.experiments.static_push_study.placements import random_placements
-from giveway.experiments.static_push_study.trials import WEIGHT_N, WHEELS
+from giveway.experiments.static_push_study.trials import WEIGHT_N
 from giveway.identification.presliding import Base, felt_wrench, static_torques
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,8 +10,9 @@ import numpy as np
 
 from giveway.experiments.static_push_study.groups import GROUP
 from giveway.experiments.static_push_study.robots import PushedRobot, pushed_robot, roller_loads
-from giveway.experiments.static_push_study.trials import WHEELS, Readings, Trial, run_trials
+from giveway.experiments.static_push_study.trials import Readings, Trial, run_trials
 from giveway.identification.presliding import Calibration, calibrate
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

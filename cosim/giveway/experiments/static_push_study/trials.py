@@ -16,6 +16,7 @@ import numpy as np
 from giveway import batch
 from giveway.base.errors import SimulationError
 from giveway.base.gravity import GRAVITY_MPS2
+from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Readings", "SteadyPush", "Trial", "run_trials"]
 
-WHEELS = 3
 TARE_S, RISE_S, SETTLE_S, READ_S = 0.13, 0.3, 0.07, 0.1
 DURATION_S = TARE_S + RISE_S + SETTLE_S + READ_S
 STEP_S = 1e-3
