@@ -8,10 +8,28 @@ from giveway.experiments.reproduction.findings import Effort, Findings
 
 
 @pytest.fixture(scope="module")
-def findings() -> Findings:
+def shares() -> list[float]:
+    """What `findings` tells its progress."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def findings(shares: list[float]) -> Findings:
     reproduce = experiments.get("motionless").reproduce
     assert reproduce is not None
-    return reproduce(Effort(full=False))
+    return reproduce(Effort(full=False, progress=shares.append))
+
+
+def test_progress_is_the_share_of_the_bumpers(findings: Findings, shares: list[float]) -> None:
+    assert shares == [0.0, 1.0 / 3.0, 2.0 / 3.0]
+
+
+def test_an_escape_is_met_to_half_a_centimetre_only(findings: Findings) -> None:
+    targets = [row.target for row in findings.rows if row.quantity.startswith("escape of the admittance")]
+    assert len(targets) == 3
+    for target in targets:
+        assert target is not None
+        assert [target.met(escape_m) for escape_m in (0.494, 0.496, 0.504, 0.506)] == [False, True, True, False]
 
 
 def test_every_target_is_met(findings: Findings) -> None:

@@ -41,6 +41,15 @@ def test_robot_is_steady_when_it_hits(name: str, results: dict[str, Result]) -> 
     assert speed == pytest.approx(scene.speed_mps, rel=0.02)
 
 
+@pytest.mark.parametrize("name", SCENES)
+def test_the_obstacle_s_direction_is_within_half_a_turn(name: str) -> None:
+    direction = float(scenario(name).testbed["slider.direction"])
+    assert abs(direction) <= np.pi
+    ahead = SCENES[name].direction_rad + np.pi + (SCENES[name].edge_rad or 0.0)
+    # Equal but for whole turns, whose rounding is 1e-15.
+    assert [np.cos(direction), np.sin(direction)] == pytest.approx([np.cos(ahead), np.sin(ahead)], abs=1e-14)
+
+
 def test_hand_is_hit_by_the_wheel_itself(results: dict[str, Result]) -> None:
     hit = collision(results["hand"])
     point = hit.true_point()

@@ -317,6 +317,13 @@ FAULTS: list[tuple[str, int, Plant, str, bool]] = [
         "4 dependencies, but 1 kinds",
         True,
     ),
+    (
+        "model structure",
+        3,
+        lambda d: d.edit("<InitialUnknown", '<ClockedState valueReference="9999"/><InitialUnknown'),
+        "9999 among the clocked states is no variable",
+        True,
+    ),
     ("model structure", 2, lambda d: d.edit('derivative="35"', 'derivative="990"'), "is the derivative of 990", True),
     (
         "event indicators",

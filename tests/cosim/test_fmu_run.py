@@ -12,10 +12,12 @@ import pytest
 from giveway.base import native
 from giveway.base.errors import GivewayError, SimulationError
 from giveway.cli import _main
+from giveway.fmu_tools.description import read_description
+from giveway.fmu_tools.inputs import read_inputs
 from giveway.fmu_tools.run import run_fmu
 from giveway.robot.variables import table as variable_table
 from giveway.simulation.fmu import Instance, open_fmu
-from stub_fmus import files, library, pack
+from stub_fmus import VARIABLES_3, description_3, files, library, pack
 
 DRIVE = ["carrier.velocity=0.2", "bumper.kind=1"]  # the carrier's face moves into the plate's
 
@@ -150,6 +152,13 @@ def test_inputs_come_from_a_file(follower: Path, tmp_path: Path) -> None:
     np.testing.assert_allclose(run.traces["y"], 2.0 * before, rtol=1e-12, atol=1e-12)
 
 
+def test_an_integer_input_may_have_64_bits(tmp_path: Path) -> None:
+    variables = f'{VARIABLES_3}<Int64 name="counts" valueReference="9" causality="input" start="0"/>'
+    described = read_description(description_3(variables=variables).encode())
+    found = read_inputs(_inputs(tmp_path / "in.csv", "time,counts\n0,1\n1,1099511627776\n"), described)
+    assert found["counts"].tolist() == [1, 2**40]
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -210,6 +219,7 @@ def test_outputs_are_drawn_and_counters_are_not(follower: Path, tmp_path: Path) 
     assert {"y", "N"} <= _labels(page)
     assert "steps" not in _labels(page)
     assert "<h2>Not drawn</h2><p>steps (--plot NAME draws them)</p>" in page
+    assert "more, in the CSV" not in page
 
 
 def test_the_user_says_what_is_drawn(follower: Path, tmp_path: Path) -> None:

@@ -108,6 +108,16 @@ def test_what_cannot_be_measured_is_refused() -> None:
             measure(*arguments, gear_friction=friction)
 
 
+def test_an_amplitude_may_be_a_quarter_of_the_motor_s_limit() -> None:
+    drivetrain, servo = read()
+    most = frequency_response.TORQUE_LIMIT_NM / 4.0
+    for amplitude, refused in ((most, "frequency_hz"), (1.001 * most, "amplitude")):
+        with pytest.raises(GivewayError, match=refused):  # of both, the amplitude is looked at first
+            measure(
+                drivetrain, servo, "servo", "motor", np.array([950.0]), gear_friction=FRICTION_NM, amplitude=amplitude
+            )
+
+
 def test_command_compares(cli: Cli) -> None:
     done = cli("drivetrain", "--sweep")
     assert done.returncode == 0, done.stderr

@@ -209,6 +209,35 @@ def test_the_place_is_that_of_the_first_row_and_the_robots_speed_of_the_one_befo
     assert found["robot speed at contact"][0] == pytest.approx(0.5, rel=1e-12)
 
 
+def test_the_robots_speed_is_that_of_the_first_row_if_the_second_is_the_contact(evaluate: Evaluate) -> None:
+    traces = changed({"testbed.truth.vx": [(CONTACT - 1, 0.3), (CONTACT, 9.0)]})
+    found = evaluate(traces.isel(time=slice(CONTACT - 1, None)), PARAMETERS)
+    assert found["robot speed at contact"][0] == 0.3
+    found = evaluate(traces.isel(time=slice(CONTACT, None)), PARAMETERS)
+    assert math.isnan(found["robot speed at contact"][0]), "no row before the contact"
+
+
+def test_touches_a_tenth_of_a_second_apart_are_two_contacts(evaluate: Evaluate) -> None:
+    last = 210
+    touches: Changes = {"testbed.truth.contact": [(slice(last + 1, None), 0.0), (last + 100, 1.0)]}
+    time_s = changed(touches)["time"].values
+    assert time_s[last + 100] - time_s[last] == 0.1, "the bits of another row"
+    assert evaluate(changed(touches), PARAMETERS)["contacts"][0] == 2.0
+
+
+def test_the_energy_residual_is_a_share_of_the_work_where_that_is_the_largest(evaluate: Evaluate) -> None:
+    work = {"testbed.energy.work_in": [(500, -100.0)]}  # J; 4 J are released, 6 J dissipated
+    assert evaluate(changed(work), PARAMETERS)["energy residual"][0] == pytest.approx(6e-6 / 100.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("what", ["contact", "latched", "rope_taut"])
+def test_what_holds_at_the_end_is_that_of_the_last_row(what: str) -> None:
+    name = f"{what.replace('_', ' ')} at end"
+    for rows, at_end in ((-1, 1.0), (slice(0, -1), 0.0)):
+        traces = changed({f"testbed.truth.{what}": [(slice(0, None), 0.0), (rows, 1.0)]})
+        assert library(traces, PARAMETERS)[name][0] == at_end
+
+
 def test_the_plan_is_compared_while_it_is_followed_and_until_the_first_reaction(evaluate: Evaluate) -> None:
     away: Changes = {
         # Taring, tracking, reacting, and tracking again.

@@ -16,6 +16,8 @@ from giveway.base import native
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.cli import _main
 from giveway.fmu_tools.ssp import parameter_set, write_ssp
+from giveway.robot.changes import NewValue, changed_robot
+from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
 from giveway.scenario.scenario import BUMPERS
 from giveway.simulation.fmu import Instance, open_fmu
@@ -128,6 +130,17 @@ def test_fmpy_runs_it_as_the_fmus_run_by_themselves(package: Path, bumper: str) 
     # The planted fault: with the whole command delay the loop is a cycle slower, and that shows.
     slower = run_between_steps(bumper, sequential=True)
     assert (np.abs(slower - ours).max(axis=0) / peaks).max() > 1e-3
+
+
+def test_a_robot_s_package_holds_all_of_its_values(tmp_path: Path) -> None:
+    path = tmp_path / "heavy.toml"
+    path.write_text(changed_robot(native.robot(), {"base.mass": NewValue(50.0, "a test", "assumed")}))
+    robot = read_robot(path)
+    values = parameter_set("none", robot)
+    own = {f"controller.{name}": value for name, value in table("controller").robot_values(robot).items()}
+    own["testbed.base.mass"] = table("testbed").robot_values(robot)["base.mass"]
+    assert {name: values.get(name) for name in own} == own
+    assert values["testbed.base.mass"] == 50.0
 
 
 def test_wrong_input_is_named(tmp_path: Path) -> None:

@@ -73,8 +73,12 @@ def test_an_ssv_for_the_bumper_fmu_holds_the_bumper(answers: Answers, tmp_path: 
     root = ElementTree.parse(tmp_path / "bumper.ssv").getroot()
     names = {parameter.attrib["name"] for parameter in root.iter(f"{{{SSV}}}Parameter")}
     assert names == {"bumper.kind", "bumper.spring_rate", "bumper.latch_force"}
-    units = {one.attrib["name"] for one in root.iter("{http://ssp-standard.org/SSP1/SystemStructureCommon}Unit")}
-    assert units == {"N", "N/m"}
+    common = "{http://ssp-standard.org/SSP1/SystemStructureCommon}"
+    units = {one.attrib["name"]: one.find(f"{common}BaseUnit") for one in root.iter(f"{common}Unit")}
+    assert {name: dict(base.attrib) for name, base in units.items() if base is not None} == {
+        "N": {"kg": "1", "m": "1", "s": "-2"},
+        "N/m": {"kg": "1", "s": "-2"},
+    }
 
 
 @pytest.mark.parametrize("collision", ["front", "side"])

@@ -13,6 +13,7 @@ from giveway.scenario.plan import Rest, Straight
 from giveway.scenario.scenario import Scenario
 from giveway.study import Study
 from giveway.study.chosen import scenario_of_run
+from giveway.study.designs import deviations
 from giveway.study.engine import plan_runs
 from giveway.study.native_part import NativePart
 from giveway.study.runs import RunTable
@@ -173,6 +174,16 @@ def test_the_hit_has_its_tolerances() -> None:
     np.testing.assert_allclose(away, np.abs(by[:, 2]), atol=1e-15)
     assert set(np.abs(by[1:, 2])) == {0.01}
     np.testing.assert_allclose(rows.values[:, runs.columns.index["testbed.slider.mass"]], 9.08 * (1.0 + by[:, 3]))
+
+
+def test_tolerance_samples_are_those_of_the_study_s_next_seed() -> None:
+    """The designs take the seed itself; with samples of another seed a stored study could not be continued."""
+    study = small_study(vary=[], seed=5).vary(LATCH, low=0.0, high=60.0).tolerance("testbed.base.mass", absolute=2.0)
+    setup = study.tolerances(samples=16, kind="latin-hypercube").designs("latin-hypercube", count=16).setup()
+    found = plan_runs(setup)
+    expected = deviations(setup.tolerances, "latin-hypercube", 16, 6)
+    np.testing.assert_array_equal(found.deviations, expected)
+    assert not np.array_equal(expected, deviations(setup.tolerances, "latin-hypercube", 16, 5)), "no seed is seen"
 
 
 def test_a_place_beside_the_side_is_refused_with_its_reason() -> None:
