@@ -36,7 +36,7 @@ def test_run(library, name, record_property):
     assert [i for _, i in found_events] == [i for _, i in expected_events]
     apart = max(abs(a - b) for (a, _), (b, _) in zip(found_events, expected_events, strict=True))
     record_property("worst signal error", float(error.max()))
-    record_property("worst event error, s", apart)
+    record_property("worst event error, s", float(apart))
     assert apart < EVENT_TOLERANCE_S
     worst = int(error.argmax())
     assert error[worst] < SIGNAL_TOLERANCE, f"state {worst} of {STATES}: {error[worst]}"
