@@ -67,7 +67,7 @@ def worst_error(
 
 def test_right_hand_side(library, record_property):
     worst, beyond = worst_error(library, {})
-    record_property("worst", float(worst))
+    record_property("worst", {name: float(error) for name, error in worst.items()})
     assert beyond == 0, worst
 
 
