@@ -12,6 +12,7 @@
 
 #include "model.hpp"
 #include "noise.hpp"
+#include "state.hpp"
 #include "testbed_variables.hpp"
 
 namespace {
@@ -95,6 +96,26 @@ TEST(Testbed, StopsWhereTheRobotGoesOver) {
     EXPECT_NE(std::string(run.message.text).find("the robot tips over: at t = "), std::string::npos)
         << run.message.text;
     EXPECT_NEAR(std::hypot(run.v().truth_pitch, run.v().truth_roll), 15.0 * 3.14159265358979 / 180.0, 2e-3);
+}
+
+TEST(Testbed, TellsAnImporterThatIntegratesWhenTheRobotGoesOver) {
+    Bench run;
+    run.v().base_tipping = true;
+    run.v().slider_present = false;
+    ASSERT_EQ(run.model->initialise(100.0, run.message), Status::ok) << run.message.text;
+    giveway::Equations &equations = *run.model->equations();
+    giveway::EventUpdate update{};
+    do {
+        update = {};
+        equations.set_time(100.0);
+        ASSERT_EQ(equations.update_events(update, run.message), Status::ok) << run.message.text;
+    } while (update.again);
+    EXPECT_EQ(update.next_time_s, 100.0005); // the next tick of the servos
+    equations.set_time(100.00025);
+    equations.states()[giveway::plant::Layout<>::base_pitch] = 0.3; // rad; 15 deg are 0.26
+    EXPECT_EQ(equations.update_events(update, run.message), Status::error);
+    EXPECT_NE(std::string(run.message.text).find("the robot tips over: at t = 100.00025 s"), std::string::npos)
+        << run.message.text;
 }
 
 TEST(Testbed, RefusesWhatDoesNotGoTogether) {
