@@ -138,6 +138,8 @@ ramp = 0.1
 """
     round_ = read_scenario(written(tmp_path, head + text))
     assert round_.plan == Circle(2.0, -0.3, 1.0, 2.0, math.pi, "turning", math.pi / 4, 0.5)
+    steady = read_scenario(written(tmp_path, head + text.replace("turning = true\n", "")))
+    assert steady.plan == Circle(2.0, -0.3, 1.0, 2.0, math.pi, "fixed", math.pi / 4, 0.5)
     assert isinstance(round_.push, Pushes)
     np.testing.assert_allclose(round_.push(np.array([2.2]))[0], [-30.0, 0.0, 0.3, 0.0], atol=1e-12)
 
