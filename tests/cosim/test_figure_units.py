@@ -16,9 +16,9 @@ import pytest
 import xarray
 from giveway.base.errors import GivewayError
 from giveway.base.units import factor
-from giveway.experiments.figures import impact_response, impulse_share, reversal
+from giveway.experiments.figures import circle, impact_response, impulse_share, reversal
 from giveway.experiments.impulse_trials import Seen
-from giveway.report import circle, figures, overview
+from giveway.report import figures, overview
 from giveway.report.runs import Run
 from giveway.report.style import COLOURS
 from giveway.scenario.scenario import BUMPERS
