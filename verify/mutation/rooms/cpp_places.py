@@ -29,6 +29,7 @@ FUNCTIONS = (
 )
 OPERATIONS = (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR, CursorKind.CALL_EXPR)
 NUMBER = re.compile(r"(?:\d[\d']*\.?[\d']*|\.\d+)(?:[eE][-+]?\d+)?[fFuUlLzZ]*")
+COMPUTED_BY_COMPILER = re.compile(r"(?:static\s+)?constexpr\b")
 STATEMENT_PARENTS = (CursorKind.COMPOUND_STMT, CursorKind.CASE_STMT, CursorKind.DEFAULT_STMT)
 REAL = (TypeKind.FLOAT, TypeKind.DOUBLE, TypeKind.LONGDOUBLE)
 WHOLE = (TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind.SHORT, TypeKind.USHORT)
@@ -101,6 +102,8 @@ def _of_node(node: Cursor, text: bytes, function: Cursor, parent: Cursor | None)
     start, end = node.extent.start.offset, node.extent.end.offset
     children = list(node.get_children())
     own = text[start:end].decode(errors="replace")
+    if node.kind == CursorKind.VAR_DECL and COMPUTED_BY_COMPILER.match(own):
+        return  # no mutant can be chosen at run time there
     if node.kind in OPERATIONS and len(children) >= 2:
         yield from _other_operation(text, start, end, children)
     elif node.kind == CursorKind.UNARY_OPERATOR and own[:1] in "-!" and not own.startswith("--"):
