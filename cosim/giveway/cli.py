@@ -23,6 +23,7 @@ from giveway.base.errors import GivewayError, SimulationError, WriteError, one_l
 from giveway.base.failures import DEBUG_VARIABLE, unforeseen
 from giveway.base.terminal import FAILED, INTERRUPTED, WRONG_INPUT
 from giveway.bench.command import bench
+from giveway.crowd.command import crowd_app
 from giveway.drivetrain.command import drivetrain
 from giveway.experiments.command import demo, list_experiments, reproduce, run
 from giveway.fitting.command import fit
@@ -50,6 +51,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
 for name, command in COMMANDS.items():
     app.command(name)(command)
 app.add_typer(study_app)
+app.add_typer(crowd_app)
 app.add_typer(fmu_app)
 
 

@@ -48,21 +48,24 @@ _PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
 MERGED_AT = 16
 
 
-def read_manifest(folder: Path) -> dict[str, Any]:
+def read_manifest(folder: Path, kind: str = KIND) -> dict[str, Any]:
     """The manifest of a study's folder."""
     manifest = read_json(folder / MANIFEST_FILE, SCHEMA_VERSION, HINT)
-    if manifest.get("kind") != KIND:
-        raise FileError(folder / MANIFEST_FILE, "is not that of a study", HINT)
+    if manifest.get("kind") != kind:
+        raise FileError(folder / MANIFEST_FILE, f"is not that of a {kind.removeprefix('giveway ')}", HINT)
     return manifest
 
 
 class Store:
     """The folder of one study, locked against other processes as long as it is open."""
 
-    def __init__(self, folder: Path, fingerprint: str) -> None:
-        """Open ``folder``, made if it is not there; FileError if it holds something else or is in use."""
-        self.folder = folder
-        self.check(folder)
+    def __init__(self, folder: Path, fingerprint: str, kind: str = KIND) -> None:
+        """Open ``folder``, made if it is not there; FileError if it holds something else or is in use.
+
+        ``kind`` is what the manifest says that it holds.
+        """
+        self.folder, self._kind = folder, kind
+        self.check(folder, kind)
         try:
             self.parts_folder = folder / PARTS / fingerprint[:16]
             self.parts_folder.mkdir(parents=True, exist_ok=True)
@@ -80,14 +83,14 @@ class Store:
                 left.unlink(missing_ok=True)
 
     @staticmethod
-    def check(folder: Path) -> None:
-        """Refuse, before any work is done, a folder that is no place for a study."""
+    def check(folder: Path, kind: str = KIND) -> None:
+        """Refuse, before any work is done, a folder that is no place for a study, or for what else ``kind`` names."""
         if folder.exists() and not folder.is_dir():
             raise FileError(folder, "is a file", "give a folder to write to")
         if folder.is_dir() and any(path.name[0] != "." and path.name != PARTS for path in folder.iterdir()):
             if not (folder / MANIFEST_FILE).is_file():
                 raise FileError(folder, "is not empty and holds no study", "give a new or an empty folder")
-            read_manifest(folder)
+            read_manifest(folder, kind)
         check_file(folder / MANIFEST_FILE)
 
     def _take_lock(self) -> IO[str]:
@@ -111,7 +114,7 @@ class Store:
 
     def write_manifest(self, manifest: dict[str, Any]) -> None:
         """Write the manifest, atomically."""
-        text = json.dumps({"schema_version": SCHEMA_VERSION, "kind": KIND, **manifest}, indent=2, allow_nan=False)
+        text = json.dumps({"schema_version": SCHEMA_VERSION, "kind": self._kind, **manifest}, indent=2, allow_nan=False)
         write_text(self.folder / MANIFEST_FILE, text + "\n")
 
     def write_designs(self, designs: NDArray[np.float64], deviations: NDArray[np.float64]) -> None:

@@ -1,0 +1,307 @@
+"""The crowd's table: one row per class of hits, with intervals; and the worst cases by number."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from giveway.base.files import replace_files
+from giveway.crowd.judged import Contact, Judged
+from giveway.crowd.parts import Record
+from giveway.crowd.population import GROUPS
+from giveway.crowd.statistics import Estimate, count_interval, mean, percentile
+
+__all__ = [
+    "HEADER",
+    "ROWS",
+    "Found",
+    "Row",
+    "cells",
+    "find",
+    "markdown",
+    "short_cells",
+    "short_header",
+    "tables",
+    "worst",
+    "write",
+]
+
+WORST = 10
+MODE_REACTING = 2
+SAME_S = 2e-3  # a contact that begins this close to the second hit is the second hit
+
+Run = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A class of hits: the runs that belong to it, and which of their contacts."""
+
+    name: str
+    runs: Callable[[Run], bool]
+    contacts: Callable[[Run, Contact], bool]
+
+
+def _drawn(run: Run, contact: Contact) -> bool:
+    """A contact of a robot that follows its plan."""
+    return contact.mode < MODE_REACTING
+
+
+def _second(run: Run, contact: Contact) -> bool:
+    return run["second_s"] is not None and abs(contact.start_s - float(run["second_s"])) < SAME_S
+
+
+def _class(situation: str, kind: str) -> tuple[Callable[[Run], bool], Callable[[Run, Contact], bool]]:
+    return (lambda run: bool(run["situation"] == situation and run["kind"] == kind)), _drawn
+
+
+def _stated(situation: str, bumper: str = "") -> tuple[Callable[[Run], bool], Callable[[Run, Contact], bool]]:
+    def runs(run: Run) -> bool:
+        mine = run["situation"] == situation and run["kind"] == "free" and run["stated"]
+        return bool(mine and bumper in ("", run["bumper"]))
+
+    return runs, _second if situation == "reacting" else _drawn
+
+
+def is_hit(run: Run) -> bool:
+    """Not a slow push or a moment."""
+    return run["kind"] not in ("slow push", "moment")
+
+
+ROWS: tuple[Row, ...] = (
+    Row("all hits", is_hit, lambda run, contact: True),
+    Row("at rest, free", *_class("rest", "free")),
+    Row("at rest, pulled", *_class("rest", "pulled")),
+    Row("in motion, free", *_class("motion", "free")),
+    Row("in motion, pulled", *_class("motion", "pulled")),
+    Row("in motion, clamped", *_class("motion", "clamped")),
+    Row("starting", *_class("starting", "free")),
+    Row("stopping", *_class("stopping", "free")),
+    Row("while reacting", is_hit, lambda run, contact: contact.mode >= MODE_REACTING),
+    Row("second hit, 0.5 m/s", *_stated("reacting")),
+    Row("at rest, 0.5 m/s", *_stated("rest")),
+    *(Row(f"at rest, 0.5 m/s, {bumper}", *_stated("rest", bumper)) for bumper in ("none", "spring", "magnetic")),
+    Row("in motion, 0.5 m/s", *_stated("motion")),
+    *(Row(f"in motion, 0.5 m/s, {bumper}", *_stated("motion", bumper)) for bumper in ("none", "spring", "magnetic")),
+    Row("slow push at rest", *_class("rest", "slow push")),
+    Row("slow push in motion", *_class("motion", "slow push")),
+    Row("moment at rest", *_class("rest", "moment")),
+    Row("moment in motion", *_class("motion", "moment")),
+)
+
+HEADER = (
+    "hits",
+    "runs",
+    "hits of 1 N s",
+    "missed",
+    "false detections",
+    "runs with one",
+    "towards",
+    "delay median, ms",
+    "delay 95 %, ms",
+    "direction 95 %, deg",
+    "direction 30 ms later, deg",
+    "place mean, mm",
+    "place 95 %, mm",
+    "place 30 ms later mean, mm",
+    "place 30 ms later 95 %, mm",
+)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A row's figures. Percentiles are over all of its hits, a missed one is infinite; None: there is none.
+
+    Attributes:
+        runs, hits, missed, false, runs_with_false, towards: counts.
+        delay_ms: of hits, median and 95th percentile.
+        direction_deg, later_direction_deg: 95th percentile of the error.
+        place_mm, later_place_mm: mean and 95th percentile of the error; the mean over those noticed.
+    """
+
+    name: str
+    runs: int
+    hits: int
+    missed: int
+    false: int
+    runs_with_false: int
+    towards: int
+    delay_median_ms: Estimate | None
+    delay_p95_ms: Estimate | None
+    direction_p95_deg: Estimate | None
+    later_direction_p95_deg: Estimate | None
+    place_mean_mm: Estimate | None
+    place_p95_mm: Estimate | None
+    later_place_mean_mm: Estimate | None
+    later_place_p95_mm: Estimate | None
+
+    def plain(self) -> dict[str, Any]:
+        """For JSON: infinite ends as text."""
+        found: dict[str, Any] = {}
+        for name, value in vars(self).items():
+            found[name] = [_plain(end) for end in value] if isinstance(value, tuple) else value
+        found["missed_interval"] = list(count_interval(self.missed, self.hits)) if self.hits else None
+        found["runs_with_false_interval"] = list(count_interval(self.runs_with_false, self.runs)) if self.runs else None
+        return found
+
+
+def _plain(value: float) -> float | str:
+    return value if math.isfinite(value) else "infinite"
+
+
+def find(row: Row, records: Sequence[Record]) -> Found:
+    """The figures of ``row`` over the runs of ``records`` that ended well."""
+    mine = [(record, Judged.of(record["judged"])) for record in records if record["judged"] and row.runs(record)]
+    hits = [
+        contact
+        for record, judged in mine
+        for contact in judged.contacts
+        if contact.verdict in ("noticed", "missed") and row.contacts(record, contact)
+    ]
+
+    def values(name: str, missed: bool) -> list[float]:
+        noticed = [getattr(hit, name) for hit in hits if hit.verdict == "noticed"]
+        lost = sum(hit.verdict == "missed" for hit in hits)
+        return [value for value in noticed if value is not None] + ([math.inf] * lost if missed else [])
+
+    def errors(name: str) -> tuple[Estimate | None, Estimate | None]:
+        found = values(name, False)
+        return mean(found), percentile(values(name, True), 0.95) if found else None
+
+    delays = values("delay_ms", True)
+    return Found(
+        row.name,
+        len(mine),
+        len(hits),
+        sum(hit.verdict == "missed" for hit in hits),
+        sum(len(judged.false_s) for _, judged in mine),
+        sum(bool(judged.false_s) for _, judged in mine),
+        sum(len(judged.towards_s) for _, judged in mine),
+        percentile(delays, 0.5),
+        percentile(delays, 0.95),
+        errors("direction_deg")[1],
+        errors("later_direction_deg")[1],
+        *errors("place_mm"),
+        *errors("later_place_mm"),
+    )
+
+
+def cells(found: Found) -> tuple[str, ...]:
+    """The row as text, intervals in brackets."""
+    return (
+        found.name,
+        str(found.runs),
+        str(found.hits),
+        _share(found.missed, found.hits),
+        str(found.false),
+        _share(found.runs_with_false, found.runs),
+        str(found.towards),
+        _estimate(found.delay_median_ms, 1),
+        _estimate(found.delay_p95_ms, 1),
+        _estimate(found.direction_p95_deg, 0),
+        _estimate(found.later_direction_p95_deg, 0),
+        _estimate(found.place_mean_mm, 0),
+        _estimate(found.place_p95_mm, 0),
+        _estimate(found.later_place_mean_mm, 0),
+        _estimate(found.later_place_p95_mm, 0),
+    )
+
+
+SHORT = (0, 2, 3, 4, 6, 7, 8, 9, 10, 13, 14)
+"""Columns for the terminal, without intervals."""
+
+
+def short_header() -> tuple[str, ...]:
+    return tuple(HEADER[column] for column in SHORT)
+
+
+def short_cells(found: Found) -> tuple[str, ...]:
+    """The row for the terminal."""
+    full = cells(found)
+    return tuple(full[column].partition(" (")[0] if column else full[column] for column in SHORT)
+
+
+def _share(count: int, of: int) -> str:
+    if not of:
+        return "-"
+    low, high = count_interval(count, of)
+    return f"{count} ({100.0 * low:.2g} to {100.0 * high:.2g} %)"
+
+
+def _estimate(value: Estimate | None, decimals: int) -> str:
+    if value is None:
+        return "-"
+    at, low, high = (f"{one:.{decimals}f}" if math.isfinite(one) else "inf" for one in value)
+    return f"{at} ({low} to {high})"
+
+
+def tables(records: Sequence[Record]) -> Iterator[tuple[str, list[Found]]]:
+    """Per plant of `GROUPS` that has runs: its rows."""
+    for group in GROUPS:
+        mine = [record for record in records if record["group"] == group]
+        if mine:
+            yield group, [found for row in ROWS if (found := find(row, mine)).runs]
+
+
+def worst(records: Sequence[Record]) -> dict[str, list[list[Any]]]:
+    """The worst cases: what is wrong, then number and value of each."""
+    cases: dict[str, list[tuple[float, int]]] = {
+        name: []
+        for name in ("missed", "false detections", "towards", "delay at 0.5 m/s, ms", "direction 30 ms later, deg")
+    }
+    for record in records:
+        if not record["judged"]:
+            continue
+        judged, number = Judged.of(record["judged"]), int(record["number"])
+        lost = [contact.impulse_ns for contact in judged.contacts if contact.verdict == "missed"]
+        if lost:
+            cases["missed"].append((max(lost), number))
+        cases["false detections"] += [(len(judged.false_s), number)] if judged.false_s else []
+        cases["towards"] += [(len(judged.towards_s), number)] if judged.towards_s else []
+        for contact in judged.contacts:
+            if contact.delay_ms is not None and is_hit(record) and record["stated"] and _drawn(record, contact):
+                cases["delay at 0.5 m/s, ms"].append((contact.delay_ms, number))
+            if contact.later_direction_deg is not None and is_hit(record):
+                cases["direction 30 ms later, deg"].append((contact.later_direction_deg, number))
+    found: dict[str, list[list[Any]]] = {}
+    for name, values in cases.items():
+        values.sort(key=lambda one: (-one[0], one[1]))
+        found[name] = [[number, round(value, 3)] for value, number in values[:WORST]]
+    return found
+
+
+def markdown(title: str, notes: Sequence[str], records: Sequence[Record]) -> str:
+    """The whole table as text."""
+    lines = [f"# {title}", "", *notes, ""]
+    for group, rows in tables(records):
+        lines += [f"## {group}", "", f"| {' | '.join(HEADER)} |", "|" + "---|" * len(HEADER)]
+        lines += [f"| {' | '.join(cells(found))} |" for found in rows] + [""]
+    lines += ["## Worst cases", ""]
+    for name, values in worst(records).items():
+        listed = ", ".join(f"{number} ({value:g})" for number, value in values)
+        lines += [f"- {name}: {listed or 'none'}"]
+    return "\n".join(lines) + "\n"
+
+
+def write(
+    folder: Path, title: str, notes: Sequence[str], asked: Mapping[str, Any], records: Sequence[Record]
+) -> list[Path]:
+    """Write table.md and table.json into ``folder``, both or none."""
+    document = {
+        "schema_version": 1,
+        "title": title,
+        "notes": list(notes),
+        "asked": dict(asked),
+        "tables": {group: [found.plain() for found in rows] for group, rows in tables(records)},
+        "worst": worst(records),
+        "not judged": [[record["number"], record["message"]] for record in records if not record["judged"]],
+    }
+    paths = [folder / "table.md", folder / "table.json"]
+    with replace_files(*paths) as (text, data):
+        text.write_text(markdown(title, notes, records), encoding="utf-8")
+        data.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return paths

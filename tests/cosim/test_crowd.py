@@ -1,0 +1,242 @@
+"""`giveway crowd`: every run by its number alone, the definitions against a formula of their own, today's limits."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from giveway import batch
+from giveway.base.errors import GivewayError
+from giveway.crowd import table
+from giveway.crowd.blow import Blow
+from giveway.crowd.crowd import compute, limits_of
+from giveway.crowd.drive import Drive, Leg
+from giveway.crowd.hits import PATTERN, PER_ROBOT, Hit, hit
+from giveway.crowd.judged import RECORDED, Judged, judge
+from giveway.crowd.population import GROUPS, POPULATION, Quantity, group_of, robot
+from giveway.crowd.statistics import count_interval, mean, percentile, rate_upper_bound
+
+DRAW = "tuning"
+ROBOT = 3  # a planar one
+NUMBERS = [*range(ROBOT * PER_ROBOT, ROBOT * PER_ROBOT + 10), 2 * PER_ROBOT]
+
+
+@pytest.fixture(scope="module")
+def records() -> list[dict[str, Any]]:
+    return compute(DRAW, {}, NUMBERS, 2, lambda _done: None)
+
+
+def test_a_hit_has_the_same_bits_alone_and_in_the_crowd(records: list[dict[str, Any]]) -> None:
+    for place in (0, 8, 10):
+        alone = compute(DRAW, {}, [NUMBERS[place]], 1, lambda _done: None)
+        assert json.dumps(alone[0]) == json.dumps(records[place])
+
+
+def test_every_robot_has_every_kind_of_hit() -> None:
+    kinds = {(situation, kind) for situation, kind in PATTERN}
+    assert {"free", "pulled", "clamped", "slow push", "moment"} == {kind for _, kind in kinds}
+    assert {"rest", "motion", "starting", "stopping", "reacting"} <= {situation for situation, _ in kinds}
+    for number in range(PER_ROBOT):
+        one = hit(DRAW, number)
+        assert (one.number, one.robot.number) == (number, 0)
+        assert PATTERN[number][1] == one.kind
+
+
+def test_draws_are_of_their_own_and_within_what_is_stated() -> None:
+    seen = [robot(DRAW, number) for number in range(100)]
+    assert len({tuple(one.testbed.items()) for one in seen}) == 100
+    assert robot(DRAW, 3) == seen[3]
+    assert robot("judging", 3).testbed != seen[3].testbed
+    for quantity in POPULATION:
+        for name in quantity.parameters:
+            neutral = quantity.apply(0.0, 1.0)  # 1 for what replaces, 0 for what scales
+            values = np.array([float(one.testbed[name]) for one in seen])
+            if neutral == 0.0:
+                from giveway.crowd.population import start_value
+
+                values /= start_value(name)
+            assert quantity.low <= values.min() <= values.max() <= quantity.high
+            # Of 100 uniform draws the outermost lie within a tenth of the ends (probability of failure 5e-5).
+            reach = 0.1 * (quantity.high - quantity.low)
+            assert values.min() < quantity.low + reach
+            assert values.max() > quantity.high - reach
+
+
+def test_a_parameter_that_the_testbed_does_not_have_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    unknown = Quantity("nothing", ("roller.colour",), 0.0, 1.0)
+    monkeypatch.setattr("giveway.crowd.population.POPULATION", (*POPULATION, unknown))
+    with pytest.raises(GivewayError, match=r"roller\.colour"):
+        robot(DRAW, 0)
+
+
+def test_a_tenth_and_more_has_each_other_plant() -> None:
+    groups = [group_of(number) for number in range(1000)]
+    assert all(groups.count(group) >= 100 for group in GROUPS)
+
+
+def reference(one: Hit, traces: Mapping[str, Any], time_s: Any) -> dict[str, Any]:
+    """The definitions again, row by row."""
+    count = traces["controller.detection.count"]
+    detected = [k for k in range(1, len(time_s)) if count[k] > count[k - 1]]
+    force = [
+        float(traces["testbed.truth.contact_force"][k])
+        + math.hypot(traces["testbed.push.force_x"][k], traces["testbed.push.force_y"][k])
+        for k in range(len(time_s))
+    ]
+    false = 0
+    for k in detected:
+        false += not any(force[j] > 0.5 for j in range(max(0, k - 100), k + 1))
+    contacts = []
+    k = 0
+    while k < len(time_s):
+        if force[k] <= 0.5:
+            k += 1
+            continue
+        last = k
+        while True:
+            more = [j for j in range(last + 1, min(last + 101, len(time_s))) if force[j] > 0.5]
+            if not [j for j in more if j - last < 100]:
+                break
+            last = more[0]
+        # Trapezoids of the slider's force, rectangles of the push.
+        impulse = np.zeros(2)
+        passed = None
+        for j in range(max(k - 1, 0), min(last + 1, len(time_s) - 1)):
+            for axis, name in enumerate(("x", "y")):
+                slider = traces[f"testbed.truth.contact_force_{name}"]
+                impulse[axis] += 0.5e-3 * (slider[j] + slider[j + 1])
+                impulse[axis] += 1e-3 * traces[f"testbed.push.force_{name}"][j] * (j >= k)
+            if passed is None and math.hypot(*impulse) >= 1.0:
+                passed = j + 1
+        contacts.append((k, last, math.hypot(*impulse), passed))
+        k = last + 1
+    return {"detections": detected, "false": false, "contacts": contacts}
+
+
+def test_judged_as_a_formula_of_its_own(records: list[dict[str, Any]]) -> None:
+    hits = [hit(DRAW, number) for number in NUMBERS[:-1]]
+    many = batch.Prepared([one.scenario for one in hits], traces=RECORDED).run(method="fixed-step")
+    time_s = many["time"].values
+    noticed = 0
+    for index, one in enumerate(hits):
+        traces = {name: many[name].values[index] for name in RECORDED}
+        judged = judge(time_s, traces, limits_of(one))
+        assert judged == Judged.of(records[index]["judged"])
+        expected = reference(one, traces, time_s)
+        assert [round(1e3 * time) for time in judged.detections_s] == expected["detections"]
+        assert len(judged.false_s) == expected["false"]
+        assert len(judged.contacts) == len(expected["contacts"])
+        for contact, (first, last, impulse, passed) in zip(judged.contacts, expected["contacts"], strict=True):
+            assert first - 1 <= 1e3 * contact.start_s <= first
+            assert contact.end_s == pytest.approx(1e-3 * min(last + 1, len(time_s) - 1))
+            # Trapezoids over 1 ms of a force that rises within some.
+            assert contact.impulse_ns == pytest.approx(impulse, rel=0.02, abs=0.02)
+            assert (contact.passed_s is None) == (passed is None) or abs(impulse - 1.0) < 0.05
+            noticed += contact.verdict == "noticed"
+            if contact.verdict == "noticed":
+                assert round(1e3 * float(contact.detection_s or 0.0)) in expected["detections"]
+                assert contact.delay_ms == pytest.approx(1e3 * (contact.detection_s - contact.start_s))
+    assert noticed >= 5
+
+
+def test_hits_at_rest_are_noticed(records: list[dict[str, Any]]) -> None:
+    # Coarse: what the first detector already does on robots that are not its model.
+    found = table.find(next(row for row in table.ROWS if row.name == "at rest, free"), records)
+    assert found.hits >= 2
+    assert found.missed == 0
+    assert found.delay_median_ms is not None
+    assert found.delay_median_ms[0] < 200.0
+
+
+def test_the_table_has_rows_intervals_and_worst_cases(records: list[dict[str, Any]], tmp_path: Path) -> None:
+    text, data = table.write(tmp_path, "A title", ["A note."], {"draw": DRAW}, records)
+    document = json.loads(data.read_text(encoding="utf-8"))
+    assert document["not judged"] == []
+    rows = {row["name"]: row for row in document["tables"]["planar"]}
+    assert rows["all hits"]["runs"] == 11
+    assert "| at rest, pulled |" in text.read_text(encoding="utf-8")
+    assert all(number in NUMBERS for values in document["worst"].values() for number, _ in values)
+
+
+def test_towards_and_false_are_seen(records: list[dict[str, Any]]) -> None:
+    """A run with its traces changed: a reaction against the push, and a detection long after it."""
+    one = hit(DRAW, NUMBERS[0])
+    many = batch.Prepared([one.scenario], traces=RECORDED).run(method="fixed-step")
+    time_s, traces = many["time"].values, {name: many[name].values[0].copy() for name in RECORDED}
+    before = judge(time_s, traces, limits_of(one))
+    row = round(1e3 * before.detections_s[0])
+    after = slice(row + 1, row + 200)
+    traces["controller.mode"][after] = 2
+    impulse = [float(traces[f"testbed.truth.contact_impulse_{axis}"][row]) for axis in "xy"]
+    for axis, share in zip("xy", impulse, strict=True):
+        traces[f"controller.reference.v{axis}"][after] = -0.1 * share / math.hypot(*impulse)
+    assert judge(time_s, traces, limits_of(one)).towards_s[:1] == before.detections_s[:1]
+    traces["controller.detection.count"][-5:] += 1
+    force = traces["testbed.truth.contact_force"]
+    force[-300:] = 0.0
+    assert judge(time_s, traces, limits_of(one)).false_s[-1] == pytest.approx(time_s[-5])
+
+
+def test_a_missed_hit_counts_as_infinite(records: list[dict[str, Any]]) -> None:
+    blind = compute(DRAW, {"detector.impulse_threshold": 1000.0}, NUMBERS[:2], 2, lambda _done: None)
+    found = table.find(table.ROWS[0], blind)
+    assert (found.missed, found.hits) == (2, 2)
+    assert found.delay_median_ms is not None
+    assert math.isinf(found.delay_median_ms[0])
+    assert found.direction_p95_deg is None
+
+
+def test_plans_are_smooth_and_end_where_they_should() -> None:
+    legs = (
+        Leg(0.3, 0.3, 0.5, 1.0, direction_rad=0.4, curvature_pm=-1.6, turning=True),
+        Leg(4.0, 0.2, 0.4, 0.5, direction_rad=2.0),
+        Leg(8.0, 0.5, 1.0, 1.0, curvature_pm=-1.0, on_the_spot=True),
+    )
+    time_s = np.arange(0.0, 12.0, 1e-3)
+    plan = Drive(legs, 0.7)(time_s)
+    # Central differences of 1 ms: the third derivative, at most a (pi / ramp)^2 times h^2 / 6.
+    for derivative in (0, 3):
+        by_difference = np.gradient(plan[:, derivative : derivative + 3], time_s, axis=0)[1:-1]
+        assert np.abs(by_difference - plan[1:-1, derivative + 3 : derivative + 6]).max() < 5e-3
+    travelled = np.hypot(*(np.diff(plan[:, :2], axis=0).T)).sum()
+    assert travelled == pytest.approx(sum(leg.speed_mps * (leg.ramp_s + leg.cruise_s) for leg in legs[:2]), rel=1e-5)
+    assert np.abs(plan[-1, 3:]).max() == pytest.approx(0.0, abs=1e-12)
+    with pytest.raises(GivewayError, match="one leg after the other"):
+        Drive((legs[1], legs[0]))
+
+
+def test_a_blow_gives_back_its_momentum() -> None:
+    time_s = np.arange(0.0, 3.0, 1e-4)
+    for bumper, share in (("none", 1e-3), ("spring", 0.05), ("magnetic", 0.15)):
+        pushed = Blow(bumper, 10.0, 0.5, 0.3, (0.1, 0.2), 0.5)(time_s)
+        reduced = 10.0 * 34.7 / 44.7
+        impulse = np.hypot(*pushed[:, :2].T).sum() * 1e-4
+        # Elastic: twice the momentum of the reduced mass; onset and latch are not part of the spring's motion.
+        assert impulse == pytest.approx(2.0 * reduced * 0.5, rel=share)
+        assert pushed[time_s < 0.5].max() == 0.0
+
+
+def test_intervals_against_tables() -> None:
+    # Clopper and Pearson: 0 and 5 of 10, from any table of exact binomial limits.
+    assert count_interval(0, 10) == pytest.approx((0.0, 0.3085), abs=1e-4)
+    assert count_interval(5, 10) == pytest.approx((0.1871, 0.8129), abs=1e-4)
+    # No event: the rule of three, -ln 0.05.
+    assert rate_upper_bound(0, 300.0) == pytest.approx(-math.log(0.05) / 300.0)
+    # Median of 10: the classic interval is from the 2nd to the 9th value.
+    assert percentile([float(value) for value in range(1, 11)], 0.5) == (5.0, 2.0, 9.0)
+    assert percentile([1.0, math.inf], 0.95) == (math.inf, 1.0, math.inf)
+    centre, low, high = mean([1.0, 3.0]) or (0.0, 0.0, 0.0)
+    assert (centre, high - centre) == (2.0, pytest.approx(1.96 / math.sqrt(2.0), rel=1e-3))
+    assert low + high == pytest.approx(4.0)
+
+
+def test_the_controller_is_as_asked_and_the_robot_is_not() -> None:
+    one, default = hit(DRAW, 5, {"detector.impulse_threshold": 2.0}), hit(DRAW, 5)
+    assert one.scenario.controller == {"detector.impulse_threshold": 2.0}
+    assert default.scenario.controller == {}
+    assert one.scenario.testbed == default.scenario.testbed
