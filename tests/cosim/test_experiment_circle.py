@@ -7,16 +7,30 @@ import math
 import giveway
 import numpy as np
 import pytest
+from figure_labels import Curve, check_panels, check_planted, curve, keeping
 from giveway import batch
 from giveway.base.errors import GivewayError
 from giveway.experiments import circle
 from giveway.experiments.reproduction.findings import Effort, Findings
+from giveway.robot.variables import table
+from giveway.simulation import runner
 from giveway.simulation.push_response import Responses, responses
+from giveway.simulation.result import Result
+from matplotlib.patches import Polygon
+from numpy.typing import ArrayLike, NDArray
 
 
 @pytest.fixture(scope="module")
-def findings() -> Findings:
-    return circle.reproduce(Effort(full=False))
+def runs() -> list[Result]:
+    """Those of the findings that are run alone: a pushed round with either estimator, then one without pushes."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def findings(runs: list[Result]) -> Findings:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner, "run", keeping(runner.run, runs))
+        return circle.reproduce(Effort(full=False))
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +100,50 @@ def test_rollers_that_rub_unlike_the_model_do_raise_false_alarms(findings: Findi
 def test_the_experiment_has_no_bumper() -> None:
     with pytest.raises(GivewayError, match="bumper"):
         circle.scenario("spring")
+
+
+def in_world(pose: NDArray[np.float64], points: ArrayLike) -> NDArray[np.float64]:
+    """Points of the base frame, shape (n, 2), m, of a robot at ``pose`` (x, y, heading)."""
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    return np.asarray(np.asarray(points) @ [[cos, sin], [-sin, cos]] + pose[:2])
+
+
+def seen_from_above(result: Result) -> tuple[list[Curve], list[NDArray[np.float64]]]:
+    """Plan, path by mode, what was invented, and the pushes: 6 mm of arrow for each newton, to where it was felt.
+
+    And the corners of the robot as it stood then.
+    """
+    scenario = circle.scenario(pushes=2)
+    pushes = scenario.push.pushes  # type: ignore[union-attr]
+    trace = {str(name): values.values.astype(float) for name, values in result.traces.data_vars.items()}
+    time_s = result.traces["time"].values
+    found = responses(pushes, time_s, lambda name: trace[name])
+    poses = np.stack([trace[f"testbed.truth.{name}"] for name in ("x", "y", "theta")], axis=1)
+    x, y = poses[:, 0], poses[:, 1]
+    curves = [curve(trace["controller.plan.x"], "m", trace["controller.plan.y"], "m")]
+    for mode in (1, 2, 4):
+        there = trace["controller.mode"] == mode
+        curves.append(curve(np.where(there, x, np.nan), "m", np.where(there, y, np.nan), "m"))
+    rows = np.searchsorted(time_s, found.invented_s)
+    if len(rows):
+        curves.append(curve(x[rows], "m", y[rows], "m"))
+    start, bodies = {v.name: float(v.start or 0.0) for v in table("testbed").select("parameter")}, []
+    outline = [[start[f"outline.{axis}[{i}]"] for axis in "xy"] for i in range(int(start["outline.count"]))]
+    for one in found.pushes:
+        pose, push = poses[int(np.searchsorted(time_s, one.detected_s or one.push.start_s))], one.push
+        (point,) = in_world(pose, [[push.point_x_m, push.point_y_m]])
+        arrow = 0.006 * push.force_n * np.array([math.cos(push.direction_rad), math.sin(push.direction_rad)])
+        ends = np.stack([point - arrow, point])
+        curves.append(curve(ends[:, 0], "m", ends[:, 1], "m"))
+        bodies.append(in_world(pose, outline))
+    return curves, bodies
+
+
+def test_the_path_s_labels_say_what_it_draws(findings: Findings, runs: list[Result]) -> None:
+    figure = findings.pictures[0].figure
+    wanted = [seen_from_above(run) for run in runs[:2]]
+    check_planted(figure, lambda: check_panels(figure, [curves for curves, _ in wanted]))
+    for axes, (_, bodies) in zip(figure.axes, wanted, strict=True):  # whose lengths are in metres by now
+        for drawn, corners in zip(axes.patches, bodies, strict=True):
+            assert isinstance(drawn, Polygon)
+            assert drawn.get_xy()[:-1] == pytest.approx(corners)

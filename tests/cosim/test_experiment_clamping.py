@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray
+from figure_labels import Curve, across, check_panels, check_planted, curve, keeping
 from giveway import batch, experiments
 from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, Clamped, _safe_speed, scenario
 from giveway.experiments.reproduction.findings import Effort, Findings
@@ -17,8 +18,16 @@ from giveway.simulation.result import Result
 
 
 @pytest.fixture(scope="module")
-def findings() -> Findings:
-    return experiments.get("clamping").reproduce(Effort(full=False))
+def runs() -> list[xarray.Dataset]:
+    """Those of the findings, of one batch: the bumpers at the wall and before it, no reflex, and over the speed."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def findings(runs: list[xarray.Dataset]) -> Findings:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(batch, "run_many", keeping(batch.run_many, runs))
+        return experiments.get("clamping").reproduce(Effort(full=False))
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +91,32 @@ def test_rows(findings: Findings) -> None:
     assert all((row.reason != "") == (row.met is False) for row in findings.rows)
     assert NOTICE in findings.notes
     assert NOTICE in findings.pictures[0].caption
+
+
+def force_on_leg(runs: xarray.Dataset, run: int) -> tuple[np.ndarray, np.ndarray]:
+    """Time since the contact, s, and the larger force of robot and wall, N."""
+    contact_s = float(runs["testbed.truth.first_contact_time"].values[run, -1])
+    sides = [np.abs(runs[f"testbed.truth.{side}_force"].values[run]) for side in ("contact", "wall")]
+    return runs["time"].values - contact_s, np.max(sides, axis=0)
+
+
+def test_the_figure_s_labels_say_what_it_draws(findings: Findings, runs: list[xarray.Dataset]) -> None:
+    (table,), figure = runs, findings.pictures[0].figure
+    limits = body_region(REGION)
+    # Three bumpers at the wall, then before it; without reflex at the wall, then before it; two speeds of each bumper.
+    at_wall = [force_on_leg(table, run) for run in (0, 1, 2, 6)]
+    left = [curve(time_s, "s", force_n, "N") for time_s, force_n in at_wall]
+    lasting = [limits.peak_limit_n] * 2 + [limits.lasting_limit_n] * 2
+    left.append(curve([0.0, 0.5, 0.5, 1.5], "s", lasting, "N"))
+    right: list[Curve] = []
+    for slow in range(8, 20, 2):
+        peaks_n = []
+        for run in (slow, slow + 1):
+            time_s, force_n = force_on_leg(table, run)
+            peaks_n.append(force_n[(time_s >= 0.0) & (time_s < 0.5)].max())
+        right.append(curve([0.1, 0.5], "m/s", peaks_n, "N"))
+    check_planted(figure, lambda: check_panels(figure, [left, right]))
+    assert across(figure.axes[1], "y") == [limits.peak_limit_n]
 
 
 @pytest.mark.parametrize("harder", ["contact", "wall"])

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from figure_labels import Curve, check_panels, check_planted, curve, keeping
 from giveway import experiments
 from giveway.base.errors import GivewayError
 from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.experiments.roller_calibration import ARCS, REST_S, WheelArc
+from giveway.identification import roller_friction
+from giveway.identification.roller_friction import Calibration
 
 STEP_S = 1e-4
 
 
 @pytest.fixture(scope="module")
-def findings() -> Findings:
-    return experiments.get("roller_calibration").reproduce(Effort(full=False))
+def calibrations() -> list[Calibration]:
+    """Those of the findings; the first one is that of the pictures."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def findings(calibrations: list[Calibration]) -> Findings:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(roller_friction, "calibrate", keeping(roller_friction.calibrate, calibrations))
+        return experiments.get("roller_calibration").reproduce(Effort(full=False))
 
 
 def test_every_target_is_met(findings: Findings) -> None:
@@ -39,6 +50,35 @@ def test_pictures_show_both_arcs(findings: Findings) -> None:
         assert all(arc in titles for arc in ARCS)
 
 
+def test_the_torques_labels_say_what_they_draw(findings: Findings, calibrations: list[Calibration]) -> None:
+    """Time in s, torques in N m without their tare, and the angle of the wheel that moves, in rad."""
+    figure, panels = findings.pictures[0].figure, []
+    for log in calibrations[0].logs:
+        rows, moving = log.sound, int(np.ptp(log.wheel_angle_rad, axis=0).argmax())
+        angle = log.wheel_angle_rad[rows, moving]
+        for torque_nm in (log.torque_nm, log.model_nm):
+            panel = [
+                curve(log.time_s[rows], "s", torque_nm[rows, wheel] - log.offset_nm[wheel], "N.m") for wheel in range(3)
+            ]
+            panels.append([*panel, curve(log.time_s[rows], "s", angle - angle[0], "rad")])
+        # Twice the swing of 1.5 rad.
+        assert np.ptp(angle) == pytest.approx(3.0, rel=0.01)
+    check_planted(figure, lambda: check_panels(figure, panels))
+
+
+def test_the_residuals_labels_say_what_they_draw(findings: Findings, calibrations: list[Calibration]) -> None:
+    figure, panels = findings.pictures[1].figure, []
+    for log in calibrations[0].logs:
+        fastest = np.array([rates[np.abs(rates).argmax()] for rates in log.roller_rate])
+        for x, unit in ((log.time_s, "s"), (fastest, "rad/s")):
+            panel: list[Curve] = []
+            for rows in (log.sound & ~log.used, log.used):
+                left_nm = (log.torque_nm - log.model_nm)[rows]
+                panel += [curve(x[rows], unit, left_nm[:, wheel], "N.m") for wheel in range(3)]
+            panels.append(panel)
+    check_planted(figure, lambda: check_panels(figure, panels))
+
+
 @pytest.mark.parametrize("wheels", [*ARCS.values(), (0.3, -1.0, 0.2)])
 def test_plan_is_the_motion_of_the_wheels(wheels: tuple[float, float, float]) -> None:
     """Wheel rates of the plan, by (11) in the world frame, and its derivatives by differences."""
@@ -50,12 +90,12 @@ def test_plan_is_the_motion_of_the_wheels(wheels: tuple[float, float, float]) ->
     rate = (-np.sin(angle) * table[:, 3:4] + np.cos(angle) * table[:, 4:5] + 0.24 * table[:, 5:6]) / 0.1016
     moving = np.maximum(time - REST_S, 0.0)
     wanted = 1.5 * np.pi * np.sin(np.pi * moving)[:, None] * np.array(wheels)
-    assert rate == pytest.approx(wanted, abs=1e-9)
+    np.testing.assert_allclose(rate, wanted, rtol=1e-6, atol=1e-9)
     inner = np.abs(time - REST_S) > 2.0 * STEP_S  # the acceleration jumps there
     for value, derivative in ((slice(0, 3), slice(3, 6)), (slice(3, 6), slice(6, 9))):
         difference = np.gradient(table[:, value], STEP_S, axis=0)
         # Central differences: (pi STEP)^2/6 of the largest third derivative, about 1e-7, with a margin; the ends less.
-        assert difference[inner][1:-1] == pytest.approx(table[inner][1:-1, derivative], abs=1e-5)
+        np.testing.assert_allclose(difference[inner][1:-1], table[inner][1:-1, derivative], rtol=1e-6, atol=1e-5)
 
 
 def test_wrong_arcs_are_refused() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from figure_labels import Curve, check_panels, check_planted, curve, in_si, unit_of_axis
 from giveway import batch, experiments
 from giveway.base.errors import UnknownNameError
 from giveway.experiments.reproduction.findings import Effort, Findings
@@ -13,6 +14,8 @@ from giveway.scenario.body_regions import NOTICE
 from giveway.scenario.plan import Straight
 from giveway.simulation.metrics import Collision
 from giveway.simulation.result import Result
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Polygon
 
 
 @pytest.fixture(scope="module")
@@ -122,3 +125,60 @@ def test_unknown_scene() -> None:
 def test_picture_has_a_panel_for_each(findings: Findings) -> None:
     (picture,) = findings.pictures
     assert [axes.get_title("left") for axes in picture.figure.axes] == [scene.title for scene in SCENES.values()]
+
+
+def in_world(result: Result, row: int, points: np.ndarray) -> np.ndarray:
+    """Points of the base frame, shape (n, 2), m, in the world."""
+    x, y, theta = (float(result.traces[f"testbed.truth.{name}"].values[row]) for name in ("x", "y", "theta"))
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.stack([x + cos * points[:, 0] - sin * points[:, 1], y + sin * points[:, 0] + cos * points[:, 1]], axis=1)
+
+
+def seen_from_above(result: Result) -> tuple[list[Curve], np.ndarray]:
+    """What a scene shows but for body, wheels and obstacle; and the corners of body and wheels at the contact."""
+    hit, testbed = collision(result), result.manifest["parameters"]["testbed"]
+    contact, detected = hit.start, hit.detected
+    x, y = (result.traces[f"testbed.truth.{axis}"].values for axis in "xy")
+    tip = np.array([result.traces[f"testbed.truth.nose_{axis}"].values[contact] for axis in "xy"])
+    along = np.array([np.cos(testbed["slider.direction"]), np.sin(testbed["slider.direction"])])
+    estimate = {
+        name: np.array([[result.traces[f"controller.detection.{name}_{axis}"].values[detected] for axis in "xy"]])
+        for name in ("point", "force")
+    }
+    place = in_world(result, contact, estimate["point"])
+    # An arrow of 4 mm for each newton.
+    tail_and_tip = np.concatenate([place, in_world(result, contact, estimate["point"] + 0.004 * estimate["force"])])
+    true = hit.true_point()
+    assert true is not None
+    drawn = (in_world(result, contact, true[None, :]), place, tail_and_tip, np.stack([tip, tip - 0.5 * along]))
+    curves = [curve(points[:, 0], "m", points[:, 1], "m") for points in drawn]
+    curves += [curve(x[part], "m", y[part], "m") for part in (slice(contact), slice(contact, None))]
+    body = np.array([[testbed[f"outline.{axis}[{i}]"] for axis in "xy"] for i in range(3)])
+    return curves, np.concatenate([in_world(result, contact, part) for part in (body, *wheel_corners(testbed))])
+
+
+def test_the_figure_s_labels_say_what_it_draws(findings: Findings, results: dict[str, Result]) -> None:
+    figure = findings.pictures[0].figure
+    wanted = [seen_from_above(results[name]) for name in SCENES]
+    check_planted(figure, lambda: check_panels(figure, [curves for curves, _ in wanted]))
+    for axes, (_, corners), name in zip(figure.axes, wanted, SCENES, strict=True):
+        unit = unit_of_axis(figure, axes, "x")
+        assert unit is not None
+        shapes = [in_si(patch.get_xy()[:-1], unit, "m") for patch in axes.patches if isinstance(patch, Polygon)]
+        at_contact = np.concatenate(shapes[4:8])  # body and wheels; the four before them stand where it ended
+        assert at_contact == pytest.approx(corners, abs=1e-9)
+        check_obstacle(axes, unit, SCENES[name].radius_m if name != "bicycle" else None, results[name])
+
+
+def check_obstacle(axes: Axes, unit: tuple[float, str], radius_m: float | None, result: Result) -> None:
+    """Its foremost point is the nose that hits."""
+    hit = collision(result)
+    nose = np.array([hit[f"testbed.truth.nose_{axis}"][hit.start] for axis in "xy"])
+    if radius_m is None:
+        edge = in_si(axes.patches[8].get_xy()[:2], unit, "m")  # type: ignore[attr-defined]
+        assert edge.mean(axis=0) == pytest.approx(nose)
+        return
+    disc = axes.patches[8]
+    assert isinstance(disc, Circle)
+    assert in_si(disc.get_radius(), unit, "m") == pytest.approx(radius_m)
+    assert np.linalg.norm(in_si(disc.get_center(), unit, "m") - nose) == pytest.approx(radius_m)

@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from figure_labels import Curve, across, check_panels, check_planted, curve, in_si, keeping, unit_in
 from giveway import batch
 from giveway.experiments import get
 from giveway.experiments.reproduction.findings import Effort, Findings, Row
+from giveway.experiments.static_push_study import study as study_module
 from giveway.experiments.static_push_study.groups import PRINTED, group_values, percentile_of
 from giveway.experiments.static_push_study.placements import (
     CONE_RAD,
@@ -18,6 +20,7 @@ from giveway.experiments.static_push_study.placements import (
     random_placements,
 )
 from giveway.experiments.static_push_study.robots import pushed_robot
+from giveway.experiments.static_push_study.study import Study
 from giveway.experiments.static_push_study.trials import Readings, Trial
 from giveway.scenario.scenario import Scenario
 
@@ -28,10 +31,18 @@ def told() -> list[float]:
 
 
 @pytest.fixture(scope="module")
-def findings(told: list[float]) -> Findings:
+def studies() -> list[Study]:
+    """The one of the findings."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def findings(told: list[float], studies: list[Study]) -> Findings:
     reproduce = get("static_pushes").reproduce
     assert reproduce is not None
-    return reproduce(Effort(full=False, threads=1, progress=told.append))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study_module, "run_study", keeping(study_module.run_study, studies))
+        return reproduce(Effort(full=False, threads=1, progress=told.append))
 
 
 def row(findings: Findings, quantity: str) -> Row:
@@ -150,3 +161,83 @@ def test_a_group_is_its_extremes_and_means() -> None:
 
 def test_percentiles_count_equals_half() -> None:
     assert percentile_of(2.0, np.array([1.0, 2.0, 3.0, 4.0])) == 37.5
+
+
+def unit_vectors(angle_rad: np.ndarray) -> np.ndarray:
+    return np.stack([np.cos(angle_rad), np.sin(angle_rad)], axis=1)
+
+
+def arrows(tails: np.ndarray, tips: np.ndarray, unit: str) -> list[Curve]:
+    return [curve([a[0], b[0]], unit, [a[1], b[1]], unit) for a, b in zip(tails, tips, strict=True)]
+
+
+def points(places_m: np.ndarray) -> list[Curve]:
+    """A cloud; empty ones are not drawn."""
+    return [curve(places_m[:, 0], "m", places_m[:, 1], "m")] if len(places_m) else []
+
+
+def location_error_m(readings: Readings) -> np.ndarray:
+    return np.hypot(*(readings.point_m - readings.true_point_m).T)
+
+
+def direction_error_rad(readings: Readings) -> np.ndarray:
+    return (readings.direction_rad - readings.true_direction_rad + np.pi) % (2.0 * np.pi) - np.pi
+
+
+def test_the_placements_labels_say_what_they_draw(findings: Findings, studies: list[Study]) -> None:
+    (study,), figure = studies, findings.pictures[0].figure
+    largest = location_error_m(study.paper).reshape(-1, 4).max(axis=1)
+    first = 4 * int(np.argsort(largest)[len(largest) // 2])
+    rows = slice(first, first + 4)
+    pushes = (study.paper, study.paper_compensated)
+    true, origin = unit_vectors(study.paper.true_direction_rad[rows]), np.zeros((4, 2))
+    felt = [one.force_n[rows, None] * unit_vectors(one.direction_rad[rows]) for one in pushes]
+    ring = 10.0 * unit_vectors(np.linspace(0.0, 2.0 * np.pi, 181))
+    panels = [[curve(ring[:, 0], "N", ring[:, 1], "N")]]
+    for tips in (9.81 * true, *felt):
+        panels[0] += arrows(origin, tips, "N")
+    for one, force in zip(pushes, felt, strict=True):
+        at, found, hit = one.true_point_m[rows], one.point_m[rows], one.on_outline[rows]
+        # Arrows of 22 mm for each newton.
+        panels.append(arrows(at - 0.022 * 9.81 * true, at, "m") + arrows(found - 0.022 * force, found, "m")
+                      + points(at) + points(found[hit]) + points(found[~hit]))  # fmt: skip
+    check_planted(figure, lambda: check_panels(figure, panels))
+    for axes in figure.axes[1:]:
+        assert axes.patches[0].get_path().vertices[:-1] == pytest.approx(default_outline())  # in m, as just seen
+
+
+def test_the_clouds_labels_say_what_they_draw(findings: Findings, studies: list[Study]) -> None:
+    (study,), figure = studies, findings.pictures[1].figure
+    panels: list[list[Curve]] = [[], []]
+    for one in (study.random, study.random_compensated):
+        for hit in (one.on_outline, ~one.on_outline):
+            force = one.force_n[hit]
+            panels[0].append(curve(force, "N", direction_error_rad(one)[hit], "rad"))
+            panels[1].append(curve(force, "N", location_error_m(one)[hit], "m"))
+    check_planted(figure, lambda: check_panels(figure, panels))
+    assert [10.0 * np.array(across(axes, "x")) for axes in figure.axes] == [pytest.approx([9.81])] * 2  # the weight
+    # The paper's four: 5.5 to 10 N, 12 deg, 11 cm.
+    boxes = [axes.patches[0].get_bbox() for axes in figure.axes]  # type: ignore[attr-defined]
+    assert [box.y1 for box in boxes] == [12.0, 11.0]
+    assert [(10.0 * box.x0, 10.0 * box.x1) for box in boxes] == [pytest.approx((5.5, 10.0))] * 2
+
+
+def test_the_groups_labels_say_what_they_draw(findings: Findings, studies: list[Study]) -> None:
+    (study,), figure = studies, findings.pictures[2].figure
+    panels: list[list[Curve]] = [[] for _ in figure.axes]
+    marks = [-0.45, 0.0, math.radians(12.0), math.radians(7.2), 0.11, 0.045]
+    order = [0, 2, 4, 1, 3, 5]  # the figure's panels row by row, the paper's numbers column by column
+    for one in (study.random, study.drifted):
+        errors = (one.force_n / 10.0 - 1.0, np.abs(direction_error_rad(one)), location_error_m(one))
+        size, turn, place = (values.reshape(-1, 4) for values in errors)
+        columns = [size.min(1), size.max(1), turn.max(1), turn.mean(1), place.max(1), place.mean(1)]
+        share = (np.arange(len(size)) + 0.5) / len(size)
+        for panel, column in zip(panels, order, strict=True):
+            unit = "1" if column < 2 else "rad" if column < 4 else "m"
+            panel.append(curve(np.sort(columns[column]), unit, share, "1"))
+    check_planted(figure, lambda: check_panels(figure, panels))
+    for axes, column in zip(figure.axes, order, strict=True):
+        unit = unit_in(axes.get_xlabel())
+        assert unit is not None
+        wanted = "1" if column < 2 else "rad" if column < 4 else "m"
+        assert in_si(across(axes, "x"), unit, wanted) == pytest.approx([marks[column]])

@@ -9,9 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from figure_labels import check_panels, check_planted, curve
 from giveway.base import native
 from giveway.base.errors import GivewayError, SimulationError
 from giveway.cli import _main
+from giveway.fmu_tools import page as run_page
 from giveway.fmu_tools.description import read_description
 from giveway.fmu_tools.inputs import read_inputs
 from giveway.fmu_tools.run import run_fmu
@@ -48,6 +50,12 @@ def test_it_is_what_the_fmu_does_by_itself() -> None:
     assert (run.interface, run.units["carrier.force"]) == ("CoSimulation", "N")
     steps = 0.2 * 0.001  # a step moves the face by its velocity, then it is where the input says
     np.testing.assert_allclose(run.traces["compression"][1:], steps, rtol=1e-9)
+    for unit, name in (("m", "compression"), ("N", "carrier.force")):
+        figure = run_page._figure(run.traces, unit, [name])
+        assert figure.axes[0].get_ylabel() == unit
+        figure.axes[0].set_ylabel(f"({unit})")  # as labels of other figures have it
+        wanted = [curve(run.traces["time"], "s", run.traces[name], unit)]
+        check_planted(figure, lambda figure=figure, wanted=wanted: check_panels(figure, [wanted]))
 
 
 @pytest.mark.parametrize(("most_steps", "step_s"), [(100, 0.001), (99, 0.002), (10, 0.016)])

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 import xarray
 from cosim_helpers import Cli
+from figure_labels import across, band, check_panels, check_planted, curve
 from giveway import batch
-from giveway.report import render
+from giveway.report import pushes, render
 from giveway.scenario.plan import Pushes, TimedPush
 from giveway.simulation.metrics import Metric
-from giveway.simulation.push_response import TRACES, push_metrics, responses
+from giveway.simulation.push_response import TRACES, push_metrics, responses, responses_of
 from giveway.simulation.result import Result
 from giveway.simulation.summary import false_detection_line, push_rows
 
@@ -125,6 +126,20 @@ def test_its_page_has_a_row_and_a_plot_per_push(pushed: Result) -> None:
     assert late_s == pytest.approx([1e-3 * (push[0].value or 0.0) for push in pushed.pushes], abs=1e-4)
 
 
+def test_the_plots_labels_say_what_they_draw(pushed: Result) -> None:
+    figure = pushes._forces(pushed, responses_of(pushed.traces, pushed.manifest).pushes)
+    panels = []
+    for push in giveway.read_scenario(EXAMPLE).push.pushes:  # type: ignore[union-attr]
+        since_s = pushed.traces["time"].values - push.start_s
+        rows = (since_s >= -0.1) & (since_s <= push.duration_s + 0.4)
+        true = np.hypot(*(pushed.traces[f"testbed.push.force_{axis}"].values[rows] for axis in "xy"))
+        felt = pushed.traces["controller.estimate.force"].values[rows]
+        panels.append([curve(since_s[rows], "s", felt, "N"), band(since_s[rows], "s", 0.0, true, "N")])
+    check_planted(figure, lambda: check_panels(figure, panels))
+    for axes, metrics in zip(figure.axes, pushed.pushes, strict=True):
+        assert 1e3 * np.array(across(axes, "x")) == pytest.approx([metrics[0].value])  # ms
+
+
 def test_rows_are_kept_with_the_run(pushed: Result, tmp_path: Path) -> None:
     again = giveway.load(pushed.save(tmp_path / "run"))
     assert again.pushes == pushed.pushes
@@ -153,8 +168,6 @@ def test_what_no_push_caused_is_told_with_its_times(by_the_paper: Result) -> Non
 
 
 def test_the_rows_and_the_metric_have_one_definition(by_the_paper: Result) -> None:
-    from giveway.simulation.push_response import responses_of
-
     found = responses_of(by_the_paper.traces, by_the_paper.manifest)
     assert len(found.false_s) == by_the_paper.metric("false detections").value
     native = batch.run_many([dataclasses.replace(giveway.read_scenario(EXAMPLE), controller={}, duration_s=21.0)])

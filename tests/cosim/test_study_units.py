@@ -5,14 +5,17 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
+from figure_labels import check_panels, check_planted, curve, in_si, unit_in
 from giveway.base.units import WrittenUnit
 from giveway.robot.variables import table
+from giveway.study import figures
 from giveway.study.answers import Answers
 from giveway.study.asked import asked
 from giveway.study.export import export_design, export_table
 from giveway.study.report import write_report
-from giveway.study.tables import design_rows, goal_header
+from giveway.study.tables import design_rows, goal_header, sensitivity_rows
 from study_helpers import LATCH, SPRING, small_study
 
 
@@ -22,7 +25,8 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     study = small_study(vary=[])
     study.vary(SPRING, values=[0.6, 2.4], unit="N/mm").vary("collision.speed", low=1.2, high=2.1, levels=2, unit="km/h")
     study.tolerance(LATCH, absolute=0.002, unit="kN").tolerances(samples=1)
-    study.objective("bumper compression").constraint("bumper compression", maximum=3.0, unit="cm")
+    study.objective("bumper compression").objective("peak force of the run")
+    study.constraint("bumper compression", maximum=3.0, unit="cm")
     return study.run(tmp_path_factory.mktemp("units"), progress=False)
 
 
@@ -56,6 +60,43 @@ def test_units_come_back_in_exports(answers: Answers, tmp_path: Path) -> None:
     ]
 
 
+def test_the_figures_labels_say_what_they_draw(answers: Answers) -> None:
+    compression_m, peak_n = 1e-3 * answers.values[:, 0], answers.values[:, 1]
+    figure = figures.trade_off(answers)
+    front = np.flatnonzero(answers.pareto)
+    front = front[np.argsort(compression_m[front])]
+    others = [np.flatnonzero(~answers.feasible), np.flatnonzero(answers.feasible & ~answers.pareto)]
+    clouds = [curve(compression_m[some], "m", peak_n[some], "N") for some in (front, *others) if len(some)]
+    check_planted(figure, lambda: check_panels(figure, [clouds]))
+
+    figure = figures.effects(answers)
+    good, bad = np.flatnonzero(answers.feasible), np.flatnonzero(~answers.feasible)
+    panels = []
+    for values, unit in ((compression_m, "m"), (peak_n, "N")):
+        for column, x_unit in ((0, "N/m"), (1, "m/s")):
+            x = answers.designs[:, column]
+            panels.append([curve(x[some], x_unit, values[some], unit) for some in (good, bad)])
+    check_planted(figure, lambda: check_panels(figure, panels))
+
+
+def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> None:
+    study = small_study(vary=[], designs={"kind": "morris", "trajectories": 2}).objective("bumper compression")
+    study.vary(LATCH, low=0, high=60).vary(SPRING, low=0.6, high=2.4, unit="N/mm")
+    answers = study.constraint("bumper compression", maximum=3.0, unit="cm").run(tmp_path / "study", progress=False)
+    effects = answers.sensitivities()  # in mm
+    (axes,) = figures.sensitivities(answers).axes  # type: ignore[union-attr]
+    unit = unit_in(axes.get_title())
+    assert unit == (1.0, "cm")
+    bars = in_si([bar.get_width() for bar in axes.patches], unit, "m")  # type: ignore[attr-defined]
+    spread = [one.total or 0.0 for one in effects]
+    assert 1e3 * bars == pytest.approx([one.main for one in effects] + spread)
+    assert max(bars) > 1e-3
+    rows = {row[1]: row for row in sensitivity_rows(answers)}
+    for one in effects:
+        assert rows[one.quantity][0] == "bumper compression, cm"
+        assert float(rows[one.quantity][2]) == pytest.approx(0.1 * one.main, rel=5e-3)  # three digits
+
+
 def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
     write_report(tmp_path / "report.html", answers, {})
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
@@ -69,7 +110,7 @@ def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> Non
     assert said["bumper"] == "magnetic, on the slider"
     assert said["body region"] == "none"
     assert f"stiffness {table('testbed')['contact.stiffness'].start:g} N/m" in said["contact"]
-    assert said["objectives"] == "metric = bumper compression"
+    assert said["objectives"] == "metric = bumper compression; metric = peak force of the run"
 
 
 def test_what_varies_is_said_to_vary() -> None:

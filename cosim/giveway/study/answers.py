@@ -135,6 +135,11 @@ class Answers:
         """Values of a varied quantity, one per design, in the unit in which the user wrote it."""
         return self.setup.varied[index].unit.all_of(self.designs[:, index])
 
+    def effect_unit(self, goal: str) -> WrittenUnit:
+        """The unit in which sensitivities of ``goal`` are shown: its own for Morris; others are shares."""
+        names = [self.goal_name(index) for index in range(len(self.setup.objectives))]
+        return self.goal_unit(names.index(goal)) if self.setup.plan.kind == "morris" else WrittenUnit("1")
+
     @property
     def columns(self) -> list[int]:
         """Which goals a table shows: an objective that is a constraint, too, once."""

@@ -115,14 +115,15 @@ def sensitivities(answers: Answers) -> Figure | None:
     morris = answers.setup.plan.kind == "morris"
     for axes, goal in zip(grid, goals, strict=True):
         mine = [one for one in found if one.goal == goal]
-        at = np.arange(len(mine))
-        axes.barh(at - 0.18, [one.main for one in mine], 0.34, xerr=[one.interval for one in mine], color=DESIGN_COLOUR,
-                  ecolor=TRUTH_COLOUR, label="mean effect" if morris else "alone (S1)")  # fmt: skip
+        unit, at = answers.effect_unit(goal), np.arange(len(mine))
+        main, interval = [unit.of(one.main) for one in mine], [unit.of(one.interval) for one in mine]
+        axes.barh(at - 0.18, main, 0.34, xerr=interval, color=DESIGN_COLOUR, ecolor=TRUTH_COLOUR,
+                  label="mean effect" if morris else "alone (S1)")  # fmt: skip
         if mine[0].total is not None:
-            total = [one.total or 0.0 for one in mine]
+            total = [unit.of(one.total or 0.0) for one in mine]
             axes.barh(at + 0.18, total, 0.34, color=FRONT_COLOUR, label="its spread" if morris else "in all (ST)")
         axes.set_yticks(at, [one.quantity.removeprefix("testbed.") for one in mine])
-        axes.set_title(goal)
+        axes.set_title(axis_label(goal, unit.shown))
         axes.invert_yaxis()
     grid[0].legend()
     return figure

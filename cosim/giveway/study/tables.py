@@ -46,13 +46,14 @@ def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
 def sensitivity_rows(answers: Answers) -> list[tuple[str, ...]]:
     """Every quantity's part in every objective, the largest first."""
     found = sorted(answers.sensitivities(), key=lambda one: (one.goal, -one.main))
+    units = {one.goal: answers.effect_unit(one.goal) for one in found}
     return [
         (
-            one.goal,
+            one.goal + _unit(units[one.goal].shown),
             one.quantity,
-            f"{one.main:.3g}",
-            f"{one.interval:.2g}",
-            "-" if one.total is None else f"{one.total:.3g}",
+            f"{units[one.goal].of(one.main):.3g}",
+            f"{units[one.goal].of(one.interval):.2g}",
+            "-" if one.total is None else f"{units[one.goal].of(one.total):.3g}",
         )
         for one in found
     ]
