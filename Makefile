@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms
+.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms
 .PHONY: product compile-product compile-all
 .DEFAULT_GOAL := help
 
@@ -44,6 +44,9 @@ bench: build build/bench/tools-installed build/importers/tools-installed ## how 
 	GIVEWAY_BENCH_TOOLS=$(CURDIR)/bench $(BIN)/giveway bench
 	$(BIN)/python -m verify.step_cost
 	$(BIN)/python -m importers.bench
+
+endurance: product ## false alarms: 300 h of motion without contact, 20 h with tipping, 20 h with single rollers; goes on where it stopped
+	$(BIN)/giveway crowd endurance --threads $(JOBS)
 
 bench-scale: product ## does the cost of a batch grow with its designs, up to a million? (minutes)
 	$(BIN)/giveway bench --scale

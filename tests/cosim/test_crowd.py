@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from giveway import batch
 from giveway.base.errors import GivewayError
-from giveway.crowd import table
+from giveway.crowd import endurance, table
 from giveway.crowd.blow import Blow
 from giveway.crowd.crowd import compute, limits_of
 from giveway.crowd.drive import Drive, Leg
 from giveway.crowd.hits import PATTERN, PER_ROBOT, Hit, hit
 from giveway.crowd.judged import RECORDED, Judged, judge
+from giveway.crowd.parts import Interrupted, Work, go_on
 from giveway.crowd.population import GROUPS, POPULATION, Quantity, group_of, robot
 from giveway.crowd.statistics import count_interval, mean, percentile, rate_upper_bound
 
@@ -154,7 +155,7 @@ def test_hits_at_rest_are_noticed(records: list[dict[str, Any]]) -> None:
 
 
 def test_the_table_has_rows_intervals_and_worst_cases(records: list[dict[str, Any]], tmp_path: Path) -> None:
-    text, data = table.write(tmp_path, "A title", ["A note."], {"draw": DRAW}, records)
+    text, data = table.write(tmp_path, "A title", ["A note."], records)
     document = json.loads(data.read_text(encoding="utf-8"))
     assert document["not judged"] == []
     rows = {row["name"]: row for row in document["tables"]["planar"]}
@@ -240,3 +241,63 @@ def test_the_controller_is_as_asked_and_the_robot_is_not() -> None:
     assert one.scenario.controller == {"detector.impulse_threshold": 2.0}
     assert default.scenario.controller == {}
     assert one.scenario.testbed == default.scenario.testbed
+
+
+BLIND = {"detector.impulse_threshold": 1000.0}
+
+
+def test_free_motion_has_the_same_bits_alone_and_its_alarms_are_counted() -> None:
+    numbers = [0, 1, endurance.SHARED]
+    many = endurance.compute(DRAW, "planar", {}, numbers, 2, lambda _done: None)
+    assert endurance.compute(DRAW, "planar", {}, numbers[2:], 1, lambda _done: None) == many[2:]
+    # Of robots with other friction than their file's the first detector makes many.
+    found = endurance.rates(many)
+    assert found["false alarms"] == sum(record["detections"] for record in many) > 0
+    assert found["hours"] == pytest.approx(3.0 * endurance.RUN_S / 3600.0)
+    quiet = endurance.rates(endurance.compute(DRAW, "planar", BLIND, numbers[:1], 1, lambda _done: None))
+    assert (quiet["false alarms"], quiet["runs with one"], quiet["worst"]) == (0, 0, [])
+    assert quiet["per hour, upper 95 % bound"] == pytest.approx(-math.log(0.05) * 3600.0 / endurance.RUN_S)
+
+
+def test_free_motion_goes_everywhere_within_the_limits() -> None:
+    directions, stops = [], 0
+    time_s = np.arange(0.0, endurance.RUN_S, 0.01)
+    for number in range(40):
+        _, scenario = endurance.drive(DRAW, "planar", endurance.SHARED * number, {})
+        plan = scenario.plan(time_s)
+        speed, acceleration = np.hypot(*plan[:, 3:5].T), np.hypot(*plan[:, 6:8].T)
+        # The controller's limits: 0.5 m/s, 1.5 m/s2, 1.5 rad/s, 6 rad/s2.
+        assert speed.max() < 0.5
+        assert acceleration.max() < 1.5
+        assert np.abs(plan[:, 5]).max() < 1.5
+        assert np.abs(plan[:, 8]).max() < 6.0
+        base = np.arctan2(plan[:, 4], plan[:, 3]) - plan[:, 2]
+        directions += np.remainder(base[speed > 0.04], 2.0 * math.pi).tolist()
+        stops += int((np.diff((speed > 0.0).astype(int)) < 0).sum())
+    share = np.histogram(directions, bins=24, range=(0.0, 2.0 * math.pi))[0]
+    assert share.min() > 0  # every 15 degrees of travel in the base frame
+    assert stops > 40
+
+
+def test_work_goes_on_where_it_was_interrupted(tmp_path: Path) -> None:
+    asked: list[int] = []
+    stop_at = [4]
+
+    def compute_some(numbers: Any, _threads: int, _progress: Any) -> list[dict[str, Any]]:
+        if numbers[0] >= stop_at[0]:
+            raise Interrupted
+        asked.extend(numbers)
+        return [{"number": number} for number in numbers]
+
+    work = Work("work", {"draw": DRAW}, 7, 2, compute_some, ("parts.py",))
+    first = go_on(work, tmp_path / "work", 1, lambda _progress: None)
+    assert (first.interrupted, first.ran, asked) == (True, 4, [0, 1, 2, 3])
+    stop_at[0] = 100
+    second = go_on(work, tmp_path / "work", 1, lambda _progress: None)
+    assert (second.interrupted, second.ran, asked) == (False, 3, [*range(7)])
+    assert [record["number"] for record in second.records] == [*range(7)]
+    manifest = json.loads((tmp_path / "work" / "manifest.json").read_text(encoding="utf-8"))
+    assert (manifest["kind"], manifest["complete"]) == ("giveway crowd", True)
+    other = Work("work", {"draw": "judging"}, 7, 2, compute_some, ("parts.py",))
+    assert len(go_on(other, tmp_path / "work", 1, lambda _progress: None).records) == 7
+    assert len(asked) == 14  # what was asked for is another thing: nothing is taken over

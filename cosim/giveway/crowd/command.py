@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from giveway.robot.variables import Value
+    from giveway.scenario.scenario import Scenario
 
 __all__ = ["crowd_app"]
 
@@ -37,6 +38,9 @@ def crowd(
     only: Annotated[
         int | None, typer.Option("--only", metavar="N", help="Only hit N: its figures, traces and report.")
     ] = None,
+    calibrated: Annotated[
+        bool, typer.Option("--calibrated", help="Controllers know what `giveway calibrate` finds for their robots.")
+    ] = False,
     assignments: SetOption = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Without it: out/crowd/DRAW, or out/crowd/hit-N.")
@@ -55,7 +59,8 @@ def crowd(
     if only is not None:
         _one(draw, only, controller, out or OUT / f"hit-{only}")
     else:
-        _all(draw, robots, controller, out or OUT / draw, threads)
+        folder = out or OUT / (f"{draw}-calibrated" if calibrated else draw)
+        _all(draw, robots, controller, calibrated, folder, threads)
 
 
 def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
@@ -69,7 +74,9 @@ def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
     return overrides["controller"]
 
 
-def _all(draw: str, robots: int, controller: Mapping[str, Value], folder: Path, threads: int | None) -> None:
+def _all(
+    draw: str, robots: int, controller: Mapping[str, Value], calibrated: bool, folder: Path, threads: int | None
+) -> None:
     from giveway.base.checks import whole
     from giveway.crowd.crowd import ROBOTS_MAX
     from giveway.crowd.crowd import crowd as work_of
@@ -78,17 +85,23 @@ def _all(draw: str, robots: int, controller: Mapping[str, Value], folder: Path, 
     from giveway.study.messages import duration, showing
     from giveway.study.native_part import default_threads
 
-    work = work_of(draw, whole("--robots", robots, 1, ROBOTS_MAX), controller)
+    whole("--robots", robots, 1, ROBOTS_MAX)
+    threads = threads or default_threads()
+    found, notes = (
+        _calibrate(draw, robots, folder.with_name(f"{folder.name}-of-robots"), threads) if calibrated else (None, [])
+    )
+    work = work_of(draw, robots, controller, found)
     with showing(work.name) as progress:
-        done = go_on(work, folder, threads or default_threads(), progress)
+        done = go_on(work, folder, threads, progress)
     for group, rows in tables(done.records):
         print_columns(f"{work.name}: {group}", short_header(), [short_cells(found) for found in rows])
     simulated_h = sum(record["simulated_s"] for record in done.records) / 3600.0
     notes = [
+        *notes,
         f"{len(done.records)} of {work.count} runs, {simulated_h:.1f} h simulated; hits of draw `{draw}`, controller: "
-        f"{', '.join(f'{name} = {value}' for name, value in controller.items()) or 'as it is by default'}."
+        f"{', '.join(f'{name} = {value}' for name, value in controller.items()) or 'as it is by default'}.",
     ]
-    written = write(folder, work.name, notes, work.asked, done.records)
+    written = write(folder, work.name, notes, done.records)
     if done.ran:
         typer.echo(f"{done.ran} runs in {duration(done.wall_s)}: {done.ran / done.wall_s:.0f} per second")
     failed = [record for record in done.records if not record["judged"]]
@@ -102,31 +115,38 @@ def _all(draw: str, robots: int, controller: Mapping[str, Value], folder: Path, 
         raise typer.Exit(FAILED)
 
 
+def _calibrate(draw: str, robots: int, folder: Path, threads: int) -> tuple[dict[int, dict[str, Value]], list[str]]:
+    """What the controllers believe after the calibration, and a sentence about it."""
+    from giveway.crowd.calibrated import beliefs, calibrations
+    from giveway.crowd.parts import go_on
+    from giveway.study.messages import showing
+
+    work = calibrations(draw, robots)
+    with showing(work.name) as progress:
+        done = go_on(work, folder, threads, progress)
+    if done.interrupted:
+        typer.echo("Interrupted; the calibrations so far are kept. The same command goes on.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    refused = [record for record in done.records if record["message"]]
+    for record in refused[:3]:
+        typer.echo(f"robot {record['number']}: not calibrated: {record['message']}", err=True)
+    note = f"Each of {robots} robots calibrated by the real identification on logs of its own; {len(refused)} refused."
+    return beliefs(done.records), [note]
+
+
 def _one(draw: str, number: int, controller: Mapping[str, Value], folder: Path) -> None:
     """One hit: its figures as in the crowd, and the usual report of the event-exact run."""
-    import json
-
     from giveway.base.checks import whole
-    from giveway.base.files import check_output, replace_folder, write_text
+    from giveway.base.files import check_output
     from giveway.crowd.crowd import ROBOTS_MAX, compute
     from giveway.crowd.hits import PER_ROBOT, hit
-    from giveway.report import write_report
-    from giveway.report.console import print_results
-    from giveway.simulation import runner
 
     whole("--only", number, 0, ROBOTS_MAX * PER_ROBOT - 1)
     check_output(folder)
     one = hit(draw, number, controller)
     record = compute(draw, controller, [number], 1, lambda _done: None)[0]
     what = f"Robot {one.robot.number} ({one.robot.group}), {one.situation}, {one.kind}, bumper {one.bumper}."
-    with working("simulation and report"):
-        result = runner.run(one.scenario, None, "native")
-        with replace_folder(folder) as temporary:
-            result.write_into(temporary)
-            write_text(temporary / "hit.json", json.dumps(record, indent=1) + "\n")
-            write_report(temporary / "report.html", one.scenario.name, what, [result])
-    typer.echo(what)
-    print_results(one.scenario.name, {one.bumper: result})
+    _report(one.scenario, what, record, folder)
     rows = [
         (
             f"{contact['start_s']:.4f}",
@@ -143,4 +163,108 @@ def _one(draw: str, number: int, controller: Mapping[str, Value], folder: Path) 
     typer.echo(f"Written: {folder / 'report.html'}")
 
 
+def _report(scenario: Scenario, what: str, record: Mapping[str, object], folder: Path) -> None:
+    """The usual report of the event-exact run in ``folder``, and the record of the crowd's run beside it."""
+    import json
+
+    from giveway.base.files import replace_folder, write_text
+    from giveway.report import write_report
+    from giveway.report.console import print_results
+    from giveway.simulation import runner
+
+    with working("simulation and report"):
+        result = runner.run(scenario, None, "native")
+        with replace_folder(folder) as temporary:
+            result.write_into(temporary)
+            write_text(temporary / "record.json", json.dumps(record, indent=1) + "\n")
+            write_report(temporary / "report.html", scenario.name, what, [result])
+    typer.echo(what)
+    print_results(scenario.name, {scenario.bumper: result})
+
+
 FIGURES = ("delay_ms", "direction_deg", "later_direction_deg", "place_mm", "later_place_mm")
+
+
+@crowd_app.command("endurance")
+def endurance(
+    hours: Annotated[
+        float | None, typer.Option("--hours", help="Planar; the other plants drive in proportion. Without it: 300.")
+    ] = None,
+    group: Annotated[str | None, typer.Option("--group", help="Only planar, tipping or single rollers.")] = None,
+    draw: DrawOption = "tuning",
+    only: Annotated[int | None, typer.Option("--only", metavar="N", help="Only run N of the group.")] = None,
+    assignments: SetOption = None,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for tables and runs.")] = Path(
+        "out/endurance"
+    ),
+    threads: ThreadsOption = None,
+) -> None:
+    """Drive for hours without contact: false alarms per hour with their upper bound. Goes on where it stopped."""
+    from giveway.base.checks import finite
+    from giveway.base.errors import UnknownNameError
+    from giveway.crowd.endurance import HOURS
+
+    if group is not None and group not in HOURS:
+        raise UnknownNameError("--group", group, HOURS)
+    share = 1.0 if hours is None else finite("--hours", hours, 1e-3, 1e5, "h") / HOURS["planar"]
+    controller = _controller(assignments)
+    if only is not None:
+        _one_drive(draw, group or "planar", only, controller, out)
+        return
+    _endure(draw, [group] if group else list(HOURS), share, controller, out, threads)
+
+
+def _endure(
+    draw: str, groups: list[str], share: float, controller: Mapping[str, Value], out: Path, threads: int | None
+) -> None:
+    import json
+
+    from giveway.base.files import write_text
+    from giveway.crowd.endurance import HOURS, RUN_S, endurance, rates
+    from giveway.crowd.parts import go_on
+    from giveway.study.messages import duration, showing
+    from giveway.study.native_part import default_threads
+
+    found = {}
+    interrupted = False
+    for group in groups:
+        work = endurance(draw, group, share * HOURS[group], controller)
+        with showing(work.name) as progress:
+            done = go_on(work, out / group.replace(" ", "-"), threads or default_threads(), progress)
+        found[group] = {"asked": dict(work.asked), **rates(done.records)}
+        if done.ran:
+            speed = done.ran * RUN_S / done.wall_s
+            typer.echo(f"{group}: {done.ran} runs in {duration(done.wall_s)}, {speed:.0f} times as fast as time")
+        interrupted = done.interrupted
+        if interrupted:
+            break
+    names = ("hours", "runs", "failed", "false alarms", "runs with one", "per hour", "per hour, upper 95 % bound")
+    rows = [
+        (group, *("-" if one[name] is None else f"{one[name]:g}" for name in names)) for group, one in found.items()
+    ]
+    print_columns("Motion without contact", ("", *names), rows)
+    for group, one in found.items():
+        if one["worst"]:
+            typer.echo(f"{group}: most alarms in {', '.join(f'{n} ({count})' for n, count in one['worst'])}")
+    path = out / "table.json"
+    write_text(path, json.dumps({"schema_version": 1, "draw": draw, "groups": found}, indent=1) + "\n")
+    typer.echo(f"Written: {path}")
+    if interrupted:
+        typer.echo("Interrupted; all parts but the one under way are kept. The same command goes on.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    if any(one["failed"] for one in found.values()):
+        raise typer.Exit(FAILED)
+
+
+def _one_drive(draw: str, group: str, number: int, controller: Mapping[str, Value], out: Path) -> None:
+    from giveway.base.checks import whole
+    from giveway.base.files import check_output
+    from giveway.crowd.endurance import compute, drive
+
+    whole("--only", number, 0, 2**31 - 1)
+    folder = out / f"{group.replace(' ', '-')}-run-{number}"
+    check_output(folder)
+    _, scenario = drive(draw, group, number, controller)
+    record = compute(draw, group, controller, [number], 1, lambda _done: None)[0]
+    _report(scenario, f"Free motion of robot {number} ({group}): {record['detections']} false alarms.", record, folder)
+    typer.echo(f"Written: {folder / 'report.html'}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from giveway import batch
 from giveway.crowd.blow import Blow
@@ -20,11 +21,23 @@ ROBOTS_MAX = 100_000
 PART_ROBOTS = 32  # 300 MB of traces
 
 
-def crowd(draw: str, robots: int, controller: Mapping[str, Value]) -> Work:
-    """The work of the first ``robots`` robots of ``draw``, with these parameters of the controller."""
-    asked = {"draw": draw, "seed": DRAWS[draw], "controller": dict(controller)}
-    run = functools.partial(compute, draw, controller)
-    return Work(f"crowd, {draw} draw", asked, robots * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run)
+Beliefs = Mapping[int, Mapping[str, Value]]
+"""By robot: parameters of its controller that a calibration found."""
+
+CODE = ("population.py", "hits.py", "blow.py", "drive.py", "judged.py", "crowd.py", "parts.py")
+
+
+def crowd(draw: str, robots: int, controller: Mapping[str, Value], beliefs: Beliefs | None = None) -> Work:
+    """The work of the first ``robots`` robots of ``draw``, with these parameters of the controller.
+
+    ``beliefs``: of each robot's own; without it every controller knows its robot by the robot file alone.
+    """
+    asked: dict[str, Any] = {"draw": draw, "seed": DRAWS[draw], "controller": dict(controller)}
+    if beliefs is not None:
+        asked["beliefs"] = {str(number): dict(values) for number, values in sorted(beliefs.items())}
+    run = functools.partial(compute, draw, controller, beliefs=beliefs)
+    name = f"crowd, {draw} draw" + ("" if beliefs is None else ", calibrated")
+    return Work(name, asked, robots * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run, CODE)
 
 
 def compute(
@@ -33,9 +46,11 @@ def compute(
     numbers: Sequence[int],
     threads: int,
     progress: Callable[[int], None],
+    beliefs: Beliefs | None = None,
 ) -> list[Record]:
     """Records of the hits ``numbers``: each has the same bits alone and among others."""
-    hits = [hit(draw, number, controller) for number in numbers]
+    own = beliefs or {}
+    hits = [hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}) for number in numbers]
     records: dict[int, Record] = {}
     for one_kind in _alike(hits):
         method = "event-exact" if one_kind[0].robot.group == "tipping" else "fixed-step"

@@ -20,7 +20,6 @@ from giveway.study.store import Store, list_parts
 __all__ = ["Done", "Interrupted", "Record", "Work", "go_on"]
 
 KIND = "giveway crowd"
-SHOWING = ("__init__.py", "command.py", "statistics.py", "table.py")
 
 Record = dict[str, Any]
 """What is stored of a run: plain data."""
@@ -40,6 +39,7 @@ class Work:
         count: of runs.
         part: runs per part.
         compute: the records of some runs, from numbers, threads and a function for the number of finished runs.
+        code: files of this room that decide the records.
     """
 
     name: str
@@ -47,6 +47,7 @@ class Work:
     count: int
     part: int
     compute: Callable[[Sequence[int], int, Callable[[int], None]], list[Record]]
+    code: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def go_on(work: Work, folder: Path, threads: int, progress: Report) -> Done:
     """Compute the parts that ``folder`` lacks. Ctrl-C ends it cleanly."""
     shared = {
         "giveway": VERSION,
-        "code_sha256": _own_code(),
+        "code_sha256": _code(work.code),
         "tokens": {name: model.token for name, model in library().models.items()},
         "library_sha256": next(iter(library().models.values())).sha256,
         **work.asked,
@@ -117,10 +118,9 @@ def _table(numbers: Sequence[int], records: Sequence[Record]) -> Any:
     return pyarrow.table({"number": pyarrow.array(list(numbers)), "record": pyarrow.array(texts)})
 
 
-def _own_code() -> str:
-    """Hash of what decides the records: population, hits and definitions, not how they are shown."""
+def _code(names: Sequence[str]) -> str:
+    """Hash of files of this room."""
     found = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        if path.name not in SHOWING:
-            found.update(path.name.encode() + path.read_bytes())
+    for name in names:
+        found.update(name.encode() + (Path(__file__).parent / name).read_bytes())
     return found.hexdigest()

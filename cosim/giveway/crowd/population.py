@@ -17,7 +17,18 @@ from giveway.base.errors import UnknownNameError
 from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
 
-__all__ = ["DRAWS", "GROUPS", "POPULATION", "Quantity", "Robot", "group_of", "robot", "start_value", "start_values"]
+__all__ = [
+    "DRAWS",
+    "GROUPS",
+    "POPULATION",
+    "Quantity",
+    "Robot",
+    "group_of",
+    "robot",
+    "robot_of",
+    "start_value",
+    "start_values",
+]
 
 DRAWS: Mapping[str, int] = MappingProxyType({"tuning": 20160401, "judging": 20260917})
 """Seeds. Detectors may be chosen with the first draw; the second one is not looked at until they are."""
@@ -116,6 +127,11 @@ def robot(draw: str, number: int) -> Robot:
     Raises:
         UnknownNameError: a parameter of `POPULATION` is not one of the testbed; none is skipped.
     """
+    return robot_of(draw, number, group_of(number))
+
+
+def robot_of(draw: str, number: int, group: str) -> Robot:
+    """Robot ``number`` with the plant of ``group``, whatever it has in the crowd."""
     if draw not in DRAWS:
         raise UnknownNameError("draw", draw, DRAWS)
     rng = np.random.default_rng((DRAWS[draw], 0, number))
@@ -125,7 +141,6 @@ def robot(draw: str, number: int) -> Robot:
         for name in quantity.parameters:
             drawn = rng.uniform(quantity.low, quantity.high) if quantity.each else common
             values[name] = quantity.apply(start_value(name), drawn)
-    group = group_of(number)
     if group == "tipping":
         values["base.tipping"] = True
     return Robot(number, group, MappingProxyType(values))

@@ -287,15 +287,12 @@ def markdown(title: str, notes: Sequence[str], records: Sequence[Record]) -> str
     return "\n".join(lines) + "\n"
 
 
-def write(
-    folder: Path, title: str, notes: Sequence[str], asked: Mapping[str, Any], records: Sequence[Record]
-) -> list[Path]:
+def write(folder: Path, title: str, notes: Sequence[str], records: Sequence[Record]) -> list[Path]:
     """Write table.md and table.json into ``folder``, both or none."""
     document = {
         "schema_version": 1,
         "title": title,
         "notes": list(notes),
-        "asked": dict(asked),
         "tables": {group: [found.plain() for found in rows] for group, rows in tables(records)},
         "worst": worst(records),
         "not judged": [[record["number"], record["message"]] for record in records if not record["judged"]],

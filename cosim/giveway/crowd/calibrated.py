@@ -1,0 +1,107 @@
+"""What `giveway calibrate` finds for each robot of the crowd: the real identification, on simulated logs of its arcs.
+
+The logs are those of the experiment `roller_calibration`, driven by the robot as it is, its zero errors and noise
+included; the identification believes the robot file, as the controller does. A robot whose logs are refused keeps the
+file's numbers.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+from giveway import batch
+from giveway.base import native
+from giveway.base.errors import GivewayError
+from giveway.crowd.parts import Interrupted, Record, Work
+from giveway.crowd.population import DRAWS, robot
+from giveway.experiments.roller_calibration import ARCS, RECORDED, arc_scenario, log_of
+from giveway.robot.robot_file import read_robot
+
+if TYPE_CHECKING:
+    from giveway.robot.variables import Value
+    from giveway.scenario.scenario import Scenario
+
+__all__ = ["beliefs", "calibrations"]
+
+PART = 16
+ROLLERS = "bristle rollers"
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # small matrices: more threads only wait
+
+
+def calibrations(draw: str, robots: int) -> Work:
+    """The work of calibrating the first ``robots`` robots of ``draw``."""
+    asked = {"draw": draw, "seed": DRAWS[draw]}
+    code = ("population.py", "calibrated.py", "parts.py")
+    return Work(f"calibration, {draw} draw", asked, robots, PART, functools.partial(_compute, draw), code)
+
+
+def beliefs(records: Sequence[Record]) -> dict[int, dict[str, Value]]:
+    """By robot: what its controller believes after the calibration."""
+    return {record["number"]: record["controller"] for record in records}
+
+
+def _compute(draw: str, numbers: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
+    scenarios = [_arc(draw, number, arc) for number in numbers for arc in ARCS]
+    table = batch.Prepared(scenarios, traces=RECORDED).run(threads=threads, method="fixed-step")
+    if table.attrs["interrupted"]:
+        raise Interrupted
+    columns = {name: table[name].values for name in RECORDED}
+    jobs = []
+    for index in range(len(numbers)):
+        runs = range(len(ARCS) * index, len(ARCS) * (index + 1))
+        failed = [str(table["message"].values[run]) for run in runs if table["status"].values[run] != "ok"]
+        jobs.append((failed, [{name: values[run] for name, values in columns.items()} for run in runs]))
+    found = []
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(ONE_THREAD)
+    try:
+        with ProcessPoolExecutor(threads, mp_context=get_context("spawn")) as pool:
+            for number, result in zip(numbers, pool.map(_identify, jobs), strict=True):
+                found.append({"number": number, **result})
+                progress(len(found))
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+    return found
+
+
+def _arc(draw: str, number: int, arc: str) -> Scenario:
+    whose = robot(draw, number)
+    scenario = arc_scenario(arc, ROLLERS, read_robot(native.robot()), seed=1 + number)
+    # The wheels stay on the floor: a log of a base that tips is the same, and takes longer.
+    own = {name: value for name, value in whose.testbed.items() if name != "base.tipping"}
+    return dataclasses.replace(scenario, testbed={**scenario.testbed, **own})
+
+
+def _identify(job: tuple[list[str], list[Mapping[str, Any]]]) -> dict[str, Any]:
+    """Fit one robot's logs, in a process of its own."""
+    import numpy as np
+    import xarray
+
+    from giveway.identification.roller_friction import calibrate
+
+    failed, runs = job
+    if failed:
+        return {"controller": {}, "message": failed[0]}
+    file = read_robot(native.robot())
+    names = list(runs[0])
+    rows = len(runs[0][names[0]])
+    table = xarray.Dataset(
+        {name: (("run", "time"), np.stack([run[name] for run in runs])) for name in names},
+        coords={"time": np.arange(rows) * 1e-3},
+    )
+    try:
+        fit = calibrate([log_of(arc, table, run, file) for run, arc in enumerate(ARCS)], file)
+    except GivewayError as error:
+        return {"controller": {}, "message": str(error)}
+    values = {
+        "friction.coulomb_torque": fit.coulomb_torque_nm.value,
+        "friction.tanh_slope": fit.tanh_slope_s_rad.value,
+    }
+    return {"controller": values, "message": ""}
