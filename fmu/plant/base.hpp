@@ -68,14 +68,32 @@ template <class T> struct Inertia3 {
     [[nodiscard]] Planar3<T> solve(Planar3<T> f) const { return factors().solve(f); }
 };
 
-// Body, wheels and rollers, without a bumper plate.
+// From the wheels' centre to that of mass.
+template <class T, int Wheels> Vector2<T> mass_centre(const Parameters<T, Wheels> &p) {
+    return {p.base_com_x, p.base_com_y};
+}
+
+// Body, wheels and rollers about the wheels' centre, without a bumper plate.
 template <class T, int Wheels> Inertia3<T> base_inertia(const Parameters<T, Wheels> &p) {
-    Inertia3<T> inertia{p.base_mass, T(0.0), T(0.0), p.base_mass, T(0.0), p.base_yaw_inertia};
+    const Vector2<T> com = mass_centre(p);
+    Inertia3<T> inertia{p.base_mass,
+                        T(0.0),
+                        T(0.0) - p.base_mass * com.y,
+                        p.base_mass,
+                        p.base_mass * com.x,
+                        p.base_yaw_inertia + p.base_mass * dot(com, com)};
     for (int i = 0; i < Wheels; ++i) {
         inertia.add(p.wheel_traction[i] * p.wheel_inertia, wheel_row(p, i));
         inertia.add(p.wheel_traction[i] * p.roller_inertia, roller_row(p, i));
     }
     return inertia;
+}
+
+// What the wheel carries when the base stands, over an equal share of its weight; without more than three wheels the
+// only answer. `centre`: where the weight acts, in base axes.
+template <class T, int Wheels> T static_load_share(const Parameters<T, Wheels> &p, int wheel, Vector2<T> centre) {
+    const Vector2<T> radial{T(Azimuths<Wheels>::cos[wheel]), T(Azimuths<Wheels>::sin[wheel])};
+    return T(1.0) + T(2.0) * dot(radial, centre) / p.wheel_distance;
 }
 
 // The wheel torques that balance a wrench in base axes.

@@ -12,7 +12,8 @@ template <class T> struct Derived {
     math::Divisor<T> carriage_mass;           // slider without a plate that moves on its own
     math::Divisor<T> roller_plastic_fraction; // of a bristle's force, in which it slips more and more
     T rope_pretension_length;                 // ext0
-    T tip_rate;                               // of tipping over the line between two wheels, 1/s
+    T downhill_x, downhill_y;                 // gravity along the floor, world frame, m/s2
+    T floor_gravity;                          // gravity across it
     T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
     Factors3<T> base_inertia; // without a bumper plate
     std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
@@ -32,10 +33,11 @@ template <class T, int Wheels> Derived<T> derive(const Parameters<T, Wheels> &p)
     d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.bumper_plate_mass : slider_mass;
     d.roller_plastic_fraction = T(1.0) - p.roller_elastic_fraction;
     d.rope_pretension_length = T(p.rope_hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
-    const T tipping_inertia =
-        p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) +
-                                             math::square(T(Azimuths<Wheels>::side_distance) * p.wheel_distance));
-    d.tip_rate = math::sqrt(p.base_mass * T(gravity_mps2) * p.base_com_height / tipping_inertia);
+    const auto slope = math::sincos(p.floor_slope);
+    const auto falling = math::sincos(p.floor_azimuth);
+    d.downhill_x = T(gravity_mps2) * slope.sin * falling.cos;
+    d.downhill_y = T(gravity_mps2) * slope.sin * falling.sin;
+    d.floor_gravity = T(gravity_mps2) * slope.cos;
     d.wheel_half_length = math::sqrt(
         math::max(T(0.0), math::square(T(p.wheel_radius)) - math::square(p.contact_height - p.wheel_radius)));
     d.base_inertia = base_inertia(p).factors();

@@ -20,6 +20,14 @@ template <class T, int Wheels = table_wheels> struct Outputs {
     T tip_margin;
 };
 
+// Work of gravity along the floor on a unit mass since the world's origin; `point` in base axes.
+template <class T, int Wheels, std::size_t N>
+T descent(const std::array<T, N> &x, const Evaluation<T, Wheels, N> &e, const Derived<T> &d, Vector2<T> point) {
+    using At = Layout<Wheels>;
+    return dot(Vector2<T>{d.downhill_x, d.downhill_y},
+               Vector2<T>{x[At::base_x], x[At::base_y]} + to_world(e.heading, point));
+}
+
 // Of slider, weight, bumper and contact; a plate on the robot included.
 template <class T, int Wheels, std::size_t N>
 T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, Wheels, N> &e, const Parameters<T, Wheels> &p,
@@ -30,7 +38,8 @@ T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, Wheels,
         const Vector2<T> outward{d.plate_x, d.plate_y};
         const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
         const Vector2<T> speed = e.velocity + x[At::base_omega] * turned(plate) - x[At::compression_rate] * outward;
-        energy = energy + half * p.bumper_plate_mass * dot(speed, speed);
+        energy =
+            energy + half * p.bumper_plate_mass * dot(speed, speed) - p.bumper_plate_mass * descent(x, e, d, plate);
     }
     if (p.slider_present != 0) {
         energy = energy + half * d.carriage_mass * math::square(x[At::slider_speed]);
@@ -53,8 +62,10 @@ T stored_energy(const StateVector<T, Wheels> &x, const Evaluation<T, Wheels> &e,
                 const Derived<T> &d) {
     using At = Layout<Wheels>;
     const T half = T(0.5);
-    T energy =
-        half * p.base_mass * dot(e.velocity, e.velocity) + half * p.base_yaw_inertia * math::square(x[At::base_omega]);
+    const Vector2<T> com = mass_centre(p);
+    const Vector2<T> speed = e.velocity + x[At::base_omega] * turned(com);
+    T energy = half * p.base_mass * dot(speed, speed) + half * p.base_yaw_inertia * math::square(x[At::base_omega]) -
+               p.base_mass * descent(x, e, d, com);
     for (int i = 0; i < Wheels; ++i) {
         const T roller_speed =
             (T(Azimuths<Wheels>::cos[i]) * e.velocity.x + T(Azimuths<Wheels>::sin[i]) * e.velocity.y) / p.roller_radius;
@@ -77,11 +88,12 @@ T stored_energy(const TippingVector<T, Wheels> &x, const TippingEvaluation<T, Wh
     using At = Layout<Wheels>;
     const T half = T(0.5);
     const Stance<T> &s = e.stance;
-    const Vector3<T> mass_centre = p.base_com_height * s.up;
-    const Vector3<T> velocity = s.velocity_of(mass_centre);
+    const Vector3<T> com = s.at(p.base_com_x, p.base_com_y, p.base_com_height);
+    const Vector3<T> velocity = s.velocity_of(com);
     const T tilting = p.base_tilt_inertia - T(0.5 * Wheels) * p.wheel_inertia;
     T energy = half * p.base_mass * dot(velocity, velocity) +
-               p.base_mass * T(gravity_mps2) * (x[At::base_heave] + mass_centre.z) + e.floor_stored +
+               p.base_mass * d.floor_gravity * (x[At::base_heave] + com.z) -
+               p.base_mass * descent(x, e, d, com.plan()) + e.floor_stored +
                half * tilting * (math::square(x[At::body_roll_rate]) + math::square(x[At::body_pitch_rate])) +
                half * p.base_yaw_inertia * math::square(s.yaw_rate);
     for (int i = 0; i < Wheels; ++i) {
@@ -113,9 +125,11 @@ Outputs<T, Wheels> outputs(const E &e, const std::array<T, N> &x, const Paramete
         o.roll = x[At::base_roll];
         o.pitch = x[At::base_pitch];
         o.wheel_load = e.load;
-        o.tip_margin = tip_margin(e.stance, p, d);
+        o.tip_margin = tip_margin(e.stance, p, d, to_base(e.heading, Vector2<T>{d.downhill_x, d.downhill_y}));
     } else {
-        o.wheel_load.fill(p.base_mass * T(gravity_mps2) / T(Wheels));
+        for (int i = 0; i < Wheels; ++i) {
+            o.wheel_load[i] = p.base_mass * d.floor_gravity / T(Wheels) * static_load_share(p, i, mass_centre(p));
+        }
         o.tip_margin = T(1.0);
     }
     const Vector2<T> point = to_world(e.heading, reach);

@@ -20,7 +20,7 @@ inline constexpr int max_outline_vertices = 16;
 // Those of the testbed's variable table (models/testbed/variables.toml says what each is), and what follows from
 // several of them. The count of wheels is an argument of all that depends on it; what is left out is the table's robot.
 template <class T, int Wheels = table_wheels> struct Parameters : TableParameters<T, Wheels> {
-    std::array<T, Wheels> wheel_load;     // normal load over its nominal value; on a plane 1
+    std::array<T, Wheels> wheel_load;     // roller friction over that at nominal load
     std::array<T, Wheels> wheel_traction; // 1 on the floor, 0 lifted; on a plane 1
     // Parts of the outline at the contact's height: the body's polygon, the wheels.
     std::int32_t outline_body, outline_wheels;

@@ -107,7 +107,7 @@ void drive_motors(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, con
     for (int i = 0; i < Wheels; ++i) {
         e.net_torque[i] = net_motor_torque(p, u.motor_torque[i], e.sensed_torque[i]);
         e.rate[At::motor_speed + i] =
-            motor_acceleration(p, m.gear_direction[i], e.net_torque[i], x[At::motor_speed + i]);
+            motor_acceleration(p, i, m.gear_direction[i], e.net_torque[i], x[At::motor_speed + i]);
         work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[At::motor_speed + i];
     }
     e.rate[At::work_in] = work;
@@ -129,6 +129,11 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     e.push_power = dot(push, e.velocity + omega * turned(push_point));
 
     Planar3<T> wrench = {push.x, push.y, cross(push_point, push)};
+    // Turning about the wheels' centre, and down the floor.
+    const Vector2<T> com = mass_centre(p);
+    const Vector2<T> downhill = to_base(e.heading, Vector2<T>{d.downhill_x, d.downhill_y});
+    const Vector2<T> drawn = (omega * omega) * com + downhill;
+    wrench = wrench + p.base_mass * Planar3<T>{drawn.x, drawn.y, cross(com, downhill)};
     // First for all wheels, so that the processor can run independent chains of operations in parallel.
     std::array<T, Wheels> steady;
     for (int i = 0; i < Wheels; ++i) {
@@ -157,7 +162,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         e.rate[At::motor_angle + i] = x[At::motor_speed + i];
         e.rate[At::wheel_angle + i] = e.wheel_speed[i];
         e.rate[At::bristle + i] = roller.deflection_rate;
-        loss = loss + gear_dissipation(p, direction, x[At::motor_speed + i]) +
+        loss = loss + gear_dissipation(p, i, direction, x[At::motor_speed + i]) +
                p.drivetrain_damping * math::square(x[At::motor_speed + i] - e.wheel_speed[i]) +
                p.wheel_traction[i] * roller.dissipation;
     }
@@ -192,7 +197,9 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         const T across_turning =
             T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[At::compression_rate];
         const T along_turning = T(-1.0) * centripetal * dot(plate, outward);
-        const T pull = dot(force, outward);
+        const Vector2<T> weight = p.bumper_plate_mass * downhill;
+        const T pull = dot(force + weight, outward);
+        wrench = wrench + Planar3<T>{weight.x, weight.y, cross(plate, weight)};
         wrench = wrench + (T(-1.0) * p.bumper_plate_mass * across_turning) * across;
         wrench =
             wrench + (T(-1.0) * (free * (pull + e.bumper.force) + lock * p.bumper_plate_mass * along_turning)) * along;
@@ -266,8 +273,8 @@ EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const I
     for (int i = 0; i < Wheels; ++i) {
         const T sensed = sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i],
                                        dot(wheel_row(p, i), twist));
-        g[At::event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed),
-                                               x[At::motor_speed + i]);
+        g[At::event_gear + i] = gear_indicator(p, i, m.gear_direction[i],
+                                               net_motor_torque(p, u.motor_torque[i], sensed), x[At::motor_speed + i]);
     }
     const T depth = p.slider_present != 0
                         ? locate_contact(p, d, detail::find_nose(x, p, d, heading), velocity, x[At::base_omega],
@@ -286,7 +293,7 @@ EventVector<T, Wheels> event_indicators(const Evaluation<T, Wheels> &e, const St
     using At = Layout<Wheels>;
     EventVector<T, Wheels> g{};
     for (int i = 0; i < Wheels; ++i) {
-        g[At::event_gear + i] = gear_indicator(p, m.gear_direction[i], e.net_torque[i], x[At::motor_speed + i]);
+        g[At::event_gear + i] = gear_indicator(p, i, m.gear_direction[i], e.net_torque[i], x[At::motor_speed + i]);
     }
     slider_indicators(g, x, m, p, d, p.slider_present != 0 ? e.contact.depth : T(-1.0),
                       [&] { return e.internal_force; });
@@ -304,7 +311,7 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
         // At the located break-away the net torque equals the stiction up to rounding: the gear slides in the direction
         // of the torque.
         const T from_stuck = math::sign(e.net_torque[i]);
-        const T from_sliding = gear_direction_from_rest(p, e.net_torque[i]);
+        const T from_sliding = gear_direction_from_rest(p, i, e.net_torque[i]);
         x[At::motor_speed + i] = math::select(now, T(0.0), x[At::motor_speed + i]);
         m.gear_direction[i] = math::select(now, math::select(was_stuck, from_stuck, from_sliding), m.gear_direction[i]);
     }
@@ -359,7 +366,7 @@ void transition(StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, 
 
 template <class T, int Wheels>
 void break_away(const Inputs<T, Wheels> &u, Modes<T, Wheels> &m, const Parameters<T, Wheels> &p, int wheel, T sensed) {
-    const T direction = gear_direction_from_rest(p, net_motor_torque(p, u.motor_torque[wheel], sensed));
+    const T direction = gear_direction_from_rest(p, wheel, net_motor_torque(p, u.motor_torque[wheel], sensed));
     m.gear_direction[wheel] =
         math::select(math::less(math::abs(m.gear_direction[wheel]), T(0.5)), direction, m.gear_direction[wheel]);
 }

@@ -23,7 +23,7 @@ T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction, const math::D
 
 // Friction of a roller in steady motion at speed v (28); near rest a bristle holds up to the Coulomb friction.
 template <class T, int Wheels> T steady_friction(const Parameters<T, Wheels> &p, int wheel, T v) {
-    const T coulomb = p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
+    const T coulomb = p.roller_friction_scale[wheel] * p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
     const T steady = math::tanh(p.roller_tanh_slope * math::abs(v) / p.roller_radius);
     if (p.roller_model == RollerModel::tanh) {
         return coulomb * steady;

@@ -140,13 +140,13 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
 
         const T direction = m.gear_direction[i];
         e.rate[At::motor_angle + i] = x[At::motor_speed + i];
-        e.rate[At::motor_speed + i] = motor_acceleration(p, direction, e.net_torque[i], x[At::motor_speed + i]);
+        e.rate[At::motor_speed + i] = motor_acceleration(p, i, direction, e.net_torque[i], x[At::motor_speed + i]);
         e.rate[At::wheel_angle + i] = f.wheel_speed;
         e.rate[At::wheel_spin + i] = spinning_up / p.wheel_inertia;
         e.rate[At::bristle + i] = m.on_floor[i] * roller.deflection_rate;
         e.rate[At::grip + i] = m.on_floor[i] * grip_rate;
         work = work + (e.net_torque[i] + e.sensed_torque[i]) * x[At::motor_speed + i];
-        loss = loss + gear_dissipation(p, direction, x[At::motor_speed + i]) +
+        loss = loss + gear_dissipation(p, i, direction, x[At::motor_speed + i]) +
                p.drivetrain_damping * math::square(x[At::motor_speed + i] - f.wheel_speed) + floor.dissipation -
                traction * slip + e.roller_force[i] * axial_speed;
     }
@@ -168,8 +168,8 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
     slider_rates(e, x, m, p, d, force_world.x * d.rail_x + force_world.y * d.rail_y, loss);
 
     // Newton and Euler at the centre of mass. A wheel's own spin is handled separately.
-    const Vector3<T> mass_centre = p.base_com_height * s.up;
-    const Vector3<T> torque = moment - cross(mass_centre, force);
+    const Vector3<T> com = s.at(p.base_com_x, p.base_com_y, p.base_com_height);
+    const Vector3<T> torque = moment - cross(com, force);
     const T tilting = p.base_tilt_inertia - T(0.5 * Wheels) * p.wheel_inertia;
     const T roll_rate = x[At::body_roll_rate];
     const T pitch_rate = x[At::body_pitch_rate];
@@ -180,9 +180,10 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
     const T yaw_acceleration = dot(torque, s.up) / p.base_yaw_inertia;
     const Vector3<T> turning_rate =
         roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
-    const Vector3<T> weight{T(0.0), T(0.0), T(-gravity_mps2)};
-    const Vector3<T> acceleration = (T(1.0) / p.base_mass) * force + weight - cross(turning_rate, mass_centre) -
-                                    cross(s.turning, cross(s.turning, mass_centre));
+    const Vector2<T> downhill = to_base(e.heading, Vector2<T>{d.downhill_x, d.downhill_y});
+    const Vector3<T> weight{downhill.x, downhill.y, T(-1.0) * d.floor_gravity};
+    const Vector3<T> acceleration =
+        (T(1.0) / p.base_mass) * force + weight - cross(turning_rate, com) - cross(s.turning, cross(s.turning, com));
 
     const Vector2<T> acceleration_world = to_world(e.heading, acceleration.plan());
     e.rate[At::base_x] = x[At::base_vx];
@@ -229,8 +230,8 @@ TippingEvents<T, Wheels> event_indicators(const TippingVector<T, Wheels> &x, con
         const Footing<T> f = footing(x, p, s, i);
         const T sensed =
             sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], f.wheel_speed);
-        g[At::event_gear + i] = gear_indicator(p, m.gear_direction[i], net_motor_torque(p, u.motor_torque[i], sensed),
-                                               x[At::motor_speed + i]);
+        g[At::event_gear + i] = gear_indicator(p, i, m.gear_direction[i],
+                                               net_motor_torque(p, u.motor_torque[i], sensed), x[At::motor_speed + i]);
         g[At::event_floor + i] = f.depth;
     }
     g[At::event_tilt] = s.up.z - T(cos_greatest_tilt);
@@ -273,15 +274,24 @@ void accept_inputs(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u
     }
 }
 
-// Remaining share of the margin before the base tips over if only its weight acts from now on: 1 level and at rest, 0
-// at the point of no return. Over the line between two wheels the base is an inverted pendulum; the growing part of its
-// motion, tilt + rate / d.tip_rate, decides.
-template <class T, int Wheels> T tip_margin(const Stance<T> &s, const Parameters<T, Wheels> &p, const Derived<T> &d) {
-    const Vector3<T> mass_centre = p.base_com_height * s.up;
-    const Vector2<T> bound = mass_centre.plan() + (T(1.0) / d.tip_rate) * cross(s.turning, mass_centre).plan();
+// Remaining share of the margin before the base tips over if only its weight acts from now on: 1 level and at rest with
+// the centre of mass in the middle, 0 at the point of no return. Over the line between two wheels the base is an
+// inverted pendulum; the growing part of its motion, place + speed / rate, decides. `downhill`: gravity along the
+// floor, in base axes.
+template <class T, int Wheels>
+T tip_margin(const Stance<T> &s, const Parameters<T, Wheels> &p, const Derived<T> &d, Vector2<T> downhill) {
+    const Vector3<T> com = s.at(p.base_com_x, p.base_com_y, p.base_com_height);
+    const Vector2<T> place = com.plan() + (com.z / d.floor_gravity) * downhill;
+    const Vector2<T> speed = cross(s.turning, com).plan();
     T farthest = T(-1e300);
     for (int i = 0; i < Wheels; ++i) {
         const Side side = side_after<Wheels>(i);
+        const T distance = T(Azimuths<Wheels>::side_distance) * p.wheel_distance -
+                           (T(side.cos) * p.base_com_x + T(side.sin) * p.base_com_y);
+        const T inertia =
+            p.base_tilt_inertia + p.base_mass * (math::square(p.base_com_height) + math::square(distance));
+        const T rate = math::sqrt(p.base_mass * d.floor_gravity * p.base_com_height / inertia);
+        const Vector2<T> bound = place + (T(1.0) / rate) * speed;
         farthest = math::max(farthest, T(side.cos) * bound.x + T(side.sin) * bound.y);
     }
     return T(1.0) - T(1.0 / Azimuths<Wheels>::side_distance) * farthest / p.wheel_distance;

@@ -56,6 +56,8 @@ double drivetrain()
         p.roller_tanh_slope = draw(0.1, 2.0);
         p.roller_model = plant::RollerModel::tanh;
         p.wheel_load = {1.0, 1.0, 1.0};
+        p.roller_friction_scale = {1.0, 1.0, 1.0};
+        p.drivetrain_friction_scale = {1.0, 1.0, 1.0};
         q[p_tau_m] = torque;
         q[p_direction] = direction;
         q[p_J] = p.drivetrain_motor_inertia;
@@ -74,7 +76,7 @@ double drivetrain()
         const double friction = plant::roller_force(p, 0, y[y_w_w], 0.0).force;
         const double spring = p.drivetrain_stiffness * y[y_phi];
         worst = std::max({worst,
-                          difference(dy[y_w], plant::motor_acceleration(p, direction, net, y[y_w]),
+                          difference(dy[y_w], plant::motor_acceleration(p, 0, direction, net, y[y_w]),
                                      {spring / p.drivetrain_motor_inertia}),
                           difference(dy[y_w_w], (sensed - friction) / inertia, {spring / inertia}),
                           std::fabs(dy[y_phi] - y[y_w]), std::fabs(dy[y_q] - y[y_w_w])});

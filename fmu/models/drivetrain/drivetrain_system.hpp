@@ -34,6 +34,8 @@ public:
         parameters_.roller_model = plant::RollerModel::tanh;
         parameters_.roller_radius = 1.0;
         parameters_.wheel_load.fill(1.0);
+        parameters_.roller_friction_scale.fill(1.0);
+        parameters_.drivetrain_friction_scale.fill(1.0);
         load_ = load;
         torques_ = {};
         direction_ = math::sign(state[motor_speed]);
@@ -68,11 +70,11 @@ public:
         const double slip = x[motor_speed] - x[load_speed];
         const double wind_up = x[motor_angle] - x[load_angle];
         e.rate[motor_angle] = x[motor_speed];
-        e.rate[motor_speed] = plant::motor_acceleration(p, direction_, e.net, x[motor_speed]);
+        e.rate[motor_speed] = plant::motor_acceleration(p, 0, direction_, e.net, x[motor_speed]);
         e.rate[load_angle] = x[load_speed];
         e.rate[load_speed] = (e.sensed - e.friction + torques_.environment) / load_.inertia;
         e.rate[work_in] = (e.net + e.sensed) * x[motor_speed] + torques_.environment * x[load_speed];
-        e.rate[dissipated] = plant::gear_dissipation(p, direction_, x[motor_speed]) +
+        e.rate[dissipated] = plant::gear_dissipation(p, 0, direction_, x[motor_speed]) +
                              p.drivetrain_damping * slip * slip + e.friction * x[load_speed];
         e.stored = 0.5 * (p.drivetrain_motor_inertia * x[motor_speed] * x[motor_speed] +
                           load_.inertia * x[load_speed] * x[load_speed] + p.drivetrain_stiffness * wind_up * wind_up);
@@ -90,7 +92,7 @@ public:
     }
 
     void indicators(double, const double *state, double *value) override {
-        value[0] = plant::gear_indicator(parameters_, direction_, evaluate(state).net, state[motor_speed]);
+        value[0] = plant::gear_indicator(parameters_, 0, direction_, evaluate(state).net, state[motor_speed]);
     }
 
     void transition(double, double *state, const int *fired) override {
@@ -100,7 +102,7 @@ public:
         const double net = evaluate(state).net;
         // At the located break-away the net torque equals the stiction up to rounding: the gear slides in the direction
         // of the torque.
-        direction_ = stuck() ? math::sign(net) : plant::gear_direction_from_rest(parameters_, net);
+        direction_ = stuck() ? math::sign(net) : plant::gear_direction_from_rest(parameters_, 0, net);
         state[motor_speed] = 0.0;
     }
 
@@ -127,7 +129,7 @@ private:
     // A stuck gear breaks away at once if the net torque exceeds its stiction.
     void release(const double *state) {
         if (stuck()) {
-            direction_ = plant::gear_direction_from_rest(parameters_, evaluate(state).net);
+            direction_ = plant::gear_direction_from_rest(parameters_, 0, evaluate(state).net);
         }
     }
 

@@ -48,7 +48,7 @@ public:
         input.speed_radps = static_cast<gw_real_t>(reference_speed_radps);
         input.reference_is_new = reference_is_new;
         input.enable = true;
-        input.encoder_count = testbed::encoder_count(sensors_, motor_angle_rad);
+        input.encoder_count = testbed::encoder_count(sensors_, 0, motor_angle_rad);
         gw_servo_output_t output{};
         (void)gw_servo_step(&servo_, &input, &output); // a bad reference holds the last angle
         return delayed_.exchange(static_cast<double>(output.torque_nm));

@@ -95,7 +95,7 @@ public:
             input.speed_radps = static_cast<gw_real_t>(active_.wheel_speed_radps[i]);
             input.reference_is_new = reference_is_new_;
             input.enable = active_.enable;
-            input.encoder_count = encoder_count(options_.sensors, motor_angle_rad[i]);
+            input.encoder_count = encoder_count(options_.sensors, i, motor_angle_rad[i]);
             gw_servo_output_t output{};
             (void)gw_servo_step(&servos_[i], &input, &output); // a bad reference holds the last angle
             torque[i] = static_cast<double>(output.torque_nm);
@@ -113,8 +113,9 @@ private:
                                            std::int64_t cycle, const Deviates &drawn) const {
         SensorSample sample{};
         for (std::size_t i = 0; i < wheel_count; ++i) {
-            sample.torque_nm[i] = measured_torque(options_.sensors, i, torque_nm[i], drawn[i]);
-            sample.encoder_counts[i] = encoder_count(options_.sensors, motor_angle_rad[i]);
+            sample.torque_nm[i] =
+                measured_torque(options_.sensors, i, torque_nm[i], bus_period_s * static_cast<double>(cycle), drawn[i]);
+            sample.encoder_counts[i] = encoder_count(options_.sensors, i, motor_angle_rad[i]);
         }
         sample.counter = static_cast<std::int32_t>(static_cast<std::uint32_t>(cycle + max_delay_cycles));
         return sample;

@@ -15,7 +15,13 @@ namespace giveway::testbed {
 inline plant::Parameters<double> plant_parameters(const Variables &v) {
     plant::Parameters<double> p{};
     read_plant_parameters(v, p);
-    p.wheel_load.fill(1.0);
+    const plant::Vector2<double> com = plant::mass_centre(p);
+    for (int i = 0; i < wheel_count; ++i) {
+        // A base that tips distributes its weight itself.
+        const double share = p.base_tipping != 0 ? 1.0 : plant::static_load_share(p, i, com);
+        const double load = share * v.base_mass / v.roller_nominal_mass;
+        p.wheel_load[static_cast<std::size_t>(i)] = 1.0 + v.roller_load_growth * (load - 1.0);
+    }
     p.wheel_traction.fill(1.0);
     // The parts that a horizontal cut at the contact's height meets; without wheels the body reaches to the floor.
     p.outline_body = !v.outline_wheels || v.contact_height >= v.outline_clearance ? 1 : 0;
@@ -31,6 +37,9 @@ inline DriveOptions drive_options(const Variables &v) {
     o.sensors.torque_resolution_nm = v.electronics_torque_resolution;
     o.sensors.torque_range_nm = v.electronics_torque_range;
     o.sensors.torque_offset_nm = std::to_array(v.electronics_torque_offset);
+    o.sensors.torque_gain = std::to_array(v.electronics_torque_gain);
+    o.sensors.torque_drift_nm_per_s = std::to_array(v.electronics_torque_drift);
+    o.sensors.encoder_phase = std::to_array(v.electronics_encoder_phase);
     o.kp_nm_per_rad = v.servo_kp;
     o.kd_nms_per_rad = v.servo_kd;
     o.torque_limit_nm = v.drivetrain_torque_limit;
@@ -38,6 +47,23 @@ inline DriveOptions drive_options(const Variables &v) {
     o.sensor_delay_cycles = v.electronics_sensor_delay;
     o.command_delay_cycles = v.electronics_command_delay;
     return o;
+}
+
+// Within the lines between the wheels.
+inline bool check_mass_centre(const Variables &v, Message &message) {
+    for (int i = 0; i < wheel_count; ++i) {
+        const plant::Side side = plant::side_after<wheel_count>(i);
+        const double distance = side.cos * v.base_com_x + side.sin * v.base_com_y;
+        const double line = plant::Azimuths<wheel_count>::side_distance * v.wheel_distance;
+        if (distance >= line) {
+            std::snprintf(message.text, sizeof message.text,
+                          "base.com_x = %.9g, base.com_y = %.9g is not allowed: the robot falls over, as its centre of "
+                          "mass is %.9g m towards a line between two wheels that is %.9g m away",
+                          v.base_com_x, v.base_com_y, distance, line);
+            return false;
+        }
+    }
+    return true;
 }
 
 // The shell has checked every single range; these rules relate several variables.
@@ -60,6 +86,9 @@ inline bool check_relations(const Variables &v, Message &message) {
     }
     if (v.base_tipping && v.bumper_kind != 0 && v.bumper_mount != 0) {
         return refuse("bumper.mount", v.bumper_mount, "0, on the slider, where the base can tip: base.tipping =", 1.0);
+    }
+    if (!check_mass_centre(v, message)) {
+        return false;
     }
     const double wheels_tilt_inertia = 0.5 * wheel_count * v.wheel_inertia;
     if (v.base_tilt_inertia <= wheels_tilt_inertia) {

@@ -16,7 +16,8 @@ struct SensorOptions {
     std::int32_t encoder_counts; // per turn of the wheel axle
     std::uint32_t seed;
     double torque_noise_nm, torque_resolution_nm, torque_range_nm;
-    PerWheel<double> torque_offset_nm;
+    PerWheel<double> torque_offset_nm, torque_gain, torque_drift_nm_per_s;
+    PerWheel<double> encoder_phase; // counts at angle 0, [0, 1]
 };
 
 struct SensorSample {
@@ -26,9 +27,9 @@ struct SensorSample {
 };
 
 // Counts of the motor encoder, wrapping like a 32-bit counter.
-inline std::int32_t encoder_count(const SensorOptions &options, double angle_rad) {
+inline std::int32_t encoder_count(const SensorOptions &options, std::size_t wheel, double angle_rad) {
     const double turns = angle_rad / 6.283185307179586;
-    const double counts = turns * static_cast<double>(options.encoder_counts);
+    const double counts = turns * static_cast<double>(options.encoder_counts) + options.encoder_phase[wheel];
     auto whole = static_cast<std::int64_t>(counts);
     whole -= counts < static_cast<double>(whole) ? 1 : 0; // floor
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
@@ -44,8 +45,11 @@ inline Deviates deviates(const SensorOptions &options, std::int64_t cycle) {
     return found;
 }
 
-inline double measured_torque(const SensorOptions &options, std::size_t wheel, double torque_nm, double deviate) {
-    double value = torque_nm + options.torque_offset_nm[wheel];
+// time_s: since the start.
+inline double measured_torque(const SensorOptions &options, std::size_t wheel, double torque_nm, double time_s,
+                              double deviate) {
+    double value = options.torque_gain[wheel] * torque_nm + options.torque_offset_nm[wheel] +
+                   options.torque_drift_nm_per_s[wheel] * time_s;
     if (options.torque_noise_nm > 0.0) {
         value += options.torque_noise_nm * deviate;
     }

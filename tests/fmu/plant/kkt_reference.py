@@ -10,7 +10,7 @@ evaluation solves
     | A  J^T | | Q'' |   | forces     |
     | J   0  | |  l  | = | -J' Q'     |
 
-    Q = (x, y, theta | q_w[3] | q_r[3] | carriage x, y | plate x, y | weight h)
+    Q = (x, y of the centre of mass, theta | q_w[3] | q_r[3] | carriage x, y | plate x, y | weight h)
     J = 6 rolling constraints (19) | carriage on its rail | plate on its guide
         | plate locked to its carrier | weight locked (no rope) | carriage locked (no slider)
 
@@ -47,13 +47,19 @@ class Parameters:
     """SI units. The defaults are Trikey's numbers where the robot file has them."""
 
     base_mass: float = 34.7
-    base_yaw_inertia: float = 1.31
+    base_yaw_inertia: float = 1.31  # about the centre of mass
+    base_com_x: float = 0.0
+    base_com_y: float = 0.0
+    floor_slope: float = 0.0
+    floor_azimuth: float = 0.0
     wheel_radius: float = 0.1016
     wheel_distance: float = 0.24
     wheel_inertia: float = 0.002798
     wheel_traction: list[float] = field(default_factory=lambda: [1.0, 1.0, 1.0])
-    # Normal load over the nominal one.
+    # Roller friction over that at nominal load.
     wheel_load: list[float] = field(default_factory=lambda: [1.0, 1.0, 1.0])
+    roller_friction_scale: list[float] = field(default_factory=lambda: [1.0, 1.0, 1.0])
+    drivetrain_friction_scale: list[float] = field(default_factory=lambda: [1.0, 1.0, 1.0])
     roller_model: int = ROLLER_BRISTLE
     roller_radius: float = 0.009525
     roller_inertia: float = 1.23e-6
@@ -226,6 +232,8 @@ class Reference:
             p.slider_target_y - self.ey * (p.slider_run_up + p.contact_nose_radius),
         )
         self.rope_preload = p.rope_hanging_mass * GRAVITY / p.rope_stiffness
+        along = GRAVITY * math.sin(p.floor_slope)
+        self.downhill = (along * math.cos(p.floor_azimuth), along * math.sin(p.floor_azimuth))
         self.axis = (math.cos(p.bumper_mount_azimuth), math.sin(p.bumper_mount_azimuth))
         masses = [p.base_mass, p.base_mass, p.base_yaw_inertia]
         masses += [p.wheel_inertia] * 3 + [p.roller_inertia] * 3
@@ -250,6 +258,11 @@ class Reference:
             matrix[row, column] = matrix[column, row] = value
 
     # --- Geometry ---------------------------------------------------------------------------------
+
+    def to_mass(self, theta: float) -> tuple[float, float]:
+        """From the wheels' centre to that of mass, world frame."""
+        p, ct, st = self.p, math.cos(theta), math.sin(theta)
+        return ct * p.base_com_x - st * p.base_com_y, st * p.base_com_x + ct * p.base_com_y
 
     def plate_locked(self, modes: Modes) -> bool:
         p = self.p
@@ -337,7 +350,7 @@ class Reference:
     def roller(self, i: int, z: float, v: float) -> tuple[float, float]:
         """Friction force at the floor and the bristle's rate."""
         p = self.p
-        level = p.wheel_load[i] * p.roller_coulomb_torque / p.roller_radius
+        level = p.roller_friction_scale[i] * p.wheel_load[i] * p.roller_coulomb_torque / p.roller_radius
         moving = math.tanh(p.roller_tanh_slope * abs(v) / p.roller_radius)
         if p.roller_model == ROLLER_TANH:
             return level * math.copysign(moving, v), 0.0
@@ -366,6 +379,7 @@ class Reference:
         x = state.tolist() if isinstance(state, np.ndarray) else list(state)
         theta, vx, vy, omega = x[2], x[3], x[4], x[5]
         ct, st = math.cos(theta), math.sin(theta)
+        mx, my = self.to_mass(theta)
         matrix = self.template.copy()
         load = [0.0] * self.SIZE
         rate = [0.0] * STATES
@@ -380,13 +394,16 @@ class Reference:
             wheel_speed = (v_roll + p.wheel_distance * omega) / p.wheel_radius
             if p.wheel_traction[i]:
                 row = 14 + i
-                for column, value in ((0, -si), (1, ci), (2, p.wheel_distance)):
+                # The wheels' centre is at (-mx, -my) from that of mass.
+                for column, value in ((0, -si), (1, ci), (2, p.wheel_distance - si * my - ci * mx)):
                     matrix[row, column] = matrix[column, row] = value / p.wheel_radius
                 load[row] = p.fault_velocity_term * omega * v_radial / p.wheel_radius
+                load[row] -= omega**2 * (-si * mx + ci * my) / p.wheel_radius
                 row = 17 + i
-                for column, value in ((0, ci), (1, si)):
+                for column, value in ((0, ci), (1, si), (2, ci * my - si * mx)):
                     matrix[row, column] = matrix[column, row] = value / p.roller_radius
                 load[row] = -p.fault_velocity_term * omega * v_roll / p.roller_radius
+                load[row] -= omega**2 * (ci * mx + si * my) / p.roller_radius
 
             twist_rate = x[9 + i] - wheel_speed
             t_i = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * twist_rate
@@ -408,11 +425,19 @@ class Reference:
             direction = modes.gear[i]
             if direction:
                 w_m = x[9 + i]
-                gear = p.drivetrain_gear_coulomb * direction + p.drivetrain_gear_viscous * w_m
+                gear = p.drivetrain_friction_scale[i] * (
+                    p.drivetrain_gear_coulomb * direction + p.drivetrain_gear_viscous * w_m
+                )
                 rate[6 + i] = w_m
                 rate[9 + i] = (drive - t_i - gear) / p.drivetrain_motor_inertia
                 work += drive * w_m
                 dissipated += gear * w_m
+
+        load[0] += p.base_mass * self.downhill[0]
+        load[1] += p.base_mass * self.downhill[1]
+        if self.on_robot:
+            load[11] += p.bumper_plate_mass * self.downhill[0]
+            load[12] += p.bumper_plate_mass * self.downhill[1]
 
         # External push: force at a point of the base.
         fx, fy = u.push_force
@@ -420,7 +445,7 @@ class Reference:
         ry = st * u.push_point[0] + ct * u.push_point[1]
         load[0] += p.fault_external_sign * fx
         load[1] += p.fault_external_sign * fy
-        load[2] += p.fault_external_sign * (rx * fy - ry * fx)
+        load[2] += p.fault_external_sign * ((rx - mx) * fy - (ry - my) * fx)
         work += fx * (vx - omega * ry) + fy * (vy + omega * rx)
 
         # Slider, rope, weight.
@@ -464,10 +489,10 @@ class Reference:
             rvx, rvy = pvx - vx, pvy - vy
             gap, lever = gx * ox + gy * oy, gx * wx + gy * wy
             # across . (P - X) = const, differentiated twice
-            self._fill(matrix, self.GUIDE, {0: -wx, 1: -wy, 2: -gap, 11: wx, 12: wy})
-            load[self.GUIDE] = 2.0 * omega * (rvx * ox + rvy * oy) + lever * omega**2
-            extension = {0: -ox, 1: -oy, 2: lever, 11: ox, 12: oy}
-            centrifugal = 2.0 * omega * (rvx * wx + rvy * wy) - gap * omega**2
+            self._fill(matrix, self.GUIDE, {0: -wx, 1: -wy, 2: -gap - (wx * my - wy * mx), 11: wx, 12: wy})
+            load[self.GUIDE] = 2.0 * omega * (rvx * ox + rvy * oy) + (lever + wx * mx + wy * my) * omega**2
+            extension = {0: -ox, 1: -oy, 2: lever - (ox * my - oy * mx), 11: ox, 12: oy}
+            centrifugal = 2.0 * omega * (rvx * wx + rvy * wy) - (gap + ox * mx + oy * my) * omega**2
         else:
             extension = {9: -ox, 10: -oy, 11: ox, 12: oy}
             centrifugal = 0.0
@@ -515,7 +540,7 @@ class Reference:
                 load[9 if self.on_robot else 11] -= fx
                 load[10 if self.on_robot else 12] -= fy
                 # On the robot, the plate takes the force and its guide the moment about the plate.
-                taker, ax, ay = (11, px, py) if self.on_robot else (0, x[0], x[1])
+                taker, ax, ay = (11, px, py) if self.on_robot else (0, x[0] + mx, x[1] + my)
                 load[taker] += s * fx
                 load[taker + 1] += s * fy
                 load[2] += s * p.fault_contact_moment * ((rx - ax) * fy - (ry - ay) * fx)
@@ -525,7 +550,9 @@ class Reference:
 
         solution = np.linalg.solve(matrix, load).tolist()
         rate[0:3] = [vx, vy, omega]
-        rate[3:6] = solution[0:3]
+        rate[3] = solution[0] + solution[2] * my + omega**2 * mx
+        rate[4] = solution[1] - solution[2] * mx + omega**2 * my
+        rate[5] = solution[2]
         if p.slider_present:
             rate[18], rate[19] = x[19], solution[9] * self.ex + solution[10] * self.ey
             if p.rope_attached:
@@ -555,7 +582,10 @@ class Reference:
     def stored_energy(self, x: np.ndarray, modes: Modes) -> float:
         p = self.p
         ct, st = math.cos(x[2]), math.sin(x[2])
-        energy = 0.5 * p.base_mass * (x[3] ** 2 + x[4] ** 2) + 0.5 * p.base_yaw_inertia * x[5] ** 2
+        mx, my = self.to_mass(x[2])
+        energy = 0.5 * p.base_mass * ((x[3] - x[5] * my) ** 2 + (x[4] + x[5] * mx) ** 2)
+        energy += 0.5 * p.base_yaw_inertia * x[5] ** 2
+        energy -= p.base_mass * (self.downhill[0] * (x[0] + mx) + self.downhill[1] * (x[1] + my))
         for i in range(3):
             ci, si = ct * _COS[i] - st * _SIN[i], st * _COS[i] + ct * _SIN[i]
             if p.wheel_traction[i]:
@@ -566,7 +596,9 @@ class Reference:
             energy += 0.5 * p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) ** 2
             if p.roller_model == ROLLER_BRISTLE:
                 energy += 0.5 * p.roller_presliding_stiffness[i] * x[15 + i] ** 2
-        _, _, pvx, pvy, _, _ = self.plate(x)
+        px, py, pvx, pvy, _, _ = self.plate(x)
+        if self.on_robot:
+            energy -= p.bumper_plate_mass * (self.downhill[0] * px + self.downhill[1] * py)
         energy += 0.5 * self.carriage_mass * x[19] ** 2 + 0.5 * p.bumper_plate_mass * (pvx**2 + pvy**2)
         if not p.slider_present:
             return energy
@@ -604,12 +636,15 @@ class Reference:
         torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (x[9 + i] - wheel_speed)
         return max(-p.drivetrain_torque_limit, min(p.drivetrain_torque_limit, u.motor_torque[i])) - torque
 
+    def stiction(self, i: int) -> float:
+        return self.p.drivetrain_friction_scale[i] * self.p.drivetrain_gear_stiction
+
     def indicators(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> list[float]:
         p = self.p
         g = [0.0] * INDICATORS
         for i in range(3):
             direction = modes.gear[i]
-            g[i] = x[9 + i] * direction if direction else p.drivetrain_gear_stiction - abs(self.gear_surplus(i, x, u))
+            g[i] = x[9 + i] * direction if direction else self.stiction(i) - abs(self.gear_surplus(i, x, u))
         if p.slider_present:
             g[CONTACT] = self.touching(x)[0][0]
             if p.wall_present:
@@ -655,7 +690,7 @@ class Reference:
             if modes.gear[index]:
                 x[9 + index] = 0.0
             surplus = self.gear_surplus(index, x, u)
-            stays = modes.gear[index] and abs(surplus) <= self.p.drivetrain_gear_stiction
+            stays = modes.gear[index] and abs(surplus) <= self.stiction(index)
             modes.gear[index] = 0 if stays else int(math.copysign(1.0, surplus))
         elif index == CONTACT:
             modes.contact = 1 - modes.contact
@@ -687,6 +722,7 @@ class Reference:
         before = self.stored_energy(x, still)
         # J at this instant, with the plate locked; weight and carriage are never locked.
         theta = x[2]
+        mx, my = self.to_mass(theta)
         rows = np.zeros((9, self.N_Q))
         for i in range(3):
             ci, si = (
@@ -695,28 +731,30 @@ class Reference:
             )
             if p.wheel_traction[i]:
                 rows[i, [0, 1, 2, 3 + i]] = -si / p.wheel_radius, ci / p.wheel_radius, 0.0, -1.0
-                rows[i, 2] = p.wheel_distance / p.wheel_radius
+                rows[i, 2] = (p.wheel_distance - si * my - ci * mx) / p.wheel_radius
                 rows[3 + i, [0, 1, 6 + i]] = ci / p.roller_radius, si / p.roller_radius, -1.0
+                rows[3 + i, 2] = (ci * my - si * mx) / p.roller_radius
         rows[6, [9, 10]] = -self.ey, self.ex
         px, py, pvx, pvy, ox, oy = self.plate(x)
         gx, gy = px - x[0], py - x[1]
         if self.on_robot:
+            gx, gy = gx - mx, gy - my  # from the centre of mass
             rows[7, [0, 1, 2, 11, 12]] = oy, -ox, -(gx * ox + gy * oy), -oy, ox
             rows[8, [0, 1, 2, 11, 12]] = -ox, -oy, -gx * oy + gy * ox, ox, oy
         else:
             rows[7, [11, 12]] = -self.ey, self.ex
             rows[8, [9, 10, 11, 12]] = -ox, -oy, ox, oy
         speeds = np.zeros(self.N_Q)
-        speeds[0:3] = x[3:6]
+        speeds[0:3] = x[3] - x[5] * my, x[4] + x[5] * mx, x[5]
         for i in range(3):
-            speeds[3 + i] = rows[i, 0:3] @ x[3:6]
-            speeds[6 + i] = rows[3 + i, 0:3] @ x[3:6]
+            speeds[3 + i] = rows[i, 0:3] @ speeds[0:3]
+            speeds[6 + i] = rows[3 + i, 0:3] @ speeds[0:3]
         speeds[9:11] = x[19] * self.ex, x[19] * self.ey
         speeds[11:13] = pvx, pvy
         rows = rows[np.any(rows != 0.0, axis=1)]  # without those of lifted wheels
         weights = rows / self.masses
         after = speeds - weights.T @ np.linalg.solve(weights @ rows.T, rows @ speeds)
-        x[3:6] = after[0:3]
+        x[3:6] = after[0] + after[2] * my, after[1] - after[2] * mx, after[2]
         x[19] = after[9] * self.ex + after[10] * self.ey
         x[23] = 0.0
         x[25] += before - self.stored_energy(x, still)
@@ -727,7 +765,7 @@ class Reference:
         modes = modes.copy()
         for i in range(3):
             surplus = self.gear_surplus(i, x, u)
-            if modes.gear[i] == 0 and abs(surplus) > self.p.drivetrain_gear_stiction:
+            if modes.gear[i] == 0 and abs(surplus) > self.stiction(i):
                 modes.gear[i] = int(math.copysign(1.0, surplus))
         return modes
 

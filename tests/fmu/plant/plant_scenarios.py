@@ -24,6 +24,16 @@ from kkt_reference import (
     Reference,
 )
 
+# Not what its drawing says, on a floor that is not level.
+UNEVEN = {
+    "base_com_x": 0.03,
+    "base_com_y": -0.02,
+    "floor_slope": 0.02,
+    "floor_azimuth": 2.5,
+    "roller_friction_scale": [0.8, 1.2, 1.1],
+    "drivetrain_friction_scale": [1.3, 0.7, 0.9],
+}
+
 # name: (bumper kind, mount, latch model, other parameters)
 COLLISIONS = {
     "none": (KIND_NONE, MOUNT_SLIDER, LATCH_CONTINUOUS, {}),
@@ -111,6 +121,13 @@ COLLISIONS = {
             "slider_direction": -0.1,
             "slider_run_up": 0.08,
         },
+    ),
+    "uneven robot, spring on slider": (KIND_SPRING, MOUNT_SLIDER, LATCH_CONTINUOUS, UNEVEN),
+    "uneven robot, idealised latch closes again on robot": (
+        KIND_MAGNETIC,
+        MOUNT_ROBOT,
+        LATCH_IDEALISED,
+        {"rope_attached": 0, "slider_mass": 4.0, "bumper_latch_force": 10.0, **UNEVEN},
     ),
     # A light dummy bounces off against the wall behind it.
     "against the wall": (

@@ -28,6 +28,10 @@ _NOT_SCALED = {
     "bumper_mount_azimuth",
     "contact_friction",
     "wall_distance",
+    "base_com_x",
+    "base_com_y",
+    "floor_slope",
+    "floor_azimuth",
 }
 
 
@@ -59,7 +63,16 @@ def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roll
         angles[:3] = 0.0, 2.1, 4.2  # the centre stays inside
         angles = np.sort(angles)
         p.outline = list(zip((0.35 * np.cos(angles)).tolist(), (0.25 * np.sin(angles)).tolist(), strict=True))
+    uneven(rng, p)
     return p
+
+
+def uneven(rng: np.random.Generator, p: Parameters) -> None:
+    """What differs from wheel to wheel, a centre of mass beside the wheels' centre, a floor that falls."""
+    p.roller_friction_scale = rng.uniform(0.5, 1.5, 3).tolist()
+    p.drivetrain_friction_scale = rng.uniform(0.5, 1.5, 3).tolist()
+    p.base_com_x, p.base_com_y = rng.uniform(-0.05, 0.05, 2)
+    p.floor_slope, p.floor_azimuth = rng.uniform(0.0, 0.1), rng.uniform(-math.pi, math.pi)
 
 
 def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, Modes]:

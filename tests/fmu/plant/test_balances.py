@@ -51,6 +51,7 @@ def test_the_velocity_term_does_no_work(library):
     for _ in range(300):
         p = disconnected(random_cases.parameters(rng, KIND_SPRING, MOUNT_SLIDER, 0, 0))
         p.wheel_traction = [1.0, 1.0, 1.0]
+        p.base_com_x = p.base_com_y = p.floor_slope = 0.0
         x = np.zeros(STATES)
         x[0:6] = rng.normal(0.0, 2.0, 6)
         rate = Plant(library, p).rhs(x, Inputs(), Modes())
@@ -71,6 +72,39 @@ def test_free_spinning_base_keeps_its_energy(library):
     # The velocity has turned by kappa omega t = 0.24 rad meanwhile; integrator at 1e-9.
     assert np.ptp(energy) < 1e-8 * energy[0]
     assert np.arctan2(run.states[-1, 4], run.states[-1, 3]) - np.arctan2(-0.2, 0.3) == pytest.approx(0.2431, abs=1e-3)
+
+
+def test_a_free_base_with_its_mass_off_the_centre_turns_about_its_mass(library):
+    """No drive, no friction, no inertia of what rolls: the centre of mass goes straight, the base turns evenly."""
+    p = replace(
+        disconnected(Parameters()), base_com_x=0.03, base_com_y=-0.02, wheel_inertia=1e-15, roller_inertia=1e-18
+    )
+    x = np.zeros(STATES)
+    x[0:6] = 0.1, 0.2, 0.4, 0.3, -0.2, 2.0
+    times = np.linspace(0.0, 3.0, 31)
+    s = Plant(library, p).simulate(x, Modes(), times, [(0.0, Inputs())]).states
+    turn, com = np.exp(1j * s[:, 2]), complex(p.base_com_x, p.base_com_y)
+    mass_centre = s[:, 0] + 1j * s[:, 1] + com * turn
+    speed = complex(x[3], x[4]) + 1j * x[5] * com * turn[0]
+    # The integrator at 1e-9.
+    assert np.abs(mass_centre - mass_centre[0] - speed * times).max() < 1e-8
+    assert np.abs(s[:, 5] - 2.0).max() < 1e-8
+
+
+def test_a_free_base_runs_down_the_floor(library):
+    """g sin(slope), less what the wheels and rollers take: M over M + 1.5 (I_w/r_w^2 + I_r/r_r^2)."""
+    p = replace(disconnected(Parameters()), floor_slope=0.1, floor_azimuth=2.0)
+    x = np.zeros(STATES)
+    x[2] = 0.7
+    plant = Plant(library, p)
+    run = plant.simulate(x, Modes(), np.linspace(0.0, 2.0, 21), [(0.0, Inputs())])
+    rolling = 1.5 * (p.wheel_inertia / p.wheel_radius**2 + p.roller_inertia / p.roller_radius**2)
+    run_down = 0.5 * 9.81 * np.sin(0.1) * p.base_mass / (p.base_mass + rolling) * run.times**2
+    assert run.states[:, 0] == pytest.approx(run_down * np.cos(2.0), abs=1e-9)
+    assert run.states[:, 1] == pytest.approx(run_down * np.sin(2.0), abs=1e-9)
+    assert np.abs(run.states[:, 2] - 0.7).max() < 1e-12
+    stored = [plant.outputs(state, Inputs(), Modes())["stored_energy"] for state in run.states]
+    assert np.ptp(stored) < 1e-8 * p.base_mass * 9.81
 
 
 @pytest.mark.parametrize(

@@ -55,13 +55,15 @@ class TippingReference:
     def __init__(self, p: Parameters) -> None:
         self.p = p
         self.planar = Reference(p)
+        self.mass_centre = np.array([p.base_com_x, p.base_com_y, p.base_com_height])
+        self.gravity = np.array([*self.planar.downhill, -GRAVITY * math.cos(p.floor_slope)])
         self.axles = [np.array([math.cos(a), math.sin(a), 0.0]) for a in AZIMUTHS]
         without_spin = p.base_tilt_inertia - 1.5 * p.wheel_inertia
         self.inertia = np.diag([without_spin, without_spin, p.base_yaw_inertia])
 
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
         p = self.p
-        centre = point_rates(q, np.array([0.0, 0.0, p.base_com_height]))
+        centre = point_rates(q, self.mass_centre)
         w = rotation_rates(q)
         m = p.base_mass * centre.T @ centre + w.T @ self.inertia @ w
         for i, axle in enumerate(self.axles):
@@ -85,8 +87,8 @@ class TippingReference:
     def energy(self, x: np.ndarray) -> float:
         """Kinetic and of gravity, of body and wheels."""
         q, v = self.coordinates(x)
-        height = q[2] + (turn(q) @ np.array([0.0, 0.0, self.p.base_com_height]))[2]
-        return float(0.5 * v @ self.mass_matrix(q) @ v + self.p.base_mass * GRAVITY * height)
+        place = q[0:3] + turn(q) @ self.mass_centre
+        return float(0.5 * v @ self.mass_matrix(q) @ v - self.p.base_mass * self.gravity @ place)
 
     def lowest(self, q: np.ndarray, i: int) -> np.ndarray:
         """Lowest point of a wheel's rim, body axes: where the rim's height is stationary."""
@@ -137,10 +139,7 @@ class TippingReference:
         p = self.p
         q, v = self.coordinates(x)
         r = turn(q)
-        force = np.zeros(9)
-        force[2] -= p.base_mass * GRAVITY
-        # Gravity acts at the centre of mass.
-        force[3:6] -= p.base_mass * GRAVITY * point_rates(q, np.array([0.0, 0.0, p.base_com_height]))[2, 3:6]
+        force = p.base_mass * point_rates(q, self.mass_centre).T @ self.gravity
         work = loss = 0.0
         rate = np.zeros(STATES)
         loads, depths = [], []
@@ -176,6 +175,7 @@ class TippingReference:
             rate[15 + i], rate[GRIP + i] = on_floor[i] * bristle_rate, on_floor[i] * grip_rate
             rate[6 + i], rate[12 + i] = x[9 + i], v[6 + i]
             held = p.drivetrain_gear_coulomb * gear[i] + p.drivetrain_gear_viscous * x[9 + i]
+            held *= p.drivetrain_friction_scale[i]
             rate[9 + i] = (drive - torque - held) / p.drivetrain_motor_inertia if gear[i] else 0.0
             work += drive * x[9 + i]
             loss += held * x[9 + i]

@@ -99,6 +99,15 @@ template <class T, int Wheels = table_wheels> Parameters<T, Wheels> random_param
     p.wheel_grip_stiffness = draw(1e6, 3e6);
     p.wheel_grip_damping = draw(0.0, 500.0);
     p.push_height = draw(0.0, 0.6);
+    for (int i = 0; i < Wheels; ++i) {
+        p.roller_friction_scale[i] = draw(0.5, 1.5);
+        p.drivetrain_friction_scale[i] = draw(0.8, 1.2);
+    }
+    p.roller_nominal_mass = draw(10.0, 60.0);
+    p.base_com_x = draw(-0.05, 0.05);
+    p.base_com_y = draw(-0.05, 0.05);
+    p.floor_slope = draw(0.0, 0.1);
+    p.floor_azimuth = draw(-3.0, 3.0);
     return p;
 }
 

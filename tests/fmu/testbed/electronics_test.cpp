@@ -11,7 +11,7 @@ namespace {
 
 using namespace giveway::testbed;
 
-SensorOptions ideal_sensors() { return {8500, 1U, 0.0, 0.0, 28.0, {0.0, 0.0, 0.0}}; }
+SensorOptions ideal_sensors() { return {8500, 1U, 0.0, 0.0, 28.0, {}, {1.0, 1.0, 1.0}, {}, {}}; }
 
 // By Box and Muller with the C library's functions, from the generator that has published answers (tests/fmu/math).
 double deviate_of(std::uint32_t seed, std::uint32_t wheel, std::int64_t cycle) {
@@ -38,23 +38,49 @@ TEST(DelayLine, HandsOutWhatWentInThatManyCyclesAgo) {
 TEST(Sensors, EncoderCountsAreTheFloorAndWrap) {
     const SensorOptions o = ideal_sensors();
     const double count = 2.0 * M_PI / 8500.0;
-    EXPECT_EQ(encoder_count(o, 0.0), 0);
-    EXPECT_EQ(encoder_count(o, 0.5 * count), 0);
-    EXPECT_EQ(encoder_count(o, -0.5 * count), -1);
-    EXPECT_EQ(encoder_count(o, 1000.5 * count), 1000);
-    EXPECT_EQ(encoder_count(o, -1000.5 * count), -1001);
-    EXPECT_EQ(encoder_count(o, (2147483647.0 + 1.5) * count), -2147483647 - 1);
+    EXPECT_EQ(encoder_count(o, 0U, 0.0), 0);
+    EXPECT_EQ(encoder_count(o, 0U, 0.5 * count), 0);
+    EXPECT_EQ(encoder_count(o, 0U, -0.5 * count), -1);
+    EXPECT_EQ(encoder_count(o, 0U, 1000.5 * count), 1000);
+    EXPECT_EQ(encoder_count(o, 0U, -1000.5 * count), -1001);
+    EXPECT_EQ(encoder_count(o, 0U, (2147483647.0 + 1.5) * count), -2147483647 - 1);
+}
+
+TEST(Sensors, AnEncoderStandsAnywhereWithinACount) {
+    SensorOptions o = ideal_sensors();
+    const double count = 2.0 * M_PI / 8500.0;
+    o.encoder_phase = {0.0, 0.25, 1.0};
+    for (int i = -1000; i < 1000; ++i) {
+        const double angle = (static_cast<double>(i) + 0.1) * 0.01 * count; // never on an edge
+        for (std::size_t wheel = 0; wheel < 3; ++wheel) {
+            const double exact = angle / count + o.encoder_phase[wheel];
+            EXPECT_EQ(encoder_count(o, wheel, angle), static_cast<std::int32_t>(std::floor(exact)));
+        }
+    }
+    EXPECT_EQ(encoder_count(o, 1U, 0.0), 0);
+}
+
+TEST(Sensors, TorqueHasAGainAndAZeroThatDrifts) {
+    SensorOptions o = ideal_sensors();
+    o.torque_offset_nm = {0.5, 0.0, 0.0};
+    o.torque_gain = {1.03, 0.97, 1.0};
+    o.torque_drift_nm_per_s = {0.0, 0.01, -0.02};
+    EXPECT_EQ(measured_torque(o, 0U, 2.0, 100.0, 9.0), 1.03 * 2.0 + 0.5);
+    EXPECT_EQ(measured_torque(o, 1U, 2.0, 100.0, 9.0), 0.97 * 2.0 + 1.0);
+    EXPECT_EQ(measured_torque(o, 2U, 2.0, -1.0, 9.0), 2.02);
+    o.torque_noise_nm = 0.1; // after the gain
+    EXPECT_EQ(measured_torque(o, 0U, 2.0, 0.0, 3.0), 1.03 * 2.0 + 0.5 + 0.1 * 3.0);
 }
 
 TEST(Sensors, TorqueIsOffsetQuantisedAndSaturated) {
     SensorOptions o = ideal_sensors(); // no noise: a deviate counts for nothing
-    EXPECT_EQ(measured_torque(o, 0U, 1.234, 9.0), 1.234);
+    EXPECT_EQ(measured_torque(o, 0U, 1.234, 0.0, 9.0), 1.234);
     o.torque_offset_nm = {0.0, 0.5, 0.0};
-    EXPECT_EQ(measured_torque(o, 1U, 1.0, 9.0), 1.5);
+    EXPECT_EQ(measured_torque(o, 1U, 1.0, 0.0, 9.0), 1.5);
     o.torque_resolution_nm = 0.25;
-    EXPECT_EQ(measured_torque(o, 0U, 1.3, 9.0), 1.25);
-    EXPECT_EQ(measured_torque(o, 0U, 1000.0, 9.0), 28.0);
-    EXPECT_EQ(measured_torque(o, 0U, -1000.0, 9.0), -28.0);
+    EXPECT_EQ(measured_torque(o, 0U, 1.3, 0.0, 9.0), 1.25);
+    EXPECT_EQ(measured_torque(o, 0U, 1000.0, 0.0, 9.0), 28.0);
+    EXPECT_EQ(measured_torque(o, 0U, -1000.0, 0.0, 9.0), -28.0);
 }
 
 TEST(Sensors, TorqueIsRoundedToTheNearestStep) {
@@ -63,7 +89,7 @@ TEST(Sensors, TorqueIsRoundedToTheNearestStep) {
         o.torque_resolution_nm = step_nm;
         for (int i = -2000; i <= 2000; ++i) {
             const double torque_nm = 1e-3 * i;
-            const double found = measured_torque(o, 0U, torque_nm, 0.0);
+            const double found = measured_torque(o, 0U, torque_nm, 0.0, 0.0);
             EXPECT_NEAR(found / step_nm, std::nearbyint(found / step_nm), 1e-12); // a whole number of steps
             EXPECT_LE(std::fabs(found - torque_nm), 0.5 * step_nm * (1.0 + 1e-12)) << torque_nm; // the nearest
         }
@@ -78,7 +104,7 @@ TEST(Sensors, TorqueIsRoundedToTheNearestStep) {
                                               {0.125, 0.0},
                                               {0.375, 0.5},
                                               {-0.375, -0.5}}) { // halves to even
-        EXPECT_EQ(measured_torque(o, 0U, torque_nm, 0.0), expected) << torque_nm;
+        EXPECT_EQ(measured_torque(o, 0U, torque_nm, 0.0, 0.0), expected) << torque_nm;
     }
 }
 
@@ -103,7 +129,7 @@ TEST(Sensors, TorqueNoiseHasItsStandardDeviation) {
     constexpr int count = 100'000;
     double square = 0.0;
     for (int cycle = 0; cycle < count; ++cycle) {
-        square += std::pow(measured_torque(o, 2U, 0.0, deviates(o, cycle)[2]), 2);
+        square += std::pow(measured_torque(o, 2U, 0.0, 0.0, deviates(o, cycle)[2]), 2);
     }
     EXPECT_NEAR(std::sqrt(square / count), 0.03, 0.03 * 5.0 / std::sqrt(2.0 * count)); // five standard errors
 }

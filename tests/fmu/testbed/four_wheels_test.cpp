@@ -258,5 +258,5 @@ TEST(FourWheels, StandOnTheFloorAndTipOverTheirSides) {
     lean[At::base_pitch] = angle * std::sqrt(0.5);
     const auto stance = plant::stance<wheels>(lean, plant::Vector2<double>{0.0, 0.0});
     const double shift = p.base_com_height * angle / (p.wheel_distance * std::sqrt(0.5));
-    EXPECT_NEAR(plant::tip_margin(stance, p, d), 1.0 - shift, 1e-3 * shift);
+    EXPECT_NEAR(plant::tip_margin(stance, p, d, plant::Vector2<double>{0.0, 0.0}), 1.0 - shift, 1e-3 * shift);
 }
