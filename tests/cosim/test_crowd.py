@@ -19,7 +19,7 @@ from giveway.crowd.drive import Drive, Leg
 from giveway.crowd.hits import PATTERN, PER_ROBOT, Hit, hit
 from giveway.crowd.judged import RECORDED, Judged, judge
 from giveway.crowd.parts import Interrupted, Work, go_on
-from giveway.crowd.population import GROUPS, POPULATION, Quantity, group_of, robot
+from giveway.crowd.population import GROUPS, POPULATION, Quantity, group_of, robot, robot_of, start_value
 from giveway.crowd.statistics import count_interval, mean, percentile, rate_upper_bound
 
 DRAW = "tuning"
@@ -49,18 +49,21 @@ def test_every_robot_has_every_kind_of_hit() -> None:
 
 
 def test_draws_are_of_their_own_and_within_what_is_stated() -> None:
-    seen = [robot(DRAW, number) for number in range(100)]
+    by_group = {group: [robot_of(DRAW, number, group) for number in range(100)] for group in GROUPS}
+    seen = by_group["single rollers"]
+    assert robot(DRAW, 1).testbed["base.tipping"]
     assert len({tuple(one.testbed.items()) for one in seen}) == 100
-    assert robot(DRAW, 3) == seen[3]
-    assert robot("judging", 3).testbed != seen[3].testbed
+    assert robot(DRAW, 0) == seen[0]
+    assert robot("judging", 0).testbed != seen[0].testbed
     for quantity in POPULATION:
         for name in quantity.parameters:
-            neutral = quantity.apply(0.0, 1.0)  # 1 for what replaces, 0 for what scales
-            values = np.array([float(one.testbed[name]) for one in seen])
-            if neutral == 0.0:
-                from giveway.crowd.population import start_value
-
+            values = np.array([float(one.testbed[name]) for one in by_group[quantity.only or GROUPS[0]]])
+            if quantity.scales:
                 values /= start_value(name)
+            if quantity.polar:
+                values = np.array(
+                    [math.hypot(*(float(one.testbed[name]) for name in quantity.parameters)) for one in seen]
+                )
             assert quantity.low <= values.min() <= values.max() <= quantity.high
             # Of 100 uniform draws the outermost lie within a tenth of the ends (probability of failure 5e-5).
             reach = 0.1 * (quantity.high - quantity.low)
@@ -69,7 +72,7 @@ def test_draws_are_of_their_own_and_within_what_is_stated() -> None:
 
 
 def test_a_parameter_that_the_testbed_does_not_have_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    unknown = Quantity("nothing", ("roller.colour",), 0.0, 1.0)
+    unknown = Quantity("nothing", ("roller.colour",), 0.0, 1.0, scales=True)
     monkeypatch.setattr("giveway.crowd.population.POPULATION", (*POPULATION, unknown))
     with pytest.raises(GivewayError, match=r"roller\.colour"):
         robot(DRAW, 0)
@@ -147,7 +150,7 @@ def test_judged_as_a_formula_of_its_own(records: list[dict[str, Any]]) -> None:
 
 def test_hits_at_rest_are_noticed(records: list[dict[str, Any]]) -> None:
     # Coarse: what the first detector already does on robots that are not its model.
-    found = table.find(next(row for row in table.ROWS if row.name == "at rest, free"), records)
+    found = table.find(next(row for row in table.ROWS if row.name == "at rest, free"), table.read(records))
     assert found.hits >= 2
     assert found.missed == 0
     assert found.delay_median_ms is not None
@@ -161,6 +164,15 @@ def test_the_table_has_rows_intervals_and_worst_cases(records: list[dict[str, An
     rows = {row["name"]: row for row in document["tables"]["planar"]}
     assert rows["all hits"]["runs"] == 11
     assert "| at rest, pulled |" in text.read_text(encoding="utf-8")
+    targets = {
+        line[:2]: line[2:]
+        for line in table.target_rows("planar", [table.find(row, table.read(records)) for row in table.ROWS])
+    }
+    missed = rows["all hits"]["missed"]
+    assert targets["all hits", "missed"] == ("0", str(missed), "missed" if missed else "met")
+    assert targets["moment in motion", "missed"][1:] == ("no hits", "-")
+    assert targets["at rest, 0.5 m/s, none", "delay 95 %, ms"][1:] != ("0", "met")
+    assert table.target_rows("single rollers", []) == []
     assert all(number in NUMBERS for values in document["worst"].values() for number, _ in values)
 
 
@@ -185,7 +197,7 @@ def test_towards_and_false_are_seen(records: list[dict[str, Any]]) -> None:
 
 def test_a_missed_hit_counts_as_infinite(records: list[dict[str, Any]]) -> None:
     blind = compute(DRAW, {"detector.impulse_threshold": 1000.0}, NUMBERS[:2], 2, lambda _done: None)
-    found = table.find(table.ROWS[0], blind)
+    found = table.find(table.ROWS[0], table.read(blind))
     assert (found.missed, found.hits) == (2, 2)
     assert found.delay_median_ms is not None
     assert math.isinf(found.delay_median_ms[0])

@@ -81,7 +81,7 @@ def _all(
     from giveway.crowd.crowd import ROBOTS_MAX
     from giveway.crowd.crowd import crowd as work_of
     from giveway.crowd.parts import go_on
-    from giveway.crowd.table import short_cells, short_header, tables, write
+    from giveway.crowd.table import TARGET_HEADER, short_cells, short_header, tables, target_rows, write
     from giveway.study.messages import duration, showing
     from giveway.study.native_part import default_threads
 
@@ -95,6 +95,8 @@ def _all(
         done = go_on(work, folder, threads, progress)
     for group, rows in tables(done.records):
         print_columns(f"{work.name}: {group}", short_header(), [short_cells(found) for found in rows])
+        if targets := target_rows(group, rows):
+            print_columns(f"Targets: {group}", TARGET_HEADER, targets)
     simulated_h = sum(record["simulated_s"] for record in done.records) / 3600.0
     notes = [
         *notes,

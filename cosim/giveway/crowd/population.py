@@ -7,7 +7,8 @@ never sees any of it. A robot depends on the draw and on its number alone.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -39,16 +40,6 @@ GROUPS = ("planar", "tipping", "single rollers")
 GROUP_PATTERN = (2, 1, 0, 0, 1, 0, 0, 0, 0, 0)  # of every ten robots: one with single rollers, two that tip
 
 
-def scale(value: float, drawn: float) -> float:
-    """The robot file's value times what was drawn."""
-    return value * drawn
-
-
-def replace(value: float, drawn: float) -> float:
-    """What was drawn instead of the start value."""
-    return drawn
-
-
 @dataclass(frozen=True)
 class Quantity:
     """One line of the population: uniform from ``low`` to ``high``, in one draw for all of ``parameters``, or each.
@@ -57,16 +48,32 @@ class Quantity:
         what: in words.
         parameters: of the testbed.
         low, high: in the parameters' unit, or as factors of the robot file's values.
-        apply: `scale` or `replace`.
+        scales: they are factors.
         each: every parameter has a draw of its own.
+        polar: the draw is a distance in any direction, the two parameters are its components.
+        only: in this plant of `GROUPS` alone; None: in all.
     """
 
     what: str
     parameters: tuple[str, ...]
     low: float
     high: float
-    apply: Callable[[float, float], float] = scale
+    scales: bool = False
     each: bool = False
+    polar: bool = False
+    only: str | None = None
+
+    def drawn(self, rng: np.random.Generator) -> Iterator[tuple[str, float]]:
+        """Its parameters and their values."""
+        common = rng.uniform(self.low, self.high)
+        if self.polar:
+            angle = math.pi * rng.uniform(-1.0, 1.0)
+            yield from zip(self.parameters, (common * math.cos(angle), common * math.sin(angle)), strict=True)
+            return
+        for name in self.parameters:
+            value = rng.uniform(self.low, self.high) if self.each else common
+            start = start_value(name)
+            yield name, value * start if self.scales else value
 
 
 def wheels(name: str) -> tuple[str, ...]:
@@ -75,17 +82,21 @@ def wheels(name: str) -> tuple[str, ...]:
 
 
 POPULATION: tuple[Quantity, ...] = (
-    Quantity("rollers' friction, common", ("roller.coulomb_torque",), 0.7, 1.3),
-    Quantity("payload", ("base.mass",), 0.95, 1.25),
-    Quantity("yaw inertia", ("base.yaw_inertia",), 0.8, 1.2),
-    Quantity("wheel radius", ("wheel.radius",), 0.99, 1.01),
-    Quantity(
-        "gear friction",
-        ("drivetrain.gear_coulomb", "drivetrain.gear_stiction", "drivetrain.gear_viscous"),
-        0.7,
-        1.3,
-    ),
-    Quantity("zero error of each torque sensor, N m", wheels("electronics.torque_offset"), -0.1, 0.1, replace, True),
+    Quantity("rollers' friction, common", ("roller.coulomb_torque",), 0.7, 1.3, scales=True),
+    Quantity("payload", ("base.mass",), 0.95, 1.25, scales=True),
+    Quantity("yaw inertia", ("base.yaw_inertia",), 0.8, 1.2, scales=True),
+    Quantity("wheel radius", ("wheel.radius",), 0.99, 1.01, scales=True),
+    Quantity("gear friction, each drivetrain", wheels("drivetrain.friction_scale"), 0.7, 1.3, each=True),
+    Quantity("zero error of each torque sensor, N m", wheels("electronics.torque_offset"), -0.1, 0.1, each=True),
+    Quantity("rollers' friction, each wheel", wheels("roller.friction_scale"), 0.85, 1.15, each=True),
+    Quantity("share of the rollers' friction that grows with the load", ("roller.load_growth",), 0.0, 1.0),
+    Quantity("centre of mass off by, m", ("base.com_x", "base.com_y"), 0.0, 0.03, polar=True),
+    Quantity("gain of each torque sensor", wheels("electronics.torque_gain"), 0.97, 1.03, each=True),
+    Quantity("drift of each torque sensor's zero, N m/s", wheels("electronics.torque_drift"), -1e-3, 1e-3, each=True),
+    Quantity("each encoder within a count", wheels("electronics.encoder_phase"), 0.0, 1.0, each=True),
+    Quantity("slope of the floor, rad", ("floor.slope",), 0.0, math.radians(1.0)),
+    Quantity("direction of the slope, rad", ("floor.azimuth",), -math.pi, math.pi),
+    Quantity("height of the centre of mass", ("base.com_height",), 0.9, 1.1, scales=True, only="tipping"),
 )
 
 
@@ -137,10 +148,8 @@ def robot_of(draw: str, number: int, group: str) -> Robot:
     rng = np.random.default_rng((DRAWS[draw], 0, number))
     values: dict[str, Value] = {}
     for quantity in POPULATION:
-        common = rng.uniform(quantity.low, quantity.high)
-        for name in quantity.parameters:
-            drawn = rng.uniform(quantity.low, quantity.high) if quantity.each else common
-            values[name] = quantity.apply(start_value(name), drawn)
+        if quantity.only in (None, group):
+            values.update(quantity.drawn(rng))
     if group == "tipping":
         values["base.tipping"] = True
     return Robot(number, group, MappingProxyType(values))

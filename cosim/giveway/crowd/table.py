@@ -23,6 +23,7 @@ __all__ = [
     "cells",
     "find",
     "markdown",
+    "read",
     "short_cells",
     "short_header",
     "tables",
@@ -153,9 +154,18 @@ def _plain(value: float) -> float | str:
     return value if math.isfinite(value) else "infinite"
 
 
-def find(row: Row, records: Sequence[Record]) -> Found:
-    """The figures of ``row`` over the runs of ``records`` that ended well."""
-    mine = [(record, Judged.of(record["judged"])) for record in records if record["judged"] and row.runs(record)]
+Read = Sequence[tuple[Record, Judged]]
+"""Runs that ended well, and what they were judged."""
+
+
+def read(records: Sequence[Record]) -> Read:
+    """``records`` without the runs that failed."""
+    return [(record, Judged.of(record["judged"])) for record in records if record["judged"]]
+
+
+def find(row: Row, runs: Read) -> Found:
+    """The figures of ``row`` over ``runs``."""
+    mine = [(record, judged) for record, judged in runs if row.runs(record)]
     hits = [
         contact
         for record, judged in mine
@@ -188,6 +198,77 @@ def find(row: Row, records: Sequence[Record]) -> Found:
         *errors("place_mm"),
         *errors("later_place_mm"),
     )
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a row's figure is to be at most, in the plants `TARGET_GROUPS`."""
+
+    row: str
+    what: str
+    figure: Callable[[Found], float | None]
+    most: float
+
+
+def _value(name: str) -> Callable[[Found], float | None]:
+    """The figure of this name, without its interval."""
+
+    def figure(found: Found) -> float | None:
+        value = getattr(found, name)
+        if value is None:
+            return None
+        return float(value[0] if isinstance(value, tuple) else value)
+
+    return figure
+
+
+def _delays(row: str, median_ms: float, p95_ms: float) -> tuple[Target, Target]:
+    return (
+        Target(row, "delay median, ms", _value("delay_median_ms"), median_ms),
+        Target(row, "delay 95 %, ms", _value("delay_p95_ms"), p95_ms),
+    )
+
+
+TARGET_GROUPS = ("planar", "tipping")
+TARGETS: tuple[Target, ...] = (
+    Target("all hits", "missed", _value("missed"), 0.0),
+    Target("all hits", "false detections per 10,000 runs", lambda found: 1e4 * found.false / found.runs, 10.0),
+    Target("all hits", "towards", _value("towards"), 0.0),
+    *(
+        target
+        for bumper in ("none", "spring", "magnetic")
+        for target in _delays(f"at rest, 0.5 m/s, {bumper}", 10.0, 12.0)
+    ),
+    *_delays("in motion, 0.5 m/s", 20.0, 25.0),
+    Target("second hit, 0.5 m/s", "missed", _value("missed"), 0.0),
+    *_delays("second hit, 0.5 m/s", 20.0, 25.0),
+    Target("all hits", "direction 95 %, deg", _value("direction_p95_deg"), 15.0),
+    Target("all hits", "direction 30 ms later, deg", _value("later_direction_p95_deg"), 5.0),
+    Target("all hits", "place 30 ms later mean, mm", _value("later_place_mean_mm"), 20.0),
+    Target("all hits", "place 30 ms later 95 %, mm", _value("later_place_p95_mm"), 50.0),
+    Target("slow push in motion", "missed", _value("missed"), 0.0),
+    Target("slow push in motion", "delay 95 %, ms", _value("delay_p95_ms"), 500.0),
+    Target("moment at rest", "missed", _value("missed"), 0.0),
+    Target("moment in motion", "missed", _value("missed"), 0.0),
+)
+
+
+def target_rows(group: str, rows: Sequence[Found]) -> list[tuple[str, str, str, str, str]]:
+    """Row, figure, target, what was found, and whether that meets it; none for other plants."""
+    if group not in TARGET_GROUPS:
+        return []
+    named = {found.name: found for found in rows}
+    lines = []
+    for target in TARGETS:
+        found = named.get(target.row)
+        value = target.figure(found) if found is not None and found.hits else None
+        said = "no hits" if value is None else f"{value:.4g}"
+        met = "-" if value is None else "met" if value <= target.most else "missed"
+        lines.append((target.row, target.what, f"{target.most:g}", said, met))
+    return lines
+
+
+TARGET_HEADER = ("row", "figure", "at most", "found", "")
 
 
 def cells(found: Found) -> tuple[str, ...]:
@@ -242,7 +323,7 @@ def _estimate(value: Estimate | None, decimals: int) -> str:
 def tables(records: Sequence[Record]) -> Iterator[tuple[str, list[Found]]]:
     """Per plant of `GROUPS` that has runs: its rows."""
     for group in GROUPS:
-        mine = [record for record in records if record["group"] == group]
+        mine = read([record for record in records if record["group"] == group])
         if mine:
             yield group, [found for row in ROWS if (found := find(row, mine)).runs]
 
@@ -253,10 +334,8 @@ def worst(records: Sequence[Record]) -> dict[str, list[list[Any]]]:
         name: []
         for name in ("missed", "false detections", "towards", "delay at 0.5 m/s, ms", "direction 30 ms later, deg")
     }
-    for record in records:
-        if not record["judged"]:
-            continue
-        judged, number = Judged.of(record["judged"]), int(record["number"])
+    for record, judged in read(records):
+        number = int(record["number"])
         lost = [contact.impulse_ns for contact in judged.contacts if contact.verdict == "missed"]
         if lost:
             cases["missed"].append((max(lost), number))
@@ -280,6 +359,10 @@ def markdown(title: str, notes: Sequence[str], records: Sequence[Record]) -> str
     for group, rows in tables(records):
         lines += [f"## {group}", "", f"| {' | '.join(HEADER)} |", "|" + "---|" * len(HEADER)]
         lines += [f"| {' | '.join(cells(found))} |" for found in rows] + [""]
+        targets = target_rows(group, rows)
+        if targets:
+            lines += [f"| {' | '.join(TARGET_HEADER)} |", "|" + "---|" * len(TARGET_HEADER)]
+            lines += [f"| {' | '.join(line)} |" for line in targets] + [""]
     lines += ["## Worst cases", ""]
     for name, values in worst(records).items():
         listed = ", ".join(f"{number} ({value:g})" for number, value in values)
