@@ -107,6 +107,9 @@ def _all(
     if done.ran:
         typer.echo(f"{done.ran} runs in {duration(done.wall_s)}: {done.ran / done.wall_s:.0f} per second")
     failed = [record for record in done.records if not record["judged"]]
+    over = sum(record["status"] == "failed" for record in done.records) - len(failed)
+    if over:
+        typer.echo(f"{over} runs ended when the robot tipped over; they count until then")
     for record in failed[:10]:
         typer.echo(f"hit {record['number']}: {record['status']}: {record['message']}", err=True)
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")

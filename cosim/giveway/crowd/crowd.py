@@ -62,10 +62,15 @@ def compute(
         time_s = table["time"].values
         traces = {name: table[name].values for name in RECORDED}
         for index, one in enumerate(one_kind):
-            mine = {name: values[index] for name, values in traces.items()}
             status = (str(table["status"].values[index]), str(table["message"].values[index]))
-            judged = judge(time_s, mine, limits_of(one)) if status[0] == "ok" else None
-            records[one.number] = record_of(one, status, str(table["method"].values[index]), judged)
+            # A robot that goes over ends its run: what was until then counts.
+            rows = round(float(table["simulated"].values[index]) / one.scenario.step_s) + 1
+            judged = None
+            if status[0] in ("ok", "failed") and rows > 1:
+                mine = {name: values[index, :rows] for name, values in traces.items()}
+                judged = judge(time_s[:rows], mine, limits_of(one))
+            method_used, simulated_s = str(table["method"].values[index]), float(table["simulated"].values[index])
+            records[one.number] = record_of(one, status, method_used, simulated_s, judged)
     return [records[number] for number in numbers]
 
 
@@ -90,7 +95,7 @@ def limits_of(one: Hit) -> Limits:
     return Limits(float(limit), start_value("wheel.distance"), one.kind == "moment")
 
 
-def record_of(one: Hit, status: tuple[str, str], method: str, judged: Judged | None) -> Record:
+def record_of(one: Hit, status: tuple[str, str], method: str, simulated_s: float, judged: Judged | None) -> Record:
     """What is kept of a run."""
     return {
         "number": one.number,
@@ -104,7 +109,7 @@ def record_of(one: Hit, status: tuple[str, str], method: str, judged: Judged | N
         "stated": one.stated,
         "moving": not isinstance(one.scenario.plan, Rest),
         "second_s": one.scenario.push.start_s if isinstance(one.scenario.push, Blow) else None,
-        "simulated_s": one.scenario.duration_s,
+        "simulated_s": simulated_s,
         "status": status[0],
         "message": status[1],
         "method": method,

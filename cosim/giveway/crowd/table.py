@@ -378,6 +378,7 @@ def write(folder: Path, title: str, notes: Sequence[str], records: Sequence[Reco
         "notes": list(notes),
         "tables": {group: [found.plain() for found in rows] for group, rows in tables(records)},
         "worst": worst(records),
+        "ended early": [[one["number"], one["message"]] for one in records if one["judged"] and one["status"] != "ok"],
         "not judged": [[record["number"], record["message"]] for record in records if not record["judged"]],
     }
     paths = [folder / "table.md", folder / "table.json"]
