@@ -55,8 +55,8 @@ function(giveway_add_fmu)
     VERBATIM)
 
   set(_module giveway_${ARG_NAME})
-  # The entry (..._fmu.cpp) says which model is that of the binary. A linker takes it out of the archive only for a
-  # shell or a test that asks for it, so a library of several models has none.
+  # The entry (..._fmu.cpp) names the model of the binary. The linker takes it out of the archive only if a shell or a
+  # test refers to it, so a library of several models contains none.
   add_library(${_module}_model STATIC ${ARG_SOURCES} ${_code})
   giveway_compile_options(${_module}_model)
   target_include_directories(${_module}_model PUBLIC "${_generated}" "${PROJECT_SOURCE_DIR}/fmu/models"

@@ -1,5 +1,5 @@
-# How an FMU's shared library is linked on each system: only FMI's functions leave it, it needs nothing but the C
-# library, and its bytes do not tell where or when it was built.
+# How an FMU's shared library is linked on each system: it exports only FMI's functions, needs nothing but the
+# C library, and its bytes do not tell where or when it was built.
 set(GIVEWAY_PLATFORMS x86_64-linux aarch64-linux x86_64-windows x86_64-darwin aarch64-darwin)
 # FMI 3's name of the system that is built for.
 string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}-${CMAKE_SYSTEM_NAME}" GIVEWAY_SYSTEM)
@@ -25,9 +25,9 @@ function(giveway_link_fmu MODULE)
     # The headers of FMI say dllexport, and then nothing else is exported.
     target_link_options(${MODULE} PRIVATE -Wl,--gc-sections -s)
   elseif(CMAKE_SYSTEM_NAME STREQUAL "Darwin")
-    # Exported is what is not hidden: FMI's functions, by their headers.
+    # What is not hidden is exported: FMI's functions, which their headers mark.
     target_compile_options(${MODULE} PRIVATE -fvisibility-global-new-delete=force-hidden)
-    # Without a name of its own a library is called after the path it was linked to.
+    # Without this name the library would be known by the path it was linked to.
     target_link_options(${MODULE} PRIVATE -dynamiclib "-Wl,-install_name,@rpath/${MODULE}${_suffix}" -Wl,-dead_strip -s)
   else()
     set(_map "${PROJECT_SOURCE_DIR}/fmu/shell/exports.map")

@@ -34,7 +34,7 @@ set(CMAKE_C_COMPILER "${GIVEWAY_ZIG}" cc)
 set(CMAKE_CXX_COMPILER "${GIVEWAY_ZIG}" c++)
 foreach(_language C CXX)
   set(CMAKE_${_language}_COMPILER_TARGET ${_target_of_${GIVEWAY_PLATFORM}})
-  # Known to work, and a test program would cost a C++ library for each platform.
+  # The compiler works; CMake's test program would need a C++ library for each platform.
   set(CMAKE_${_language}_COMPILER_WORKS TRUE)
 endforeach()
 

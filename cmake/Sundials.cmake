@@ -30,7 +30,7 @@ if(NOT EXISTS "${GIVEWAY_SUNDIALS_SOURCE}/LICENSE"
     message(FATAL_ERROR "Fetching the SUNDIALS sources failed (cargo 1.78 or newer is needed, on "
                         "Debian 12 the package cargo-web):\n${_message}")
   endif()
-  # cargo has to bring the Rust packages that sundials-sys names; none is used here.
+  # cargo also downloads the Rust packages that sundials-sys depends on; none is used here.
   file(GLOB _crates LIST_DIRECTORIES true "${_sundials_vendor}/*")
   list(REMOVE_ITEM _crates "${_sundials_vendor}/sundials-sys-0.6.2")
   file(REMOVE_RECURSE ${_crates})

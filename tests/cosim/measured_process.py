@@ -1,7 +1,7 @@
 """A command with its peak memory and processor time.
 
-It is started by a small process of its own: Linux counts what a process held before it became the command, and that of
-a whole test run is more than the command itself may take.
+It is started by a small process of its own: Linux counts the memory that a process held before it became the command,
+and a whole test run holds more than the command may take.
 """
 
 from __future__ import annotations

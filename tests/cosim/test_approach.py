@@ -57,8 +57,8 @@ def test_a_free_slider_meets_the_resting_robot(edge: int, offset: float, changes
     point = edge_middle(OUTLINE, edge, offset)
     time_s, x, y, speed = first_touch(Approach(point, 0.4, time_s=0.5), Rest(), **changes)
     # The rail's friction is full from 5 mm/s on and the robot stands: rounding of numbers around 1 m remains, and
-    # what the robot moves in the first millisecond of the contact (1e-8 m); the way with damping is integrated, to 1e-6
-    # of each step. Seen: 4e-11 s, 2e-8 m, 4e-8 m/s.
+    # what the robot moves in the first millisecond of the contact (1e-8 m); the run-up with damping is integrated, to
+    # 1e-6 of each step. Seen: 4e-11 s, 2e-8 m, 4e-8 m/s.
     assert time_s == pytest.approx(0.5, abs=1e-9)
     assert (x, y) == pytest.approx(point, abs=1e-7)
     assert speed == pytest.approx(0.4, abs=1e-6)
@@ -244,4 +244,4 @@ def test_a_point_beside_the_robot_is_told_the_nearest_on_its_outline(edge: int) 
     with pytest.raises(GivewayError) as caught:
         meet(Approach(beside, 0.5, time_s=0.5), parameters(), Rest())  # type: ignore[arg-type]
     told = caught.value.allowed.partition("the nearest is ")[2]
-    assert json.loads(told) == pytest.approx(middle, abs=0.6e-3)  # it is told in millimetres
+    assert json.loads(told) == pytest.approx(middle, abs=0.6e-3)  # the message is in millimetres

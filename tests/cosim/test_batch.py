@@ -212,7 +212,7 @@ def test_a_run_that_ended_early_is_judged_by_what_it_has(rows: int) -> None:
 
 
 def test_numbers_of_a_design() -> None:
-    """Which of the cases shows what: none of these is always the same."""
+    """Which case shows what: none of these values is the same in all cases."""
     cases = ("a person", "pressed into its stop", "thrown back", "caught again", "no transient contact allowed", "tips")
     table = batch.run_many([dataclasses.replace(JUDGED[name]) for name in cases])
     numbers = {name: {str(key): values.values[run] for key, values in table.items()} for run, name in enumerate(cases)}

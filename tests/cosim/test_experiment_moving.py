@@ -37,7 +37,7 @@ def test_the_motion_is_steady_when_it_hits(run: Result) -> None:
     )
     # The servo's encoder has 75 um at the rim, which at its corner of 60 Hz is a few mm/s of wheel speed.
     assert np.ptp(along[last]) < 0.003
-    # tanh(0.4 v/r_r): the rollers of wheel 2 run at full speed, (28) is what they are dragged by.
+    # tanh(0.4 v/r_r): the rollers of wheel 2 run at full speed, (28) is their drag.
     friction = np.abs(traces["testbed.truth.roller_force[2]"].values[last])
     expected = 0.2 / 0.009525 * np.tanh(0.4 * 0.22 / 0.009525)
     assert friction == pytest.approx(expected, rel=0.02)  # presliding is (28) where rollers move steadily

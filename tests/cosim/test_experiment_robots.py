@@ -46,7 +46,7 @@ def test_another_outline_is_hit_in_its_middle_as_fast(
     experiment: str, bumper: str, speed_mps: float, tmp_path: Path
 ) -> None:
     result = batch.run(get(experiment).scenario(bumper, robot=robot_file(tmp_path, BOX)))
-    # The rope gives and catches up; the run-up counts up to the touch, the metric is of the row before.
+    # The rope is elastic, and the run-up is that up to the touch, while the metric is of the row before.
     assert result.metric("contact speed").value == pytest.approx(speed_mps, rel=0.02)
     row = int(result.traces["testbed.truth.contact"].values.argmax())
     x, y = (float(result.traces[f"testbed.truth.contact_base_{axis}"][row]) for axis in "xy")

@@ -76,7 +76,7 @@ def test_values_are_near_their_estimates(committed: Fit) -> None:
 
 
 def test_the_committed_values_are_a_minimum(committed: Fit) -> None:
-    # Half a factor away in any one parameter, or in the steepest direction, it is not better.
+    # Half a step of the scaled parameters away, in any one of them, it is not better.
     bench, here = Bench(ROBOT), to_unit(committed.values)
     away = [here + sign * 0.5 * step for step in np.eye(len(FREE)) for sign in (1.0, -1.0)]
     for point, quantities in zip(away, bench.measure([from_unit(point) for point in away]), strict=True):

@@ -139,7 +139,7 @@ def test_random_designs_are_those_of_the_event_exact_method() -> None:
     )
     assert np.isfinite(detection_tick(exact)).mean() > 0.7  # most are detected
     assert same.mean() >= SAME_TICK, np.flatnonzero(~same)
-    # A contact is found to a hundredth of a step, and where the account does not close, it is by less than a hundredth.
+    # Contacts are located to a hundredth of a step, and the energy account is off by less than a hundredth.
     late_s = np.abs(table["contact time"].values - exact["contact time"].values)[hit]
     assert late_s.max() < 5e-6
     assert table["energy residual"].values.max() < 0.01

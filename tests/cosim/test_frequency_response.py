@@ -15,10 +15,10 @@ from giveway.drivetrain.model import Drivetrain, Servo, read, response
 
 FREQUENCY_HZ = np.array([0.7, 4.0, 9.0, 19.0, 33.0, 80.0, 250.0, 600.0])
 FRICTION_NM = 2.8  # Trikey's
-# 64 samples per period of the input leave an image of 1/63 at 63 times the frequency, of which as much again comes
-# through and folds back: 0.08 % and 0.05 deg measured. With the servo the encoder adds noise: a count of its million is
-# kd g (2 pi/1e6)/T = 17 mN m for a tick, beside sines of up to 10 N m of which down to a thousandth is sensed; measured
-# 0.11 % and 0.06 deg.
+# With 64 samples per period the input has an image of 1/63 of its amplitude at 63 times its frequency; part passes
+# and aliases back: 0.08 % and 0.05 deg measured. With the servo the encoder adds noise: one of its million counts is
+# kd g (2 pi/1e6)/T = 17 mN m for a tick, and of sines of up to 10 N m as little as a thousandth is sensed: 0.11 % and
+# 0.06 deg measured.
 GAIN, PHASE_DEG = 1.5e-3, 0.1
 SERVO_GAIN, SERVO_PHASE_DEG = 5e-3, 0.3
 

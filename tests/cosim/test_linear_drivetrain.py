@@ -106,9 +106,9 @@ def test_closed_loop_steps_as_the_simulation(load: str, delay: int) -> None:
 
 @pytest.mark.parametrize("delay", [0, 4])
 def test_sampled_response_is_the_settled_simulation(delay: int) -> None:
-    """With torques that hold for a tick, sensed at ticks, `closed_loop` is exact; `response` is its continuous kin.
+    """With torques that hold for a tick, sensed at ticks, `closed_loop` is exact; `response` is continuous.
 
-    They differ by the hold of the input, and by what of the input's staircase comes through around the servo's rate.
+    They differ by the hold of the input, and by its images around the servo's rate.
     """
     p, servo = read(load="base", delay=delay)
     frequency = np.array([0.5, 3.0, 20.0])

@@ -46,7 +46,7 @@ def test_sensors_of_a_step_reach_the_controller_in_that_step(short_run: Result) 
     tick = short_run.traces["controller.tick"].values
     assert (np.diff(tick) == 1).all()
     counter = short_run.traces["testbed.sensor.counter"].values
-    assert (np.diff(counter[5:]) == 1).all()  # the first samples are still in the bus
+    assert (np.diff(counter[5:]) == 1).all()  # the first samples are still on the bus
 
 
 def test_a_push_is_felt_and_the_robot_moves_away() -> None:

@@ -165,7 +165,7 @@ def test_contact_and_rebound_speed_are_of_the_rows_next_to_the_contact(evaluate:
     for axis, share in (("x", 0.6), ("y", -0.8)):
         traces[f"testbed.truth.nose_{axis}"].values[:] = share * way
     found = evaluate(traces, PARAMETERS)
-    # Ways of some metres, 1 ms apart: rounding of 1e-12.
+    # Displacements of some metres, 1 ms apart: rounding of 1e-12.
     assert found["contact speed"][0] == pytest.approx(0.7, rel=1e-11)
     assert found["rebound speed"][0] == pytest.approx(0.3, rel=1e-11)
 

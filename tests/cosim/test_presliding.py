@@ -62,7 +62,7 @@ def test_the_plant_transfers_a_static_push_as_the_closed_form_says(lean: float) 
     torque = np.array([table[name].values[0, read].mean() for name in names])
     base = Base.of_robot()
     share = base.stiffness_at_floor_n_per_m / (base.stiffness_at_floor_n_per_m + sigma)
-    # Half a percent: what the drivetrains still ring by, averaged over about one period.
+    # Half a percent: the drivetrains still oscillate, and the mean is over about one period.
     expected = placement.wrench(9.81) * [share, share, 1.0]
     np.testing.assert_allclose(felt_wrench(base, torque), expected, atol=0.005 * 9.81)
 

@@ -90,7 +90,7 @@ def interval_hits(logs: Sequence[MotionLog], robot: Robot) -> tuple[int, int]:
 
 
 def correlated(log: MotionLog, seed: int, nm: float, time_s: float) -> MotionLog:
-    """``log`` with noise that hangs together over ``time_s``, of ``nm``, stronger at speed."""
+    """``log`` with correlated noise: correlation time ``time_s``, amplitude ``nm``, stronger at speed."""
     rng = np.random.default_rng(seed)
     keep = math.exp(-STEP_S / time_s)
     noise = np.zeros_like(log.torque_nm)

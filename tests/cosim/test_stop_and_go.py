@@ -73,5 +73,5 @@ def test_with_bristles_a_stop_leaves_a_third_of_the_force(acceleration_source: i
     )
     # Stuck rollers hold up to 21 N each.
     assert 10.0 < paper < 42.0
-    # What is left is what the bristles do not know: the plant's exact way to the stop, noise, encoder steps.
+    # What is left is what the bristles do not know: the plant's exact motion into the stop, noise, encoder steps.
     assert ours < 0.4 * paper

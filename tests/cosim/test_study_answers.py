@@ -207,7 +207,7 @@ def test_first_order_indices_are_those_of_salib() -> None:
         theirs = rbd_fast.analyze(problem, points, values, seed=1)
         indices, intervals = first_order(points, values, 1)
         assert indices == pytest.approx(theirs["S1"], abs=1e-12)
-        # A spread of 100 resamples is itself uncertain by 7 %, both are, and 4 sigma are 40 %.
+        # The spread of 100 resamples is itself uncertain by 7 %; for two of them, 4 sigma of the difference are 40 %.
         assert intervals == pytest.approx(theirs["S1_conf"], rel=0.4)
 
 

@@ -1,4 +1,4 @@
-"""A design taken away does what it did in the study: as parameters of the FMU, as a scenario, as a list."""
+"""An exported design does what it did in the study: as parameters of the FMU, as a scenario, as a list."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_an_ssv_is_valid_and_gives_the_fmu_the_design(answers: Answers, tmp_path
             values[model][parameter.attrib["name"]] = entry.attrib["value"]
     # The FMUs themselves, over FMPy, with nothing but the file's values.
     bumper = ("none", "spring", "magnetic")[int(str(values["testbed"].pop("bumper.kind")))]
-    scenario = giveway.Scenario("taken away", 0.2, bumper=bumper, **values)  # type: ignore[arg-type]
+    scenario = giveway.Scenario("exported", 0.2, bumper=bumper, **values)  # type: ignore[arg-type]
     result = giveway.run(scenario)
     expected = stored(answers, "front")
     assert result.metric("peak force of the run").value == pytest.approx(expected["peak force of the run"], rel=1e-12)

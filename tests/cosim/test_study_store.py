@@ -84,7 +84,7 @@ def test_a_finished_study_is_not_run_again(tmp_path: Path) -> None:
 
 def test_equal_designs_run_once(tmp_path: Path) -> None:
     study = small_study(vary=[{"quantity": LATCH, "values": [20.0, 30.0]}])
-    study.tolerance("testbed.rope.hanging_mass", relative=0.5)  # no rope is attached: but its value is the run's
+    study.tolerance("testbed.rope.hanging_mass", relative=0.5)  # no rope is attached, but its value is part of the run
     study.vary("bumper", values=["magnetic", "magnetic"])
     outcome = swept(study.tolerances(samples=1), tmp_path / "study")
     assert (outcome.runs, outcome.ran, outcome.reused) == (8, 4, 4)
@@ -143,7 +143,7 @@ def test_failed_designs_are_kept_with_their_reason(tmp_path: Path) -> None:
 def test_what_cannot_be_is_not_taken_for_what_can(tmp_path: Path) -> None:
     outline = plan_runs(small_study().setup()).cases[0].outline
     end = 0.5 * float(np.hypot(*(outline[1] - outline[0])))
-    # 0.9 m is beside the side: the slider is never placed there, but in the table of runs it may look like at the end.
+    # 0.9 m is beyond the end of the side: the slider is never placed, but its row may equal that of a run at the end.
     study = small_study(vary=[], part_runs=1).vary("collision.offset", values=[0.9, end])
     swept(study, tmp_path / "study")
     assert stored_runs(tmp_path / "study")["status"].tolist() == ["refused", "ok"]

@@ -55,7 +55,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An empty virtual environment with the wheel and what it asks for, at the locked versions."""
+    """An empty virtual environment with the wheel and its requirements, at the locked versions."""
     folder = tmp_path_factory.mktemp("environment")
     venv.create(folder, with_pip=True)
     pins = re.findall(r"^[\w.-]+==[^\\\n]+", (ROOT / "requirements.lock").read_text(), re.MULTILINE)

@@ -28,7 +28,7 @@ def test_nothing_goes_wrong_with_a_few_hundred() -> None:
     _, found = _fuzz("--count", "300")
     assert found["files"] == 300
     assert set(found["kinds"]) <= set(MAKERS)
-    # It is not one line of defence that stops them all.
+    # More than one check is needed to stop them all.
     assert {"check 0", "check 1", "check 2", "info 0", "info 2"} <= set(found["codes"])
 
 

@@ -110,7 +110,7 @@ def test_a_rung_climbed_alone_joins_the_others_of_the_same_sources(tmp_path: Pat
     outcomes = climb(root, late=Rung("", (), bad))
     assert list(json.loads(ladder.verified(root, outcomes, core_hash(root), order).read_text())["rungs"]) == ["early"]
     (root / "c_core" / "src" / "a.c").write_text("int b;\n")
-    assert rungs("early") == ["early"]  # what was found about other sources counts for nothing
+    assert rungs("early") == ["early"]  # results for other sources do not count
 
 
 def test_a_planted_fault_has_to_be_seen_for_its_own_reason() -> None:

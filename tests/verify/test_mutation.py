@@ -86,7 +86,7 @@ def test_the_same_seed_draws_the_same_mutants(tmp_path: Path) -> None:
     drawn = [mutant.key for mutant in shuffled(some, 1)]
     assert drawn == [mutant.key for mutant in shuffled(list(reversed(some)), 1)]
     assert drawn != [mutant.key for mutant in shuffled(some, 2)]
-    # Held, so that a change of the lot does not go unnoticed on any machine.
+    # Fixed here, so that a change of the draw is noticed on every machine.
     assert [key.change for key in drawn[:2]] == ["7U -> 6U", "> -> <="]
 
 

@@ -1,4 +1,4 @@
-"""Mutants in one build: which one lives is chosen when the program starts, and which are come by is recorded."""
+"""Mutants in one build: one is activated when the program starts, and those that a run reaches are recorded."""
 
 from __future__ import annotations
 

@@ -281,7 +281,7 @@ def _notes(found: Calibration, robot: Robot) -> list[str]:
         "know.",
         f"Samples with a roller slower than {1e3 * zone.speed_mps:.0f} mm/s or within {1e3 * zone.length_m:.1f} mm of "
         "a reversal are left out; on both sides of the reversal alike, so that the lag of the bristles cancels.",
-        f"The intervals count {found.blocks} blocks of {found.block_s:.1f} s: residuals near the edges hang together.",
+        f"The intervals count {found.blocks} blocks of {found.block_s:.1f} s: residuals near the edges are correlated.",
     ]
 
 

@@ -158,7 +158,7 @@ class Study:
             levels: how many of them.
             scale: "log": evenly in its logarithm.
             distribution: of samples: "uniform", "loguniform", "triangular" or "normal".
-            mode: of a triangular one; mean, sigma: of a normal one, which low and high cut.
+            mode: of a triangular one; mean, sigma: of a normal one, truncated at low and high.
             nominal: its value while another quantity varies, for "one-at-a-time".
             also: other quantities that get the same value.
         """
@@ -224,7 +224,7 @@ class Study:
         Args:
             samples: how many for each design; 16 if left out.
             kind: "corners": every combination of both ends.
-            noise_seeds: sensor noise of its own for every sample.
+            noise_seeds: different sensor noise in every sample.
         """
         self.document["tolerances"] = _given({"samples": samples, "kind": kind, "noise_seeds": noise_seeds})
         return self
@@ -259,7 +259,7 @@ class Study:
         collisions: OverCollisions | None = None,
         tolerances: OverTolerances | None = None,
     ) -> Study:
-        """A metric with an end.
+        """A metric with a limit.
 
         Args:
             metric: as in `objective`.
@@ -271,7 +271,7 @@ class Study:
         return self._add("constraint", {"metric": metric, **_given({**keys, "tolerances": tolerances})})
 
     def report(self, *, metrics: Sequence[str] | None = None, chosen: int | None = None) -> Study:
-        """What the answers show besides.
+        """What else the answers show.
 
         Args:
             metrics: more columns of the table.
@@ -281,7 +281,7 @@ class Study:
         return self
 
     def setup(self, folder: Path | str = ".") -> Setup:
-        """The study, checked; paths in it are seen from ``folder``.
+        """Check the study; relative paths in it start at ``folder``.
 
         Raises:
             GivewayError: names what is wrong by its key, such as ``vary[0].low``.
@@ -291,18 +291,18 @@ class Study:
         return check(copy.deepcopy(self.document), Path(folder), self.document["name"])
 
     def run(self, folder: Path | str, *, threads: int | None = None, progress: Report | bool = True) -> Answers:
-        """Run what is missing in ``folder`` and return the answers; Ctrl-C ends it early, the same call goes on.
+        """Run what is missing in ``folder`` and return the answers; after Ctrl-C the same call continues.
 
         Args:
             folder: where results are stored; made if it is not there.
             threads: native ones, 1 to 1024; None: all processors.
-            progress: True: a bar on stderr at a terminal, else a line every few seconds; False: nothing; or what is
-                called now and then with a `giveway.study.engine.Progress`.
+            progress: True: a bar on stderr at a terminal, else a line every few seconds; False: nothing; or a
+                function that is called now and then with a `giveway.study.engine.Progress`.
 
         Raises:
             GivewayError: the study is wrong; nothing was run.
             FileError: the folder holds something else, is in use, or cannot be written.
-            WriteError: the disk refused on the way; the parts before it are kept.
+            WriteError: writing failed; the parts written before are kept.
         """
         from giveway.study.answers import load
         from giveway.study.engine import sweep
@@ -319,12 +319,12 @@ class Study:
 
 
 def _given(keys: Mapping[str, Any]) -> dict[str, Any]:
-    """What was not left out."""
+    """Those that are not None."""
     return {key: value for key, value in keys.items() if value is not None}
 
 
 def _list(values: Sequence[Any] | None) -> list[Any] | Sequence[Any] | None:
-    """As a study file has it; a lone string stays what it is, and is refused as such."""
+    """As a study file has it; a string is no list and stays as it is: the check refuses it."""
     if values is None or isinstance(values, str):
         return values
     return [value.item() if hasattr(value, "item") else value for value in values]  # of an array, too

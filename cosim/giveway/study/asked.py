@@ -21,7 +21,7 @@ VARIES = "varies"
 
 
 def asked(setup: Setup) -> list[tuple[str, str]]:
-    """Name and words of each; what differs between the designs says so."""
+    """Name and text of each; what differs between the designs is said to vary."""
     scenario, document = setup.cases[0].scenario, setup.cases[0].document
     varied = {columns().names[column] for one in setup.varied for column in one.quantity.columns}
     variables = table("testbed")

@@ -1,4 +1,4 @@
-"""One design of a study as scenarios: to be simulated again event-exact with traces, or taken away."""
+"""One design of a study as scenarios: to be simulated again event-exact with traces, or to be exported."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ CHOSEN = "chosen"
 
 
 def settings_of_run(table: RunTable, design: int, sample: int, case: int) -> dict[str, dict[str, Value]]:
-    """Per model, every parameter of a run that is not at its start, in its own type.
+    """Per model, every parameter of a run that differs from its start value, in its own type.
 
     Raises:
-        GivewayError: the run cannot be; says why.
+        GivewayError: the run is impossible; says why.
     """
     rows = table.rows(np.array([design]), np.array([sample]), case)
     if rows.refused:

@@ -17,7 +17,7 @@ __all__ = ["study_app", "sweep_designs"]
 
 QUICK_S = 1.0  # nobody needs to be told of what takes less
 
-study_app = typer.Typer(name="study", help="Look at a study, and take its designs away.", no_args_is_help=True)
+study_app = typer.Typer(name="study", help="Show a study, and export its designs.", no_args_is_help=True)
 
 
 def sweep_designs(
@@ -106,7 +106,7 @@ def study_export(
     collision: Annotated[str | None, typer.Option("--collision", metavar="NAME", help="Without it: the first.")] = None,
     model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
 ) -> None:
-    """Take a design away: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
+    """Export a design: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
     from giveway.base.files import check_file
     from giveway.study.export import export_design, export_table
 

@@ -111,7 +111,7 @@ def shares(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.
     if plan.kind == "sobol-indices":
         from SALib.sample import sobol
 
-        with warnings.catch_warnings():  # it would rather have powers of two
+        with warnings.catch_warnings():  # it warns about other counts than powers of two
             warnings.simplefilter("ignore", UserWarning)
             found = sobol.sample(problem(varied), plan.count, calc_second_order=False, seed=seed)
         return np.asarray(found)
@@ -119,12 +119,12 @@ def shares(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.
 
 
 def _filled(kind: str, count: int, dimensions: int, seed: int) -> NDArray[np.float64]:
-    """Space filled evenly."""
+    """The points fill the space evenly."""
     from scipy.stats import qmc
 
     if kind == "latin-hypercube":
         return np.asarray(qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(count))
-    with warnings.catch_warnings():  # it would rather have powers of two
+    with warnings.catch_warnings():  # it warns about other counts than powers of two
         warnings.simplefilter("ignore", UserWarning)
         return np.asarray(qmc.Sobol(dimensions, rng=np.random.default_rng(seed)).random(count))
 

@@ -1,4 +1,4 @@
-"""How a quantity spreads: distributions of scipy.stats, cut where the study says, as maps from [0, 1]."""
+"""How a quantity spreads: distributions of scipy.stats, truncated where the study says, as maps from [0, 1]."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DISTRIBUTIONS", "Spread", "Tolerance", "Varied", "check_spread"]
 
-SIGMAS = 3.0  # where a normal distribution is cut if the study does not say
+SIGMAS = 3.0  # where a normal distribution is truncated if the study does not say
 # Per distribution: the keys it needs besides low and high, and whether these are needed, too.
 DISTRIBUTIONS: Mapping[str, tuple[tuple[str, ...], bool]] = {
     "uniform": ((), True),
@@ -54,7 +54,7 @@ class Spread:
         else:
             cut = (self.low - self.mean) / self.sigma, (self.high - self.mean) / self.sigma
             distribution = stats.truncnorm(*cut, self.mean, self.sigma)
-        # The inverse of a cut distribution may leave its range by a rounding error.
+        # The inverse of a truncated distribution may leave its range by a rounding error.
         return np.asarray(np.clip(distribution.ppf(share), self.low, self.high))
 
 

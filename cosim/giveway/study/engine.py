@@ -118,7 +118,7 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
     Raises:
         GivewayError: the study cannot be run as it is; nothing was run.
         FileError: the folder holds something else, is in use, or cannot be written.
-        WriteError: the disk refused on the way; the parts before it are kept.
+        WriteError: writing failed; the parts written before are kept.
     """
     from giveway.base.checks import whole
     from giveway.study.native_part import default_threads
@@ -228,7 +228,7 @@ class _Runner:
             for row, message in rows.refused.items():
                 index = int(mine[row])
                 refused[index] = message
-                # What cannot be may look like what can: the slider was never placed.
+                # A refused run may have the values of a possible one: its slider was never placed.
                 keys[index] = hashlib.blake2b(keys[index] + message.encode(), digest_size=len(keys[index])).digest()
         return _Prepared(first, values, case, keys, stated, refused)
 
@@ -376,7 +376,7 @@ def _portable(setup: Setup) -> dict[str, Any]:
 
 
 def _keep_inputs(setup: Setup, folder: Path) -> None:
-    """Copies of the files that the study names: the folder must say all by itself."""
+    """Copies of the files that the study names: the folder must be complete by itself."""
     from giveway.base.files import write_text
 
     for source, name in _input_files(setup):

@@ -1,4 +1,4 @@
-"""A design taken away: as parameters of an FMU (SSV), a scenario file or a list; and the table of all designs."""
+"""A design exported: as parameters of an FMU (SSV), a scenario file or a list; and the table of all designs."""
 
 from __future__ import annotations
 

@@ -51,12 +51,12 @@ class Outcomes:
         return [codes if status == "ok" else "" for codes, status in zip(found, self.status, strict=True)]
 
     def refuse(self, index: int, message: str) -> None:
-        """Run ``index`` cannot be."""
+        """Run ``index`` is refused."""
         self.status[index], self.message[index] = "refused", message
         self.numbers[index, :2] = 0.0
 
     def take_native(self, where: NDArray[np.int64], results: NDArray[Any]) -> None:
-        """Results of the library belong to the runs ``where``."""
+        """Enter the library's results for the runs ``where``."""
         columns = [results["time_s"], results["plant_step_s"]]
         for index, metric in enumerate(native_metrics()):
             columns.append(results["metric"][:, index])
@@ -67,7 +67,7 @@ class Outcomes:
             self.status[index], self.message[index] = STATUSES[status], message.decode()
 
     def take_stored(self, where: NDArray[np.int64], path: Path, rows: NDArray[np.int64]) -> None:
-        """Rows of a stored part belong to the runs ``where``."""
+        """Enter the rows of a stored part for the runs ``where``."""
         names = [name for name, _ in result_columns()]
         table = read_part(path, ["status", "message", *names]).take(rows)
         self.numbers[where] = np.stack([table[name].to_numpy() for name in names], axis=1)
@@ -76,7 +76,7 @@ class Outcomes:
             self.status[index], self.message[index] = status, message
 
     def copy(self, where: NDArray[np.int64], source: NDArray[np.int64]) -> None:
-        """Runs ``where`` are the same as the runs ``source``."""
+        """Copy the outcomes of the runs ``source`` to the equal runs ``where``."""
         self.numbers[where] = self.numbers[source]
         for index, other in zip(where, source, strict=True):
             self.status[index], self.message[index] = self.status[other], self.message[other]

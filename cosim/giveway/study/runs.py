@@ -45,7 +45,7 @@ class Rows:
         hit: per run, what the slider's start was computed from: speed, time, offset, around, direction, angle,
             point_x, point_y; units of the study file.
         stated: what the runs are asked to do.
-        refused: why a run cannot be, by its index here.
+        refused: why a run is impossible, by its index here.
     """
 
     values: NDArray[np.float64]
@@ -163,7 +163,7 @@ class RunTable:
     def _meet(
         self, table: _CaseTable, values: NDArray[np.float64], hit: dict[str, NDArray[np.float64]]
     ) -> tuple[NDArray[np.float64], dict[int, str]]:
-        """Write the slider's start that the hit needs; the speeds of the contacts, and why runs cannot be met."""
+        """Write the slider's start for the hit; returns the contact speeds, and why runs are impossible."""
         case_hit = table.case.hit
         assert case_hit is not None
         refused: dict[int, str] = {}

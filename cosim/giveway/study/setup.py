@@ -24,7 +24,7 @@ class Hit:
     Attributes:
         speed_mps: along the rail at the contact.
         time_s: when; None with the rope.
-        edge, offset_m: side of the outline and way from its middle; or
+        edge, offset_m: side of the outline and distance from its middle; or
         point_m: on the outline, base frame.
         direction_deg: of travel, world frame; None: straight into the side.
     """
@@ -75,7 +75,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Constraint:
-    """A goal with an end: ``minimum`` and ``maximum`` in the metric's unit; ``written`` is the user's."""
+    """A goal with a limit: ``minimum`` and ``maximum`` in the metric's unit; ``written`` is the user's."""
 
     goal: Goal
     minimum: float
@@ -95,7 +95,7 @@ class Setup:
     Attributes:
         name: of the study.
         document: what it was made from: the tables of the study file.
-        folder: that paths in it are seen from.
+        folder: where its relative paths start.
         method, plant_step_s: one of `giveway.batch.METHODS`, and the step of the plant; None: as each run needs.
         seed: of the samplers.
         cases: collisions.
@@ -104,7 +104,7 @@ class Setup:
         tolerances, tolerance_kind, tolerance_count: and how they are sampled.
         noise_seeds: every tolerance sample has sensor noise of its own.
         objectives, constraints: what is asked for.
-        shown: metrics of the table besides.
+        shown: further metrics of the table.
         chosen: how many of the best designs are simulated once more, with traces.
         part_runs: runs per file; 0: chosen from how many there are.
         text, path: of the study file, for messages; None: from Python.

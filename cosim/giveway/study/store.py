@@ -109,7 +109,7 @@ class Store:
         return lock
 
     def close(self) -> None:
-        """Give the folder free."""
+        """Release the folder."""
         self._lock.close()
 
     def write_manifest(self, manifest: dict[str, Any]) -> None:

@@ -70,7 +70,7 @@ def read(path: Path | str) -> Setup:
 def check(
     document: Mapping[str, Any], folder: Path, name: str = "study", text: str | None = None, path: Path | None = None
 ) -> Setup:
-    """The study that ``document`` describes; paths in it are seen from ``folder``. Errors name its keys."""
+    """The study that ``document`` describes; relative paths in it start at ``folder``. Errors name its keys."""
     top = Section("", dict(document), _TOP)
     version = top.required("schema_version", "1")
     if version != SCHEMA_VERSION:
