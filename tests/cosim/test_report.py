@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import re
 from html.parser import HTMLParser
@@ -10,6 +11,7 @@ from pathlib import Path
 import giveway
 import pytest
 from cosim_helpers import Cli, folder_content
+from giveway.library.batch_library import native_metrics
 from giveway.report import render
 from giveway.simulation.metrics import Metric
 from giveway.simulation.result import Result
@@ -54,6 +56,13 @@ def test_the_report_is_small_and_whole(page: str) -> None:
     assert page.count("<svg") == 4
     assert "NaN" not in page
     assert page.rstrip().endswith("</html>")
+
+
+def test_the_report_says_what_each_number_is(page: str, full_runs: dict[str, Result]) -> None:
+    words = {metric.name: metric.description for metric in native_metrics()}
+    text = html.unescape(page)
+    for metric in full_runs["none"].metrics:
+        assert f"<tr><th>{metric.name}</th><td>{words[metric.name]}</td></tr>" in text
 
 
 def test_the_animation_data_is_json_with_the_detection(page: str, full_runs: dict[str, Result]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +103,8 @@ def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> Non
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     for words in ("0.6, 2.4 N/mm", "1.2 to 2.1 km/h", "+-0.002 kN", "bumper compression: at most 3 cm"):
         assert words in page
+    definition = "largest compression: what the collision used of the bumper's travel, which is a parameter"
+    assert f"<tr><th>bumper compression</th><td>{definition}</td></tr>" in html.unescape(page)
     for name, text in asked(answers.setup):
         assert f"<th>{name}</th><td>{text}</td>" in page
     said = dict(asked(answers.setup))

@@ -36,6 +36,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     from giveway.report import pushes
     from giveway.report.animation import scene
     from giveway.report.figures import figures
+    from giveway.simulation.metrics import definitions
     from giveway.simulation.summary import false_detection_line, push_rows, table_rows, warning_lines
 
     by_bumper = {result.manifest["scenario"]["bumper"]: result for result in results}
@@ -55,6 +56,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
         summary=summary,
         header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
         rows=table_rows(by_bumper),
+        definitions=definitions(metric.name for metric in results[0].metrics),
         judgements=[str(result.judgement) for result in results if result.judgement is not None],
         warnings=warning_lines(by_bumper),
         pushes=[(push_rows(result), false_detection_line(result)) for result in results if result.pushes],

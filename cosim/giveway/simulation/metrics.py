@@ -7,7 +7,7 @@ Their definitions are in GWB_METRICS of fmu/batch/giveway_batch.h, one line each
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from giveway.scenario.body_regions import BodyRegion
 
-__all__ = ["Collision", "Metric", "collision", "design", "evaluate", "without_collision"]
+__all__ = ["Collision", "Metric", "collision", "definitions", "design", "evaluate", "without_collision"]
 
 FIRST_PEAK = "peak force of the first contact"
 PUSH_FORCES = ("testbed.push.force_x", "testbed.push.force_y")
@@ -72,6 +72,12 @@ def evaluate(
         metric.name: Metric(metric.name, value, metric.unit, truth, metric.decimals)
         for metric, value, truth in sorted(numbers, key=lambda one: one[0].line)
     }
+
+
+def definitions(names: Iterable[str]) -> dict[str, str]:
+    """What each of ``names`` is, in a few words; names that the library does not have are left out."""
+    words = {metric.name: metric.description for metric in native_metrics()}
+    return {name: words[name] for name in names if name in words}
 
 
 def shown(metrics: Mapping[str, Metric], where: int) -> tuple[Metric, ...]:

@@ -33,6 +33,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     """Write the summary of ``answers`` to ``path``; ``results``: the chosen designs by number and collision."""
     import jinja2
 
+    from giveway.simulation.metrics import definitions
     from giveway.study.tables import counts, design_rows, goal_header, sensitivity_header, sensitivity_rows
 
     environment = jinja2.Environment(
@@ -48,6 +49,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         header=[_breakable(name) for name in goal_header(answers)],
         rows=design_rows(answers, DESIGNS_MAX),
+        definitions=definitions(goal.metric.column for goal in answers.goals),
         ranked=len(answers.order),
         figures=_figures(answers, results),
         sensitivity_header=sensitivity_header(answers),
