@@ -310,7 +310,7 @@ def _share(count: int, of: int) -> str:
     if not of:
         return "-"
     low, high = count_interval(count, of)
-    return f"{count} ({100.0 * low:.2g} to {100.0 * high:.2g} %)"
+    return f"{count} ({100.0 * low:.3g} to {100.0 * high:.3g} %)"
 
 
 def _estimate(value: Estimate | None, decimals: int) -> str:
