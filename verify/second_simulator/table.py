@@ -1,0 +1,57 @@
+"""What the reflexes did: the table of `giveway crowd` over the runs of the second simulator, and its quiet runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from giveway.crowd.judged import Judged, Limits, judge
+from giveway.crowd.statistics import rate_upper_bound
+from giveway.crowd.table import HEADER, ROWS, cells, find
+
+from verify.second_simulator.loop import Traces
+
+__all__ = ["QUIET_HEADER", "judged_record", "markdown", "quiet_rows"]
+
+QUIET_HEADER = ("untouched", "runs", "runs with an alarm", "seconds", "false detections", "per hour", "95 % upper bound")
+
+Record = Mapping[str, Any]
+
+
+def judged_record(traces: Traces, parameters: Mapping[str, Any], controller: Mapping[str, Any], start: float) -> Any:
+    """The verdict on one run as plain data; ``start``: the acceleration limit if ``controller`` does not set it."""
+    limit = float(controller.get("admittance.acceleration_limit", start))
+    return judge(traces["time"], traces, Limits(limit, float(parameters["wheel.distance"]))).record()
+
+
+def quiet_rows(records: Sequence[Record]) -> list[tuple[str, ...]]:
+    """False detections of the runs that nobody touches."""
+    rows = []
+    for situation in dict.fromkeys(record["situation"] for record in records if record["kind"] == "nothing"):
+        mine = [record for record in records if record["kind"] == "nothing" and record["situation"] == situation]
+        counts = [len(Judged.of(record["judged"]).detections_s) for record in mine]
+        seconds = sum(float(record["simulated_s"]) for record in mine)
+        hours = seconds / 3600.0
+        rows.append(
+            (
+                situation,
+                str(len(mine)),
+                str(sum(count > 0 for count in counts)),
+                f"{seconds:.0f}",
+                str(sum(counts)),
+                f"{sum(counts) / hours:.0f}",
+                f"{rate_upper_bound(sum(counts), hours):.0f}",
+            )
+        )
+    return rows
+
+
+def markdown(records: Sequence[Record]) -> str:
+    """Both tables."""
+    touched = [dict(record) for record in records if record["kind"] != "nothing"]
+    found = [found for row in ROWS if (found := find(row, touched)).runs]
+    lines = [f"| {' | '.join(HEADER)} |", "|" + "---|" * len(HEADER)]
+    lines += [f"| {' | '.join(cells(one))} |" for one in found]
+    lines += ["", f"| {' | '.join(QUIET_HEADER)} |", "|" + "---|" * len(QUIET_HEADER)]
+    lines += [f"| {' | '.join(row)} |" for row in quiet_rows(records)]
+    return "\n".join(lines) + "\n"
