@@ -26,7 +26,7 @@ test: build lint ## every test
 	$(BIN)/ctest --test-dir build --output-on-failure --progress -j $(JOBS)
 	$(BIN)/pytest --numprocesses $(JOBS) --dist loadfile # a file stays whole: its fixtures may be dear
 
-verify: build build/verify/tools-installed build/verify/modelica-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
+verify: build build/verify/tools-installed build/verify/modelica-installed build/verify/second-simulator-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
 	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
 
 fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness and real type; `make verify` does it for a minute
@@ -105,7 +105,7 @@ format: .venv/test-packages-installed ## format C, C++ and Python in place
 
 # The first one is the others' yardstick: what stands in several has one version.
 LOCKS := requirements cmake/requirements tests/requirements
-OTHER_LOCKS := verify/requirements verify/modelica/requirements bench/requirements importers/requirements
+OTHER_LOCKS := verify/requirements verify/modelica/requirements verify/second_simulator/requirements bench/requirements importers/requirements
 
 lock: $(LOCKS:=.in) $(OTHER_LOCKS:=.in) ## new requirements.lock files (needs uv)
 	@for name in $(LOCKS) $(OTHER_LOCKS); do \
@@ -189,4 +189,13 @@ build/verify/modelica-installed: verify/modelica/requirements.lock verify/modeli
 	build/verify/modelica/bin/pip install --quiet --require-hashes -r verify/modelica/requirements.lock
 	printf '#!/bin/sh\nexec "%s" "$$@"\n' "$(CURDIR)/build/verify/modelica/bin/python" > build/verify/tools/bin/modelica-python
 	chmod +x build/verify/tools/bin/modelica-python
+	@touch $@
+
+# MuJoCo, and what the Python package needs to load the controller FMU.
+build/verify/second-simulator-installed: verify/second_simulator/requirements.lock build/verify/tools-installed
+	$(PYTHON) -m venv build/verify/second_simulator
+	build/verify/second_simulator/bin/pip install --quiet --require-hashes -r verify/second_simulator/requirements.lock
+	printf '#!/bin/sh\nexec "%s" "$$@"\n' "$(CURDIR)/build/verify/second_simulator/bin/python" > \
+	    build/verify/tools/bin/second-simulator-python
+	chmod +x build/verify/tools/bin/second-simulator-python
 	@touch $@

@@ -1,6 +1,6 @@
-"""`python -m verify.second_simulator`: the formulas, then the table; progress on stderr, the last line of stdout is JSON.
+"""`python -m verify.second_simulator`: the formulas, then the table. The last line is JSON; progress goes to stderr.
 
-Run it with the Python of build/verify/second_simulator; `make second-simulator` does.
+Run it from the repository with build/verify/tools/bin/second-simulator-python.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -45,12 +46,13 @@ def main(words: Sequence[str] | None = None) -> int:
         asked.xml.write_text(build(testbed, "magnetic", asked.step).xml, encoding="utf-8")
     findings = []
     if not asked.no_formulas:
-        factors = closed_form.FAULTS[asked.fault][1] if asked.fault else {}
-        findings = closed_form.check_all(testbed, drives, asked.step, factors)
+        findings = closed_form.check_all(testbed, drives, asked.step, asked.fault)
         for finding in findings:
             print(finding.line(), flush=True)
     chosen = [] if asked.formulas_only else cases(testbed, controller, asked.seed, asked.quick)
     chosen = [case for case in chosen if asked.only in case.name]
+    if asked.exchanged:
+        chosen = [replace(case, run=replace(case.run, wiring=(1, 0, 2))) for case in chosen]
     records = _run_all(chosen, testbed, controller, drives, asked)
     if records:
         print(markdown(records))
@@ -80,6 +82,7 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--formulas-only", action="store_true")
     parser.add_argument("--no-formulas", action="store_true")
     parser.add_argument("--fault", choices=closed_form.FAULTS, help="plant it before the formulas are checked")
+    parser.add_argument("--exchanged", action="store_true", help="plant a fault: two torque sensors are exchanged")
     parser.add_argument("--out", type=Path, help="JSON file with a record per run")
     parser.add_argument("--traces", type=Path, help="folder for the traces of every run, .npz")
     parser.add_argument("--friction", choices=FRICTION, default=FRICTION[0], help="of the rollers: see mjcf.py")
@@ -110,7 +113,11 @@ def _run_all(
             records.append(record)
             detections = ", ".join(f"{at:.3f}" for at in record["judged"]["detections_s"])
             elapsed = time.monotonic() - started
-            print(f"{len(records)}/{len(work)} {elapsed:.0f} s: {record['name']}: {detections}", file=sys.stderr, flush=True)
+            print(
+                f"{len(records)}/{len(work)} {elapsed:.0f} s: {record['name']}: {detections}",
+                file=sys.stderr,
+                flush=True,
+            )
     return records
 
 
@@ -127,8 +134,10 @@ def _run_one(work: tuple[Any, ...]) -> dict[str, Any]:
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
         name = case.name.replace(" ", "_").replace(",", "")
-        np.savez_compressed(folder / f"{number:03d}_{name}.npz", **{k: np.asarray(v) for k, v in traces.items()})
-    return case.record(number, judged_record(traces, testbed, controller, _acceleration_limit()))
+        np.savez_compressed(folder / f"{number:03d}_{name}.npz", **dict[str, Any](traces))
+    record: dict[str, Any] = case.record(number, judged_record(traces, testbed, controller, _acceleration_limit()))
+    record["peak_n"] = float(traces["testbed.truth.contact_force"].max())
+    return record
 
 
 @cache

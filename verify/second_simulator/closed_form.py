@@ -13,15 +13,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
 from giveway.scenario.plan import Straight
 
 from verify.second_simulator.loop import TICK_S, Hit, Plant
 from verify.second_simulator.mjcf import (
     AZIMUTHS_RAD,
     GRAVITY_MPS2,
-    ROLLERS_PER_ROW,
     ROLLER_STIFFNESS,
+    ROLLERS_PER_ROW,
     ROWS,
     WHEELS,
     SecondRobot,
@@ -33,7 +32,7 @@ from verify.second_simulator.mjcf import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CHECKS", "FAULTS", "Check", "Finding", "check_all"]
+__all__ = ["CHECKS", "FAULTS", "Finding", "check_all"]
 
 Parameters = Mapping[str, Any]
 
@@ -52,7 +51,8 @@ class Finding:
     def line(self) -> str:
         off = 100.0 * (self.found / self.expected - 1.0)
         verdict = "" if self.holds else "  WRONG"
-        return f"{self.name}: {self.found:.5g}, formula {self.expected:.5g}: {off:+.2f} % of {100.0 * self.share:g} %{verdict}"
+        both = f"{self.found:.5g}, formula {self.expected:.5g}"
+        return f"{self.name}: {both}: {off:+.2f} % of {100.0 * self.share:g} %{verdict}"
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ def jacobian(p: Parameters) -> NDArray[np.float64]:
 
 
 def _driven(plant: Plant, way: Straight, seconds: float, p: Parameters) -> NDArray[np.float64]:
-    """The wheels are commanded along ``way``. Per millisecond: torques, wheel angles, velocity of the centre of mass."""
+    """The wheels follow ``way``. Per millisecond: torques, wheel angles, velocity of the centre of mass."""
     rows = []
     wheels = jacobian(p)
     command = np.zeros(2 * WHEELS)
     data, height = plant.data, p["base.com_height"]
-    for planned in way(np.arange(round(seconds / TICK_S)) * TICK_S):
+    for planned in way(np.arange(round(seconds / TICK_S), dtype=np.float64) * TICK_S):
         command[:WHEELS] = (wheels @ planned[:3] + math.pi) % (2.0 * math.pi) - math.pi
         command[WHEELS:] = wheels @ planned[3:6]
         plant.sample()
@@ -150,7 +150,7 @@ def _drag(p: Parameters, wheel_angle: NDArray[np.float64], direction: float) -> 
     stiffness = ROLLER_STIFFNESS * p["wheel.floor_stiffness"]
 
     def reach_and_arm(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """How far a roller, its middle being ``angle`` from the bottom, reaches down, and its contact's arm about it."""
+        """How far a roller whose middle is ``angle`` from the bottom reaches down, and its contact's arm about it."""
         c, s = np.cos(angle), np.sin(angle)
         root = np.sqrt((roller * c) ** 2 + (half * s) ** 2)
         return (radius - roller) * c + root, roller**2 * c / root
@@ -158,7 +158,7 @@ def _drag(p: Parameters, wheel_angle: NDArray[np.float64], direction: float) -> 
     first = np.abs((wheel_angle + 0.5 * division) % division - 0.5 * division)
     reach, arm = reach_and_arm(first)
     next_reach, next_arm = reach_and_arm(division - first)
-    # Of the load, and so of the friction, the roller that reaches farther has half, and more for what it reaches farther.
+    # The roller that reaches farther has half of the load and so of the friction, and more for what it reaches farther.
     most = np.minimum(0.5 + 0.5 * stiffness * (reach - next_reach) / load_n, 1.0)
     per_wheel = p["roller.coulomb_torque"] * (most / arm + (1.0 - most) / next_arm)
     return np.asarray((np.abs(np.cos(np.array(AZIMUTHS_RAD) - direction)) * per_wheel).sum(axis=1))
@@ -251,15 +251,19 @@ CHECKS: Mapping[str, Callable[[Bench], list[Finding]]] = {
     "hit": hit,
 }
 
-FAULTS: Mapping[str, tuple[str, Mapping[str, float]]] = {
-    "a floor that is softer by 5 %": ("sag", {"wheel.floor_stiffness": 0.95}),
-    "rollers that hold by a tenth more": ("share of a static push", {"roller.presliding_stiffness[*]": 1.1}),
-    "rollers with a tenth more friction": ("rollers' friction", {"roller.coulomb_torque": 1.1}),
-    "a base with 5 % more mass": ("inertia while accelerating", {"base.mass": 1.05}),
-    "a rotor with 5 % more inertia": ("rotor's speed", {"drivetrain.motor_inertia": 1.05}),
-    "a slider with 2 % less mass": ("impulse of a hit", {"slider.mass": 0.98}),
+FAULTS: Mapping[str, tuple[str, str, Mapping[str, float]]] = {
+    "a floor that is softer by 5 %": ("weight", "sag", {"wheel.floor_stiffness": 0.95}),
+    "rollers that hold by a tenth more": (
+        "static push",
+        "share of a static push",
+        {"roller.presliding_stiffness[*]": 1.1},
+    ),
+    "rollers with a tenth more friction": ("drag and inertia", "rollers' friction", {"roller.coulomb_torque": 1.1}),
+    "a base with 5 % more mass": ("drag and inertia", "inertia while accelerating", {"base.mass": 1.05}),
+    "a rotor with 5 % more inertia": ("gear", "rotor's speed", {"drivetrain.motor_inertia": 1.05}),
+    "a slider with 2 % less mass": ("hit", "impulse of a hit", {"slider.mass": 0.98}),
 }
-"""What is wrong: the finding that has to see it, and factors of the model's parameters."""
+"""What is wrong: the check and the finding that have to see it, and factors of the model's parameters."""
 
 
 def with_factors(parameters: Parameters, factors: Mapping[str, float]) -> dict[str, Any]:
@@ -272,7 +276,11 @@ def with_factors(parameters: Parameters, factors: Mapping[str, float]) -> dict[s
     return changed
 
 
-def check_all(parameters: Parameters, drives: Path, step_s: float, factors: Mapping[str, float] | None = None) -> list[Finding]:
-    """All findings; ``factors`` plants a fault."""
-    bench = Bench(with_factors(parameters, factors or {}), parameters, drives, step_s)
-    return [finding for check in CHECKS.values() for finding in check(bench)]
+def check_all(parameters: Parameters, drives: Path, step_s: float, fault: str | None = None) -> list[Finding]:
+    """All findings; with a fault planted, those of the check that has to see it."""
+    if fault is None:
+        bench, checks = Bench(parameters, parameters, drives, step_s), tuple(CHECKS)
+    else:
+        name, _, factors = FAULTS[fault]
+        bench, checks = Bench(with_factors(parameters, factors), parameters, drives, step_s), (name,)
+    return [finding for check in checks for finding in CHECKS[check](bench)]

@@ -5,11 +5,13 @@
 #include "drives.hpp"
 #include "from_variables.hpp"
 
-namespace {
+namespace
+{
 
 using namespace giveway::testbed;
 
-PerWheel<double> three(const double *values) {
+PerWheel<double> three(const double *values)
+{
     PerWheel<double> found;
     std::copy_n(values, found.size(), found.begin());
     return found;
@@ -22,7 +24,8 @@ extern "C" {
 // In `numbers`: encoder counts, noise, resolution and range of the torque sensors (N m), kp, kd, torque limit, cut-off
 // of the servos, cycles of delay of sensors and commands. Null if the servos refuse that.
 void *second_simulator_drives(const double *numbers, std::uint32_t seed, const double *motor_angle,
-                              const double *wheel_speed, const double *torque, int enable) {
+                              const double *wheel_speed, const double *torque, int enable)
+{
     Variables v{};
     set_start_values(v);
     v.electronics_encoder_counts = static_cast<std::int32_t>(numbers[0]);
@@ -49,22 +52,27 @@ void *second_simulator_drives(const double *numbers, std::uint32_t seed, const d
 }
 
 void second_simulator_sample(void *drives, const double *motor_angle, const double *torque, double *sensed_torque,
-                             std::int32_t *counts_and_counter) {
+                             std::int32_t *counts_and_counter)
+{
     const SensorSample sample = static_cast<Drives *>(drives)->sample(three(motor_angle), three(torque));
     std::copy_n(sample.torque_nm.begin(), wheel_count, sensed_torque);
     std::copy_n(sample.encoder_counts.begin(), wheel_count, counts_and_counter);
     counts_and_counter[wheel_count] = sample.counter;
 }
 
-void second_simulator_receive(void *drives, const double *angle_and_speed, int enable) {
-    static_cast<Drives *>(drives)->receive(
-        {three(angle_and_speed), three(angle_and_speed + wheel_count), enable != 0});
+void second_simulator_receive(void *drives, const double *angle_and_speed, int enable)
+{
+    static_cast<Drives *>(drives)->receive({three(angle_and_speed), three(angle_and_speed + wheel_count), enable != 0});
 }
 
-void second_simulator_regulate(void *drives, const double *motor_angle, double *motor_torque) {
+void second_simulator_regulate(void *drives, const double *motor_angle, double *motor_torque)
+{
     const auto torque = static_cast<Drives *>(drives)->regulate(three(motor_angle));
     std::copy_n(torque.begin(), wheel_count, motor_torque);
 }
 
-void second_simulator_end(void *drives) { delete static_cast<Drives *>(drives); }
+void second_simulator_end(void *drives)
+{
+    delete static_cast<Drives *>(drives);
+}
 }

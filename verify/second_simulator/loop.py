@@ -1,7 +1,7 @@
 """The closed loop: robot and slider in MuJoCo, the drives of the testbed, and the controller FMU that users get.
 
-Exchange once a millisecond, in the order of `giveway.simulation.master`: sensors, controller, command; the delays of the
-bus are in the drives. The servos act twice in it, and MuJoCo steps in between.
+Exchange once a millisecond, in the order of `giveway.simulation.master`: sensors, controller, command; the delays of
+the bus are in the drives. The servos act twice in it, and MuJoCo steps in between.
 """
 
 from __future__ import annotations
@@ -31,11 +31,13 @@ TICK_S, SERVO_S = 1e-3, 0.5e-3
 SETTLE_S, SETTLE_DAMPING = 0.4, (2e3, 2e3, 2e3, 200.0, 200.0, 200.0)  # N s/m, N m s/rad
 GAP_M = 1e-4  # of the slider's nose when it is released: it is there within a millisecond
 
-COMMANDS = (*(f"command.wheel_angle[{i}]" for i in range(WHEELS)), *(f"command.wheel_speed[{i}]" for i in range(WHEELS)))
+COMMANDS = (
+    *(f"command.wheel_angle[{i}]" for i in range(WHEELS)),
+    *(f"command.wheel_speed[{i}]" for i in range(WHEELS)),
+)
 
 Traces = Mapping[str, "NDArray[np.float64]"]
-"""One row a millisecond, named as the traces of `giveway run`: each with the sensors at its beginning and the controller's
-answer to them."""
+"""Named as those of `giveway run`; a row a millisecond: sensors at its beginning, the controller's answer."""
 
 
 @dataclass(frozen=True)
@@ -58,21 +60,29 @@ class Hit:
 
 @dataclass(frozen=True)
 class Run:
-    """What happens. ``controller``: settings by name. ``seed``: of the sensors' noise, the encoders' phase within a count
-    and the rollers' phase."""
+    """What happens.
+
+    Attributes:
+        controller: settings by name.
+        wiring: the wheel whose torque sensor the controller takes for that of each wheel.
+        seed: of the sensors' noise, the encoders' phase within a count, and which part of which roller bears.
+    """
 
     duration_s: float
-    plan: Plan = Rest()
+    plan: Plan = field(default_factory=Rest)
     hits: tuple[Hit, ...] = ()
     pushes: tuple[TimedPush, ...] = ()
     controller: Mapping[str, Any] = field(default_factory=dict)
     seed: int = 1
+    wiring: tuple[int, int, int] = (0, 1, 2)
 
 
 class Plant:
     """The robot in MuJoCo with its drives, step by step; `simulate` puts a controller to it, the formulas do not."""
 
-    def __init__(self, robot: SecondRobot, drives: Path, seed: int = 1, theta_rad: float = 0.0, wheel_rad: float | None = None) -> None:
+    def __init__(
+        self, robot: SecondRobot, drives: Path, seed: int = 1, theta_rad: float = 0.0, wheel_rad: float | None = None
+    ) -> None:
         self.robot, self.model = robot, robot.model
         self.data = mujoco.MjData(self.model)
         random = np.random.default_rng(seed)
@@ -297,14 +307,18 @@ class Controller:
 def simulate(robot: SecondRobot, drives: Path, run: Run) -> Traces:
     """One run from its beginning, after the robot has sunk into its wheels."""
     ticks = round(run.duration_s / TICK_S)
-    time_s = np.arange(ticks) * TICK_S
-    plan = np.ascontiguousarray(run.plan(np.arange(ticks + 1) * TICK_S))
+    times = np.arange(ticks + 1, dtype=np.float64) * TICK_S
+    time_s = times[:-1]
+    plan = np.ascontiguousarray(run.plan(times))
     plant = Plant(robot, drives, run.seed, float(plan[0, 2]))
     plant.data.qpos[:2] = plan[0, :2]
     plant.settle()
     pushes = Pushes(run.pushes)(time_s)
     controller = Controller(run.controller)
-    sensed = [*(f"testbed.sensor.torque[{i}]" for i in range(WHEELS)), *(f"testbed.sensor.encoder[{i}]" for i in range(WHEELS))]
+    sensed = [
+        *(f"testbed.sensor.torque[{i}]" for i in range(WHEELS)),
+        *(f"testbed.sensor.encoder[{i}]" for i in range(WHEELS)),
+    ]
     true = [*(f"wheel_torque[{i}]" for i in range(WHEELS)), "x", "y", "theta", "vx", "vy", "omega"]
     true += ["contact_force_x", "contact_force_y", "contact_base_x", "contact_base_y", "tilt", "lifted"]
     columns = [
@@ -314,7 +328,7 @@ def simulate(robot: SecondRobot, drives: Path, run: Run) -> Traces:
         *(f"controller.{name}" for names in controller.names.values() for name in names),
     ]
     rows = np.zeros((ticks, len(columns)))
-    hits = list(run.hits)
+    hits, wiring = list(run.hits), list(run.wiring)
     sensed_at, counts_at = plant.sensed.ctypes.data, plant.counts.ctypes.data
     command_at = controller.values["real"].ctypes.data
     answers = tuple(controller.values.values())
@@ -325,6 +339,7 @@ def simulate(robot: SecondRobot, drives: Path, run: Run) -> Traces:
                 plant.release(hits.pop(0))
             plant.push[:] = pushes[tick]
             plant.sample()
+            plant.sensed[:] = plant.sensed[wiring]
             used = plan[min(max(path_ticks, 0), ticks)]
             controller.step(sensed_at, counts_at, used.ctypes.data)
             path_ticks = controller.path_ticks

@@ -209,7 +209,9 @@ def _wheel(p: Mapping[str, Any], wheel: int) -> str:
     hub_kg = wheel_mass_kg(p) - ROWS * ROLLERS_PER_ROW * SPECK_KG
     load_n = p["base.mass"] * GRAVITY_MPS2 / WHEELS
     suspension = p["wheel.floor_stiffness"] / (1.0 - 1.0 / ROLLER_STIFFNESS)
-    place = f"{p['wheel.distance'] * math.cos(azimuth):.17g} {p['wheel.distance'] * math.sin(azimuth):.17g} {radius:.17g}"
+    place = (
+        f"{p['wheel.distance'] * math.cos(azimuth):.17g} {p['wheel.distance'] * math.sin(azimuth):.17g} {radius:.17g}"
+    )
     turned = f"{math.cos(0.5 * azimuth):.17g} 0 0 {math.sin(0.5 * azimuth):.17g}"
     friction = p["drivetrain.gear_coulomb"]
     return (
@@ -225,9 +227,7 @@ def _wheel(p: Mapping[str, Any], wheel: int) -> str:
         f'<body name="cage{wheel}"><inertial pos="0 0 0" mass="{SPECK_KG}" diaginertia="{_three(SPECK_KGM2)}"/>'
         f'<joint name="cage{wheel}" type="slide" axis="1 0 0" '
         f'stiffness="{p[f"roller.presliding_stiffness[{wheel}]"]:.17g}" '
-        f'damping="{p["roller.presliding_damping"]:.17g}"/>\n'
-        + "\n".join(rollers)
-        + "</body></body>"
+        f'damping="{p["roller.presliding_damping"]:.17g}"/>\n' + "\n".join(rollers) + "</body></body>"
     )
 
 
@@ -246,7 +246,8 @@ def _slider(p: Mapping[str, Any], bumper: str) -> str:
         inner = (
             f'<body name="plate"><inertial pos="0 0 0" mass="{p["bumper.plate_mass"]:.17g}" '
             f'diaginertia="{_three(SPECK_KGM2)}"/>'
-            f'<joint name="plate" type="slide" axis="-1 0 0" stiffness="{rate:.17g}" springref="{-preload / rate:.17g}" '
+            f'<joint name="plate" type="slide" axis="-1 0 0" '
+            f'stiffness="{rate:.17g}" springref="{-preload / rate:.17g}" '
             f'damping="{p["bumper.damping"]:.17g}" frictionloss="{p["bumper.guide_friction"]:.17g}" limited="true" '
             f'range="0 {p["bumper.travel"]:.17g}"/>{nose}</body>'
         )
@@ -277,7 +278,9 @@ def _harden(robot: SecondRobot) -> None:
     restitution = 1.0 - 2.0 / 3.0 * p["contact.damping"] * 0.5
     log = -math.log(restitution) / math.pi
     damping = 2.0 * log / math.hypot(1.0, log) * math.sqrt(p["contact.stiffness"] * mass)
-    _contact(model, "body", model.body("slider" if robot.plate is None else "plate").id, p["contact.stiffness"], damping)
+    _contact(
+        model, "body", model.body("slider" if robot.plate is None else "plate").id, p["contact.stiffness"], damping
+    )
     if robot.plate is not None:
         joint = model.joint("plate").id
         mass = p["bumper.plate_mass"]

@@ -25,6 +25,7 @@ __all__ = ["Case", "StartAndStop", "cases"]
 SPEED_MPS = 0.5  # of what hits
 PLACES_PER_SIDE, SPREAD = 5, 0.75  # of the side's half length
 REST_HIT_S, AFTER_HIT_S = 1.0, 3.0
+CIRCLE_M, CIRCLE_MPS, CIRCLE_MPS2 = 1.5, 0.16, 0.3
 TARE_S = 0.1  # the plan begins after it
 PUSH_N, PUSH_S, PUSH_RAMP_S, UNTOUCHED_S = 20.0, 2.0, 0.2, 10.0
 
@@ -69,7 +70,7 @@ class Case:
     run: Run
     second_s: float | None = None
 
-    def record(self, number: int, judged: Mapping[str, Any]) -> dict[str, Any]:
+    def record(self, number: int, judged: Any) -> dict[str, Any]:
         """As those of `giveway crowd`."""
         return {
             "number": number,
@@ -147,12 +148,12 @@ def _line(rng: np.random.Generator, heading: float) -> Straight:
 
 def _around(rng: np.random.Generator, turning: bool) -> Circle:
     return Circle(
-        1.5,
-        0.16 * float(rng.choice((-1.0, 1.0))),
+        CIRCLE_M,
+        CIRCLE_MPS * float(rng.choice((-1.0, 1.0))),
         start_rad=rng.uniform(-math.pi, math.pi),
         heading="turning" if turning else "fixed",
         theta_rad=rng.uniform(-math.pi, math.pi),
-        acceleration_mps2=0.3,
+        acceleration_mps2=CIRCLE_MPS2,
     )
 
 
@@ -165,8 +166,9 @@ def _in_motion(p: Mapping[str, Any], rng: np.random.Generator) -> Iterator[Case]
     for number, heading in enumerate(_headings(len(places) * len(BUMPERS))):
         place, bumper = places[(4 * number) % len(places)], BUMPERS[number % len(BUMPERS)]
         circle = number % 2 == 1
-        plan: Plan = _around(rng, number % 4 == 3) if circle else _line(rng, heading)
-        ramp_s = 0.9 if circle else plan.ramp_s  # type: ignore[attr-defined]
+        line = _line(rng, heading)
+        plan: Plan = _around(rng, number % 4 == 3) if circle else line
+        ramp_s = 0.5 * math.pi * CIRCLE_MPS / CIRCLE_MPS2 if circle else line.ramp_s
         at_s = TARE_S + ramp_s + rng.uniform(0.3, 1.5)
         run = Run(at_s + AFTER_HIT_S, plan, hits=(_hit(at_s, place),))
         where = "circle" if circle else "straight"
@@ -180,10 +182,12 @@ def _ramp_hits(p: Mapping[str, Any], rng: np.random.Generator, starting: bool) -
         line = _line(rng, heading)
         share = rng.uniform(0.1, 0.9) * line.ramp_s
         if starting:
-            at_s, plan, name = TARE_S + share, line, "starting"
+            at_s, name = TARE_S + share, "starting"
+            plan: Plan = line
         else:
             stop_s = line.ramp_s + 1.0
-            at_s, plan, name = TARE_S + stop_s + share, StartAndStop(line, stop_s), "stopping"
+            at_s, name = TARE_S + stop_s + share, "stopping"
+            plan = StartAndStop(line, stop_s)
         run = Run(at_s + AFTER_HIT_S, plan, hits=(_hit(at_s, place),))
         yield Case(f"{name}, {place[0]}, {bumper}", name, "free", bumper, run)
 
@@ -232,7 +236,13 @@ def _starts_and_stops(p: Mapping[str, Any], rng: np.random.Generator) -> Iterato
         line = Straight(speed, heading, theta_rad=rng.uniform(-math.pi, math.pi), acceleration_mps2=growth)
         plan = StartAndStop(line, line.ramp_s + 1.0)
         run = Run(TARE_S + plan.end_s + 1.5, plan)
-        yield Case(f"start and stop, {math.degrees(heading):+.0f} deg at {growth:g} m/s2", "starts and stops", "nothing", "none", run)
+        yield Case(
+            f"start and stop, {math.degrees(heading):+.0f} deg at {growth:g} m/s2",
+            "starts and stops",
+            "nothing",
+            "none",
+            run,
+        )
 
 
 def _circles(p: Mapping[str, Any], rng: np.random.Generator) -> Iterator[Case]:

@@ -13,7 +13,15 @@ from verify.second_simulator.loop import Traces
 
 __all__ = ["QUIET_HEADER", "judged_record", "markdown", "quiet_rows"]
 
-QUIET_HEADER = ("untouched", "runs", "runs with an alarm", "seconds", "false detections", "per hour", "95 % upper bound")
+QUIET_HEADER = (
+    "untouched",
+    "runs",
+    "runs with an alarm",
+    "seconds",
+    "false detections",
+    "per hour",
+    "95 % upper bound",
+)
 
 Record = Mapping[str, Any]
 
@@ -26,7 +34,7 @@ def judged_record(traces: Traces, parameters: Mapping[str, Any], controller: Map
 
 def quiet_rows(records: Sequence[Record]) -> list[tuple[str, ...]]:
     """False detections of the runs that nobody touches."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for situation in dict.fromkeys(record["situation"] for record in records if record["kind"] == "nothing"):
         mine = [record for record in records if record["kind"] == "nothing" and record["situation"] == situation]
         counts = [len(Judged.of(record["judged"]).detections_s) for record in mine]
