@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from giveway import batch
 from giveway.base.errors import GivewayError
+from giveway.cli import _main as cli_main
 from giveway.crowd import endurance, table
 from giveway.crowd.blow import Blow
 from giveway.crowd.crowd import compute, limits_of
@@ -313,3 +314,42 @@ def test_work_goes_on_where_it_was_interrupted(tmp_path: Path) -> None:
     other = Work("work", {"draw": "judging"}, 7, 2, compute_some, ("parts.py",))
     assert len(go_on(other, tmp_path / "work", 1, lambda _progress: None).records) == 7
     assert len(asked) == 14  # what was asked for is another thing: nothing is taken over
+
+
+def test_a_calibrated_controller_believes_what_was_found_for_its_own_robot(records: list[dict[str, Any]]) -> None:
+    own = {ROBOT: BLIND, ROBOT + 1: {}}
+    blind = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, own)
+    assert Judged.of(blind[0]["judged"]).detections_s == ()
+    other = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, {ROBOT + 1: BLIND})
+    assert other == records[:1]
+    asked = compute(DRAW, {"detector.impulse_threshold": 2.0}, NUMBERS[:1], 1, lambda _done: None, own)
+    assert Judged.of(asked[0]["judged"]).detections_s  # what is asked for goes before what was found
+
+
+def test_the_command_writes_tables_and_refuses_what_it_cannot_do(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "crowd"
+    assert cli_main(["crowd", "--robots", "1", "--out", str(out)]) == 0
+    printed = capsys.readouterr()
+    assert f"{PER_ROBOT} runs in" in printed.out
+    assert json.loads((out / "table.json").read_text(encoding="utf-8"))["not judged"] == []
+    assert cli_main(["crowd", "--robots", "1", "--out", str(out)]) == 0  # everything is there
+    assert "runs in" not in capsys.readouterr().out
+    for wrong, said in (
+        (["--draw", "both"], "both"),
+        (["--robots", "0"], "--robots"),
+        (["--set", "testbed.base.mass=40"], "testbed.base.mass"),
+        (["--set", "controller.no=1"], "no"),
+        (["--only", "-1"], "--only"),
+        (["endurance", "--group", "floating"], "floating"),
+        (["endurance", "--hours", "0"], "--hours"),
+    ):
+        assert (
+            cli_main(
+                ["crowd", *wrong, "--out", str(tmp_path / "other")] if wrong[0] != "endurance" else ["crowd", *wrong]
+            )
+            == 2
+        )
+        assert said in capsys.readouterr().err
+    assert not (tmp_path / "other").exists()

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from giveway.robot.variables import Value
     from giveway.scenario.scenario import Scenario
 
-__all__ = ["beliefs", "calibrations"]
+__all__ = ["beliefs", "calibrations", "compute"]
 
 PART = 8
 # Rollers that differ leave residuals of a whole swing, and `giveway calibrate` asks for many of these; zeros that drift
@@ -42,7 +42,7 @@ def calibrations(draw: str, robots: int) -> Work:
     """The work of calibrating the first ``robots`` robots of ``draw``."""
     asked = {"draw": draw, "seed": DRAWS[draw]}
     code = ("population.py", "calibrated.py", "parts.py")
-    return Work(f"calibration, {draw} draw", asked, robots, PART, functools.partial(_compute, draw), code)
+    return Work(f"calibration, {draw} draw", asked, robots, PART, functools.partial(compute, draw), code)
 
 
 def beliefs(records: Sequence[Record]) -> dict[int, dict[str, Value]]:
@@ -50,7 +50,8 @@ def beliefs(records: Sequence[Record]) -> dict[int, dict[str, Value]]:
     return {record["number"]: record["controller"] for record in records}
 
 
-def _compute(draw: str, numbers: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
+def compute(draw: str, numbers: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
+    """Calibrate the robots ``numbers`` in ``threads`` processes."""
     scenarios = [_arc(draw, number, arc) for number in numbers for arc in ARCS]
     table = batch.Prepared(scenarios, traces=RECORDED).run(threads=threads, method="fixed-step")
     if table.attrs["interrupted"]:

@@ -57,7 +57,7 @@ def crowd(
     if draw not in DRAWS:
         raise UnknownNameError("--draw", draw, DRAWS)
     if only is not None:
-        _one(draw, only, controller, out or OUT / f"hit-{only}")
+        _one(draw, only, controller, calibrated, out or OUT / f"hit-{only}")
     else:
         folder = out or OUT / (f"{draw}-calibrated" if calibrated else draw)
         _all(draw, robots, controller, calibrated, folder, threads)
@@ -139,7 +139,7 @@ def _calibrate(draw: str, robots: int, folder: Path, threads: int) -> tuple[dict
     return beliefs(done.records), [note]
 
 
-def _one(draw: str, number: int, controller: Mapping[str, Value], folder: Path) -> None:
+def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bool, folder: Path) -> None:
     """One hit: its figures as in the crowd, and the usual report of the event-exact run."""
     from giveway.base.checks import whole
     from giveway.base.files import check_output
@@ -148,6 +148,12 @@ def _one(draw: str, number: int, controller: Mapping[str, Value], folder: Path) 
 
     whole("--only", number, 0, ROBOTS_MAX * PER_ROBOT - 1)
     check_output(folder)
+    if calibrated:
+        from giveway.crowd.calibrated import beliefs
+        from giveway.crowd.calibrated import compute as calibrate
+
+        robot = number // PER_ROBOT
+        controller = {**beliefs(calibrate(draw, [robot], 1, lambda _done: None))[robot], **controller}
     one = hit(draw, number, controller)
     record = compute(draw, controller, [number], 1, lambda _done: None)[0]
     what = f"Robot {one.robot.number} ({one.robot.group}), {one.situation}, {one.kind}, bumper {one.bumper}."
