@@ -15,7 +15,7 @@ from giveway.base.errors import GivewayError
 from giveway.cli import _main as cli_main
 from giveway.crowd import endurance, table
 from giveway.crowd.blow import Blow
-from giveway.crowd.crowd import compute, limits_of
+from giveway.crowd.crowd import compute, crowd, limits_of
 from giveway.crowd.drive import Drive, Leg
 from giveway.crowd.hits import PATTERN, PER_ROBOT, Hit, hit
 from giveway.crowd.judged import RECORDED, Judged, judge
@@ -316,6 +316,14 @@ def test_work_goes_on_where_it_was_interrupted(tmp_path: Path) -> None:
     assert len(asked) == 14  # what was asked for is another thing: nothing is taken over
 
 
+def test_one_plant_alone_has_the_same_numbers() -> None:
+    work = crowd(DRAW, 12, {}, group="tipping")
+    assert work.count == 3 * PER_ROBOT  # robots 1, 4 and 11
+    alone = work.compute([PER_ROBOT + 8], 1, lambda _done: None)
+    assert alone == compute(DRAW, {}, [4 * PER_ROBOT + 8], 1, lambda _done: None)
+    assert alone[0]["group"] == "tipping"
+
+
 def test_a_calibrated_controller_believes_what_was_found_for_its_own_robot(records: list[dict[str, Any]]) -> None:
     own = {ROBOT: BLIND, ROBOT + 1: {}}
     blind = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, own)
@@ -339,6 +347,7 @@ def test_the_command_writes_tables_and_refuses_what_it_cannot_do(
     for wrong, said in (
         (["--draw", "both"], "both"),
         (["--robots", "0"], "--robots"),
+        (["--group", "floating"], "floating"),
         (["--set", "testbed.base.mass=40"], "testbed.base.mass"),
         (["--set", "controller.no=1"], "no"),
         (["--only", "-1"], "--only"),

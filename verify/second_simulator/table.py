@@ -7,7 +7,7 @@ from typing import Any
 
 from giveway.crowd.judged import Judged, Limits, judge
 from giveway.crowd.statistics import rate_upper_bound
-from giveway.crowd.table import HEADER, ROWS, cells, find
+from giveway.crowd.table import HEADER, ROWS, cells, find, read
 
 from verify.second_simulator.loop import Traces
 
@@ -56,7 +56,7 @@ def quiet_rows(records: Sequence[Record]) -> list[tuple[str, ...]]:
 
 def markdown(records: Sequence[Record]) -> str:
     """Both tables."""
-    touched = [dict(record) for record in records if record["kind"] != "nothing"]
+    touched = read([dict(record) for record in records if record["kind"] != "nothing"])
     found = [found for row in ROWS if (found := find(row, touched)).runs]
     lines = [f"| {' | '.join(HEADER)} |", "|" + "---|" * len(HEADER)]
     lines += [f"| {' | '.join(cells(one))} |" for one in found]

@@ -38,6 +38,9 @@ def crowd(
     only: Annotated[
         int | None, typer.Option("--only", metavar="N", help="Only hit N: its figures, traces and report.")
     ] = None,
+    group: Annotated[
+        str | None, typer.Option("--group", help="Only the planar, tipping or single rollers robots among them.")
+    ] = None,
     calibrated: Annotated[
         bool, typer.Option("--calibrated", help="Controllers know what `giveway calibrate` finds for their robots.")
     ] = False,
@@ -60,7 +63,7 @@ def crowd(
         _one(draw, only, controller, calibrated, out or OUT / f"hit-{only}")
     else:
         folder = out or OUT / (f"{draw}-calibrated" if calibrated else draw)
-        _all(draw, robots, controller, calibrated, folder, threads)
+        _all(draw, robots, group, controller, calibrated, folder, threads)
 
 
 def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
@@ -75,22 +78,32 @@ def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
 
 
 def _all(
-    draw: str, robots: int, controller: Mapping[str, Value], calibrated: bool, folder: Path, threads: int | None
+    draw: str,
+    robots: int,
+    group: str | None,
+    controller: Mapping[str, Value],
+    calibrated: bool,
+    folder: Path,
+    threads: int | None,
 ) -> None:
     from giveway.base.checks import whole
+    from giveway.base.errors import UnknownNameError
     from giveway.crowd.crowd import ROBOTS_MAX
     from giveway.crowd.crowd import crowd as work_of
     from giveway.crowd.parts import go_on
+    from giveway.crowd.population import GROUPS
     from giveway.crowd.table import TARGET_HEADER, short_cells, short_header, tables, target_rows, write
     from giveway.study.messages import duration, showing
     from giveway.study.native_part import default_threads
 
     whole("--robots", robots, 1, ROBOTS_MAX)
+    if group is not None and group not in GROUPS:
+        raise UnknownNameError("--group", group, GROUPS)
     threads = threads or default_threads()
     found, notes = (
         _calibrate(draw, robots, folder.with_name(f"{folder.name}-of-robots"), threads) if calibrated else (None, [])
     )
-    work = work_of(draw, robots, controller, found)
+    work = work_of(draw, robots, controller, found, group)
     with showing(work.name) as progress:
         done = go_on(work, folder, threads, progress)
     for group, rows in tables(done.records):

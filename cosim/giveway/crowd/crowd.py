@@ -7,11 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from giveway import batch
+from giveway.base.errors import UnknownNameError
 from giveway.crowd.blow import Blow
 from giveway.crowd.hits import PER_ROBOT, Hit, hit
 from giveway.crowd.judged import RECORDED, Judged, Limits, judge
 from giveway.crowd.parts import Interrupted, Record, Work
-from giveway.crowd.population import DRAWS, start_value
+from giveway.crowd.population import DRAWS, GROUPS, group_of, start_value
 from giveway.robot.variables import Value
 from giveway.scenario.plan import Rest
 
@@ -27,17 +28,31 @@ Beliefs = Mapping[int, Mapping[str, Value]]
 CODE = ("population.py", "hits.py", "blow.py", "drive.py", "judged.py", "crowd.py", "parts.py")
 
 
-def crowd(draw: str, robots: int, controller: Mapping[str, Value], beliefs: Beliefs | None = None) -> Work:
+def crowd(
+    draw: str,
+    robots: int,
+    controller: Mapping[str, Value],
+    beliefs: Beliefs | None = None,
+    group: str | None = None,
+) -> Work:
     """The work of the first ``robots`` robots of ``draw``, with these parameters of the controller.
 
-    ``beliefs``: of each robot's own; without it every controller knows its robot by the robot file alone.
+    ``beliefs``: of each robot's own; without it every controller knows its robot by the robot file alone. ``group``:
+    only the robots among them that have this plant of `GROUPS`.
     """
-    asked: dict[str, Any] = {"draw": draw, "seed": DRAWS[draw], "controller": dict(controller)}
+    if group is not None and group not in GROUPS:
+        raise UnknownNameError("group", group, GROUPS)
+    asked: dict[str, Any] = {"draw": draw, "seed": DRAWS[draw], "group": group, "controller": dict(controller)}
     if beliefs is not None:
         asked["beliefs"] = {str(number): dict(values) for number, values in sorted(beliefs.items())}
-    run = functools.partial(compute, draw, controller, beliefs=beliefs)
+    chosen = [number for number in range(robots) if group in (None, group_of(number))]
+
+    def run(indices: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
+        numbers = [chosen[index // PER_ROBOT] * PER_ROBOT + index % PER_ROBOT for index in indices]
+        return compute(draw, controller, numbers, threads, progress, beliefs)
+
     name = f"crowd, {draw} draw" + ("" if beliefs is None else ", calibrated")
-    return Work(name, asked, robots * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run, CODE)
+    return Work(name, asked, len(chosen) * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run, CODE)
 
 
 def compute(
