@@ -31,6 +31,7 @@ constexpr States operator|(State a, State b) { return static_cast<States>(a) | s
 constexpr States operator|(States a, State b) { return a | static_cast<States>(b); }
 constexpr States any_state = ~0u;
 constexpr States only(State state) { return static_cast<States>(state); }
+constexpr bool in(State state, States states) { return (static_cast<States>(state) & states) != 0; }
 
 // The calls that the standards allow in each state; the same for both versions unless an entry point says otherwise.
 constexpr States exchange_modes = State::event_mode | State::continuous_time_mode;
@@ -47,6 +48,8 @@ using LogFunction = void (*)(void *context, const char *text);
 
 enum class Interface : std::uint8_t { co_simulation, model_exchange };
 
+// Its members stand in four files: instance.cpp (life cycle and messages), instance_variables.cpp,
+// instance_exchange.cpp (Model Exchange) and instance_states.cpp (saved states).
 class Instance {
 public:
     // `has_time_variable`: reference 0 can be read as the current time (FMI 3).
@@ -56,7 +59,7 @@ public:
     Instance &operator=(const Instance &) = delete;
 
     // True if `function` is legal in the current state.
-    bool allow(const char *function, States states);
+    bool allow(const char *function, States states) { return in(state_, states) || refuse_state(function); }
 
     // Logs that `function` does something this FMU cannot do; always false.
     bool unsupported(const char *function, const char *what);
@@ -149,6 +152,8 @@ private:
     // Outputs, states, derivatives and indicators in the Variables struct belong to what was set.
     void refresh(Causality causality);
     const char *state_variable_name(std::size_t index) const;
+    const char *state_name() const;
+    bool refuse_state(const char *function); // not allowed in it; always false
     bool fail(const char *function, Message &message);
 
     Model *model_;
