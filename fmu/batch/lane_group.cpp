@@ -21,6 +21,9 @@ namespace {
 
 constexpr double tick_s = 1.0 / static_cast<double>(testbed::servo_rate_hz);
 constexpr int widest = 8;
+// Channels of noise: those of the torque sensors, and with them those of accelerometers and gyros.
+constexpr int torque_channels = testbed::Deviates{}.size();
+constexpr int imu_channels = testbed::imu_first_channel + testbed::ImuDeviates{}.size();
 
 // Whole servo ticks in a communication step; 0 if it is none of them.
 int ticks_in(double step_s) {
@@ -44,7 +47,7 @@ public:
         }
         plant::TippingVector<double> state{};
         Message message{};
-        if (!testbed::start_run(v_, system, state, drives_, stored_at_start_j_, message)) {
+        if (!testbed::start_run(v_, system, state, drives_, imu_, stored_at_start_j_, message)) {
             return run_.model_failed(GWB_REFUSED, GWB_TESTBED, message);
         }
         start_.parameters = system.parameters();
@@ -67,6 +70,7 @@ public:
     [[nodiscard]] RecordedRun &run() { return run_; }
     [[nodiscard]] testbed::Variables &variables() { return v_; }
     [[nodiscard]] testbed::Drives &drives() { return drives_; }
+    [[nodiscard]] testbed::Imu &imu() { return imu_; }
     [[nodiscard]] double stored_at_start_j() const { return stored_at_start_j_; }
 
     bool running = true;
@@ -87,6 +91,7 @@ private:
     RecordedRun run_;
     testbed::Variables v_{};
     testbed::Drives drives_;
+    testbed::Imu imu_;
     LaneStart start_{};
     double stored_at_start_j_ = 0.0;
     int ticks_per_step_;
@@ -107,7 +112,11 @@ public:
             Lane &lane = *lanes_[i < count_ ? i : 0]; // spare lanes repeat the first design
             starts[i] = lane.start();
             seeds_[i] = lane.drives().sensors().seed;
-            noisy_ = noisy_ || lane.drives().sensors().torque_noise_nm > 0.0;
+            if (lane.imu().options().present) {
+                channels_ = imu_channels;
+            } else if (lane.drives().sensors().torque_noise_nm > 0.0) {
+                channels_ = std::max(channels_, torque_channels);
+            }
         }
         plant_.start(starts.data());
         each([&](Lane &lane, std::size_t i) {
@@ -216,9 +225,9 @@ private:
 
     // The sensor values of this bus cycle.
     void sample() {
-        std::array<double, testbed::Deviates{}.size() * widest> drawn{};
-        if (noisy_) {
-            noise_(seeds_.data(), static_cast<int>(testbed::Deviates{}.size()), cycle_, drawn.data());
+        std::array<double, imu_channels * widest> drawn{};
+        if (channels_ > 0) {
+            noise_(seeds_.data(), channels_, cycle_, drawn.data());
         }
         ++cycle_;
         each([&](Lane &lane, std::size_t i) {
@@ -227,6 +236,12 @@ private:
             testbed::write_sensors(lane.variables(),
                                    lane.drives().sample(motor_angles(i), take<testbed::PerWheel<double>>(torque, i),
                                                         take<testbed::Deviates>(drawn.data(), i)));
+            if (lane.imu().options().present) {
+                const double *felt = drawn.data() + testbed::imu_first_channel * width_;
+                testbed::write_imu(lane.variables(),
+                                   lane.imu().sample(testbed::imu_truth(take<Outputs>(plant_.outputs(), i)),
+                                                     take<testbed::ImuDeviates>(felt, i)));
+            }
         });
     }
 
@@ -253,7 +268,7 @@ private:
     std::int64_t tick_ = 0;
     std::int64_t cycle_ = 0; // of the bus
     std::array<std::uint64_t, widest> seeds_{};
-    bool noisy_ = false;
+    int channels_ = 0; // of noise that a lane needs
     std::array<testbed::PerWheel<double>, widest> motor_torque_{};
 };
 

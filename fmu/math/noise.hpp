@@ -59,4 +59,12 @@ inline double normal(std::uint32_t seed, std::uint32_t channel, std::uint64_t ti
     return detail::box_muller(u1, u2);
 }
 
+// Evenly distributed in (0, 1).
+inline double uniform(std::uint32_t seed, std::uint32_t channel, std::uint64_t tick) {
+    const auto words =
+        philox4x32({static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32U), channel, 0U},
+                   {seed, detail::noise_key});
+    return (static_cast<double>(words[0]) + 0.5) * 0x1p-32;
+}
+
 } // namespace giveway::math

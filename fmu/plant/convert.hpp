@@ -54,6 +54,8 @@ template <class To, class From> Derived<To> convert(const Derived<From> &d) {
         .downhill_x = To(d.downhill_x),
         .downhill_y = To(d.downhill_y),
         .floor_gravity = To(d.floor_gravity),
+        .imu_cos = To(d.imu_cos),
+        .imu_sin = To(d.imu_sin),
         .wheel_half_length = To(d.wheel_half_length),
         .base_inertia = {.d1 = To(d.base_inertia.d1),
                          .d2 = To(d.base_inertia.d2),

@@ -14,6 +14,7 @@ template <class T> struct Derived {
     T rope_pretension_length;                 // ext0
     T downhill_x, downhill_y;                 // gravity along the floor, world frame, m/s2
     T floor_gravity;                          // gravity across it
+    T imu_cos, imu_sin;                       // direction of the accelerometer's x axis, base frame
     T wheel_half_length;      // of a wheel's section at the contact's height, along its rolling direction
     Factors3<T> base_inertia; // without a bumper plate
     std::array<T, max_outline_vertices> edge_x, edge_y, edge_length; // unit direction from vertex i to i + 1
@@ -33,6 +34,9 @@ template <class T, int Wheels> Derived<T> derive(const Parameters<T, Wheels> &p)
     d.carriage_mass = (p.has_plate() && !p.plate_on_robot()) ? slider_mass - p.bumper_plate_mass : slider_mass;
     d.roller_plastic_fraction = T(1.0) - p.roller_elastic_fraction;
     d.rope_pretension_length = T(p.rope_hanging_mass) * T(gravity_mps2) / p.rope_stiffness;
+    const auto imu = math::sincos(p.imu_azimuth);
+    d.imu_cos = imu.cos;
+    d.imu_sin = imu.sin;
     const auto slope = math::sincos(p.floor_slope);
     const auto falling = math::sincos(p.floor_azimuth);
     d.downhill_x = T(gravity_mps2) * slope.sin * falling.cos;

@@ -18,6 +18,8 @@ template <class T, int Wheels = table_wheels> struct Outputs {
     T roll, pitch;
     std::array<T, Wheels> wheel_load;
     T tip_margin;
+    T specific_force_x, specific_force_y; // where the accelerometer sits, along its axes: acceleration less gravity
+    T yaw_rate;                           // about the body's own vertical axis
 };
 
 // Work of gravity along the floor on a unit mass since the world's origin; `point` in base axes.
@@ -104,6 +106,29 @@ T stored_energy(const TippingVector<T, Wheels> &x, const TippingEvaluation<T, Wh
     return slider_energy(energy, x, e, p, d);
 }
 
+// Acceleration less gravity where the accelerometer sits, along the base's axes, or the body's own where that leans.
+template <class T, int Wheels>
+Vector2<T> specific_force(const StateVector<T, Wheels> &x, const Evaluation<T, Wheels> &e,
+                          const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    const Vector2<T> place{p.imu_x, p.imu_y};
+    const T omega = x[At::base_omega];
+    return to_base(e.heading, Vector2<T>{e.rate[At::base_vx] - d.downhill_x, e.rate[At::base_vy] - d.downhill_y}) +
+           e.rate[At::base_omega] * turned(place) - (omega * omega) * place;
+}
+template <class T, int Wheels>
+Vector2<T> specific_force(const TippingVector<T, Wheels> &, const TippingEvaluation<T, Wheels> &e,
+                          const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    const Stance<T> &s = e.stance;
+    const Vector3<T> place = s.at(p.imu_x, p.imu_y, p.imu_height);
+    const Vector2<T> along =
+        to_base(e.heading, Vector2<T>{e.rate[At::base_vx] - d.downhill_x, e.rate[At::base_vy] - d.downhill_y});
+    const Vector3<T> force = Vector3<T>{along.x, along.y, e.rate[At::heave_rate] + d.floor_gravity} +
+                             cross(e.turning_rate, place) + cross(s.turning, cross(s.turning, place));
+    return {dot(s.forward, force), dot(s.left, force)};
+}
+
 // `e`: everything evaluated at x.
 template <class E, class T, int Wheels, std::size_t N>
 Outputs<T, Wheels> outputs(const E &e, const std::array<T, N> &x, const Parameters<T, Wheels> &p, const Derived<T> &d) {
@@ -125,12 +150,14 @@ Outputs<T, Wheels> outputs(const E &e, const std::array<T, N> &x, const Paramete
         o.roll = x[At::base_roll];
         o.pitch = x[At::base_pitch];
         o.wheel_load = e.load;
+        o.yaw_rate = e.stance.yaw_rate;
         o.tip_margin = tip_margin(e.stance, p, d, to_base(e.heading, Vector2<T>{d.downhill_x, d.downhill_y}));
     } else {
         for (int i = 0; i < Wheels; ++i) {
             o.wheel_load[i] = p.base_mass * d.floor_gravity / T(Wheels) * static_load_share(p, i, mass_centre(p));
         }
         o.tip_margin = T(1.0);
+        o.yaw_rate = x[At::base_omega];
     }
     const Vector2<T> point = to_world(e.heading, reach);
     o.contact_point_x = x[At::base_x] + point.x;
@@ -143,6 +170,9 @@ Outputs<T, Wheels> outputs(const E &e, const std::array<T, N> &x, const Paramete
     o.rope_tension = e.rope.tension;
     o.wall_force = e.wall.force;
     o.stored_energy = stored_energy(x, e, p, d);
+    const Vector2<T> felt = specific_force(x, e, p, d);
+    o.specific_force_x = d.imu_cos * felt.x + d.imu_sin * felt.y;
+    o.specific_force_y = d.imu_cos * felt.y - d.imu_sin * felt.x;
     return o;
 }
 

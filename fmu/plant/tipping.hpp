@@ -69,6 +69,7 @@ Footing<T> footing(const TippingVector<T, Wheels> &x, const Parameters<T, Wheels
 
 template <class T, int Wheels> struct TippingEvaluation : Evaluation<T, Wheels, Layout<Wheels>::tipping_state_count> {
     Stance<T> stance;
+    Vector3<T> turning_rate;           // angular acceleration
     std::array<T, Wheels> depth, load; // m, N
     Vector2<T> contact_offset;         // of the body's axis at the contact's height
     T floor_stored;
@@ -178,12 +179,11 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
     const T pitch_acceleration =
         (dot(torque, s.left) + (p.base_yaw_inertia - tilting) * roll_rate * s.yaw_rate) / tilting;
     const T yaw_acceleration = dot(torque, s.up) / p.base_yaw_inertia;
-    const Vector3<T> turning_rate =
-        roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
+    e.turning_rate = roll_acceleration * s.forward + pitch_acceleration * s.left + yaw_acceleration * s.up;
     const Vector2<T> downhill = to_base(e.heading, Vector2<T>{d.downhill_x, d.downhill_y});
     const Vector3<T> weight{downhill.x, downhill.y, T(-1.0) * d.floor_gravity};
     const Vector3<T> acceleration =
-        (T(1.0) / p.base_mass) * force + weight - cross(turning_rate, com) - cross(s.turning, cross(s.turning, com));
+        (T(1.0) / p.base_mass) * force + weight - cross(e.turning_rate, com) - cross(s.turning, cross(s.turning, com));
 
     const Vector2<T> acceleration_world = to_world(e.heading, acceleration.plan());
     e.rate[At::base_x] = x[At::base_vx];

@@ -74,6 +74,8 @@ def designs() -> list[giveway.Scenario]:
         {"rope.attached": False, "wall.present": True, "slider.speed": -0.3},
         {"outline.wheels": True, "contact.height": 0.05, **near},
         UNEVEN,
+        {"imu.present": True, "imu.x": 0.1, "imu.dropout": 0.1, "start.vx": 0.1},
+        {"imu.present": True, "electronics.torque_noise": 0.0, "imu.vibration": 0.2},
         {"bumper.mount": 1, **near, "slider.run_up": 0.2, **UNEVEN},
     ]
     return [
@@ -86,6 +88,7 @@ def designs() -> list[giveway.Scenario]:
 def test_a_design_has_the_same_bits_in_every_lane_width_thread_and_batch() -> None:
     scenarios = designs()
     traces = [FORCE, TICK, "testbed.sensor.torque[1]", "testbed.truth.contact", "testbed.energy.residual"]
+    traces += ["testbed.sensor.acceleration[0]", "testbed.sensor.yaw_rate", "testbed.sensor.imu_counter"]
     alone = [bits(fixed([scenario], lanes=1, traces=traces))[0] for scenario in scenarios]
     assert len({tuple(sorted(one.items())) for one in alone}) == len(scenarios)  # the designs differ
     rng = np.random.default_rng(7)
@@ -196,6 +199,23 @@ def test_an_uneven_robot_is_that_of_the_event_exact_method() -> None:
     plain = batch.run_many([short(duration_s=0.3)], traces=["testbed.truth.contact_force"])
     peak = [float(run["testbed.truth.contact_force"].values[0].max()) for run in (plain, exact)]
     assert abs(peak[0] / peak[1] - 1.0) > 1e-3
+
+
+def test_accelerometer_and_gyro_are_those_of_the_event_exact_method() -> None:
+    """At rest nothing but their noise, vibration and lost samples, to rounding; in a hit the plant's difference too."""
+    names = [f"testbed.sensor.{name}" for name in ("acceleration[0]", "acceleration[1]", "yaw_rate", "imu_counter")]
+    fitted: dict[str, object] = {"imu.present": True, "imu.dropout": 0.2, "imu.vibration": 0.1, "imu.x": 0.1}
+    scenarios = [short(duration_s=0.3, testbed={**fitted, **other}) for other in ({"slider.present": False}, {})]
+    exact, table = batch.run_many(scenarios, traces=names), fixed(scenarios, traces=names)
+    assert set(table["method"].values) == {"fixed-step"}
+    for name in names:
+        one, other = exact[name].values, table[name].values
+        assert np.abs(one[0]).max() > 0.0
+        assert np.abs(one[0] - other[0]).max() < 1e-9, name  # what stands still rings by less
+        # Encoder counts that flip at another tick move a wheel's torque, and by that the base.
+        assert np.abs(one[1] - other[1]).max() < 0.02 * np.abs(one[1]).max(), name
+    assert (np.diff(exact["testbed.sensor.imu_counter"].values[0]) == 0).any()
+    assert np.abs(exact["testbed.sensor.acceleration[0]"].values[1]).max() > 1.0  # m/s2, of the hit
 
 
 def test_the_wall_throws_the_slider_back_as_in_the_event_exact_method() -> None:

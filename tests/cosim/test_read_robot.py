@@ -52,6 +52,18 @@ def test_what_is_in_the_tables_units_keeps_its_bits_and_type() -> None:
     assert isinstance(robot.value("drivetrain.encoder_counts"), int)
 
 
+def test_a_file_may_say_nothing_of_equipment_that_its_robot_has_not(tmp_path: Path) -> None:
+    """A file from before there was an accelerometer: the starts stay. Half of its numbers are refused."""
+    start = TRIKEY.index("# --- Accelerometer")
+    block = TRIKEY[start : TRIKEY.index("# --- Body outline")]
+    values = table("testbed").robot_values(read_robot(written(tmp_path, (block, ""))))
+    assert "base.mass" in values
+    assert not [name for name in values if name.startswith("imu.")]
+    height = block[block.index("[imu.height]") : block.index("[imu.acceleration_noise]")]
+    with pytest.raises(GivewayError, match="imu.height is missing"):
+        table("testbed").robot_values(read_robot(written(tmp_path, (height, ""))))
+
+
 def test_entries_are_shown_as_the_file_states_them(tmp_path: Path) -> None:
     entries = dict(read_robot(written(tmp_path, (MASS, 'value = 80\nunit = "lb"'))).entries())
     assert entries["base.mass"].text == "80 lb"

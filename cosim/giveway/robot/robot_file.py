@@ -27,6 +27,8 @@ PROVENANCE = ("given", "sourced", "fitted", "assumed")
 CONFIDENCE = ("high", "medium", "low")
 _KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
 _HEADER = ("schema_version", "robot")  # entries that are not numbers
+EQUIPMENT = ("imu",)
+"""Parts that a robot may have and a robot file may leave out."""
 _Number = float | int
 
 
@@ -77,6 +79,11 @@ class Robot:
         if not entry.is_list:
             return entry.values[0]
         return entry.values[index] if index < len(entry.values) else 0.0  # with a shorter list the rest is unused
+
+    def does_without(self, name: str) -> bool:
+        """Whether ``name`` belongs to equipment of which the file says nothing: its start values stay."""
+        part = name.partition(".")[0]
+        return part in EQUIPMENT and not any(entry.startswith(f"{part}.") for entry in self._entries)
 
     def entries(self) -> Iterator[tuple[str, Entry]]:
         """Every entry with its name, in the order of the file."""

@@ -111,7 +111,7 @@ class VariableTable:
         """The values of ``robot`` for every parameter that the table takes from a robot file."""
         values: dict[str, Value] = {}
         for variable in self:
-            if variable.robot_path is None:
+            if variable.robot_path is None or robot.does_without(variable.robot_path):
                 continue
             values[variable.name] = self.robot_value(robot, variable)
         if "outline.count" in self:  # the only number that a robot file states by the length of a list

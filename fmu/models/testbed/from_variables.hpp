@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "drives.hpp"
+#include "imu.hpp"
 #include "initial_state.hpp"
 #include "model.hpp"
 #include "testbed_plant_parameters.hpp"
@@ -64,6 +65,29 @@ inline bool check_mass_centre(const Variables &v, Message &message) {
         }
     }
     return true;
+}
+
+inline ImuOptions imu_options(const Variables &v) {
+    ImuOptions o{};
+    o.present = v.imu_present;
+    o.seed = static_cast<std::uint32_t>(v.electronics_seed);
+    o.acceleration_bias_mps2 = std::to_array(v.imu_acceleration_bias);
+    o.acceleration_scale = std::to_array(v.imu_acceleration_scale);
+    o.acceleration_noise_mps2 = v.imu_acceleration_noise;
+    o.gyro_bias_radps = v.imu_gyro_bias;
+    o.gyro_scale = v.imu_gyro_scale;
+    o.gyro_noise_radps = v.imu_gyro_noise;
+    o.vibration_mps2 = v.imu_vibration;
+    o.vibration_growth_s_per_rad = v.imu_vibration_growth;
+    o.vibration_frequency_hz = v.imu_vibration_frequency;
+    o.vibration_damping = v.imu_vibration_damping;
+    o.bandwidth_hz = v.imu_bandwidth;
+    o.range_mps2 = v.imu_range;
+    o.gyro_range_radps = v.imu_gyro_range;
+    o.delay_cycles = v.imu_delay;
+    o.dropout = v.imu_dropout;
+    o.period_s = bus_period_s;
+    return o;
 }
 
 // The shell has checked every single range; these rules relate several variables.

@@ -29,9 +29,24 @@ inline void write_sensors(Variables &v, const SensorSample &sample) {
     v.sensor_present = true;
 }
 
+inline ImuTruth imu_truth(const plant::Outputs<double> &truth) {
+    double speed = 0.0;
+    for (const double wheel : truth.wheel_speed) {
+        speed += math::abs(wheel);
+    }
+    return {{truth.specific_force_x, truth.specific_force_y}, truth.yaw_rate, speed / wheel_count};
+}
+
+inline void write_imu(Variables &v, const ImuSample &sample) {
+    std::copy_n(sample.acceleration_mps2.begin(), imu_axes, v.sensor_acceleration);
+    v.sensor_yaw_rate = sample.yaw_rate_radps;
+    v.sensor_imu_counter = sample.counter;
+    v.sensor_imu_present = true;
+}
+
 // False, with a message, if the parameters are inconsistent.
 inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVector<double> &state, Drives &drives,
-                      double &stored_j, Message &message) {
+                      Imu &imu, double &stored_j, Message &message) {
     if (!check_relations(v, message)) {
         return false;
     }
@@ -59,6 +74,7 @@ inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVec
                       static_cast<double>(refused.minimum), static_cast<double>(refused.maximum));
         return false;
     }
+    imu.start(imu_options(v), imu_truth(truth));
     return true;
 }
 

@@ -50,6 +50,7 @@ public:
         a(checkpoint_state_);
         system_.archive(a);
         a(drives_);
+        a(imu_);
         a(start_time_s_);
         a(stored_at_start_j_);
         a(tick_);
@@ -69,7 +70,7 @@ public:
 
     Status initialise(double start_time_s, Message &message) override {
         plant::TippingVector<double> state{};
-        if (!start_run(v_, system_, state, drives_, stored_at_start_j_, message)) {
+        if (!start_run(v_, system_, state, drives_, imu_, stored_at_start_j_, message)) {
             return Status::error;
         }
         start_time_s_ = start_time_s;
@@ -273,13 +274,18 @@ private:
     }
 
     void sample_sensors() {
-        write_sensors(v_, drives_.sample(motor_angles(state()), system_.outputs(state()).wheel_torque));
+        const auto truth = system_.outputs(state());
+        write_sensors(v_, drives_.sample(motor_angles(state()), truth.wheel_torque));
+        if (imu_.options().present) {
+            write_imu(v_, imu_.sample(imu_truth(truth)));
+        }
     }
 
     Variables v_{};
     PlantSystem system_;
     solver::HybridIntegrator integrator_;
     Drives drives_;
+    Imu imu_;
     double start_time_s_ = 0.0;
     double stored_at_start_j_ = 0.0;
     std::int64_t tick_ = 0; // servo ticks since the start

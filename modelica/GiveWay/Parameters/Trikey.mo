@@ -38,6 +38,17 @@ record Trikey "Numbers of Trikey, made from robots/trikey.toml"
   parameter SI.RotationalDampingConstant servo_kd=7.02 "fitted, low confidence";
   parameter SI.Frequency servo_derivative_cutoff=60.0 "assumed, low confidence; first-order filter of the speed from encoder counts";
   parameter Integer electronics_bus_delay=1 "given, high confidence; cycles, each way";
+  parameter SI.Length imu_height=0.2 "assumed, low confidence; on the lower deck";
+  parameter SI.Acceleration imu_acceleration_noise=0.0136 "assumed, medium confidence; in 250 Hz of first order; its zero is off by typically 20 mg, its scale by 0.5 %";
+  parameter Real imu_gyro_noise(unit="rad/s")=0.00097 "assumed, medium confidence; in 250 Hz of first order; its zero is off by typically 0.5 deg/s, its scale by 0.5 %";
+  parameter SI.Acceleration imu_vibration=0.01 "assumed, low confidence; fans, people walking by";
+  parameter Real imu_vibration_growth(unit="s/rad")=6.0 "assumed, low confidence; rollers passing the floor shake it by 0.07 m/s2 at 0.16 m/s; floors with joints by more";
+  parameter SI.Frequency imu_vibration_frequency=60.0 "assumed, low confidence; frame of aluminium profiles with batteries on a deck";
+  parameter Real imu_vibration_damping(unit="1")=0.05 "assumed, low confidence; bolted frame";
+  parameter SI.Frequency imu_bandwidth=250.0 "assumed, medium confidence";
+  parameter SI.Acceleration imu_range=39.2266 "assumed, medium confidence";
+  parameter Real imu_gyro_range(unit="rad/s")=8.7266 "assumed, medium confidence";
+  parameter Integer imu_delay=1 "assumed, medium confidence; bus cycles, as the torque sensors; the filter's own delay of 0.6 ms is in the filter";
   parameter SI.Length outline_x[3]={0.352184, -0.176092, -0.176092} "given, high confidence; counter-clockwise";
   parameter SI.Length outline_y[3]={0.0, 0.305, -0.305} "given, high confidence";
   parameter SI.Length outline_clearance=0.101 "sourced, low confidence; height from which on the body's outline is there";
@@ -109,6 +120,17 @@ Given: printed in the paper; sourced: found elsewhere; fitted: to the paper's re
 <tr><td>servo_kd</td><td>N.m.s/rad</td><td>fitted</td><td>giveway fit, to the results of Kim, Llado, Sentis, Auton Robot 40:325 (2016); residuals in trikey.fit.json</td></tr>
 <tr><td>servo_derivative_cutoff</td><td>Hz</td><td>assumed</td><td>engineering estimate</td></tr>
 <tr><td>electronics_bus_delay</td><td>1</td><td>given</td><td>Kim, Llado, Sentis, Auton Robot 40:325 (2016), Fig. 3 (1 ms EtherCAT cycle)</td></tr>
+<tr><td>imu_height</td><td>m</td><td>assumed</td><td>assumed equipment: Trikey has no accelerometer</td></tr>
+<tr><td>imu_acceleration_noise</td><td>m/s2</td><td>assumed</td><td>TDK InvenSense DS-000347 v1.7, ICM-42688-P: 70 ug/sqrt(Hz)</td></tr>
+<tr><td>imu_gyro_noise</td><td>rad/s</td><td>assumed</td><td>TDK InvenSense DS-000347 v1.7, ICM-42688-P: 2.8 mdeg/s/sqrt(Hz)</td></tr>
+<tr><td>imu_vibration</td><td>m/s2</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>imu_vibration_growth</td><td>s/rad</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>imu_vibration_frequency</td><td>Hz</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>imu_vibration_damping</td><td>1</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>imu_bandwidth</td><td>Hz</td><td>assumed</td><td>TDK InvenSense DS-000347 v1.7, ICM-42688-P: low-pass filter at a quarter of the data rate of 1 kHz</td></tr>
+<tr><td>imu_range</td><td>m/s2</td><td>assumed</td><td>TDK InvenSense DS-000347 v1.7, ICM-42688-P: 4 g of 2, 4, 8, 16</td></tr>
+<tr><td>imu_gyro_range</td><td>rad/s</td><td>assumed</td><td>TDK InvenSense DS-000347 v1.7, ICM-42688-P: 500 deg/s of 15.6 to 2000</td></tr>
+<tr><td>imu_delay</td><td>1</td><td>assumed</td><td>engineering estimate</td></tr>
 <tr><td>outline_x</td><td>m</td><td>given</td><td>Kim, Llado, Sentis, Auton Robot 40:325 (2016), 5.1 (61 cm side)</td></tr>
 <tr><td>outline_y</td><td>m</td><td>given</td><td>Kim, Llado, Sentis, Auton Robot 40:325 (2016), 5.1 (61 cm side)</td></tr>
 <tr><td>outline_clearance</td><td>m</td><td>sourced</td><td>CentralLabFacilities/controlit_models@275dce2, trikey_base.xacro (2015): lower end of the collision cylinder</td></tr>

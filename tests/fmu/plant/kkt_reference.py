@@ -134,6 +134,11 @@ class Parameters:
     wheel_grip_stiffness: float = 2.0e6
     wheel_grip_damping: float = 400.0
     push_height: float = 0.414
+    # The accelerometer.
+    imu_x: float = 0.0
+    imu_y: float = 0.0
+    imu_height: float = 0.2
+    imu_azimuth: float = 0.0
     outline: list[tuple[float, float]] = field(
         default_factory=lambda: [(0.352184, 0.0), (-0.176092, 0.305), (-0.176092, -0.305)]
     )
@@ -576,6 +581,15 @@ class Reference:
 
     def rhs(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> np.ndarray:
         return np.array(self.evaluate(t, x, u, modes)["rate"])
+
+    def specific_force(self, x: np.ndarray, rate: list[float]) -> tuple[float, float]:
+        """Acceleration less gravity where the accelerometer sits, along its axes: a point of the complex plane."""
+        p = self.p
+        arm = complex(p.imu_x, p.imu_y) * complex(math.cos(x[2]), math.sin(x[2]))
+        acceleration = complex(rate[3], rate[4]) + (1j * rate[5] - x[5] ** 2) * arm
+        axis = x[2] + p.imu_azimuth
+        felt = (acceleration - complex(*self.downhill)) * complex(math.cos(axis), -math.sin(axis))
+        return felt.real, felt.imag
 
     # --- Energy -----------------------------------------------------------------------------------
 

@@ -17,7 +17,7 @@ OUTPUTS = (
     *(f"{name}[{i}]" for name in ("wheel_speed", "wheel_torque", "roller_force") for i in range(3)),
     *("contact_force", "contact_force_x", "contact_force_y", "contact_point_x", "contact_point_y"),
     *("contact_base_x", "contact_base_y", "nose_x", "nose_y", "bumper_force", "rope_tension", "wall_force"),
-    "stored_energy",
+    *("stored_energy", "specific_force_x", "specific_force_y", "yaw_rate"),
 )
 
 

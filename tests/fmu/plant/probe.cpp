@@ -217,9 +217,10 @@ EXPORT void probe_outputs(void *handle, const double *x, const double *u, const 
         out[3 + i] = o.wheel_torque[i];
         out[6 + i] = o.roller_force[i];
     }
-    const double rest[] = {o.contact_force,  o.contact_force_x, o.contact_force_y, o.contact_point_x, o.contact_point_y,
-                           o.contact_base_x, o.contact_base_y,  o.nose_x,          o.nose_y,          o.bumper_force,
-                           o.rope_tension,   o.wall_force,      o.stored_energy};
+    const double rest[] = {o.contact_force,   o.contact_force_x,  o.contact_force_y,  o.contact_point_x,
+                           o.contact_point_y, o.contact_base_x,   o.contact_base_y,   o.nose_x,
+                           o.nose_y,          o.bumper_force,     o.rope_tension,     o.wall_force,
+                           o.stored_energy,   o.specific_force_x, o.specific_force_y, o.yaw_rate};
     std::copy(std::begin(rest), std::end(rest), out + 9);
 }
 

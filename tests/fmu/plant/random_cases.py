@@ -32,6 +32,9 @@ _NOT_SCALED = {
     "base_com_y",
     "floor_slope",
     "floor_azimuth",
+    "imu_x",
+    "imu_y",
+    "imu_azimuth",
 }
 
 
@@ -73,6 +76,7 @@ def uneven(rng: np.random.Generator, p: Parameters) -> None:
     p.drivetrain_friction_scale = rng.uniform(0.5, 1.5, 3).tolist()
     p.base_com_x, p.base_com_y = rng.uniform(-0.05, 0.05, 2)
     p.floor_slope, p.floor_azimuth = rng.uniform(0.0, 0.1), rng.uniform(-math.pi, math.pi)
+    p.imu_x, p.imu_y, p.imu_azimuth = rng.uniform(-0.3, 0.3, 3) * (1.0, 1.0, 10.0)
 
 
 def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, Modes]:

@@ -180,7 +180,12 @@ def test_outputs(library):
                 "rope_tension": e["tension"],
                 "wall_force": e["wall_force"],
                 "stored_energy": reference.stored_energy(x, modes),
+                "yaw_rate": x[5],
             }
+            # Of the largest acceleration, some 100 m/s2 of a wheel that a stop has caught.
+            felt = reference.specific_force(x, e["rate"])
+            scale = 1.0 + np.hypot(*felt) + x[5] ** 2
+            assert [found["specific_force_x"], found["specific_force_y"]] == pytest.approx(felt, abs=TOLERANCE * scale)
             if p.bumper_kind != KIND_NONE and p.slider_present:
                 expected["bumper_force"] = e["internal_force"]
             if p.slider_present:

@@ -105,6 +105,9 @@ def test_right_hand_side_and_indicators_against_lagrange(library: ctypes.CDLL) -
         g, out = plant.tipping_indicators(x, u, modes), plant.tipping_outputs(x, u, modes)
         assert g[FLOOR : FLOOR + 3] == pytest.approx(expected["depths"], abs=1e-12)
         assert [out[f"load {i}"] for i in range(3)] == pytest.approx(expected["loads"], rel=1e-9, abs=1e-9)
+        felt = expected["felt"]
+        assert [out["felt x"], out["felt y"]] == pytest.approx(felt, abs=1e-9 * (1.0 + np.abs(felt).max()))
+        assert out["yaw rate"] == pytest.approx(expected["yaw rate"], abs=1e-12)
         assert g[TILT] == pytest.approx(
             math.cos(x[PITCH]) * math.cos(x[ROLL]) - math.cos(math.radians(15.0)), abs=1e-12
         )

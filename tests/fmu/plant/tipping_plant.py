@@ -10,7 +10,10 @@ from kkt_reference import Inputs, Parameters
 from plant_probe import Plant, _array, _pointer, input_row
 from tipping_reference import EVENTS, MODES, STATES
 
-OUTPUTS = ("load 0", "load 1", "load 2", "margin", "stored", "force x", "force y", "roll", "pitch")
+OUTPUTS = (
+    *("load 0", "load 1", "load 2", "margin", "stored", "force x", "force y", "roll", "pitch"),
+    *("felt x", "felt y", "yaw rate"),
+)
 
 
 @dataclass

@@ -103,12 +103,13 @@ EXPORT void tipping_transition(void *handle, double *x, const double *u, double 
     modes_to(modes, m);
 }
 
-// wheel_load[3], tip_margin, stored energy, contact force x, y, roll, pitch
+// wheel_load[3], tip_margin, stored energy, contact force x, y, roll, pitch, specific force x, y, yaw rate
 EXPORT void tipping_outputs(void *handle, const double *x, const double *u, const double *m, double *out) {
     const auto *probe = static_cast<const Probe *>(handle);
     const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
-    const double all[] = {o.wheel_load[0],   o.wheel_load[1],   o.wheel_load[2], o.tip_margin, o.stored_energy,
-                          o.contact_force_x, o.contact_force_y, o.roll,          o.pitch};
+    const double all[] = {o.wheel_load[0], o.wheel_load[1],    o.wheel_load[2],    o.tip_margin,
+                          o.stored_energy, o.contact_force_x,  o.contact_force_y,  o.roll,
+                          o.pitch,         o.specific_force_x, o.specific_force_y, o.yaw_rate};
     std::copy(std::begin(all), std::end(all), out);
 }
 

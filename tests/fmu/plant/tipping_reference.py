@@ -215,4 +215,15 @@ class TippingReference:
         for i, axle in enumerate(self.axles):
             rate[SPIN + i] = a[6 + i] - axle @ spin
         rate[24:28] = work, loss, *hit
-        return {"rate": rate, "loads": np.array(loads), "depths": np.array(depths)}
+        # What an accelerometer feels: d/dt of its velocity, less gravity, along the body's axes turned by its azimuth.
+        place = np.array([p.imu_x, p.imu_y, p.imu_height])
+        acceleration = point_rates(q, place) @ a + (point_rates(moved, place).imag / STEP) @ v
+        felt = r.T @ (acceleration - self.gravity)
+        ct, st = math.cos(p.imu_azimuth), math.sin(p.imu_azimuth)
+        return {
+            "rate": rate,
+            "loads": np.array(loads),
+            "depths": np.array(depths),
+            "felt": np.array([ct * felt[0] + st * felt[1], ct * felt[1] - st * felt[0]]),
+            "yaw rate": (rotation_rates(q) @ v)[2],
+        }

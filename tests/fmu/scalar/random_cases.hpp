@@ -108,6 +108,10 @@ template <class T, int Wheels = table_wheels> Parameters<T, Wheels> random_param
     p.base_com_y = draw(-0.05, 0.05);
     p.floor_slope = draw(0.0, 0.1);
     p.floor_azimuth = draw(-3.0, 3.0);
+    p.imu_x = draw(-0.3, 0.3);
+    p.imu_y = draw(-0.3, 0.3);
+    p.imu_height = draw(0.0, 0.5);
+    p.imu_azimuth = draw(-3.0, 3.0);
     return p;
 }
 
