@@ -60,7 +60,7 @@ def test_a_file_may_say_nothing_of_equipment_that_its_robot_has_not(tmp_path: Pa
     assert "base.mass" in values
     assert not [name for name in values if name.startswith("imu.")]
     height = block[block.index("[imu.height]") : block.index("[imu.acceleration_noise]")]
-    with pytest.raises(GivewayError, match="imu.height is missing"):
+    with pytest.raises(GivewayError, match=r"imu\.height is missing"):
         table("testbed").robot_values(read_robot(written(tmp_path, (height, ""))))
 
 

@@ -117,8 +117,8 @@ public:
     ImuSample sample(const ImuTruth &truth, const ImuDeviates &drawn) {
         const ImuSample arriving = line_.exchange(take_sample(truth, drawn));
         const bool lost =
-            options_.dropout > 0.0 && math::uniform(options_.seed, imu_dropout_channel,
-                                                    static_cast<std::uint64_t>(cycle_)) < options_.dropout;
+            options_.dropout > 0.0 &&
+            math::uniform(options_.seed, imu_dropout_channel, static_cast<std::uint64_t>(cycle_)) < options_.dropout;
         ++cycle_;
         if (!lost) {
             arrived_ = arriving;
@@ -138,17 +138,16 @@ private:
         };
         ImuSample sample{};
         for (std::size_t axis = 0; axis < imu_axes; ++axis) {
-            const double force = filter(
-                axis, truth.specific_force_mps2[axis] + shaking * vibration_[axis].step(drawn[vibration(axis)]));
+            const double force =
+                filter(axis, truth.specific_force_mps2[axis] + shaking * vibration_[axis].step(drawn[vibration(axis)]));
             sample.acceleration_mps2[axis] =
                 math::clamp(options_.acceleration_scale[axis] * force + options_.acceleration_bias_mps2[axis] +
                                 options_.acceleration_noise_mps2 * drawn[axis],
                             -options_.range_mps2, options_.range_mps2);
         }
-        sample.yaw_rate_radps =
-            math::clamp(options_.gyro_scale * filter(imu_axes, truth.yaw_rate_radps) + options_.gyro_bias_radps +
-                            options_.gyro_noise_radps * drawn[imu_axes],
-                        -options_.gyro_range_radps, options_.gyro_range_radps);
+        sample.yaw_rate_radps = math::clamp(options_.gyro_scale * filter(imu_axes, truth.yaw_rate_radps) +
+                                                options_.gyro_bias_radps + options_.gyro_noise_radps * drawn[imu_axes],
+                                            -options_.gyro_range_radps, options_.gyro_range_radps);
         sample.counter = static_cast<std::int32_t>(static_cast<std::uint32_t>(cycle_ + max_delay_cycles + 1));
         return sample;
     }

@@ -10,7 +10,7 @@ record Trikey "Numbers of Trikey, made from robots/trikey.toml"
   parameter SI.Length wheel_distance=0.24 "sourced, medium confidence; R, centre of the base to the wheel";
   parameter SI.Inertia wheel_inertia=0.002798 "sourced, medium confidence; about the axle";
   parameter SI.Length wheel_width=0.025 "sourced, medium confidence; along the axle";
-  parameter SI.TranslationalSpringConstant wheel_floor_stiffness=200000.0 "assumed, low confidence; vertical, of one wheel with its frame and the floor; the robot's weight presses 0.6 mm";
+  parameter SI.TranslationalSpringConstant wheel_floor_stiffness=200000.0 "assumed, low confidence; vertical, of one wheel with its frame and the floor; deflection under the robot's weight 0.6 mm";
   parameter Real wheel_floor_damping(unit="s/m")=2.0 "assumed, low confidence; Hunt-Crossley; about a tenth of critical under the robot's weight";
   parameter Real wheel_grip_friction(unit="1")=0.7 "assumed, low confidence; polyurethane rollers on a hard floor";
   parameter SI.TranslationalSpringConstant wheel_grip_stiffness=2000000.0 "assumed, low confidence; along the rolling direction; the drivetrain is 30 times as soft";
@@ -51,7 +51,7 @@ record Trikey "Numbers of Trikey, made from robots/trikey.toml"
   parameter Integer imu_delay=1 "assumed, medium confidence; bus cycles, as the torque sensors; the filter's own delay of 0.6 ms is in the filter";
   parameter SI.Length outline_x[3]={0.352184, -0.176092, -0.176092} "given, high confidence; counter-clockwise";
   parameter SI.Length outline_y[3]={0.0, 0.305, -0.305} "given, high confidence";
-  parameter SI.Length outline_clearance=0.101 "sourced, low confidence; height from which on the body's outline is there";
+  parameter SI.Length outline_clearance=0.101 "sourced, low confidence; lowest height of the body above the floor";
   parameter SI.Mass admittance_mass=2.0 "given, high confidence; M_des";
   parameter SI.TranslationalDampingConstant admittance_damping=1.6 "given, high confidence; B_des";
   parameter SI.Impulse admittance_escape_impulse=0.8 "given, medium confidence; escape distance 0.5 m = 0.8/1.6";

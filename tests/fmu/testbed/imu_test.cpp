@@ -130,7 +130,8 @@ TEST(Imu, VibrationIsAResonanceOfItsRmsThatGrowsWithTheWheels) {
             }
             const double found = product / (rms(x) * rms(x) * static_cast<double>(x.size()));
             const double t = 1e-3 * lag;
-            EXPECT_NEAR(found, std::exp(-0.05 * omega * t) * (std::cos(damped * t) + 0.05 * std::sin(damped * t)), 0.03);
+            const double together = std::exp(-0.05 * omega * t) * (std::cos(damped * t) + 0.05 * std::sin(damped * t));
+            EXPECT_NEAR(found, together, 0.03);
         }
     }
 }
@@ -275,7 +276,7 @@ TEST(ImuOnTheRobot, OnAFloorThatFallsItFeelsGravity) {
 }
 
 TEST(ImuOnTheRobot, ShowsTheAccelerationOfTheInstant) {
-    // A push of 300 N on a robot whose drives give way: what it shows summed up is the velocity, by the trapezoidal rule.
+    // A push of 300 N on a robot whose drives give way: what it shows summed up is the velocity (trapezoidal rule).
     Robot robot;
     Variables &v = robot.v();
     fit(v);
