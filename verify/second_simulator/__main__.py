@@ -26,6 +26,7 @@ from giveway.robot.variables import parse_assignments, table  # noqa: E402
 
 from verify.second_simulator import closed_form  # noqa: E402
 from verify.second_simulator.electronics import compile_drives  # noqa: E402
+from verify.second_simulator.faults import FAULTS  # noqa: E402
 from verify.second_simulator.loop import simulate  # noqa: E402
 from verify.second_simulator.mjcf import FRICTION, SecondRobot, build  # noqa: E402
 from verify.second_simulator.situations import Case, cases  # noqa: E402
@@ -81,7 +82,7 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--only", default="", help="cases whose name contains this")
     parser.add_argument("--formulas-only", action="store_true")
     parser.add_argument("--no-formulas", action="store_true")
-    parser.add_argument("--fault", choices=closed_form.FAULTS, help="plant it before the formulas are checked")
+    parser.add_argument("--fault", choices=FAULTS, help="plant it before the formulas are checked")
     parser.add_argument("--exchanged", action="store_true", help="plant a fault: two torque sensors are exchanged")
     parser.add_argument("--out", type=Path, help="JSON file with a record per run")
     parser.add_argument("--traces", type=Path, help="folder for the traces of every run, .npz")

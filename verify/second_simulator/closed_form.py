@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from giveway.scenario.plan import Straight
 
+from verify.second_simulator.faults import FAULTS
 from verify.second_simulator.loop import TICK_S, Hit, Plant
 from verify.second_simulator.mjcf import (
     AZIMUTHS_RAD,
@@ -32,7 +33,7 @@ from verify.second_simulator.mjcf import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CHECKS", "FAULTS", "Finding", "check_all"]
+__all__ = ["CHECKS", "Finding", "check_all"]
 
 Parameters = Mapping[str, Any]
 
@@ -250,20 +251,6 @@ CHECKS: Mapping[str, Callable[[Bench], list[Finding]]] = {
     "gear": gear,
     "hit": hit,
 }
-
-FAULTS: Mapping[str, tuple[str, str, Mapping[str, float]]] = {
-    "a floor that is softer by 5 %": ("weight", "sag", {"wheel.floor_stiffness": 0.95}),
-    "rollers that hold by a tenth more": (
-        "static push",
-        "share of a static push",
-        {"roller.presliding_stiffness[*]": 1.1},
-    ),
-    "rollers with a tenth more friction": ("drag and inertia", "rollers' friction", {"roller.coulomb_torque": 1.1}),
-    "a base with 5 % more mass": ("drag and inertia", "inertia while accelerating", {"base.mass": 1.05}),
-    "a rotor with 5 % more inertia": ("gear", "rotor's speed", {"drivetrain.motor_inertia": 1.05}),
-    "a slider with 2 % less mass": ("hit", "impulse of a hit", {"slider.mass": 0.98}),
-}
-"""What is wrong: the check and the finding that have to see it, and factors of the model's parameters."""
 
 
 def with_factors(parameters: Parameters, factors: Mapping[str, float]) -> dict[str, Any]:

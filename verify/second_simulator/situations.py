@@ -92,11 +92,11 @@ def cases(parameters: Mapping[str, Any], controller: Mapping[str, Any], seed: in
     found = []
     for group, (stride, make) in enumerate(
         (
-            (5, _at_rest),
-            (6, _in_motion),
-            (6, _starting_hits),
-            (6, _stopping_hits),
-            (5, _second_hits),
+            (4, _at_rest),  # strides that meet every bumper
+            (7, _in_motion),
+            (5, _starting_hits),
+            (5, _stopping_hits),
+            (4, _second_hits),
             (5, _slow_pushes_at_rest),
             (6, _slow_pushes_in_motion),
             (5, _starts_and_stops),
