@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
-from giveway_modelica.agreement import SMOOTH, beside, heights, outside, signals, simulated
+from giveway_modelica.agreement import SMOOTH, STOP_S, beside, heights, outside, signals, simulated
 from giveway_modelica.compiler import Compiler
-from giveway_modelica.fmu_runs import RUNS, Pair
+from giveway_modelica.fmu_runs import RUNS, TOLERANCE, Alone, Pair, in_double
 from giveway_modelica.tube import at
 
 EVENT_S = 1e-6  # of locating an event; both solvers find it to some 1e-8 s
@@ -74,3 +76,28 @@ def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler) -> None:
 )
 def test_a_small_fault_leaves_the_tube(compiler: Compiler, example: str, fault: str) -> None:
     assert outside(simulated(compiler, example, fault), example)
+
+
+def test_a_robot_that_differs_from_its_drawing_is_the_same_in_both(compiler: Compiler) -> None:
+    """Its mass beside the middle, on a floor that falls, every wheel's friction its own; pushed until gears slide."""
+    run = RUNS["StaticPush"]
+    assert isinstance(run, Alone)
+    scales = {"roller": (0.8, 1.2, 1.1), "gear": (0.5, 0.7, 0.4)}
+    uneven = {
+        **{f"roller.friction_scale[{i}]": value for i, value in enumerate(scales["roller"])},
+        **{f"drivetrain.friction_scale[{i}]": value for i, value in enumerate(scales["gear"])},
+        **{"base.com_x": 0.03, "base.com_y": -0.02, "floor.slope": 0.02, "floor.azimuth": 2.0},
+    }
+    harder = dataclasses.replace(
+        run,
+        parameters={**run.parameters, **uneven},
+        inputs=lambda t: {name: value * (8.0 if "force" in name else 1.0) for name, value in run.inputs(t).items()},
+    )
+    ours = ", ".join(f"{part}_scale={{{', '.join(map(str, values))}}}" for part, values in scales.items())
+    result = compiler.simulate(
+        "GiveWay.Examples.StaticPush", f"f=80, robot({ours}, c_x=0.03, c_y=-0.02, slope=0.02, downhill=2)", TOLERANCE
+    )
+    with in_double():
+        reference = harder.run(STOP_S["StaticPush"])
+    assert np.abs(reference["truth.x"]).max() > 0.03  # its gears slid
+    assert max(heights(result, reference, signals("StaticPush")).values()) < SMOOTH

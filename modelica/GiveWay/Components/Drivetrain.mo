@@ -2,6 +2,7 @@ within GiveWay.Components;
 model Drivetrain "Drivetrain of one wheel: motor, gear friction, torque sensor (Fig. 6)"
   import Modelica.Units.SI;
   parameter Parameters.Trikey robot "The robot's parameters";
+  parameter Real friction_scale(unit="1")=1 "Factor on the gear friction";
   parameter SI.Angle phi_start=0 "Angle of the motor at the start";
   parameter SI.AngularVelocity w_start=0 "Speed of the motor at the start";
   Interfaces.TorqueInput tau_m "Wanted torque of the motor"
@@ -12,8 +13,8 @@ model Drivetrain "Drivetrain of one wheel: motor, gear friction, torque sensor (
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   Interfaces.AngleOutput phi_m "Angle that the encoder sees"
     annotation (Placement(transformation(extent={{90,-50},{110,-30}})));
-  Motor motor(J=robot.drivetrain_motor_inertia, coulomb=robot.drivetrain_gear_coulomb,
-    stiction=robot.drivetrain_gear_stiction, viscous=robot.drivetrain_gear_viscous,
+  Motor motor(J=robot.drivetrain_motor_inertia, coulomb=friction_scale*robot.drivetrain_gear_coulomb,
+    stiction=friction_scale*robot.drivetrain_gear_stiction, viscous=friction_scale*robot.drivetrain_gear_viscous,
     limit=robot.drivetrain_torque_limit, phi_start=phi_start, w_start=w_start) "Rotor and gear"
     annotation (Placement(transformation(extent={{-80,-20},{-40,20}})));
   TorqueSensorSpring sensor(k=robot.drivetrain_stiffness, d=robot.drivetrain_damping) "Elastic torque sensor"

@@ -9,6 +9,11 @@ model OmniBase "Base on three omnidirectional wheels"
   parameter SI.Velocity v_x_start=0 "Velocity at the start, world frame";
   parameter SI.Velocity v_y_start=0 "Velocity at the start, world frame";
   parameter SI.AngularVelocity omega_start=0 "Yaw rate at the start";
+  parameter SI.Position c_x=0 "Centre of mass, base axes";
+  parameter SI.Position c_y=0 "Centre of mass, base axes";
+  parameter SI.Angle slope=0 "Inclination of the floor";
+  parameter SI.Angle downhill=0 "Direction in which the floor falls, world frame";
+  parameter Real roller_scale[3](each unit="1")={1, 1, 1} "Factors on the rollers' friction, each wheel";
   replaceable model Wheel = Omniwheel "Wheels, with their rollers";
   Interfaces.PlanarFrame frame "Centre of the base"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
@@ -19,20 +24,20 @@ model OmniBase "Base on three omnidirectional wheels"
   Interfaces.RotaryFlange axle2 "Axle of wheel 2"
     annotation (Placement(transformation(extent={{-110,-50},{-90,-30}})));
   Wheel wheel0(azimuth=0*third, R=robot.wheel_distance, r_w=robot.wheel_radius, r_r=robot.roller_radius,
-    I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot,
+    I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot, friction_scale=roller_scale[1],
     v_n_start=cos(theta_start + 0*third)*v_x_start + sin(theta_start + 0*third)*v_y_start) "Wheel 0"
     annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
   Wheel wheel1(azimuth=1*third, R=robot.wheel_distance, r_w=robot.wheel_radius, r_r=robot.roller_radius,
-    I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot,
+    I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot, friction_scale=roller_scale[2],
     v_n_start=cos(theta_start + 1*third)*v_x_start + sin(theta_start + 1*third)*v_y_start) "Wheel 1"
     annotation (Placement(transformation(extent={{40,40},{80,80}})));
   Wheel wheel2(azimuth=2*third, R=robot.wheel_distance, r_w=robot.wheel_radius, r_r=robot.roller_radius,
-    I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot,
+    I_w=robot.wheel_inertia, I_r=robot.roller_inertia, robot=robot, friction_scale=roller_scale[3],
     v_n_start=cos(theta_start + 2*third)*v_x_start + sin(theta_start + 2*third)*v_y_start) "Wheel 2"
     annotation (Placement(transformation(extent={{-80,-80},{-40,-40}})));
   BaseBody body(m=robot.base_mass, I=robot.base_yaw_inertia, x_start=x_start, y_start=y_start, theta_start=theta_start,
-    v_x_start=v_x_start, v_y_start=v_y_start,
-    omega_start=omega_start) "Body"
+    v_x_start=v_x_start, v_y_start=v_y_start, omega_start=omega_start, c_x=c_x, c_y=c_y, slope=slope,
+    downhill=downhill) "Body"
     annotation (Placement(transformation(extent={{40,-80},{80,-40}})));
 equation
   connect(body.frame, frame)

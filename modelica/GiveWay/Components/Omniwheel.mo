@@ -8,13 +8,15 @@ model Omniwheel "Omnidirectional wheel that rolls on the floor (9)-(30)"
   parameter SI.Inertia I_w "Inertia about the axle";
   parameter SI.Inertia I_r "Inertia of the rollers that touch the floor";
   parameter Parameters.Trikey robot "The robot's parameters, for the rollers";
+  parameter Real friction_scale(unit="1")=1 "Factor on the rollers' friction";
   parameter SI.Velocity v_n_start=0 "Speed along the axle at the start";
   Interfaces.PlanarFrame base "Centre of the base"
     annotation (Placement(transformation(extent={{-110,17},{-90,37}})));
   Interfaces.RotaryFlange axle "Axle of the wheel"
     annotation (Placement(transformation(extent={{-110,-37},{-90,-17}})));
   replaceable model Roller = BristleRoller constrainedby Interfaces.PartialRollerFriction "Friction of the rollers";
-  Roller roller(robot=robot, r_r=r_r, v_start=v_n_start, v=v_n) "Rollers"
+  Roller roller(robot=robot, coulomb=friction_scale*robot.roller_coulomb_torque, r_r=r_r, v_start=v_n_start,
+    v=v_n) "Rollers"
     annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   SI.Angle direction "Azimuth of the axle, world frame";
   SI.Velocity v_t "Speed along the rolling direction, without the base's rotation";
