@@ -37,7 +37,7 @@ public:
     friend auto operator<=>(const Structure &, const Structure &) = default;
 
 private:
-    std::array<std::int32_t, 16> choices_{};
+    std::array<std::int32_t, 24> choices_{};
 };
 
 class LanePlant {

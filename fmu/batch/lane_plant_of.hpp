@@ -33,7 +33,7 @@ template <int N> struct Strided {
 // Contacts, stops and the rope check themselves whether they act; their modes only report it. A mode that decides, that
 // of a gear or of an idealised latch, also changes at the end of a step, and the step is corrected: the instant at
 // which the indicator was zero and the state there are interpolated, the mode changes there, and the rest of the step
-// is repeated.
+// is repeated. So is the roller on which a wheel stands.
 template <int N> class LanePlantOf final : public LanePlant {
     using L = math::Lanes<N>;
     using State = plant::StateVector<L>;
@@ -124,6 +124,11 @@ private:
     [[gnu::noinline, gnu::flatten]] void evaluate(Evaluation &e, const State &x, const plant::Inputs<L> &u) {
         there_.gear_direction = m_.gear_direction;
         there_.latched = m_.latched;
+        if (plant::discrete(p_)) {
+            there_.roller = m_.roller;
+            there_.roller_offset = m_.roller_offset;
+            there_.roller_friction = m_.roller_friction;
+        }
         plant::evaluate_into(e, x, u, there_, p_, d_);
     }
 
@@ -207,15 +212,19 @@ private:
             follow(At::event_end_stop, one - m_.end_stop);
         }
         // The modes that decide.
-        constexpr auto deciding = [] {
-            std::array<int, plant::table_wheels + 1> events{};
+        std::array<int, 2 * plant::table_wheels + 1> deciding{};
+        int deciding_count = 0;
+        for (int i = 0; i < plant::table_wheels; ++i) {
+            deciding[deciding_count++] = At::event_gear + i;
+        }
+        if (plant::bumper_holds(p_)) {
+            deciding[deciding_count++] = At::event_end_stop;
+        }
+        if (plant::discrete(p_)) {
             for (int i = 0; i < plant::table_wheels; ++i) {
-                events[i] = At::event_gear + i;
+                deciding[deciding_count++] = At::event_roller + i;
             }
-            events.back() = At::event_end_stop;
-            return events;
-        }();
-        const int deciding_count = plant::bumper_holds(p_) ? plant::table_wheels + 1 : plant::table_wheels;
+        }
         L lowest = zero;
         for (int k = 0; k < deciding_count; ++k) {
             lowest = math::min(lowest, g[deciding[k]]);
@@ -231,7 +240,7 @@ private:
             return false;
         }
         // Of several in one step the first.
-        L share[deciding.size()];
+        std::array<L, deciding.size()> share;
         L first = L(2.0);
         for (int k = 0; k < deciding_count; ++k) {
             const int event = deciding[k];

@@ -84,9 +84,13 @@ int lane_steps_per_tick(const plant::Parameters<double> &p, double impact_speed_
     const double wheel = p.wheel_inertia + share * p.wheel_radius * p.wheel_radius;
     s.vibration(p.drivetrain_stiffness, together(p.drivetrain_motor_inertia, wheel));
     s.decay(p.drivetrain_damping, together(p.drivetrain_motor_inertia, wheel));
+    // Of rollers one by one the weakest.
+    const double weakest =
+        p.roller_arrangement == plant::RollerArrangement::discrete ? 1.0 - p.roller_friction_scatter : 1.0;
     for (std::size_t i = 0; i < plant::table_wheels; ++i) {
         s.decay(p.drivetrain_friction_scale[i] * p.drivetrain_gear_viscous, p.drivetrain_motor_inertia);
-        const double coulomb = p.roller_friction_scale[i] * p.wheel_load[i] * p.roller_coulomb_torque / p.roller_radius;
+        const double coulomb =
+            weakest * p.roller_friction_scale[i] * p.wheel_load[i] * p.roller_coulomb_torque / p.roller_radius;
         if (p.roller_model == plant::RollerModel::bristle) {
             const double sigma = p.roller_presliding_stiffness[i];
             s.vibration(sigma, share);

@@ -66,6 +66,10 @@ template <class T> struct Inertia3 {
     }
 
     [[nodiscard]] Planar3<T> solve(Planar3<T> f) const { return factors().solve(f); }
+    [[nodiscard]] T energy(Planar3<T> u) const {
+        return T(0.5) * (xx * u.x * u.x + yy * u.y * u.y + zz * u.z * u.z) + xy * u.x * u.y + xz * u.x * u.z +
+               yz * u.y * u.z;
+    }
 };
 
 // From the wheels' centre to that of mass.
@@ -73,15 +77,20 @@ template <class T, int Wheels> Vector2<T> mass_centre(const Parameters<T, Wheels
     return {p.base_com_x, p.base_com_y};
 }
 
-// Body, wheels and rollers about the wheels' centre, without a bumper plate.
-template <class T, int Wheels> Inertia3<T> base_inertia(const Parameters<T, Wheels> &p) {
+// The body, which includes the wheels' mass, about the wheels' centre.
+template <class T, int Wheels> Inertia3<T> body_inertia(const Parameters<T, Wheels> &p) {
     const Vector2<T> com = mass_centre(p);
-    Inertia3<T> inertia{p.base_mass,
-                        T(0.0),
-                        T(0.0) - p.base_mass * com.y,
-                        p.base_mass,
-                        p.base_mass * com.x,
-                        p.base_yaw_inertia + p.base_mass * dot(com, com)};
+    return {p.base_mass,
+            T(0.0),
+            T(0.0) - p.base_mass * com.y,
+            p.base_mass,
+            p.base_mass * com.x,
+            p.base_yaw_inertia + p.base_mass * dot(com, com)};
+}
+
+// Body, wheels and rollers, without a bumper plate.
+template <class T, int Wheels> Inertia3<T> base_inertia(const Parameters<T, Wheels> &p) {
+    Inertia3<T> inertia = body_inertia(p);
     for (int i = 0; i < Wheels; ++i) {
         inertia.add(p.wheel_traction[i] * p.wheel_inertia, wheel_row(p, i));
         inertia.add(p.wheel_traction[i] * p.roller_inertia, roller_row(p, i));

@@ -50,6 +50,10 @@ template <class To, class From> Derived<To> convert(const Derived<From> &d) {
         .plate_y = To(d.plate_y),
         .carriage_mass = To(d.carriage_mass),
         .roller_plastic_fraction = To(d.roller_plastic_fraction),
+        .roller_pitch = To(d.roller_pitch),
+        .barrel_radius = To(d.barrel_radius),
+        .barrel_offset = To(d.barrel_offset),
+        .roller_level = To(d.roller_level),
         .rope_pretension_length = To(d.rope_pretension_length),
         .downhill_x = To(d.downhill_x),
         .downhill_y = To(d.downhill_y),
@@ -91,6 +95,9 @@ template <class To, class From, int Wheels> Modes<To, Wheels> convert(const Mode
         .walled = To(m.walled),
         .on_floor = detail::converted<To>(m.on_floor),
         .overturned = To(m.overturned),
+        .roller = detail::converted<To>(m.roller),
+        .roller_offset = detail::converted<To>(m.roller_offset),
+        .roller_friction = detail::converted<To>(m.roller_friction),
     };
 }
 

@@ -16,6 +16,26 @@ template <class T, int Wheels = table_wheels> struct InitialMotion {
 
 namespace detail {
 
+// The wheel torques that balance a wrench on rollers one by one, and what the rollers ask for in steady motion.
+template <class T, int Wheels>
+std::array<T, Wheels> torques_on_rollers(const Parameters<T, Wheels> &p, const Derived<T> &d, const Modes<T, Wheels> &m,
+                                         Planar3<T> wrench, Planar3<T> twist) {
+    std::array<Rolling<T>, Wheels> rollers;
+    Inertia3<T> rows{T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+    for (int i = 0; i < Wheels; ++i) {
+        rollers[i] = rolling(p, d, m, i, T(0.0));
+        rows.add(T(1.0), rollers[i].row);
+    }
+    const Planar3<T> share = rows.solve(wrench);
+    std::array<T, Wheels> torque;
+    for (int i = 0; i < Wheels; ++i) {
+        const Rolling<T> &r = rollers[i];
+        torque[i] = dot(r.row, share) + r.slope * (carried(p, d, i) - p.wheel_traction[i] * p.wheel_inertia *
+                                                                          math::square(dot(r.row, twist)) / r.radius);
+    }
+    return torque;
+}
+
 // What the floor's fall and the turning of a centre of mass beside the wheels' pull with.
 template <class T, int Wheels>
 Planar3<T> drawn_at_start(const InitialMotion<T, Wheels> &start, const Parameters<T, Wheels> &p, const Derived<T> &d,
@@ -55,6 +75,11 @@ void planar_start(const InitialMotion<T, Wheels> &start, const Inputs<T, Wheels>
         x[At::compression] = resting_compression(p);
     }
     m.latched = latched ? T(1.0) : T(0.0);
+    if (discrete(p)) {
+        for (int i = 0; i < Wheels; ++i) {
+            stand_on(p, m, i, math::round(p.roller_phase[i] / d.roller_pitch));
+        }
+    }
 
     const auto heading = math::sincos(start.theta);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{start.vx, start.vy});
@@ -63,14 +88,16 @@ void planar_start(const InitialMotion<T, Wheels> &start, const Inputs<T, Wheels>
     for (int i = 0; i < Wheels; ++i) {
         const Vector2<T> radial{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])};
         const T speed = dot(radial, velocity);
-        x[At::bristle + i] = steady_deflection(p, i, speed) + start.bristle_offset[i];
-        const T force = share[i] * roller_force(p, i, speed, x[At::bristle + i]).force;
+        const T steady = steady_friction_now(p, d, m, i, speed, T(0.0));
+        x[At::bristle + i] = steady_deflection(p, i, speed, steady) + start.bristle_offset[i];
+        const T force =
+            share[i] * roller_force(p, d.roller_plastic_fraction, i, speed, x[At::bristle + i], steady).force;
         held = held + Planar3<T>{force * radial.x, force * radial.y, T(0.0)};
     }
     held = held + T(-1.0) * drawn_at_start(start, p, d, heading, x[At::compression]);
-    const auto torque = balancing_torques(p, held);
+    const auto torque = discrete(p) ? torques_on_rollers(p, d, m, held, twist) : balancing_torques(p, held);
     for (int i = 0; i < Wheels; ++i) {
-        const T speed = dot(wheel_row(p, i), twist);
+        const T speed = dot(wheel_row(p, d, m, i, T(0.0)), twist);
         x[At::motor_speed + i] = speed;
         x[At::motor_angle + i] = torque[i] / p.drivetrain_stiffness;
         m.gear_direction[i] = math::sign(speed);
@@ -123,6 +150,14 @@ void initial_state(const InitialMotion<T, Wheels> &start, const Inputs<T, Wheels
     x[At::base_pitch] = tilt * centre.x;
     m.on_floor.fill(T(1.0));
     for (int i = 0; i < Wheels; ++i) {
+        if (discrete(p)) {
+            // As far as the wheel has sunk onto the end of its roller: lower there.
+            const T sunk = p.wheel_radius - rolling(p, d, m, i, T(0.0)).radius;
+            x[At::base_heave] = x[At::base_heave] - T(1.0 / Wheels) * sunk;
+            const T lean = T(2.0 / Wheels) * sunk / p.wheel_distance;
+            x[At::base_pitch] = x[At::base_pitch] + T(Azimuths<Wheels>::cos[i]) * lean;
+            x[At::base_roll] = x[At::base_roll] - T(Azimuths<Wheels>::sin[i]) * lean;
+        }
         x[At::wheel_spin + i] = x[At::motor_speed + i];
         x[At::grip + i] = T(-1.0) * p.drivetrain_stiffness * x[At::motor_angle + i] /
                           (p.wheel_radius * p.wheel_grip_stiffness) / share[i];

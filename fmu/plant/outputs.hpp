@@ -81,6 +81,9 @@ T stored_energy(const StateVector<T, Wheels> &x, const Evaluation<T, Wheels> &e,
             energy = energy + half * p.roller_presliding_stiffness[i] * math::square(x[At::bristle + i]);
         }
     }
+    if (discrete(p)) {
+        energy = energy + e.lifted;
+    }
     return slider_energy(energy, x, e, p, d);
 }
 

@@ -1,6 +1,7 @@
 // The plant's four functions: rhs, outputs, event_indicators, transition. README.md of this folder has the equations.
 #pragma once
 
+#include "arrangement.hpp"
 #include "base.hpp"
 #include "bumper.hpp"
 #include "contact.hpp"
@@ -17,6 +18,8 @@ template <class T, int Wheels = table_wheels, std::size_t N = Layout<Wheels>::st
     Vector2<T> velocity; // base axes
     T push_power;
     std::array<T, Wheels> wheel_speed, sensed_torque, net_torque, roller_force;
+    std::array<Rolling<T>, Wheels> rollers; // if they are one by one
+    T lifted;                               // energy of the weight on them, J
     Contact<T> contact;
     ContactForce<T> contact_force;
     BumperForce<T> bumper;
@@ -38,6 +41,16 @@ template <class T, int Wheels> T locked(const Parameters<T, Wheels> &p, const Mo
         return T(1.0);
     }
     return bumper_holds(p) ? m.latched : T(0.0);
+}
+
+template <class T, int Wheels, std::size_t N>
+std::array<Rolling<T>, Wheels> all_rolling(const Parameters<T, Wheels> &p, const Derived<T> &d,
+                                           const Modes<T, Wheels> &m, const std::array<T, N> &x) {
+    std::array<Rolling<T>, Wheels> rollers;
+    for (int i = 0; i < Wheels; ++i) {
+        rollers[i] = rolling(p, d, m, i, x[Layout<Wheels>::wheel_angle + i]);
+    }
+    return rollers;
 }
 
 namespace detail {
@@ -136,15 +149,20 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     wrench = wrench + p.base_mass * Planar3<T>{drawn.x, drawn.y, cross(com, downhill)};
     // First for all wheels, so that the processor can run independent chains of operations in parallel.
     std::array<T, Wheels> steady;
-    for (int i = 0; i < Wheels; ++i) {
-        steady[i] = steady_friction(
-            p, i, dot(Vector2<T>{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])}, e.velocity));
+    const bool one_by_one = discrete(p);
+    if (one_by_one) {
+        e.rollers = all_rolling(p, d, m, x);
     }
+    for (int i = 0; i < Wheels; ++i) {
+        const T speed = dot(Vector2<T>{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])}, e.velocity);
+        steady[i] = one_by_one ? steady_friction(p, i, speed, e.rollers[i].touch) : steady_friction(p, i, speed);
+    }
+    e.lifted = T(0.0);
     for (int i = 0; i < Wheels; ++i) {
         const Vector2<T> radial{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])};
         const T axial_speed = dot(radial, e.velocity);
         const T rolling_speed = dot(turned(radial), e.velocity);
-        const Planar3<T> row = wheel_row(p, i);
+        const Planar3<T> row = one_by_one ? e.rollers[i].row : wheel_row(p, i);
         e.wheel_speed[i] = dot(row, twist);
         e.sensed_torque[i] =
             sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], e.wheel_speed[i]);
@@ -152,8 +170,16 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         e.roller_force[i] = p.wheel_traction[i] * roller.force;
 
         // The parts of the wheel's and roller's accelerations that come from turning (29), (30).
-        const T wheel_turning = T(-1.0) * omega * axial_speed / p.wheel_radius;
+        T wheel_turning = T(-1.0) * omega * axial_speed / p.wheel_radius;
         const T roller_turning = omega * rolling_speed / p.roller_radius;
+        if (one_by_one) {
+            const Rolling<T> &r = e.rollers[i];
+            wheel_turning = T(-1.0) * (omega * axial_speed + r.slope * math::square(e.wheel_speed[i])) / r.radius;
+            // The weight climbs the wheel's radius; its heave follows at once.
+            const T weight = carried(p, d, i);
+            wrench = wrench + (T(-1.0) * weight * r.slope) * row;
+            e.lifted = e.lifted + weight * (r.radius - p.wheel_radius);
+        }
         wrench = wrench + (p.wheel_traction[i] * (e.sensed_torque[i] - p.wheel_inertia * wheel_turning)) * row;
         wrench = wrench + (T(-1.0) * e.roller_force[i]) * Planar3<T>{radial.x, radial.y, T(0.0)};
         wrench = wrench + (T(-1.0) * p.wheel_traction[i] * p.roller_inertia * roller_turning) * roller_row(p, i);
@@ -191,7 +217,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         const Planar3<T> along = wrench_direction(outward, plate);
         const Planar3<T> across = wrench_direction(turned(outward), plate);
         const T centripetal = omega * omega;
-        Inertia3<T> inertia = base_inertia(p);
+        Inertia3<T> inertia = one_by_one ? base_inertia(p, e.rollers) : base_inertia(p);
         inertia.add(p.bumper_plate_mass, across);
         inertia.add(lock * p.bumper_plate_mass, along);
         const T across_turning =
@@ -208,7 +234,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         e.rate[At::compression_rate] = free * (guide - (pull + e.bumper.force) / p.bumper_plate_mass);
         e.internal_force = free * e.bumper.force + lock * (p.bumper_plate_mass * guide - pull);
     } else {
-        acceleration = d.base_inertia.solve(wrench);
+        acceleration = one_by_one ? base_inertia(p, e.rollers).solve(wrench) : d.base_inertia.solve(wrench);
     }
 
     const Vector2<T> acceleration_world = to_world(e.heading, Vector2<T>{acceleration.x, acceleration.y});
@@ -260,6 +286,16 @@ void slider_indicators(std::array<T, E> &g, const std::array<T, N> &x, const Mod
     g[At::event_wall] = slider && p.wall_present != 0 ? T(-1.0) * (x[At::slider_position] + p.wall_distance) : T(-1.0);
 }
 
+template <class T, int Wheels>
+void roller_indicators(EventVector<T, Wheels> &g, const StateVector<T, Wheels> &x, const Modes<T, Wheels> &m,
+                       const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    for (int i = 0; i < Wheels; ++i) {
+        g[At::event_roller + i] =
+            discrete(p) ? hand_over_indicator(d, rolling(p, d, m, i, x[At::wheel_angle + i])) : T(1.0);
+    }
+}
+
 // Zero at an event; see the table in README.md for the meaning of the signs.
 template <class T, int Wheels>
 EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u,
@@ -272,7 +308,7 @@ EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const I
     const Planar3<T> twist{velocity.x, velocity.y, x[At::base_omega]};
     for (int i = 0; i < Wheels; ++i) {
         const T sensed = sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i],
-                                       dot(wheel_row(p, i), twist));
+                                       dot(wheel_row(p, d, m, i, x[At::wheel_angle + i]), twist));
         g[At::event_gear + i] = gear_indicator(p, i, m.gear_direction[i],
                                                net_motor_torque(p, u.motor_torque[i], sensed), x[At::motor_speed + i]);
     }
@@ -282,6 +318,7 @@ EventVector<T, Wheels> event_indicators(const StateVector<T, Wheels> &x, const I
                               .depth
                         : T(-1.0);
     slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
+    roller_indicators(g, x, m, p, d);
     return g;
 }
 
@@ -297,7 +334,72 @@ EventVector<T, Wheels> event_indicators(const Evaluation<T, Wheels> &e, const St
     }
     slider_indicators(g, x, m, p, d, p.slider_present != 0 ? e.contact.depth : T(-1.0),
                       [&] { return e.internal_force; });
+    roller_indicators(g, x, m, p, d);
     return g;
+}
+
+// Everything that moves with the base's twist in one piece, on rollers one by one.
+template <class T, int Wheels, std::size_t N>
+Inertia3<T> inertia_with_plate(const StateVector<T, Wheels> &x, const Modes<T, Wheels> &m,
+                               const Parameters<T, Wheels> &p, const Derived<T> &d,
+                               const std::array<Rolling<T>, N> &rollers) {
+    Inertia3<T> inertia = base_inertia(p, rollers);
+    if (p.plate_on_robot()) {
+        const Vector2<T> outward{d.plate_x, d.plate_y};
+        const Vector2<T> plate =
+            Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[Layout<Wheels>::compression] * outward;
+        inertia.add(p.bumper_plate_mass, wrench_direction(turned(outward), plate));
+        inertia.add(locked(p, m) * p.bumper_plate_mass, wrench_direction(outward, plate));
+    }
+    return inertia;
+}
+
+// The wheels whose indicator fell stand on their next roller: its bristle is at rest, its spin is not, and the row's
+// lever is another. Wheels and base share the impulse that this takes; the loss is heat, as is the old bristle's
+// energy.
+template <class T, int Wheels>
+void hand_over(const Evaluation<T, Wheels> &e, StateVector<T, Wheels> &x, Modes<T, Wheels> &m,
+               const EventVector<T, Wheels> &fired, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    const auto before = all_rolling(p, d, m, x);
+    T loss = T(0.0);
+    std::array<T, Wheels> passing;
+    for (int i = 0; i < Wheels; ++i) {
+        const auto now = math::less(fired[At::event_roller + i], T(0.0));
+        passing[i] = math::select(now, T(1.0), T(0.0));
+        stand_on(p, m, i, math::select(now, roller_after(m.roller[i], before[i].angle), m.roller[i]));
+        if (p.roller_model == RollerModel::bristle) {
+            loss = loss + T(0.5) * passing[i] * p.roller_presliding_stiffness[i] * math::square(x[At::bristle + i]);
+        }
+        x[At::bristle + i] = math::select(now, T(0.0), x[At::bristle + i]);
+    }
+    const auto after = all_rolling(p, d, m, x);
+    const Planar3<T> twist{e.velocity.x, e.velocity.y, x[At::base_omega]};
+    Planar3<T> impulse{T(0.0), T(0.0), T(0.0)};
+    for (int i = 0; i < Wheels; ++i) {
+        const T grip = passing[i] * p.wheel_traction[i];
+        const Planar3<T> spin = roller_row(p, i);
+        impulse =
+            impulse + (grip * p.wheel_inertia * (dot(before[i].row, twist) - dot(after[i].row, twist))) * after[i].row;
+        impulse = impulse + (T(-1.0) * grip * p.roller_inertia * dot(spin, twist)) * spin;
+        loss = loss + passing[i] * carried(p, d, i) * (before[i].radius - after[i].radius);
+    }
+    const Inertia3<T> together = inertia_with_plate(x, m, p, d, after);
+    const Planar3<T> change = together.solve(impulse);
+    const Planar3<T> next = twist + change;
+    loss = loss + inertia_with_plate(x, m, p, d, before).energy(twist) - together.energy(next);
+    const Vector2<T> change_world = to_world(e.heading, Vector2<T>{change.x, change.y});
+    x[At::base_vx] = x[At::base_vx] + change_world.x;
+    x[At::base_vy] = x[At::base_vy] + change_world.y;
+    x[At::base_omega] = x[At::base_omega] + change.z;
+    if (p.plate_on_robot()) {
+        // A free plate keeps its velocity along its guide.
+        const Vector2<T> outward{d.plate_x, d.plate_y};
+        const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
+        const T free = T(1.0) - locked(p, m);
+        x[At::compression_rate] = x[At::compression_rate] + free * dot(wrench_direction(outward, plate), change);
+    }
+    x[At::dissipated] = x[At::dissipated] + loss;
 }
 
 // The events that the planar plant has; `e` is the evaluation before them.
@@ -314,6 +416,11 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
         const T from_sliding = gear_direction_from_rest(p, i, e.net_torque[i]);
         x[At::motor_speed + i] = math::select(now, T(0.0), x[At::motor_speed + i]);
         m.gear_direction[i] = math::select(now, math::select(was_stuck, from_stuck, from_sliding), m.gear_direction[i]);
+    }
+    if constexpr (N == At::state_count) {
+        if (discrete(p)) {
+            hand_over(e, x, m, fired, p, d);
+        }
     }
     const auto follow = [&](int event, T mode) {
         return math::select(math::less(T(0.0), fired[event]), T(1.0),
@@ -337,7 +444,7 @@ void planar_transition(const Evaluation<T, Wheels, N> &e, std::array<T, N> &x, M
         const Vector2<T> outward{d.plate_x, d.plate_y};
         const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
         const Planar3<T> along = wrench_direction(outward, plate);
-        Inertia3<T> inertia = base_inertia(p);
+        Inertia3<T> inertia = discrete(p) ? base_inertia(p, all_rolling(p, d, m, x)) : base_inertia(p);
         inertia.add(p.bumper_plate_mass, wrench_direction(turned(outward), plate));
         inertia.add(p.bumper_plate_mass, along);
         const Planar3<T> change = inertia.solve((T(-1.0) * p.bumper_plate_mass * rate) * along);
@@ -362,6 +469,9 @@ template <class T, int Wheels>
 void transition(StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
                 const EventVector<T, Wheels> &fired, const Parameters<T, Wheels> &p, const Derived<T> &d) {
     planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
+    if (discrete(p)) {
+        accept_inputs(x, u, m, p, d); // wheels that changed their speed twist their drivetrains otherwise
+    }
 }
 
 template <class T, int Wheels>
@@ -374,14 +484,14 @@ void break_away(const Inputs<T, Wheels> &u, Modes<T, Wheels> &m, const Parameter
 // After the inputs changed: a stuck gear whose motor now pulls more than its stiction breaks away.
 template <class T, int Wheels>
 void accept_inputs(const StateVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
-                   const Parameters<T, Wheels> &p, const Derived<T> &) {
+                   const Parameters<T, Wheels> &p, const Derived<T> &d) {
     using At = Layout<Wheels>;
     const auto heading = math::heading(x[At::base_theta]);
     const Vector2<T> velocity = to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]});
     const Planar3<T> twist{velocity.x, velocity.y, x[At::base_omega]};
     for (int i = 0; i < Wheels; ++i) {
         const T sensed = sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i],
-                                       dot(wheel_row(p, i), twist));
+                                       dot(wheel_row(p, d, m, i, x[At::wheel_angle + i]), twist));
         break_away(u, m, p, i, sensed);
     }
 }

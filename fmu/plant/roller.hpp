@@ -21,15 +21,36 @@ T bristle_rate(T v, T z, T stiffness, T limit, T elastic_fraction, const math::D
     return v * (T(1.0) - sliding * rho);
 }
 
-// Friction of a roller in steady motion at speed v (28); near rest a bristle holds up to the Coulomb friction.
-template <class T, int Wheels> T steady_friction(const Parameters<T, Wheels> &p, int wheel, T v) {
-    const T coulomb = p.roller_friction_scale[wheel] * p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
-    const T steady = math::tanh(p.roller_tanh_slope * math::abs(v) / p.roller_radius);
+// One of the rollers of a wheel.
+template <class T> struct TouchingRoller {
+    T radius;   // where it touches the floor, m
+    T friction; // torque over that of (28)
+};
+
+namespace detail {
+
+template <class T, class Radius, int Wheels>
+T steady_friction(const Parameters<T, Wheels> &p, T coulomb, const Radius &radius, T v) {
+    const T steady = math::tanh(p.roller_tanh_slope * math::abs(v) / radius);
     if (p.roller_model == RollerModel::tanh) {
         return coulomb * steady;
     }
     const T stick = math::exp(T(-1.0) * math::square(v / p.roller_stribeck_speed));
     return coulomb * (stick + (T(1.0) - stick) * steady);
+}
+
+} // namespace detail
+
+// Friction of a roller in steady motion at speed v (28); near rest a bristle holds up to the Coulomb friction.
+template <class T, int Wheels> T steady_friction(const Parameters<T, Wheels> &p, int wheel, T v) {
+    const T coulomb = p.roller_friction_scale[wheel] * p.wheel_load[wheel] * p.roller_coulomb_torque / p.roller_radius;
+    return detail::steady_friction(p, coulomb, p.roller_radius, v);
+}
+template <class T, int Wheels>
+T steady_friction(const Parameters<T, Wheels> &p, int wheel, T v, const TouchingRoller<T> &roller) {
+    const T coulomb = p.roller_friction_scale[wheel] * p.wheel_load[wheel] * p.roller_coulomb_torque * roller.friction /
+                      roller.radius;
+    return detail::steady_friction(p, coulomb, roller.radius, v);
 }
 
 // v: speed of the wheel along its axle, n_i . v, m/s; z: bristle deflection, m; steady: steady_friction() at v, N.
@@ -52,12 +73,12 @@ template <class T, int Wheels> RollerForce<T> roller_force(const Parameters<T, W
                         steady_friction(p, wheel, v));
 }
 
-// Deflection in steady motion at speed v, where z' = 0 and the friction is that of (28).
-template <class T, int Wheels> T steady_deflection(const Parameters<T, Wheels> &p, int wheel, T v) {
+// Deflection in steady motion at speed v, where z' = 0 and the friction is `steady`.
+template <class T, int Wheels> T steady_deflection(const Parameters<T, Wheels> &p, int wheel, T v, T steady) {
     if (p.roller_model == RollerModel::tanh) {
         return T(0.0);
     }
-    return math::sign(v) * steady_friction(p, wheel, v) / p.roller_presliding_stiffness[wheel];
+    return math::sign(v) * steady / p.roller_presliding_stiffness[wheel];
 }
 
 } // namespace giveway::plant

@@ -50,7 +50,8 @@ template <int Wheels = table_wheels> struct Layout {
         event_bottom_stop,
         event_landing,
         event_wall,
-        event_count,
+        event_roller, // of each wheel
+        event_count = event_roller + Wheels,
         // Only with tipping.
         event_floor = event_count, // of each wheel
         event_tilt = event_floor + Wheels,
@@ -74,6 +75,9 @@ template <class T, int Wheels = table_wheels> struct Modes {
     // Only with tipping.
     std::array<T, Wheels> on_floor = {};
     T overturned = T(0.0); // tilted beyond the model's range
+    // Only with rollers one by one: which roller of each wheel is at the bottom, counted from the start on; where its
+    // row is along the axle (m); its friction over that of (28).
+    std::array<T, Wheels> roller = {}, roller_offset = {}, roller_friction = {};
 };
 
 template <class T, int Wheels = table_wheels> using EventVector = std::array<T, Layout<Wheels>::event_count>;

@@ -47,23 +47,46 @@ template <class T> struct Footing {
     Vector3<T> velocity;        // of the body at that point
     T depth, depth_rate;
     T wheel_speed; // against the body
+    // Of rollers one by one; what the floor's forces have as levers about the axle.
+    Rolling<T> roller;
+    T level, lead; // of the axle; of the contact before the hub, m
 };
 
+// Past the vertical a wheel's angle is that against the body, less the body's lean about the axle (of small angles).
 template <class T, int Wheels>
-Footing<T> footing(const TippingVector<T, Wheels> &x, const Parameters<T, Wheels> &p, const Stance<T> &s, int wheel) {
+Rolling<T> tilted_rolling(const TippingVector<T, Wheels> &x, const Parameters<T, Wheels> &p, const Derived<T> &d,
+                          const Modes<T, Wheels> &m, int wheel) {
     using At = Layout<Wheels>;
-    Footing<T> f;
+    const T lean =
+        T(Azimuths<Wheels>::cos[wheel]) * x[At::base_roll] + T(Azimuths<Wheels>::sin[wheel]) * x[At::base_pitch];
+    return rolling(p, d, m, wheel, x[At::wheel_angle + wheel] - lean);
+}
+
+template <class T, int Wheels>
+Footing<T> footing(const TippingVector<T, Wheels> &x, const Parameters<T, Wheels> &p, const Derived<T> &d,
+                   const Modes<T, Wheels> &m, const Stance<T> &s, int wheel) {
+    using At = Layout<Wheels>;
+    Footing<T> f{};
     f.axle = T(Azimuths<Wheels>::cos[wheel]) * s.forward + T(Azimuths<Wheels>::sin[wheel]) * s.left;
     const T level = math::sqrt(f.axle.x * f.axle.x + f.axle.y * f.axle.y);
     f.radial = {f.axle.x / level, f.axle.y / level, T(0.0)};
     f.rolling = {T(-1.0) * f.radial.y, f.radial.x, T(0.0)};
     const Vector3<T> rim = (T(-1.0) / level) * (Vector3<T>{T(0.0), T(0.0), T(1.0)} -
                                                 f.axle.z * f.axle); // from the hub straight down in the wheel's plane
-    f.point = p.wheel_distance * f.axle + p.wheel_radius * (s.up + rim);
-    f.velocity = s.velocity_of(f.point);
-    f.depth = T(-1.0) * (x[At::base_heave] + f.point.z);
-    f.depth_rate = T(-1.0) * f.velocity.z;
     f.wheel_speed = x[At::wheel_spin + wheel] + dot(s.turning, f.axle);
+    if (discrete(p)) {
+        f.roller = tilted_rolling(x, p, d, m, wheel);
+        f.level = level;
+        f.lead = f.roller.slope;
+        f.point = f.roller.lever * f.axle + p.wheel_radius * s.up + f.roller.radius * rim + f.lead * f.rolling;
+        f.velocity = s.velocity_of(f.point);
+        f.depth_rate = T(-1.0) * f.velocity.z + f.lead * level * f.wheel_speed;
+    } else {
+        f.point = p.wheel_distance * f.axle + p.wheel_radius * (s.up + rim);
+        f.velocity = s.velocity_of(f.point);
+        f.depth_rate = T(-1.0) * f.velocity.z;
+    }
+    f.depth = T(-1.0) * (x[At::base_heave] + f.point.z);
     return f;
 }
 
@@ -107,8 +130,9 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
     Vector3<T> force = push;
     Vector3<T> moment = cross(push_point, push); // about the base's centre at floor level
     const T nominal_load = p.base_mass * T(gravity_mps2) / T(Wheels);
+    const bool one_by_one = discrete(p);
     for (int i = 0; i < Wheels; ++i) {
-        const Footing<T> f = footing(x, p, s, i);
+        const Footing<T> f = footing(x, p, d, m, s, i);
         e.wheel_speed[i] = f.wheel_speed;
         e.sensed_torque[i] =
             sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], f.wheel_speed);
@@ -121,9 +145,17 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
 
         // A bristle's deflection is that at nominal load; its force is proportional to the load.
         const T share = floor.force / nominal_load;
-        const T axial_speed = dot(f.radial, f.velocity);
-        const T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
-        const auto roller = roller_force(p, i, axial_speed, x[At::bristle + i]);
+        T axial_speed = dot(f.radial, f.velocity);
+        T slip = dot(f.rolling, f.velocity) - p.wheel_radius * f.wheel_speed;
+        T steady;
+        if (one_by_one) {
+            slip = dot(f.rolling, f.velocity) - f.roller.radius * f.wheel_speed;
+            axial_speed = axial_speed + f.lead * f.axle.z * f.wheel_speed;
+            steady = steady_friction(p, i, axial_speed, f.roller.touch);
+        } else {
+            steady = steady_friction(p, i, axial_speed);
+        }
+        const auto roller = roller_force(p, d.roller_plastic_fraction, i, axial_speed, x[At::bristle + i], steady);
         const T grip_rate =
             bristle_rate(slip, x[At::grip + i], p.wheel_grip_stiffness, p.wheel_grip_friction * nominal_load,
                          p.roller_elastic_fraction, d.roller_plastic_fraction);
@@ -134,7 +166,11 @@ TippingEvaluation<T, Wheels> evaluate(const TippingVector<T, Wheels> &x, const I
             traction * f.rolling - e.roller_force[i] * f.radial + Vector3<T>{T(0.0), T(0.0), floor.force};
         // About its axle the floor's moment acts on the wheel and the drive's moment on the body, and the spin turns
         // with the body.
-        const T spinning_up = e.sensed_torque[i] - p.wheel_radius * traction;
+        T spinning_up = e.sensed_torque[i] - p.wheel_radius * traction;
+        if (one_by_one) {
+            spinning_up = e.sensed_torque[i] - f.roller.radius * traction -
+                          f.lead * (f.level * floor.force + f.axle.z * e.roller_force[i]);
+        }
         force = force + at_floor;
         moment = moment + cross(f.point, at_floor) + spinning_up * f.axle +
                  (p.wheel_inertia * x[At::wheel_spin + i]) * cross(s.turning, f.axle);
@@ -227,12 +263,13 @@ TippingEvents<T, Wheels> event_indicators(const TippingVector<T, Wheels> &x, con
     const auto heading = math::sincos(x[At::base_theta]);
     const Stance<T> s = stance<Wheels>(x, to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]}));
     for (int i = 0; i < Wheels; ++i) {
-        const Footing<T> f = footing(x, p, s, i);
+        const Footing<T> f = footing(x, p, d, m, s, i);
         const T sensed =
             sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], f.wheel_speed);
         g[At::event_gear + i] = gear_indicator(p, i, m.gear_direction[i],
                                                net_motor_torque(p, u.motor_torque[i], sensed), x[At::motor_speed + i]);
         g[At::event_floor + i] = f.depth;
+        g[At::event_roller + i] = discrete(p) ? hand_over_indicator(d, f.roller) : T(1.0);
     }
     g[At::event_tilt] = s.up.z - T(cos_greatest_tilt);
     const T depth = p.slider_present != 0
@@ -243,6 +280,31 @@ TippingEvents<T, Wheels> event_indicators(const TippingVector<T, Wheels> &x, con
                         : T(-1.0);
     slider_indicators(g, x, m, p, d, depth, [&] { return evaluate(x, u, m, p, d).internal_force; });
     return g;
+}
+
+// As that of the planar plant. Nothing is rigid between wheel and floor, so no speed jumps; with the row the floor's
+// springs change, by which the account is corrected.
+template <class T, int Wheels>
+void hand_over(TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
+               const TippingEvents<T, Wheels> &fired, const Parameters<T, Wheels> &p, const Derived<T> &d) {
+    using At = Layout<Wheels>;
+    const T stored = evaluate(x, u, m, p, d).floor_stored;
+    for (int i = 0; i < Wheels; ++i) {
+        const auto now = math::less(fired[At::event_roller + i], T(0.0));
+        const T angle = tilted_rolling(x, p, d, m, i).angle;
+        stand_on(p, m, i, math::select(now, roller_after(m.roller[i], angle), m.roller[i]));
+        x[At::bristle + i] = math::select(now, T(0.0), x[At::bristle + i]);
+        x[At::grip + i] = math::select(now, T(0.0), x[At::grip + i]);
+    }
+    auto e = evaluate(x, u, m, p, d);
+    for (int i = 0; i < Wheels; ++i) {
+        // A wheel that a tilted base holds over the floor on its other row.
+        const auto now = math::less(fired[At::event_roller + i], T(0.0));
+        m.on_floor[i] = math::select(now, math::select(math::less(T(0.0), e.depth[i]), T(1.0), T(0.0)), m.on_floor[i]);
+    }
+    e = evaluate(x, u, m, p, d);
+    x[At::dissipated] = x[At::dissipated] + stored - e.floor_stored;
+    accept_inputs(x, u, m, p, d);
 }
 
 template <class T, int Wheels>
@@ -259,16 +321,19 @@ void transition(TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T
     }
     m.overturned = math::select(math::less(fired[At::event_tilt], T(0.0)), T(1.0), m.overturned);
     planar_transition(evaluate(x, u, m, p, d), x, m, fired, p, d);
+    if (discrete(p)) {
+        hand_over(x, u, m, fired, p, d);
+    }
 }
 
 template <class T, int Wheels>
 void accept_inputs(const TippingVector<T, Wheels> &x, const Inputs<T, Wheels> &u, Modes<T, Wheels> &m,
-                   const Parameters<T, Wheels> &p, const Derived<T> &) {
+                   const Parameters<T, Wheels> &p, const Derived<T> &d) {
     using At = Layout<Wheels>;
     const auto heading = math::sincos(x[At::base_theta]);
     const Stance<T> s = stance<Wheels>(x, to_base(heading, Vector2<T>{x[At::base_vx], x[At::base_vy]}));
     for (int i = 0; i < Wheels; ++i) {
-        const T speed = footing(x, p, s, i).wheel_speed;
+        const T speed = footing(x, p, d, m, s, i).wheel_speed;
         break_away(u, m, p, i,
                    sensed_torque(p, x[At::motor_angle + i], x[At::motor_speed + i], x[At::wheel_angle + i], speed));
     }

@@ -46,7 +46,7 @@ _VARIABLE_KEYS = {
     "choices", "c_core",
 }  # fmt: skip
 # Types of plant parameters by the types of their variables; an integer may also be an enumeration.
-_PLANT_TYPES = {"real": ("number", "divisor", "wheels"), "integer": ("whole",), "boolean": ("whole",)}
+_PLANT_TYPES = {"real": ("number", "divisor", "wheels"), "integer": ("whole", "number"), "boolean": ("whole",)}
 _ENUMERATION = re.compile(r"[A-Z][A-Za-z]*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
 # A member of a struct of c_core; `[i]` is the element of a variable with a count.

@@ -50,6 +50,8 @@ inline DriveOptions drive_options(const Variables &v) {
     return o;
 }
 
+inline constexpr double half_turn = 3.141592653589793;
+
 // Within the lines between the wheels.
 inline bool check_mass_centre(const Variables &v, Message &message) {
     for (int i = 0; i < wheel_count; ++i) {
@@ -119,6 +121,27 @@ inline bool check_relations(const Variables &v, Message &message) {
         return refuse(
             "base.tilt_inertia", v.base_tilt_inertia,
             "greater than that of the wheels about their axles, half of wheel.inertia for each =", wheels_tilt_inertia);
+    }
+    if (v.roller_arrangement == static_cast<int>(plant::RollerArrangement::discrete)) {
+        const int count = v.roller_rows * v.roller_per_row;
+        if (count < 6) {
+            return refuse("roller.per_row", v.roller_per_row,
+                          "such that there are six rollers or more, in rows: roller.rows =", v.roller_rows);
+        }
+        const double versine = 1.0 - math::sincos(half_turn / count).cos;
+        if (v.roller_radius_dip > v.wheel_radius * versine) {
+            return refuse("roller.radius_dip", v.roller_radius_dip,
+                          "at most that of a wheel with corners instead of rollers =", v.wheel_radius * versine);
+        }
+        const double lost = v.wheel_radius * versine - v.roller_radius_dip; // by a barrel from its middle to its end
+        if (0.8 * v.roller_radius < lost) {
+            return refuse("roller.radius", v.roller_radius,
+                          "at least 1.25 times what a roller loses towards its end =", 1.25 * lost);
+        }
+        if (v.roller_row_distance * (v.roller_rows - 1) > v.wheel_distance) {
+            return refuse("roller.row_distance", v.roller_row_distance,
+                          "such that all rows are within wheel.distance =", v.wheel_distance);
+        }
     }
     if (v.outline_wheels && v.outline_clearance > 2.0 * v.wheel_radius) {
         return refuse("outline.clearance", v.outline_clearance,

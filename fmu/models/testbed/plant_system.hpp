@@ -133,7 +133,7 @@ public:
             return 1e-9; // of the cosine of the tilt
         }
         return event == At::event_end_stop && modes_.latched > 0.5 ? 1e-6  // N
-                                                                   : 1e-9; // m
+                                                                   : 1e-9; // m, rad
     }
 
     [[nodiscard]] double absolute_tolerance(int state) const override {

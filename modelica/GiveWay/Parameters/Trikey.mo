@@ -23,6 +23,11 @@ record Trikey "Numbers of Trikey, made from robots/trikey.toml"
   parameter SI.TranslationalDampingConstant roller_presliding_damping=20.0 "assumed, low confidence; sigma_1 per wheel";
   parameter SI.Velocity roller_stribeck_speed=0.0025 "assumed, low confidence; speed scale over which stiction gives way to (28)";
   parameter Real roller_elastic_fraction(unit="1")=0.7 "assumed, low confidence; rho_ba: share of the sliding deflection that is purely elastic";
+  parameter Integer roller_rows=2 "assumed, low confidence; two staggered rows, as on most 4 in omniwheels";
+  parameter Integer roller_per_row=9 "assumed, low confidence; 18 rollers in both rows";
+  parameter SI.Length roller_row_distance=0.0125 "assumed, low confidence; half of the wheel's width: two rows side by side";
+  parameter SI.Length roller_radius_dip=0.0001 "assumed, low confidence; the wheel's radius between two rollers; moulded rollers and their bearings have that much play";
+  parameter Real roller_friction_scatter(unit="1")=0.1 "assumed, low confidence; from roller to roller, to both sides";
   parameter SI.Inertia drivetrain_motor_inertia=0.0523 "sourced, low confidence";
   parameter SI.RotationalSpringConstant drivetrain_stiffness=721.0 "fitted, low confidence; series of gear, sensor and belt; component estimates give 840";
   parameter SI.RotationalDampingConstant drivetrain_damping=1.0 "assumed, low confidence; about 3 % of critical for the base on its three drivetrains";
@@ -105,6 +110,11 @@ Given: printed in the paper; sourced: found elsewhere; fitted: to the paper's re
 <tr><td>roller_presliding_damping</td><td>N.s/m</td><td>assumed</td><td>engineering estimate</td></tr>
 <tr><td>roller_stribeck_speed</td><td>m/s</td><td>assumed</td><td>engineering estimate</td></tr>
 <tr><td>roller_elastic_fraction</td><td>1</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>roller_rows</td><td>1</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>roller_per_row</td><td>1</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>roller_row_distance</td><td>m</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>roller_radius_dip</td><td>m</td><td>assumed</td><td>engineering estimate</td></tr>
+<tr><td>roller_friction_scatter</td><td>1</td><td>assumed</td><td>engineering estimate</td></tr>
 <tr><td>drivetrain_motor_inertia</td><td>kg.m2</td><td>sourced</td><td>rotor 2.09e-5 kg m2 (lsentis/uta-wbc-dreamer@87b153a (HCRL, 2011-2013)) x 50^2 (ratio estimated)</td></tr>
 <tr><td>drivetrain_stiffness</td><td>N.m/rad</td><td>fitted</td><td>giveway fit, to the results of Kim, Llado, Sentis, Auton Robot 40:325 (2016); residuals in trikey.fit.json</td></tr>
 <tr><td>drivetrain_damping</td><td>N.m.s/rad</td><td>assumed</td><td>engineering estimate</td></tr>

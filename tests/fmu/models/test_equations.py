@@ -107,6 +107,10 @@ SITUATIONS: dict[str, list[dict[str, float]]] = {
         {"base.tipping": True, "start.vx": 0.2, "start.omega": 0.3, "bumper.kind": kind, "bumper.latch_model": latch,
          "slider.run_up": 0.001, "wall.present": kind == 1}
         for kind, latch in ((0, 0), (1, 0), (2, 1))
+    ] + [
+        {"roller.arrangement": 1, "roller.phase[0]": 0.1, "roller.phase[1]": -0.1, "roller.phase[2]": 0.05,
+         "base.tipping": tipping, "start.vx": 0.2, "start.omega": 0.3, "slider.run_up": 0.001}
+        for tipping in (False, True)
     ],
 }  # fmt: skip
 
@@ -296,7 +300,7 @@ def test_an_instance_for_co_simulation_has_no_modes_to_change(version: int, tmp_
 
 def test_fmi3_counts_what_it_has(make: Callable[..., Fmu]) -> None:
     fmu = make("testbed", 3)
-    for function, wanted in (("GetNumberOfContinuousStates", 41), ("GetNumberOfEventIndicators", 13)):
+    for function, wanted in (("GetNumberOfContinuousStates", 41), ("GetNumberOfEventIndicators", 16)):
         count = ctypes.c_size_t()
         assert fmu.call(function, ctypes.byref(count)) == OK
         assert count.value == wanted

@@ -23,20 +23,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, replace
+from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import DOP853, DenseOutput
+from scipy.integrate import DOP853, DenseOutput, quad
 from scipy.optimize import brentq
 
 STATES = 28
-INDICATORS = 9
+INDICATORS = 12
 KIND_NONE, KIND_SPRING, KIND_MAGNETIC = 0, 1, 2
 MOUNT_SLIDER, MOUNT_ROBOT = 0, 1
 LATCH_CONTINUOUS, LATCH_IDEALISED = 0, 1
 NOSE_DISC, NOSE_EDGE = 0, 1
 ROLLER_BRISTLE, ROLLER_TANH = 0, 1
 GRAVITY = 9.81
-GEAR, CONTACT, ROPE, BUMPER, BOTTOM, LANDING, WALL = 0, 3, 4, 5, 6, 7, 8  # event indices; gears are 0, 1, 2
+# Event indices; gears are 0, 1, 2, rollers 9, 10, 11.
+GEAR, CONTACT, ROPE, BUMPER, BOTTOM, LANDING, WALL, ROLLER = 0, 3, 4, 5, 6, 7, 8, 9
 
 _COS = [math.cos(2.0 * math.pi * i / 3.0) for i in range(3)]
 _SIN = [math.sin(2.0 * math.pi * i / 3.0) for i in range(3)]
@@ -70,6 +72,15 @@ class Parameters:
     roller_presliding_damping: float = 20.0  # sigma1, N s/m
     roller_stribeck_speed: float = 0.002  # v_S, m/s
     roller_elastic_fraction: float = 0.7  # rho_ba
+    # Rollers one by one.
+    roller_arrangement: int = 0
+    roller_rows: int = 2
+    roller_per_row: int = 9
+    roller_row_distance: float = 0.0125
+    roller_radius_dip: float = 1.0e-4
+    roller_friction_scatter: float = 0.1
+    roller_seed: int = 1
+    roller_phase: list[float] = field(default_factory=lambda: [0.0] * 3)
     drivetrain_motor_inertia: float = 0.0523
     drivetrain_stiffness: float = 668.0
     drivetrain_damping: float = 1.0
@@ -165,12 +176,33 @@ class Modes:
     latched: int = 0
     landed: int = 0
     walled: int = 0
+    roller: list[int] = field(default_factory=lambda: [0, 0, 0])  # at the bottom of each wheel
 
     def copy(self) -> Modes:
-        return replace(self, gear=list(self.gear))
+        return replace(self, gear=list(self.gear), roller=list(self.roller))
 
     def as_list(self) -> list[int]:
-        return [*self.gear, *(getattr(self, f.name) for f in fields(self)[1:])]
+        return [*self.gear, *(getattr(self, f.name) for f in fields(self)[1:-1]), *self.roller]
+
+
+class Footing(NamedTuple):
+    """How a wheel stands on one of its rollers."""
+
+    radius: float  # of the wheel there
+    slope: float  # its derivative by the wheel's angle
+    lever: float  # of the contact about the base's centre
+    angle: float  # past the roller's middle
+    roller_radius: float  # of the barrel there
+    friction: float  # over that of an endless roller of the same radius
+
+
+def scattered(roller: int, wheel: int, seed: int) -> float:
+    """A number in (-1, 1) for each roller, by whole numbers."""
+    prime = 2**24 - 3
+    v = (69069 * seed + 39916801 * roller + 1000003 * (wheel + 1)) % prime
+    for salt in (7919, 104729, 1299709):
+        v = (v * v + salt) % prime
+    return 2.0 * (v + 0.5) / prime - 1.0
 
 
 def one_sided(k: float, depth: float, rate: float, e: float) -> float:
@@ -245,6 +277,13 @@ class Reference:
         masses += [self.carriage_mass] * 2 + [p.bumper_plate_mass] * 2 + [p.rope_hanging_mass]
         self.masses = np.array(masses)
         self.parts = parts_of_outline(p)
+        # A roller is an arc over its pitch, its barrel as round as that arc.
+        self.pitch = 2.0 * math.pi / (p.roller_rows * p.roller_per_row)
+        self.arc = p.wheel_radius - p.roller_radius_dip / (1.0 - math.cos(0.5 * self.pitch))
+        self.barrel_mean = 1.0
+        if p.roller_arrangement:
+            half = 0.5 * self.pitch
+            self.barrel_mean = quad(lambda a: p.roller_radius / self.barrel(a), 0.0, half, epsabs=1e-14)[0] / half
         self.template = np.zeros((self.SIZE, self.SIZE))
         self.template[range(self.N_Q), range(self.N_Q)] = masses
         for i in range(3):
@@ -268,6 +307,33 @@ class Reference:
         """From the wheels' centre to that of mass, world frame."""
         p, ct, st = self.p, math.cos(theta), math.sin(theta)
         return ct * p.base_com_x - st * p.base_com_y, st * p.base_com_x + ct * p.base_com_y
+
+    def barrel(self, angle: float) -> float:
+        """Distance of the contact from the roller's own axis, which is roller_radius inside the rim."""
+        p = self.p
+        return self.arc * math.cos(angle) + (p.wheel_radius - self.arc) - (p.wheel_radius - p.roller_radius)
+
+    def footing(self, i: int, wheel_angle: float, modes: Modes) -> Footing:
+        p = self.p
+        if not p.roller_arrangement:
+            return Footing(p.wheel_radius, 0.0, p.wheel_distance, 0.0, p.roller_radius, 1.0)
+        k = modes.roller[i]
+        angle = wheel_angle + p.roller_phase[i] - k * self.pitch
+        row = k % p.roller_rows
+        scatter = p.roller_friction_scatter * scattered(k % (p.roller_rows * p.roller_per_row), i, p.roller_seed)
+        return Footing(
+            self.arc + (p.wheel_radius - self.arc) * math.cos(angle),
+            -(p.wheel_radius - self.arc) * math.sin(angle),
+            p.wheel_distance + (row - 0.5 * (p.roller_rows - 1)) * p.roller_row_distance,
+            angle,
+            self.barrel(angle),
+            (1.0 + scatter) / self.barrel_mean,
+        )
+
+    def weight(self, i: int) -> float:
+        p = self.p
+        share = 1.0 + 2.0 * (_COS[i] * p.base_com_x + _SIN[i] * p.base_com_y) / p.wheel_distance
+        return p.wheel_traction[i] * share * p.base_mass * GRAVITY * math.cos(p.floor_slope) / 3.0
 
     def plate_locked(self, modes: Modes) -> bool:
         p = self.p
@@ -352,11 +418,12 @@ class Reference:
     def rope(self, x: np.ndarray) -> tuple[float, float]:
         return self.rope_preload + x[20] - x[18], x[21] - x[19]
 
-    def roller(self, i: int, z: float, v: float) -> tuple[float, float]:
+    def roller(self, i: int, z: float, v: float, footing: Footing) -> tuple[float, float]:
         """Friction force at the floor and the bristle's rate."""
         p = self.p
-        level = p.roller_friction_scale[i] * p.wheel_load[i] * p.roller_coulomb_torque / p.roller_radius
-        moving = math.tanh(p.roller_tanh_slope * abs(v) / p.roller_radius)
+        level = p.roller_friction_scale[i] * p.wheel_load[i] * p.roller_coulomb_torque
+        level *= footing.friction / footing.roller_radius
+        moving = math.tanh(p.roller_tanh_slope * abs(v) / footing.roller_radius)
         if p.roller_model == ROLLER_TANH:
             return level * math.copysign(moving, v), 0.0
         w = math.exp(-((v / p.roller_stribeck_speed) ** 2))
@@ -396,14 +463,15 @@ class Reference:
             ci, si = ct * _COS[i] - st * _SIN[i], st * _COS[i] + ct * _SIN[i]
             v_roll = -si * vx + ci * vy
             v_radial = ci * vx + si * vy
-            wheel_speed = (v_roll + p.wheel_distance * omega) / p.wheel_radius
+            f = self.footing(i, x[12 + i], modes)
+            wheel_speed = (v_roll + f.lever * omega) / f.radius
             if p.wheel_traction[i]:
                 row = 14 + i
                 # The wheels' centre is at (-mx, -my) from that of mass.
-                for column, value in ((0, -si), (1, ci), (2, p.wheel_distance - si * my - ci * mx)):
-                    matrix[row, column] = matrix[column, row] = value / p.wheel_radius
-                load[row] = p.fault_velocity_term * omega * v_radial / p.wheel_radius
-                load[row] -= omega**2 * (-si * mx + ci * my) / p.wheel_radius
+                for column, value in ((0, -si), (1, ci), (2, f.lever - si * my - ci * mx)):
+                    matrix[row, column] = matrix[column, row] = value / f.radius
+                load[row] = p.fault_velocity_term * (omega * v_radial + f.slope * wheel_speed**2) / f.radius
+                load[row] -= omega**2 * (-si * mx + ci * my) / f.radius
                 row = 17 + i
                 for column, value in ((0, ci), (1, si), (2, ci * my - si * mx)):
                     matrix[row, column] = matrix[column, row] = value / p.roller_radius
@@ -413,8 +481,8 @@ class Reference:
             twist_rate = x[9 + i] - wheel_speed
             t_i = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * twist_rate
             torque.append(t_i)
-            load[3 + i] = t_i
-            f_i, zdot = self.roller(i, x[15 + i], v_radial)
+            load[3 + i] = t_i - self.weight(i) * f.slope  # the weight is lifted along the wheel's radius
+            f_i, zdot = self.roller(i, x[15 + i], v_radial, f)
             friction.append(f_i)
             load[6 + i] = -p.roller_radius * f_i
             rate[12 + i] = wheel_speed
@@ -603,7 +671,9 @@ class Reference:
         for i in range(3):
             ci, si = ct * _COS[i] - st * _SIN[i], st * _COS[i] + ct * _SIN[i]
             if p.wheel_traction[i]:
-                wheel = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
+                f = self.footing(i, x[12 + i], modes)
+                energy += self.weight(i) * (f.radius - p.wheel_radius)
+                wheel = (-si * x[3] + ci * x[4] + f.lever * x[5]) / f.radius
                 roller = (ci * x[3] + si * x[4]) / p.roller_radius
                 energy += 0.5 * p.wheel_inertia * wheel**2 + 0.5 * p.roller_inertia * roller**2
             energy += 0.5 * p.drivetrain_motor_inertia * x[9 + i] ** 2
@@ -642,11 +712,12 @@ class Reference:
 
     # --- Events -----------------------------------------------------------------------------------
 
-    def gear_surplus(self, i: int, x: np.ndarray, u: Inputs) -> float:
+    def gear_surplus(self, i: int, x: np.ndarray, u: Inputs, modes: Modes) -> float:
         """Motor torque minus drivetrain torque: the torque that the gear friction has to hold."""
         p = self.p
         ci, si = math.cos(x[2] + 2.0 * math.pi * i / 3.0), math.sin(x[2] + 2.0 * math.pi * i / 3.0)
-        wheel_speed = (-si * x[3] + ci * x[4] + p.wheel_distance * x[5]) / p.wheel_radius
+        f = self.footing(i, x[12 + i], modes)
+        wheel_speed = (-si * x[3] + ci * x[4] + f.lever * x[5]) / f.radius
         torque = p.drivetrain_stiffness * (x[6 + i] - x[12 + i]) + p.drivetrain_damping * (x[9 + i] - wheel_speed)
         return max(-p.drivetrain_torque_limit, min(p.drivetrain_torque_limit, u.motor_torque[i])) - torque
 
@@ -658,7 +729,8 @@ class Reference:
         g = [0.0] * INDICATORS
         for i in range(3):
             direction = modes.gear[i]
-            g[i] = x[9 + i] * direction if direction else self.stiction(i) - abs(self.gear_surplus(i, x, u))
+            g[i] = x[9 + i] * direction if direction else self.stiction(i) - abs(self.gear_surplus(i, x, u, modes))
+            g[ROLLER + i] = 0.5 * self.pitch + 1e-9 - abs(self.footing(i, x[12 + i], modes).angle)
         if p.slider_present:
             g[CONTACT] = self.touching(x)[0][0]
             if p.wall_present:
@@ -681,6 +753,8 @@ class Reference:
         p = self.p
         if index < 3:
             return -1
+        if index >= ROLLER:
+            return -1 if p.roller_arrangement else 0
         if not p.slider_present:
             return 0
         if index == CONTACT:
@@ -703,7 +777,7 @@ class Reference:
         if index < 3:
             if modes.gear[index]:
                 x[9 + index] = 0.0
-            surplus = self.gear_surplus(index, x, u)
+            surplus = self.gear_surplus(index, x, u, modes)
             stays = modes.gear[index] and abs(surplus) <= self.stiction(index)
             modes.gear[index] = 0 if stays else int(math.copysign(1.0, surplus))
         elif index == CONTACT:
@@ -716,25 +790,21 @@ class Reference:
             elif modes.latched:
                 modes.latched = 0
             else:
-                x = self.relatch(x)
+                x = self.relatch(x, modes)
                 modes.latched = 1
         elif index == BOTTOM:
             modes.bottom_stop = 1 - modes.bottom_stop
         elif index == LANDING:
             modes.landed = 1 - modes.landed
-        else:
+        elif index == WALL:
             modes.walled = 1 - modes.walled
-        return x, modes
+        else:
+            x, modes = self.hand_over(x, modes, index - ROLLER)
+        return x, self.settle(t, x, u, modes) if self.p.roller_arrangement else modes
 
-    def relatch(self, x: np.ndarray) -> np.ndarray:
-        """Plastic impact of plate and carrier: A dQ' + J^T impulses = 0 with the lock closed
-        afterwards."""
+    def constraints(self, x: np.ndarray, modes: Modes, locked: bool) -> np.ndarray:
+        """J at this instant; weight and carriage are never locked."""
         p = self.p
-        x = np.array(x)
-        x[22] = 0.0
-        still = Modes()
-        before = self.stored_energy(x, still)
-        # J at this instant, with the plate locked; weight and carriage are never locked.
         theta = x[2]
         mx, my = self.to_mass(theta)
         rows = np.zeros((9, self.N_Q))
@@ -744,12 +814,13 @@ class Reference:
                 math.sin(theta + 2.0 * math.pi * i / 3.0),
             )
             if p.wheel_traction[i]:
-                rows[i, [0, 1, 2, 3 + i]] = -si / p.wheel_radius, ci / p.wheel_radius, 0.0, -1.0
-                rows[i, 2] = (p.wheel_distance - si * my - ci * mx) / p.wheel_radius
+                f = self.footing(i, x[12 + i], modes)
+                rows[i, [0, 1, 2, 3 + i]] = -si / f.radius, ci / f.radius, 0.0, -1.0
+                rows[i, 2] = (f.lever - si * my - ci * mx) / f.radius
                 rows[3 + i, [0, 1, 6 + i]] = ci / p.roller_radius, si / p.roller_radius, -1.0
                 rows[3 + i, 2] = (ci * my - si * mx) / p.roller_radius
         rows[6, [9, 10]] = -self.ey, self.ex
-        px, py, pvx, pvy, ox, oy = self.plate(x)
+        px, py, _, _, ox, oy = self.plate(x)
         gx, gy = px - x[0], py - x[1]
         if self.on_robot:
             gx, gy = gx - mx, gy - my  # from the centre of mass
@@ -758,27 +829,70 @@ class Reference:
         else:
             rows[7, [11, 12]] = -self.ey, self.ex
             rows[8, [9, 10, 11, 12]] = -ox, -oy, ox, oy
+        if not locked:
+            rows[8] = 0.0
+        return rows
+
+    def twist(self, speeds: np.ndarray, theta: float) -> tuple[float, float, float]:
+        """Of the wheels' centre."""
+        mx, my = self.to_mass(theta)
+        return speeds[0] + speeds[2] * my, speeds[1] - speeds[2] * mx, speeds[2]
+
+    def speeds(self, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
         speeds = np.zeros(self.N_Q)
+        mx, my = self.to_mass(x[2])
         speeds[0:3] = x[3] - x[5] * my, x[4] + x[5] * mx, x[5]
         for i in range(3):
             speeds[3 + i] = rows[i, 0:3] @ speeds[0:3]
             speeds[6 + i] = rows[3 + i, 0:3] @ speeds[0:3]
         speeds[9:11] = x[19] * self.ex, x[19] * self.ey
-        speeds[11:13] = pvx, pvy
+        speeds[11:13] = self.plate(x)[2:4]
+        return speeds
+
+    def impact(self, speeds: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """A dQ' + J^T impulses = 0 with J Q' = 0 afterwards."""
         rows = rows[np.any(rows != 0.0, axis=1)]  # without those of lifted wheels
         weights = rows / self.masses
-        after = speeds - weights.T @ np.linalg.solve(weights @ rows.T, rows @ speeds)
-        x[3:6] = after[0] + after[2] * my, after[1] - after[2] * mx, after[2]
+        return speeds - weights.T @ np.linalg.solve(weights @ rows.T, rows @ speeds)
+
+    def relatch(self, x: np.ndarray, modes: Modes) -> np.ndarray:
+        """Plastic impact of plate and carrier, with the lock closed afterwards."""
+        x = np.array(x)
+        x[22] = 0.0
+        still = Modes(roller=modes.roller)
+        before = self.stored_energy(x, still)
+        rows = self.constraints(x, modes, locked=True)
+        after = self.impact(self.speeds(x, rows), rows)
+        x[3:6] = self.twist(after, x[2])
         x[19] = after[9] * self.ex + after[10] * self.ey
         x[23] = 0.0
         x[25] += before - self.stored_energy(x, still)
         return x
 
+    def hand_over(self, x: np.ndarray, modes: Modes, wheel: int) -> tuple[np.ndarray, Modes]:
+        """The next roller: another lever of the wheel, a bristle and a roller at rest."""
+        x, next_modes = np.array(x), modes.copy()
+        before = self.stored_energy(x, modes)
+        speeds = self.speeds(x, self.constraints(x, modes, locked=False))
+        next_modes.roller[wheel] += 1 if self.footing(wheel, x[12 + wheel], modes).angle > 0.0 else -1
+        speeds[6 + wheel] = 0.0
+        after = self.impact(speeds, self.constraints(x, next_modes, self.plate_locked(modes)))
+        if self.on_robot and not self.plate_locked(modes):
+            px, py, _, _, ox, oy = self.plate(x)
+            base = self.twist(after, x[2])
+            vx = after[11] - base[0] + after[2] * (py - x[1])
+            vy = after[12] - base[1] - after[2] * (px - x[0])
+            x[23] = -(vx * ox + vy * oy)
+        x[3:6] = self.twist(after, x[2])
+        x[15 + wheel] = 0.0
+        x[25] += before - self.stored_energy(x, next_modes)
+        return x, next_modes
+
     def settle(self, t: float, x: np.ndarray, u: Inputs, modes: Modes) -> Modes:
         """A stuck gear that a jump (of input or speed) has overloaded breaks away at once."""
         modes = modes.copy()
         for i in range(3):
-            surplus = self.gear_surplus(i, x, u)
+            surplus = self.gear_surplus(i, x, u, modes)
             if modes.gear[i] == 0 and abs(surplus) > self.stiction(i):
                 modes.gear[i] = int(math.copysign(1.0, surplus))
         return modes

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from kkt_reference import INDICATORS, STATES, Inputs, Modes, Parameters
 
-MODE_COUNT = 10
+MODE_COUNT = 13
 # Fields of the reference that are not parameters of the plant under the same name.
 NOT_SHARED = {"outline", "fault_velocity_term", "fault_contact_moment", "fault_external_sign"}
 OUTPUTS = (
@@ -176,4 +176,4 @@ class Plant:
 
 def modes_from(row: np.ndarray) -> Modes:
     values = [int(v) for v in row]
-    return Modes(values[0:3], *values[3:])
+    return Modes(values[0:3], *values[3:10], values[10:13])

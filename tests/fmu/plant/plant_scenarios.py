@@ -196,8 +196,10 @@ def moving(p: Parameters, vx: float, vy: float, omega: float) -> tuple[Reference
     reference = Reference(replace(p, slider_present=0))
     x = np.zeros(STATES)
     x[3:6] = vx, vy, omega
-    x[9:12] = reference.rhs(0.0, x, Inputs(), Modes())[12:15]
-    return reference, x, Modes(gear=[int(math.copysign(1.0, w)) for w in x[9:12]])
+    modes = Modes(roller=[round(phase / reference.pitch) for phase in p.roller_phase])
+    x[9:12] = reference.rhs(0.0, x, Inputs(), modes)[12:15]
+    modes.gear = [int(math.copysign(1.0, w)) for w in x[9:12]]
+    return reference, x, modes
 
 
 def pushed() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
@@ -229,10 +231,37 @@ def spinning(roller_model: int) -> tuple[Reference, np.ndarray, Modes, list[tupl
     return reference, x, modes, [(0.0, Inputs())]
 
 
+def one_by_one(p: Parameters, **other: object) -> Parameters:
+    """Rollers that hand the contact over, each wheel on another part of its first one."""
+    discrete = {"roller_arrangement": 1, "roller_phase": [0.05, -0.1, 0.16], "roller_friction_scatter": 0.2}
+    return replace(p, **{**discrete, **other})
+
+
+def rolling(**other: object) -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
+    """Coasting with spin on rollers one by one; a weak gear friction, so that the wheels turn far."""
+    p = one_by_one(Parameters(drivetrain_gear_coulomb=0.1, drivetrain_gear_stiction=0.1), **other)
+    reference, x, modes = moving(p, 0.3, -0.2, 4.0)
+    return reference, x, modes, [(0.0, Inputs())]
+
+
+def hit_on_rollers() -> tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]:
+    """A bumper on the robot that latches again, the robot turning on rollers one by one with long hand-overs."""
+    case = COLLISIONS["idealised latch closes again on robot"]
+    wide = {"roller_arrangement": 1, "roller_row_distance": 0.05, "roller_radius_dip": 5.0e-4}
+    reference, x, modes, inputs = collision((*case[:3], {**case[3], **wide, "roller_phase": [0.17, -0.17, 0.172]}))
+    x[5] = 1.0
+    x[9:12] = reference.rhs(0.0, x, Inputs(), modes)[12:15]
+    modes.gear = [1, 1, 1]
+    return reference, x, modes, inputs
+
+
 def all_runs() -> dict[str, tuple[Reference, np.ndarray, Modes, list[tuple[float, Inputs]]]]:
     runs = {f"collision, {name}": collision(case) for name, case in COLLISIONS.items()}
     runs |= {"pushed": pushed(), "driven": driven()}
     return runs | {
         "spinning, bristle": spinning(ROLLER_BRISTLE),
         "spinning, tanh": spinning(ROLLER_TANH),
+        "rollers one by one, bristle": rolling(),
+        "rollers one by one, tanh, three rows": rolling(roller_model=ROLLER_TANH, roller_rows=3, roller_per_row=7),
+        "rollers one by one, hit": hit_on_rollers(),
     }

@@ -26,7 +26,7 @@ using At = plant::Layout<>;
 using Parameters = plant::Parameters<double>;
 using Modes = plant::Modes<double>;
 
-constexpr int mode_count = 10;
+constexpr int mode_count = 13;
 constexpr int input_count = 7;
 
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
@@ -63,12 +63,19 @@ plant::StateVector<double> state_from(const double *x) {
 
 plant::Inputs<double> inputs_from(const double *u) { return {{u[0], u[1], u[2]}, u[3], u[4], u[5], u[6]}; }
 
-Modes modes_from(const double *m) { return {{m[0], m[1], m[2]}, m[3], m[4], m[5], m[6], m[7], m[8], m[9]}; }
+Modes modes_from(const double *m, const Parameters &p) {
+    Modes modes = {{m[0], m[1], m[2]}, m[3], m[4], m[5], m[6], m[7], m[8], m[9]};
+    for (int i = 0; plant::discrete(p) && i < plant::table_wheels; ++i) {
+        plant::stand_on(p, modes, i, m[10 + i]);
+    }
+    return modes;
+}
 
 void modes_to(const Modes &m, double *out) {
     const double flat[mode_count] = {
         m.gear_direction[0], m.gear_direction[1], m.gear_direction[2], m.contact, m.rope_taut,
-        m.end_stop,          m.bottom_stop,       m.latched,           m.landed,  m.walled};
+        m.end_stop,          m.bottom_stop,       m.latched,           m.landed,  m.walled,
+        m.roller[0],         m.roller[1],         m.roller[2]};
     std::copy_n(flat, mode_count, out);
 }
 
@@ -166,20 +173,21 @@ EXPORT void probe_derive(void *handle) {
 
 EXPORT void probe_rhs(void *handle, const double *x, const double *u, const double *m, double *rate) {
     const auto *probe = static_cast<const Probe *>(handle);
-    const auto result = plant::rhs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto result = plant::rhs(state_from(x), inputs_from(u), modes_from(m, probe->p), probe->p, probe->d);
     std::copy(result.begin(), result.end(), rate);
 }
 
 EXPORT void probe_indicators(void *handle, const double *x, const double *u, const double *m, double *value) {
     const auto *probe = static_cast<const Probe *>(handle);
-    const auto result = plant::event_indicators(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto result =
+        plant::event_indicators(state_from(x), inputs_from(u), modes_from(m, probe->p), probe->p, probe->d);
     std::copy(result.begin(), result.end(), value);
 }
 
 EXPORT void probe_transition(void *handle, double *x, const double *u, double *m, const double *fired) {
     const auto *probe = static_cast<const Probe *>(handle);
     auto state = state_from(x);
-    auto modes = modes_from(m);
+    auto modes = modes_from(m, probe->p);
     plant::EventVector<double> direction = {};
     std::copy_n(fired, direction.size(), direction.begin());
     plant::transition(state, inputs_from(u), modes, direction, probe->p, probe->d);
@@ -201,7 +209,7 @@ EXPORT void probe_initial_state(void *handle, const double *motion, const double
 
 EXPORT void probe_accept_inputs(void *handle, const double *x, const double *u, double *m) {
     const auto *probe = static_cast<const Probe *>(handle);
-    auto modes = modes_from(m);
+    auto modes = modes_from(m, probe->p);
     plant::accept_inputs(state_from(x), inputs_from(u), modes, probe->p, probe->d);
     modes_to(modes, m);
 }
@@ -211,7 +219,7 @@ EXPORT void probe_accept_inputs(void *handle, const double *x, const double *u, 
 // stored energy
 EXPORT void probe_outputs(void *handle, const double *x, const double *u, const double *m, double *out) {
     const auto *probe = static_cast<const Probe *>(handle);
-    const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m, probe->p), probe->p, probe->d);
     for (int i = 0; i < plant::table_wheels; ++i) {
         out[i] = o.wheel_speed[i];
         out[3 + i] = o.wheel_torque[i];
@@ -232,7 +240,7 @@ EXPORT int probe_simulate(void *handle, const double *x0, const double *m0, int 
                           double absolute_tolerance, double *states, double *modes, int max_events, double *event_times,
                           int *event_indices, std::int64_t *statistics) {
     auto *probe = static_cast<Probe *>(handle);
-    RecordedPlant system(*probe, modes_from(m0), absolute_tolerance);
+    RecordedPlant system(*probe, modes_from(m0, probe->p), absolute_tolerance);
     giveway::solver::HybridIntegrator integrator;
     giveway::solver::IntegratorOptions options;
     options.relative_tolerance = relative_tolerance;

@@ -67,6 +67,12 @@ def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roll
         angles = np.sort(angles)
         p.outline = list(zip((0.35 * np.cos(angles)).tolist(), (0.25 * np.sin(angles)).tolist(), strict=True))
     uneven(rng, p)
+    if rng.random() < 0.5:
+        p.roller_arrangement, p.roller_seed = 1, int(rng.integers(2**31))
+        p.roller_rows, p.roller_per_row = int(rng.integers(1, 4)), int(rng.integers(20, 40))
+        p.roller_friction_scatter = rng.uniform(0.0, 0.9)
+        p.roller_radius_dip = rng.uniform(0.0, 0.8) * p.wheel_radius * (1.0 - math.cos(Reference(p).pitch / 2.0))
+        p.roller_phase = rng.uniform(-0.5, 0.5, 3).tolist()
     return p
 
 
@@ -92,6 +98,8 @@ def state(rng: np.random.Generator, r: Reference) -> tuple[np.ndarray, Inputs, M
     x[3:5] = rng.normal(0.0, 0.3, 2)
     x[5] = rng.normal(0.0, 2.0)
     x[12:15] = rng.uniform(-20.0, 20.0, 3)
+    if p.roller_arrangement:
+        modes.roller = np.round((x[12:15] + p.roller_phase) / r.pitch).astype(int).tolist()
     x[6:9] = x[12:15] + rng.normal(0.0, 0.01, 3)
     x[9:12] = np.where(np.array(modes.gear) == 0, 0.0, rng.normal(0.0, 3.0, 3))
     level = p.roller_coulomb_torque / p.roller_radius / np.array(p.roller_presliding_stiffness)

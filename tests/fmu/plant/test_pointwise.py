@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import random_cases
-from kkt_reference import BUMPER, CONTACT, GRAVITY, INDICATORS, KIND_NONE, MOUNT_ROBOT, Inputs, Reference
+from kkt_reference import BUMPER, CONTACT, GRAVITY, INDICATORS, KIND_NONE, MOUNT_ROBOT, ROLLER, Inputs, Reference
 from plant_probe import Plant
 
 TOLERANCE = 1e-9
@@ -144,6 +144,10 @@ def test_transitions(library):
                 x = start.copy()
                 if i < CONTACT:
                     x[9 + i] = 0.0
+                elif i >= ROLLER:
+                    side = 0.5 if seen[f"{i} -1"] % 2 else -0.5
+                    x[12 + i - ROLLER] = (modes.roller[i - ROLLER] + side) * reference.pitch
+                    x[12 + i - ROLLER] -= reference.p.roller_phase[i - ROLLER]
                 elif i == BUMPER and not modes.latched:
                     x[22], x[23] = 0.0, -abs(x[23])
                 fired = np.zeros(INDICATORS)
@@ -156,9 +160,9 @@ def test_transitions(library):
                 assert np.abs(found - expected).max() < TOLERANCE, about
                 seen[f"{i} {direction}"] += 1
                 seen["impact"] += bool(np.abs(expected - x).max() > 1e-3)
-    # Gears only fall; the bumper's indicator falls, or rises off the end stop; everything else goes
-    # both ways.
-    assert len(seen) == 3 + 2 * 6 + 1
+    # Those of gears and rollers only fall; the bumper's indicator falls, or rises off the end stop; everything else
+    # goes both ways.
+    assert len(seen) == 3 + 2 * 6 + 3 + 1
     assert min(seen.values()) > 20, seen
 
 

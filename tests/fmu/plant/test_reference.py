@@ -107,7 +107,7 @@ def test_relatching_conserves_momentum_and_accounts_for_its_loss():
     r = Reference(p)
     x = np.zeros(STATES)
     x[19], x[23] = 0.2, -0.6
-    after = r.relatch(x)
+    after = r.relatch(x, Modes())
     momentum = (p.slider_mass - p.bumper_plate_mass) * 0.2 + p.bumper_plate_mass * 0.8
     assert after[19] * p.slider_mass == pytest.approx(momentum, rel=1e-12)
     reduced = p.bumper_plate_mass * (p.slider_mass - p.bumper_plate_mass) / p.slider_mass

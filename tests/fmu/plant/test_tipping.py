@@ -15,6 +15,7 @@ from plant_probe import Plant
 from scipy.integrate import solve_ivp
 from tipping_plant import TippingPlant, TippingRun
 from tipping_reference import (
+    EVENTS,
     GRIP,
     HEAVE,
     HEAVE_RATE,
@@ -28,7 +29,7 @@ from tipping_reference import (
     turn,
 )
 
-FLOOR, TILT = 9, 12
+FLOOR, TILT = 12, 15
 ROBOT = Parameters(base_tipping=1, bumper_kind=KIND_NONE, rope_attached=0, contact_height=0.45)
 # Nothing rolls, slides or slips: only tipping is left.
 HELD = replace(
@@ -58,7 +59,7 @@ def random_case(rng: np.random.Generator) -> tuple[Parameters, np.ndarray, Input
     p.outline_wheels = int(p.contact_height < 0.2)  # where there are any
     random_cases.uneven(rng, p)
     x = np.zeros(STATES)
-    modes = np.array([*rng.integers(-1, 2, 3), *rng.integers(0, 2, 4), 0], dtype=float)
+    modes = np.array([*rng.integers(-1, 2, 3), *rng.integers(0, 2, 4), 0, 0, 0, 0], dtype=float)
     x[2] = rng.uniform(-3.0, 3.0)
     x[3:6] = rng.normal(0.0, 0.4, 3)
     x[12:15] = rng.normal(0.0, 3.0, 3)
@@ -361,7 +362,7 @@ def test_a_wheel_that_lifts_forgets_its_bristles_and_one_that_lands_keeps_the_re
     plant = TippingPlant(library, ROBOT)
     x, modes = plant.start()
     x[15:18], x[GRIP : GRIP + 3] = 1e-4, 1e-5
-    fired = np.zeros(13)
+    fired = np.zeros(EVENTS)
     fired[FLOOR + 1] = -1.0
     after, lifted = plant.tipping_transition(x, Inputs(), modes, fired)
     assert lifted[4:7].tolist() == [1.0, 0.0, 1.0]

@@ -25,7 +25,7 @@ class TippingRun:
 
 
 class TippingPlant(Plant):
-    """Modes are rows: gear[3], contact, on_floor[3], overturned."""
+    """Modes are rows: gear[3], contact, on_floor[3], overturned, roller[3]."""
 
     def __init__(self, library: ctypes.CDLL, p: Parameters) -> None:
         super().__init__(library, p)

@@ -1,4 +1,5 @@
-// The plant whose base tips, as probe.cpp has the planar one. Modes: gear[3], contact, on_floor[3], overturned.
+// The plant whose base tips, as probe.cpp has the planar one. Modes: gear[3], contact, on_floor[3], overturned,
+// roller[3].
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -23,12 +24,15 @@ plant::TippingVector<double> state_from(const double *x) {
 
 plant::Inputs<double> inputs_from(const double *u) { return {{u[0], u[1], u[2]}, u[3], u[4], u[5], u[6]}; }
 
-Modes modes_from(const double *m) {
+Modes modes_from(const double *m, const plant::Parameters<double> &p) {
     Modes modes = {};
     std::copy_n(m, 3, modes.gear_direction.begin());
     modes.contact = m[3];
     std::copy_n(m + 4, 3, modes.on_floor.begin());
     modes.overturned = m[7];
+    for (int i = 0; plant::discrete(p) && i < plant::table_wheels; ++i) {
+        plant::stand_on(p, modes, i, m[8 + i]);
+    }
     return modes;
 }
 
@@ -37,6 +41,7 @@ void modes_to(const Modes &m, double *out) {
     out[3] = m.contact;
     std::copy_n(m.on_floor.begin(), 3, out + 4);
     out[7] = m.overturned;
+    std::copy_n(m.roller.begin(), 3, out + 8);
 }
 
 class Tipping final : public giveway::solver::HybridSystem {
@@ -82,20 +87,21 @@ private:
 
 EXPORT void tipping_rhs(void *handle, const double *x, const double *u, const double *m, double *rate) {
     const auto *probe = static_cast<const Probe *>(handle);
-    const auto result = plant::rhs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto result = plant::rhs(state_from(x), inputs_from(u), modes_from(m, probe->p), probe->p, probe->d);
     std::copy(result.begin(), result.end(), rate);
 }
 
 EXPORT void tipping_indicators(void *handle, const double *x, const double *u, const double *m, double *value) {
     const auto *probe = static_cast<const Probe *>(handle);
-    const auto result = plant::event_indicators(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto result =
+        plant::event_indicators(state_from(x), inputs_from(u), modes_from(m, probe->p), probe->p, probe->d);
     std::copy(result.begin(), result.end(), value);
 }
 
 EXPORT void tipping_transition(void *handle, double *x, const double *u, double *m, const double *fired) {
     const auto *probe = static_cast<const Probe *>(handle);
     auto state = state_from(x);
-    auto modes = modes_from(m);
+    auto modes = modes_from(m, probe->p);
     plant::TippingEvents<double> direction = {};
     std::copy_n(fired, direction.size(), direction.begin());
     plant::transition(state, inputs_from(u), modes, direction, probe->p, probe->d);
@@ -106,7 +112,7 @@ EXPORT void tipping_transition(void *handle, double *x, const double *u, double 
 // wheel_load[3], tip_margin, stored energy, contact force x, y, roll, pitch, specific force x, y, yaw rate
 EXPORT void tipping_outputs(void *handle, const double *x, const double *u, const double *m, double *out) {
     const auto *probe = static_cast<const Probe *>(handle);
-    const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m), probe->p, probe->d);
+    const auto o = plant::outputs(state_from(x), inputs_from(u), modes_from(m, probe->p), probe->p, probe->d);
     const double all[] = {o.wheel_load[0], o.wheel_load[1],    o.wheel_load[2],    o.tip_margin,
                           o.stored_energy, o.contact_force_x,  o.contact_force_y,  o.roll,
                           o.pitch,         o.specific_force_x, o.specific_force_y, o.yaw_rate};
@@ -130,7 +136,7 @@ EXPORT int tipping_simulate(void *handle, const double *x0, const double *m0, in
                             const double *input_rows, int count, const double *times, double relative_tolerance,
                             double *states, double *modes, int max_events, double *event_times, int *event_indices) {
     auto *probe = static_cast<Probe *>(handle);
-    Tipping system(*probe, modes_from(m0));
+    Tipping system(*probe, modes_from(m0, probe->p));
     giveway::solver::HybridIntegrator integrator;
     giveway::solver::IntegratorOptions options;
     options.relative_tolerance = relative_tolerance;
@@ -148,7 +154,7 @@ EXPORT int tipping_simulate(void *handle, const double *x0, const double *m0, in
         }
         good = good && integrator.advance(times[k]);
         std::copy_n(integrator.state(), At::tipping_state_count, states + k * At::tipping_state_count);
-        modes_to(system.modes, modes + k * 8);
+        modes_to(system.modes, modes + k * 11);
     }
     if (!good) {
         std::snprintf(probe->error, sizeof probe->error, "%s", integrator.error());

@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from kkt_reference import GRAVITY, Inputs, Parameters, Reference, closest_on_outline, one_sided
+from kkt_reference import GRAVITY, Inputs, Modes, Parameters, Reference, closest_on_outline, one_sided
 
-STATES, EVENTS, MODES = 40, 13, 8
+STATES, EVENTS, MODES = 40, 16, 11
 HEAVE, ROLL, PITCH, HEAVE_RATE, ROLL_RATE, PITCH_RATE, SPIN, GRIP = 28, 29, 30, 31, 32, 33, 34, 37
 STEP = 1e-30  # of the complex steps
 AZIMUTHS = [2.0 * math.pi * i / 3.0 for i in range(3)]
@@ -162,7 +162,9 @@ class TippingReference:
             loss += (load - (p.wheel_floor_stiffness * -height if on_floor[i] else 0.0)) * -velocity[2]
             loads.append(load)
             share = load / (p.base_mass * GRAVITY / 3.0)
-            friction, bristle_rate = self.planar.roller(i, x[15 + i], velocity @ radial)
+            friction, bristle_rate = self.planar.roller(
+                i, x[15 + i], velocity @ radial, self.planar.footing(i, x[12 + i], Modes())
+            )
             grip_rate = self.grip_rate(i, x[GRIP + i], velocity @ rolling)
             traction = -share * (p.wheel_grip_stiffness * x[GRIP + i] + p.wheel_grip_damping * grip_rate)
             at_floor = traction * rolling - share * friction * radial + np.array([0.0, 0.0, load])

@@ -112,6 +112,16 @@ template <class T, int Wheels = table_wheels> Parameters<T, Wheels> random_param
     p.imu_y = draw(-0.3, 0.3);
     p.imu_height = draw(0.0, 0.5);
     p.imu_azimuth = draw(-3.0, 3.0);
+    p.roller_arrangement = static_cast<RollerArrangement>(seed % 5U / 3U);
+    p.roller_rows = static_cast<std::int32_t>(1U + seed % 4U);
+    p.roller_per_row = 40;
+    p.roller_row_distance = draw(0.0, 0.02);
+    p.roller_radius_dip = draw(0.0, 2e-5);
+    p.roller_friction_scatter = draw(0.0, 0.5);
+    p.roller_seed = T(static_cast<double>(seed));
+    for (auto &phase : p.roller_phase) {
+        phase = draw(-0.5, 0.5);
+    }
     return p;
 }
 
@@ -154,6 +164,12 @@ template <class T, int Wheels = table_wheels> Case<T, Wheels> random_case(unsign
     c.m.latched = flag();
     c.m.landed = flag();
     c.m.walled = flag();
+    if (discrete(c.p)) {
+        for (int i = 0; i < Wheels; ++i) {
+            const T angle = c.x[Layout<Wheels>::wheel_angle + i] + c.p.roller_phase[i];
+            stand_on(c.p, c.m, i, math::round(angle / c.d.roller_pitch));
+        }
+    }
     for (auto &f : c.fired) {
         f = three_way();
     }
