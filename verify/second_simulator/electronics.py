@@ -1,4 +1,4 @@
-"""The drives of our testbed: servos of c_core at 2 kHz, encoders, torque sensors, and the bus with its delays."""
+"""The drives of our testbed: servos of c_core at 2 kHz, encoders, torque sensors, accelerometer and bus."""
 
 from __future__ import annotations
 
@@ -28,7 +28,23 @@ NUMBERS = (
     "servo.derivative_cutoff",
     "electronics.sensor_delay",
     "electronics.command_delay",
+    "imu.present",
+    *(f"imu.acceleration_{what}[{axis}]" for axis in range(2) for what in ("bias", "scale")),
+    "imu.acceleration_noise",
+    "imu.gyro_bias",
+    "imu.gyro_scale",
+    "imu.gyro_noise",
+    "imu.vibration",
+    "imu.vibration_growth",
+    "imu.vibration_frequency",
+    "imu.vibration_damping",
+    "imu.bandwidth",
+    "imu.range",
+    "imu.gyro_range",
+    "imu.delay",
+    "imu.dropout",
 )
+"""In the order of drives.cpp."""
 
 
 def compile_drives(folder: Path) -> Path:
@@ -74,7 +90,7 @@ class Drives:
         self._drives = start(numbers.ctypes.data, seed, angle.ctypes.data, zero.ctypes.data, zero.ctypes.data, 1)
         if not self._drives:
             raise ValueError("the servos refuse their parameters")
-        self._sample = self._function("sample", None, *[pointer] * 5)
+        self._sample = self._function("sample", None, *[pointer] * 6)
         self._receive = self._function("receive", None, pointer, pointer, ctypes.c_int)
         self._regulate = self._function("regulate", None, *[pointer] * 3)
 
@@ -83,9 +99,9 @@ class Drives:
         function.restype, function.argtypes = result, arguments
         return function
 
-    def sample(self, angle: int, torque: int, sensed: int, counts: int) -> None:
-        """Addresses of three reals each, and of four integers: the counts and the sample counter."""
-        self._sample(self._drives, angle, torque, sensed, counts)
+    def sample(self, angle: int, torque: int, felt: int, sensed: int, counts: int) -> None:
+        """Addresses, as of second_simulator_sample."""
+        self._sample(self._drives, angle, torque, felt, sensed, counts)
 
     def receive(self, command: int, enable: bool) -> None:
         """Address of three angles and three speeds."""

@@ -102,15 +102,18 @@ class Plant:
         count = 2.0 * math.pi / p["electronics.encoder_counts"]
         self._zero = turned - count * random.uniform(0.0, 1.0, WHEELS)
         self.angle, self.torque = np.zeros(WHEELS), np.zeros(WHEELS)
-        self.motor, self.sensed = np.zeros(WHEELS), np.zeros(WHEELS)
-        self.counts = np.zeros(WHEELS + 1, dtype=np.int32)
+        self.motor, self.sensed = np.zeros(WHEELS), np.zeros(WHEELS + 3)
+        self.felt = np.zeros(4)
+        self.counts = np.zeros(WHEELS + 3, dtype=np.int32)
         self._latch = None
         if robot.bumper == "magnetic":
             assert robot.plate is not None
             self._latch = (*robot.plate, p["bumper.latch_force"], 1.0 / p["bumper.latch_gap"])
         self.measure()
         self.drives = Drives(drives, p, seed, self.angle)
-        self._at = {name: getattr(self, name).ctypes.data for name in ("angle", "torque", "motor", "sensed", "counts")}
+        self._at = {
+            name: getattr(self, name).ctypes.data for name in ("angle", "torque", "motor", "felt", "sensed", "counts")
+        }
         self._law, self._coulomb, self._slope = robot.friction, p["roller.coulomb_torque"], p["roller.tanh_slope"]
         self._per_stribeck = p["roller.radius"] / p["roller.stribeck_speed"]
         self._bearing: list[int] = []  # joints of the rollers on the floor
@@ -140,7 +143,9 @@ class Plant:
         """What the controller gets now."""
         self.measure()
         at = self._at
-        self.drives.sample(at["angle"], at["torque"], at["sensed"], at["counts"])
+        sensors = self.data.sensordata
+        self.felt[:] = sensors[0], sensors[1], sensors[5], np.abs(self.data.qvel[self._wheel_v]).mean()
+        self.drives.sample(at["angle"], at["torque"], at["felt"], at["sensed"], at["counts"])
 
     def advance(self, command_at: int, enable: bool) -> None:
         """One millisecond with the command at this address."""
@@ -278,14 +283,26 @@ class Controller:
 
         self._set_torque = setter("real", [f"sensor.torque[{i}]" for i in range(WHEELS)])
         self._set_counts = setter("integer", [*(f"sensor.encoder[{i}]" for i in range(WHEELS)), "sensor.counter"])
+        imu = "sensor.imu_present" in variables
+        if imu:
+            self._set_acceleration = setter(
+                "real", ["sensor.acceleration[0]", "sensor.acceleration[1]", "sensor.yaw_rate"]
+            )
+            self._set_counter = setter("integer", ["sensor.imu_counter"])
+        self._set_present = setter("boolean", ["sensor.imu_present"]) if imu else None
+        self._present = np.zeros(1, dtype=self._instance.dtype("boolean"))
         self._set_plan = setter("real", list(PLAN_INPUTS))
         self._step = self._instance.stepper()
         self._ticks = 0
 
-    def step(self, sensed_at: int, counts_at: int, plan_at: int) -> None:
+    def step(self, sensed_at: int, counts_at: int, plan_at: int, imu_present: bool) -> None:
         """With sensors and plan at these addresses."""
         now = self._ticks * TICK_S
         status = self._set_torque(sensed_at) | self._set_counts(counts_at) | self._set_plan(plan_at)
+        if self._set_present is not None:
+            status |= self._set_acceleration(sensed_at + 3 * 8) | self._set_counter(counts_at + 4 * 4)
+            self._present[0] = imu_present
+            status |= self._set_present(self._present.ctypes.data)
         status |= self._step(now, TICK_S)
         for get, address in self._get:
             status |= get(address)
@@ -316,14 +333,17 @@ def simulate(robot: SecondRobot, drives: Path, run: Run) -> Traces:
     pushes = Pushes(run.pushes)(time_s)
     controller = Controller(run.controller)
     sensed = [
-        *(f"testbed.sensor.torque[{i}]" for i in range(WHEELS)),
-        *(f"testbed.sensor.encoder[{i}]" for i in range(WHEELS)),
+        *(f"sensor.torque[{i}]" for i in range(WHEELS)),
+        *("sensor.acceleration[0]", "sensor.acceleration[1]", "sensor.yaw_rate"),
+        *(f"sensor.encoder[{i}]" for i in range(WHEELS)),
+        *("sensor.counter", "sensor.imu_counter", "sensor.imu_present"),
+        *("truth.specific_force[0]", "truth.specific_force[1]", "truth.yaw_rate"),
     ]
     true = [*(f"wheel_torque[{i}]" for i in range(WHEELS)), "x", "y", "theta", "vx", "vy", "omega"]
     true += ["contact_force_x", "contact_force_y", "contact_base_x", "contact_base_y", "tilt", "lifted"]
     columns = [
         *(f"controller.{name}" for name in PLAN_INPUTS),
-        *sensed,
+        *(f"testbed.{name}" for name in sensed),
         *(f"testbed.truth.{name}" for name in true),
         *(f"controller.{name}" for names in controller.names.values() for name in names),
     ]
@@ -339,15 +359,16 @@ def simulate(robot: SecondRobot, drives: Path, run: Run) -> Traces:
                 plant.release(hits.pop(0))
             plant.push[:] = pushes[tick]
             plant.sample()
-            plant.sensed[:] = plant.sensed[wiring]
+            plant.sensed[:WHEELS] = plant.sensed[wiring]
             used = plan[min(max(path_ticks, 0), ticks)]
-            controller.step(sensed_at, counts_at, used.ctypes.data)
+            controller.step(sensed_at, counts_at, used.ctypes.data, bool(plant.counts[-1]))
             path_ticks = controller.path_ticks
             rows[tick] = np.concatenate(
                 (
                     used,
                     plant.sensed,
-                    plant.counts[:WHEELS],
+                    plant.counts,
+                    plant.felt[:3],
                     plant.torque,
                     (data.qpos[0], data.qpos[1], plant.theta, data.qvel[0], data.qvel[1], data.qvel[5]),
                     plant.contact(),

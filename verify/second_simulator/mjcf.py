@@ -143,6 +143,7 @@ def _xml(p: Mapping[str, Any], bumper: str, step_s: float) -> str:
         f'<joint joint="rotor{i}" coef="1"/><joint joint="wheel{i}" coef="-1"/></fixed>'
         for i in range(WHEELS)
     )
+    imu = f"{math.cos(0.5 * p['imu.azimuth']):.17g} 0 0 {math.sin(0.5 * p['imu.azimuth']):.17g}"
     wheels = "\n".join(_wheel(p, wheel) for wheel in range(WHEELS))
     wheel_kg, (tilt, yaw) = wheel_mass_kg(p), _body_inertia(p)
     mass = p["base.mass"] - WHEELS * wheel_kg
@@ -158,6 +159,7 @@ def _xml(p: Mapping[str, Any], bumper: str, step_s: float) -> str:
 <body name="base"><freejoint name="base"/>
 <inertial pos="0 0 {height:.17g}" mass="{mass:.17g}" diaginertia="{tilt:.17g} {tilt:.17g} {yaw:.17g}"/>
 <geom name="body" type="mesh" mesh="prism" mass="0" contype="2" conaffinity="0" priority="1" condim="1"/>
+<site name="imu" pos="{p["imu.x"]:.17g} {p["imu.y"]:.17g} {p["imu.height"]:.17g}" quat="{imu}"/>
 {wheels}
 </body>
 <body name="rail" pos="{FAR_M} 0 {p["contact.height"]:.17g}">{_slider(p, bumper)}</body>
@@ -165,6 +167,7 @@ def _xml(p: Mapping[str, Any], bumper: str, step_s: float) -> str:
 <tendon>
 {tendons}
 </tendon>
+<sensor><accelerometer name="acceleration" site="imu"/><gyro name="rate" site="imu"/></sensor>
 </mujoco>"""
 
 
