@@ -1,0 +1,124 @@
+"""The controller FMU on a robot of another simulator (MuJoCo), every roller a body: formulas hold, hits are noticed."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+from verify.context import Context, Tool
+from verify.rung import Figure, Rung, RungFailed, planted
+from verify.second_simulator.faults import FAULTS
+
+PYTHON = Tool("second-simulator-python", package="build/verify/second-simulator-installed")
+CC, CXX = Tool("gcc"), Tool("g++")
+ONE_HIT = "rest, side 0 +0 cm"  # with each bumper
+STEP_S = 0.25e-3
+# Halving the step may move a detection by a tick of the controller and the noise that it sees then, and the peak by
+# what a method of first order does; the magnet lets go within a few steps.
+DELAY_MS, PEAK_SHARE = 2.0, {"none": 0.01, "spring": 0.01, "magnetic": 0.05}
+LATEST_MS = 150.0  # of a hit at rest: the bumper with the plain spring takes the longest, 105 ms
+WRONG_DEG = 30.0
+
+
+def check(context: Context) -> Figure:
+    formulas = _formulas(context)
+    for number, (fault, (_, finding, _)) in enumerate(FAULTS.items()):
+        with planted(fault, shows=rf"{re.escape(finding)}.*WRONG"):
+            _formulas(context, f"fault{number}", "--fault", fault)
+    coarse, fine = (
+        _records(context, f"step{number}", "--only", ONE_HIT, "--step", str(step))
+        for number, step in enumerate((STEP_S, 0.5 * STEP_S))
+    )
+    _converged(coarse, fine)
+    _noticed(coarse)
+    with planted("two torque sensors exchanged", shows="deg wrong"):
+        _noticed(_records(context, "exchanged", "--only", ONE_HIT, "--exchanged"))
+    records = _records(context, "table", "--quick")
+    _noticed(records)
+    quiet = [record for record in records if record["kind"] == "nothing"]
+    seconds = sum(record["simulated_s"] for record in quiet)
+    alarms = sum(len(record["judged"]["detections_s"]) for record in quiet)
+    hits = [record for record in records if record["kind"] == "free"]
+    again = sum(bool(record["judged"]["false_s"]) for record in hits)
+    return Figure(
+        f"{formulas} formulas hold, step halved; {_at_rest(records)} hits at rest all noticed; "
+        f"{len(FAULTS) + 1} planted faults seen",
+        {
+            "formulas": formulas,
+            "hits_at_rest": _at_rest(records),
+            "faults": len(FAULTS) + 1,
+        },
+        varies=f"{again} of {len(hits)} runs with hits have a detection without contact; "
+        f"{alarms} alarms in {seconds:.0f} s untouched",
+    )
+
+
+def _formulas(context: Context, name: str = "formulas", *options: str) -> int:
+    """How many formulas hold; `RungFailed` if one does not."""
+    out = _run(context, name, "--formulas-only", *options)
+    return len(out["formulas"])
+
+
+def _records(context: Context, name: str, *options: str) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = _run(context, name, "--no-formulas", *options)["records"]
+    return found
+
+
+def _run(context: Context, name: str, *options: str) -> dict[str, Any]:
+    out = context.work / f"{name}.json"
+    answer = context.run(
+        context.which(PYTHON),
+        "-m",
+        "verify.second_simulator",
+        "--out",
+        out,
+        *options,
+        cwd=context.root,
+        timeout_s=1200.0,
+        memory_gib=None,
+    )
+    (context.work / f"{name}.txt").write_text(answer.stdout)
+    document: dict[str, Any] = json.loads(Path(out).read_text())
+    return document
+
+
+def _is_at_rest(record: dict[str, Any]) -> bool:
+    return bool(record["situation"] == "rest" and record["kind"] == "free")
+
+
+def _at_rest(records: list[dict[str, Any]]) -> int:
+    return sum(_is_at_rest(record) for record in records)
+
+
+def _first(record: dict[str, Any]) -> dict[str, Any]:
+    """The verdict on the hit itself."""
+    contact: dict[str, Any] = record["judged"]["contacts"][0]
+    return contact
+
+
+def _converged(coarse: list[dict[str, Any]], fine: list[dict[str, Any]]) -> None:
+    for one, other in zip(filter(_is_at_rest, coarse), filter(_is_at_rest, fine), strict=True):
+        late = abs((_first(one)["delay_ms"] or math.inf) - (_first(other)["delay_ms"] or 0.0))
+        higher = abs(one["peak_n"] / other["peak_n"] - 1.0)
+        if late > DELAY_MS or higher > PEAK_SHARE[one["bumper"]]:
+            found = f"{late:.1f} ms of {DELAY_MS}, {100.0 * higher:.2f} % of {100.0 * PEAK_SHARE[one['bumper']]} %"
+            raise RungFailed(f"{one['name']}: half the step changes delay and peak by {found}")
+
+
+def _noticed(records: list[dict[str, Any]]) -> None:
+    """Every hit at rest is noticed, in time and from the side it comes from."""
+    wrong = []
+    for record in filter(_is_at_rest, records):
+        hit = _first(record)
+        if hit["verdict"] != "noticed" or hit["delay_ms"] > LATEST_MS:
+            wrong.append(f"{record['name']}: {hit['verdict']} after {hit['delay_ms']} ms")
+        elif hit["direction_deg"] > WRONG_DEG and record["name"].startswith(ONE_HIT):
+            wrong.append(f"{record['name']}: direction {hit['direction_deg']:.0f} deg wrong")
+    if wrong:
+        raise RungFailed("\n".join(wrong))
+
+
+RUNG = Rung("the reflexes in MuJoCo", (PYTHON, CC, CXX), check)
