@@ -82,6 +82,11 @@ def test_a_parameter_that_the_testbed_does_not_have_is_an_error(monkeypatch: pyt
 def test_a_tenth_and_more_has_each_other_plant() -> None:
     groups = [group_of(number) for number in range(1000)]
     assert all(groups.count(group) >= 100 for group in GROUPS)
+    assert robot(DRAW, 0).testbed["roller.arrangement"] == 1
+    for group in GROUPS:  # and in each, half are pushed slowly while they drive
+        mine = [number for number in range(40) if group_of(number) == group]
+        driving = [hit(DRAW, number * PER_ROBOT + 10).situation == "motion" for number in mine]
+        assert sum(driving) == len(mine) / 2
 
 
 def reference(one: Hit, traces: Mapping[str, Any], time_s: Any) -> dict[str, Any]:

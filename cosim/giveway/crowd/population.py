@@ -21,6 +21,7 @@ from giveway.robot.wheels import WHEELS
 __all__ = [
     "DRAWS",
     "GROUPS",
+    "GROUP_PATTERN",
     "POPULATION",
     "Quantity",
     "Robot",
@@ -81,6 +82,8 @@ def wheels(name: str) -> tuple[str, ...]:
     return tuple(f"{name}[{wheel}]" for wheel in range(WHEELS))
 
 
+TURN = 2.0 * math.pi
+
 POPULATION: tuple[Quantity, ...] = (
     Quantity("rollers' friction, common", ("roller.coulomb_torque",), 0.7, 1.3, scales=True),
     Quantity("payload", ("base.mass",), 0.95, 1.25, scales=True),
@@ -97,6 +100,11 @@ POPULATION: tuple[Quantity, ...] = (
     Quantity("slope of the floor, rad", ("floor.slope",), 0.0, math.radians(1.0)),
     Quantity("direction of the slope, rad", ("floor.azimuth",), -math.pi, math.pi),
     Quantity("height of the centre of mass", ("base.com_height",), 0.9, 1.1, scales=True, only="tipping"),
+    Quantity("angle of each wheel, rad", wheels("roller.phase"), 0.0, TURN, each=True, only="single rollers"),
+    Quantity("play between rollers", ("roller.radius_dip",), 0.0, 2.0, scales=True, only="single rollers"),
+    Quantity(
+        "scatter from roller to roller", ("roller.friction_scatter",), 0.0, 2.0, scales=True, only="single rollers"
+    ),
 )
 
 
@@ -152,4 +160,6 @@ def robot_of(draw: str, number: int, group: str) -> Robot:
             values.update(quantity.drawn(rng))
     if group == "tipping":
         values["base.tipping"] = True
+    if group == "single rollers":
+        values |= {"roller.arrangement": 1, "roller.seed": int(rng.integers(2**31))}
     return Robot(number, group, MappingProxyType(values))
