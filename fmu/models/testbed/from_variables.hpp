@@ -93,6 +93,7 @@ inline ImuOptions imu_options(const Variables &v) {
 }
 
 // The shell has checked every single range; these rules relate several variables.
+// Long because every rule names its variable and says what it may be.
 inline bool check_relations(const Variables &v, Message &message) {
     const auto refuse = [&](const char *name, double value, const char *rule, double bound) {
         std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: it must be %s %.9g", name, value,
