@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from . import c_core, cpp, documentation, fmi, icon, plant, source_code, toml
@@ -130,8 +131,9 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def main() -> int:
-    arguments = _parser().parse_args()
+def main(words: Sequence[str] | None = None) -> int:
+    """The exit code; ``words``: the command line's, by default."""
+    arguments = _parser().parse_args(words)
     try:
         arguments.run(arguments)
     except TableError as error:

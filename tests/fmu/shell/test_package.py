@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import sys
 import zipfile
 from html.parser import HTMLParser
 from pathlib import Path
@@ -12,14 +11,11 @@ import fmpy
 import matplotlib.image
 import numpy as np
 import pytest
-from fmu_driver import INTEGRATED, MODELS, ROOT, fmu_path
-from lxml import etree
-
-sys.path.insert(0, str(ROOT / "fmu" / "codegen"))
-
+from fmu_driver import INTEGRATED, MODELS, fmu_path
 from giveway_codegen.mathml import mathml
 from giveway_codegen.package import write_fmu
 from giveway_codegen.universal import universal_binary
+from lxml import etree
 
 EVERY_FMU = [(model, version) for model in MODELS for version in (2, 3)]
 SCHEMAS = Path(fmpy.__file__).parent / "schema"
