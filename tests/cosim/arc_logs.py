@@ -33,12 +33,12 @@ def sine(swing_rad: float, frequency_hz: float) -> Swing:
     return lambda t: swing_rad * (1.0 - np.cos(2.0 * math.pi * frequency_hz * t))
 
 
-def jacobians(theta: float) -> tuple[np.ndarray, np.ndarray]:
-    """J_c,w (15) and J_c,r (16) at yaw ``theta``."""
-    angle = theta + np.arange(3) * 2.0 * math.pi / 3.0
-    ones = np.ones(3)
-    wheel = np.stack([-np.sin(angle), np.cos(angle), DISTANCE * ones], axis=1) / R_W
-    roller = np.stack([np.cos(angle), np.sin(angle), 0.0 * ones], axis=1) / R_R
+def jacobians(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """J_c,w (15) and J_c,r (16) at every yaw ``theta``."""
+    angle = theta[:, None] + np.arange(3) * 2.0 * math.pi / 3.0
+    ones = np.ones_like(angle)
+    wheel = np.stack([-np.sin(angle), np.cos(angle), DISTANCE * ones], axis=2) / R_W
+    roller = np.stack([np.cos(angle), np.sin(angle), 0.0 * ones], axis=2) / R_R
     return wheel, roller
 
 
@@ -46,20 +46,15 @@ def world_torques(
     angle: np.ndarray, step_s: float, friction: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Torques (27) and roller rates along wheel angles (n, 3); every derivative is a difference in the world frame."""
-    yaw = angle.sum(axis=1) * R_W / (3.0 * DISTANCE)
-    maps = [jacobians(theta) for theta in yaw]
+    wheel, roller = jacobians(angle.sum(axis=1) * R_W / (3.0 * DISTANCE))
     rate = np.gradient(angle, step_s, axis=0)
-    twist = np.stack([np.linalg.solve(wheel, q) for (wheel, _), q in zip(maps, rate, strict=True)])
-    roller_rate = np.stack([roller @ v for (_, roller), v in zip(maps, twist, strict=True)])
+    twist = np.linalg.solve(wheel, rate[:, :, None])[:, :, 0]
+    roller_rate = np.einsum("kij,kj->ki", roller, twist)
     acceleration = np.gradient(twist, step_s, axis=0)
-    roller_acceleration = np.gradient(roller_rate, step_s, axis=0)
-    wheel_acceleration = np.gradient(rate, step_s, axis=0)
-    torque = np.empty_like(angle)
-    for k, (wheel, roller) in enumerate(maps):
-        rollers = I_R * roller_acceleration[k] + friction(roller_rate[k])
-        wrench = np.array([MASS, MASS, YAW]) * acceleration[k] + roller.T @ rollers
-        torque[k] = np.linalg.solve(wheel.T, wrench) + I_W * wheel_acceleration[k]
-    return torque, roller_rate
+    rollers = I_R * np.gradient(roller_rate, step_s, axis=0) + friction(roller_rate)
+    wrench = np.array([MASS, MASS, YAW]) * acceleration + np.einsum("kji,kj->ki", roller, rollers)
+    from_wheels = np.linalg.solve(wheel.transpose(0, 2, 1), wrench[:, :, None])[:, :, 0]
+    return from_wheels + I_W * np.gradient(rate, step_s, axis=0), roller_rate
 
 
 def arc_log(

@@ -284,9 +284,9 @@ def test_command_writes_table_picture_and_numbers(cli: Cli, tmp_path: Path) -> N
     assert cli("drivetrain", "--plot").returncode == 0  # over its own result
 
 
-def test_command_writes_single_files(cli: Cli, tmp_path: Path) -> None:
-    for name in ("curves.svg", "numbers.json"):
-        done = cli("drivetrain", "--load", "locked", "--out", name)
+def test_command_writes_single_files(cli: Cli, process: Cli, tmp_path: Path) -> None:
+    for run, name in ((cli, "curves.svg"), (process, "numbers.json")):
+        done = run("drivetrain", "--load", "locked", "--out", name)
         assert done.returncode == 0, done.stderr
         assert "gear stuck" not in done.stdout
     assert folder_content(tmp_path) == ["curves.svg", "numbers.json"]

@@ -85,8 +85,8 @@ def test_an_interrupted_run_says_so_in_its_report(short_run: Result) -> None:
     assert "was interrupted" not in render("motionless", "A sentence.", [short_run])
 
 
-def test_demo_writes_what_it_prints(cli: Cli, tmp_path: Path) -> None:
-    done = cli("demo")
+def test_demo_writes_what_it_prints(process: Cli, tmp_path: Path) -> None:
+    done = process("demo")
     assert done.returncode == 0, done.stderr
     lines = ["[1 of 4] bumper none", "[2 of 4] bumper spring", "[3 of 4] bumper magnetic", "[4 of 4] report"]
     assert done.stderr.splitlines() == lines
@@ -137,17 +137,17 @@ def test_run_can_be_loaded_again(cli: Cli, tmp_path: Path) -> None:
     assert cli(*arguments).returncode == 0  # its own earlier result may be replaced
 
 
-def test_lists_and_version(cli: Cli) -> None:
-    assert cli("--version").stdout == f"giveway {giveway.__version__}\n"
-    assert "motionless" in cli("list").stdout
-    listed = cli("variables", "testbed", "--grep", "slider.mass").stdout
+def test_lists_and_version(process: Cli) -> None:
+    assert process("--version").stdout == f"giveway {giveway.__version__}\n"
+    assert "motionless" in process("list").stdout
+    listed = process("variables", "testbed", "--grep", "slider.mass").stdout
     assert "slider.mass" in listed
     assert "kg" in listed
     assert "base.mass" not in listed
 
 
-def test_bench_prints_all_parts(cli: Cli) -> None:
-    done = cli("bench", "--repeats", "1")
+def test_bench_prints_all_parts(process: Cli) -> None:
+    done = process("bench", "--repeats", "1")
     assert done.returncode == 0, done.stderr
     for part in ("run", "stepping", "testbed FMU", "controller FMU", "ERK", "Adams", "BDF"):
         assert part in done.stdout

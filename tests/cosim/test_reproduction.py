@@ -166,13 +166,13 @@ def test_the_report_stands_alone_and_shows_the_paper_beside_the_figure(registry:
     assert "fitted (" in page  # the parameter set by provenance
 
 
-def test_wrong_input_is_refused_before_anything_runs(cli: Cli, tmp_path: Path) -> None:
-    done = cli("reproduce", "--only", "motionles")
+def test_wrong_input_is_refused_before_anything_runs(process: Cli, tmp_path: Path) -> None:
+    done = process("reproduce", "--only", "motionles")
     assert done.returncode == 2
     assert "--only: motionles is unknown" in done.stderr
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "letter.txt").write_text("dear", encoding="utf-8")
-    done = cli("reproduce", "--reduced", "--out", "full")
+    done = process("reproduce", "--reduced", "--out", "full")
     assert done.returncode == 2
     assert "is not empty and holds no giveway result" in done.stderr
     with pytest.raises(GivewayError, match=r"threads: 0 is not allowed; allowed: 1 to 256"):

@@ -31,6 +31,7 @@ from giveway.robot.robot_file import Robot, read_robot
 from giveway.robot.variables import table
 from giveway.scenario.approach import Approach, edge_middle, meet, outline_of
 from PIL import Image
+from scipy.signal import lfilter
 
 GOOD = arc_log((1.0, 0.0, 0.0), sine(1.5, 0.1), 30.0)
 # Peak speed at the rim of the moving rollers per wheel rate, wheel 0 alone: r_w / sqrt(3).
@@ -94,8 +95,8 @@ def correlated(log: MotionLog, seed: int, nm: float, time_s: float) -> MotionLog
     rng = np.random.default_rng(seed)
     keep = math.exp(-STEP_S / time_s)
     noise = np.zeros_like(log.torque_nm)
-    for k in range(1, len(noise)):
-        noise[k] = keep * noise[k - 1] + math.sqrt(1.0 - keep**2) * rng.normal(0.0, nm, 3)
+    new = rng.normal(0.0, nm, noise[1:].shape)
+    noise[1:] = lfilter([math.sqrt(1.0 - keep**2)], [1.0, -keep], new, axis=0)
     speed = np.abs(np.gradient(log.wheel_angle_rad[:, :1], STEP_S, axis=0))
     return dataclasses.replace(log, torque_nm=log.torque_nm + noise * (0.3 + speed))
 
@@ -327,9 +328,9 @@ def test_command_writes_robot_file_and_picture(
         assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50  # something is drawn
 
 
-def test_new_robot_file_runs(cli: Cli, log_file: Path, robot_file: Path) -> None:
-    cli("calibrate", "drive.csv", "--robot", str(robot_file), "--out", "mine.toml")
-    done = cli("run", "motionless", "--robot", "mine.toml", "--duration", "0.05", "--out", "run")
+def test_new_robot_file_runs(process: Cli, log_file: Path, robot_file: Path) -> None:
+    process("calibrate", "drive.csv", "--robot", str(robot_file), "--out", "mine.toml")
+    done = process("run", "motionless", "--robot", "mine.toml", "--duration", "0.05", "--out", "run")
     assert done.returncode == 0, done.stderr
 
 

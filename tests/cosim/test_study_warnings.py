@@ -96,8 +96,8 @@ def test_the_speeds_of_the_contact_are_always_shown(answers: Answers, tmp_path: 
     assert all("robot speed" in found.warning_text(design) for design in (0, 1))
 
 
-def test_the_terminal_shows_them(cli: Cli, tmp_path: Path, answers: Answers) -> None:
-    said = cli("study", "show", str(answers.folder))
+def test_the_terminal_shows_them(process: Cli, tmp_path: Path, answers: Answers) -> None:
+    said = process("study", "show", str(answers.folder))
     assert said.returncode == 0, said.stderr
     assert "1 with warnings" in said.stdout
     assert "bumper bottomed (1 run)" in said.stdout
