@@ -10,7 +10,7 @@ BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms
-.PHONY: product compile-product compile-all
+.PHONY: product compile-product compile-all native-tests
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -22,11 +22,15 @@ demo: product ## the paper's collision experiment as a co-simulation; table, rep
 reproduce: product ## every experiment of the paper: table, table.json and report in out/reproduce
 	$(BIN)/giveway reproduce --out out/reproduce --threads $(JOBS)
 
-test: build lint ## every test
-	$(BIN)/ctest --test-dir build --output-on-failure --progress -j $(JOBS)
-	$(BIN)/pytest --numprocesses $(JOBS) --dist loadfile # a file stays whole: its fixtures may be dear
+# A file stays in one process: its fixtures may be dear. Each process has a core: more threads would wait for each other.
+test: build ## every test but the deep ones, which `make verify` runs
+	@$(MAKE) --no-print-directory -j 2 lint native-tests
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --numprocesses $(JOBS) --dist loadfile
 
-verify: build build/verify/tools-installed build/verify/modelica-installed build/verify/second-simulator-installed ## every claim of c_core's README, by provers and checkers; ONLY=misra for one
+native-tests:
+	$(BIN)/ctest --test-dir build --output-on-failure --progress -j $(JOBS)
+
+verify: build build/verify/tools-installed build/verify/modelica-installed build/verify/second-simulator-installed ## every claim of c_core's README, by provers and checkers, and the deep tests; ONLY=misra for one
 	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
 
 fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness and real type; `make verify` does it for a minute

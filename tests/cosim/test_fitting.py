@@ -84,6 +84,7 @@ def test_the_committed_values_are_a_minimum(committed: Fit) -> None:
         assert np.sum(np.square(residuals)) + np.sum(point**2) > committed.cost
 
 
+@pytest.mark.deep
 def test_the_search_improves_on_what_it_starts_from() -> None:
     bench = Bench(ROBOT)
     stages: list[str] = []
@@ -93,6 +94,7 @@ def test_the_search_improves_on_what_it_starts_from() -> None:
     assert list(dict.fromkeys(stages)) == list(STAGES)
 
 
+@pytest.mark.deep
 def test_command_writes_robot_file_and_record(cli: Cli, tmp_path: Path) -> None:
     done = cli("fit", "--robot", str(ROBOT), "--out", "new.toml", "--samples", "1")
     assert done.returncode == 0, done.stderr

@@ -122,7 +122,6 @@ REFUSED: dict[str, tuple[str, Callable[[Path], None], str]] = {
     "no version": ("FMI version", with_xml("<fmiModelDescription/>"), "''; this checks FMI 2 and FMI 3"),
     "missing description": ("layout", lambda path: pack(path, {"a": b""}) and None, "missing at the top"),
     "deep elements": ("XML", deep, "more than 100 levels deep"),
-    "many variables": ("XML", lambda path: many_variables(path, 210_000), "--max-elements allows more"),
     "huge tag": ("XML", huge_tag, "one element has over 4 MB"),
 }
 
@@ -152,6 +151,7 @@ def large(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return path
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("kind", ["check", "info", "run"])
 def test_what_is_large_is_refused_in_little_memory(large: Path, kind: str, tmp_path: Path) -> None:
     """900,000 variables took 4.1 GB, and 1 GB of zeros was unpacked: now 10 s and 500 MB, what is promised of any."""
@@ -167,6 +167,7 @@ def test_what_is_large_is_refused_in_little_memory(large: Path, kind: str, tmp_p
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.deep
 def test_a_long_list_of_variables_takes_little(tmp_path: Path) -> None:
     """150,000 rows as a table took 1.1 GB and 81 s; line by line it is 183 MB and 3 s."""
     path = tmp_path / "many.fmu"

@@ -118,6 +118,7 @@ def test_an_amplitude_may_be_a_quarter_of_the_motor_s_limit() -> None:
             )
 
 
+@pytest.mark.deep
 def test_command_compares(cli: Cli) -> None:
     done = cli("drivetrain", "--sweep")
     assert done.returncode == 0, done.stderr

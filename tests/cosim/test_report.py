@@ -146,6 +146,7 @@ def test_lists_and_version(process: Cli) -> None:
     assert "base.mass" not in listed
 
 
+@pytest.mark.deep
 def test_bench_prints_all_parts(process: Cli) -> None:
     done = process("bench", "--repeats", "1")
     assert done.returncode == 0, done.stderr

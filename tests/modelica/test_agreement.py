@@ -67,11 +67,11 @@ def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler) -> None:
         ("DrivetrainStep", "robot(drivetrain_stiffness=721.1)"),
         ("StaticPush", "data(roller_presliding_stiffness=28903)"),
         ("LatchRelease", "data(bumper_latch_force=45.81)"),
-        ("RollerWaves", "robot(data(roller_coulomb_torque=0.2002))"),
-        ("MovingCollision", "dummy(contact(e=0.301))"),
+        pytest.param("RollerWaves", "robot(data(roller_coulomb_torque=0.2002))", marks=pytest.mark.deep),
+        pytest.param("MovingCollision", "dummy(contact(e=0.301))", marks=pytest.mark.deep),
         ("BumperDrop", "floor(e=0.301)"),
         ("BumperSweep", "g_0=0.00100002"),
-        ("CirclePushed", "first(f_y=-34.05)"),
+        pytest.param("CirclePushed", "first(f_y=-34.05)", marks=pytest.mark.deep),
     ],
 )
 def test_a_small_fault_leaves_the_tube(compiler: Compiler, example: str, fault: str) -> None:

@@ -1,4 +1,7 @@
-"""The whole round of 5.4, simulated once for all its tests: it takes as long as everything else together."""
+"""The whole round of 5.4, simulated once for all its tests: it takes as long as everything else together.
+
+`make test` has its first push instead, `CirclePushed` in test_agreement.py.
+"""
 
 from dataclasses import replace
 from typing import Any
@@ -10,6 +13,8 @@ from giveway_modelica.compiler import Compiler
 from giveway_modelica.fmu_runs import RUNS, Pair, in_double
 from giveway_modelica.tube import at
 from test_reference_results import check_the_reference_result
+
+pytestmark = pytest.mark.deep
 
 EXAMPLE = "CircleRound"
 # Of the controllers: the FMU's, and the block's.

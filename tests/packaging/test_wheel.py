@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import sysconfig
 import venv
 import zipfile
 from pathlib import Path
@@ -85,6 +86,20 @@ def test_its_fmus_hold_the_libraries_that_are_tested_and_shipped_for_all_platfor
                     assert packed.read(f"binaries/{folder}/{library}") == built
 
 
+def test_its_files_run_an_experiment_away_from_the_repository(wheel: Path, tmp_path: Path) -> None:
+    """Unpacked, with the packages that are installed here; the next test installs everything by pip."""
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "unpacked")
+    folders = [str(tmp_path / "unpacked"), sysconfig.get_path("purelib")]
+    # -S: what is installed in place, from the repository, is not found.
+    start = f"import sys; sys.path[:0] = {folders}; import giveway.cli; print(giveway.__file__); giveway.cli.main()"
+    options = ("--bumper", "magnetic", "--duration", "0.3", "--out", "run")
+    origin, *_ = run(sys.executable, "-S", "-c", start, "run", "motionless", *options, cwd=tmp_path).splitlines()
+    assert Path(origin).is_relative_to(tmp_path / "unpacked")
+    assert (tmp_path / "run" / "traces.parquet").is_file()
+
+
+@pytest.mark.deep
 def test_it_runs_an_experiment_away_from_the_repository(environment: Path, tmp_path: Path) -> None:
     origin = run(environment / "bin" / "python", "-c", "import giveway; print(giveway.__file__)", cwd=tmp_path)
     assert Path(origin.strip()).is_relative_to(environment)

@@ -90,6 +90,7 @@ def test_the_same_seed_draws_the_same_mutants(tmp_path: Path) -> None:
     assert [key.change for key in drawn[:2]] == ["7U -> 6U", "> -> <="]
 
 
+@pytest.mark.deep
 def test_real_mutants_meet_their_fates(tmp_path: Path) -> None:
     killers = Killers(Context(ROOT, tmp_path))
     source, other = (ROOT / "c_core" / "src" / name for name in ("gw_sum.c", "gw_detector.c"))

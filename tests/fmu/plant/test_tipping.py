@@ -378,6 +378,7 @@ def test_a_wheel_that_lifts_forgets_its_bristles_and_one_that_lands_keeps_the_re
     assert landed[4:7].tolist() == [1.0, 1.0, 1.0]
 
 
+@pytest.mark.deep
 def test_a_trajectory_with_lifting_wheels_against_lagrange_in_scipy(library: ctypes.CDLL) -> None:
     """Pushed hard off the centre for 60 ms, gears held. Both integrate to 1e-9, anew from each lift and touch-down."""
     p = replace(HELD, wheel_grip_stiffness=2.0e5, wheel_floor_stiffness=5.0e4, push_height=0.6)
