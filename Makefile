@@ -22,7 +22,7 @@ demo: product ## the paper's collision experiment as a co-simulation; table, rep
 reproduce: product ## every experiment of the paper: table, table.json and report in out/reproduce
 	$(BIN)/giveway reproduce --out out/reproduce --threads $(JOBS)
 
-# A file stays in one process: its fixtures may be dear. Each process has a core: more threads would wait for each other.
+# A file stays in one process: its fixtures may be dear. Each process has a core: more threads would wait.
 test: build ## every test but the deep ones, which `make verify` runs
 	@$(MAKE) --no-print-directory -j 2 lint native-tests
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --numprocesses $(JOBS) --dist loadfile
