@@ -21,12 +21,12 @@ from verify.second_simulator.mjcf import (
     AZIMUTHS_RAD,
     GRAVITY_MPS2,
     ROLLER_STIFFNESS,
-    ROLLERS_PER_ROW,
-    ROWS,
     WHEELS,
     SecondRobot,
     build,
     roller_half_length_m,
+    rollers,
+    row_place_m,
     wheel_mass_kg,
 )
 
@@ -66,7 +66,7 @@ class Bench:
     step_s: float
 
     def plant(self, wheel_rad: float | None = None) -> Plant:
-        quiet = {**self.model, "electronics.torque_noise": 0.0}
+        quiet = {**self.model, "electronics.torque_noise": 0.0, "roller.friction_scatter": 0.0}
         plant = Plant(build(quiet, "none", self.step_s), self.drives, wheel_rad=wheel_rad)
         plant.settle()
         return plant
@@ -108,7 +108,7 @@ def weight(bench: Bench) -> list[Finding]:
 def static_push(bench: Bench) -> list[Finding]:
     """Of a push on stuck rollers the wheels feel what their springs take beside the rollers'."""
     p = bench.formula
-    plant = bench.plant()
+    plant = bench.plant(wheel_rad=0.0)  # elsewhere the rollers' shape adds the spring of a pendulum
     hold = np.zeros(2 * WHEELS)
     force, arm = 10.0, 0.15
     before = plant.torque.copy()
@@ -128,25 +128,25 @@ def static_push(bench: Bench) -> list[Finding]:
     stiffness = p["drivetrain.stiffness"] * rolling.T @ rolling + along.T @ bristles @ along
     moved = np.linalg.solve(stiffness, [0.0, force, force * arm])
     wrench = jacobian(p).T @ (p["drivetrain.stiffness"] * rolling @ moved)
-    # 1 %: friction that holds creeps.
+    # 1.5 %: friction that holds creeps, and the base leans.
     return [
-        Finding("share of a static push that the wheels feel", felt[1] / force, wrench[1] / force, 0.01),
-        Finding("moment of a static push, N m", felt[2], wrench[2], 0.01),
+        Finding("share of a static push that the wheels feel", felt[1] / force, wrench[1] / force, 0.015),
+        Finding("moment of a static push, N m", felt[2], wrench[2], 0.015),
     ]
 
 
 def _bearing_row(p: Parameters, plant: Plant) -> NDArray[np.float64]:
     """Where the row that bears is, along each axle from the wheel's middle, m."""
-    division = 2.0 * math.pi / (ROWS * ROLLERS_PER_ROW)
-    row = np.round(plant.data.qpos[plant.robot.wheel[0]] / division) % ROWS
-    return np.asarray((row - 0.5) * p["wheel.width"])
+    division = 2.0 * math.pi / rollers(p)
+    row = np.round(plant.data.qpos[plant.robot.wheel[0]] / division) % p["roller.rows"]
+    return np.array([row_place_m(p, one) for one in row])
 
 
 def _drag(p: Parameters, wheel_angle: NDArray[np.float64], direction: float) -> NDArray[np.float64]:
     """Friction of the rollers that bear against steady motion along ``direction``, N."""
     roller, radius = p["roller.radius"], p["wheel.radius"]
-    half = roller_half_length_m(radius, roller)
-    division = 2.0 * math.pi / (ROWS * ROLLERS_PER_ROW)
+    half = roller_half_length_m(p)
+    division = 2.0 * math.pi / rollers(p)
     load_n = p["base.mass"] * GRAVITY_MPS2 / WHEELS
     stiffness = ROLLER_STIFFNESS * p["wheel.floor_stiffness"]
 

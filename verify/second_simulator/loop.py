@@ -20,7 +20,7 @@ from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS, Plan, Pushes, Rest, 
 from giveway.simulation.fmu import Instance, open_fmu
 
 from verify.second_simulator.electronics import Drives
-from verify.second_simulator.mjcf import EACH, FAR_M, FILE, ROLLER_STIFFNESS, ROLLERS_PER_ROW, WHEELS, SecondRobot
+from verify.second_simulator.mjcf import EACH, FAR_M, FILE, ROLLER_STIFFNESS, WHEELS, SecondRobot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -92,7 +92,7 @@ class Plant:
         self._wheel_q, self._wheel_v = robot.wheel
         self._stiffness, self._damping = p["drivetrain.stiffness"], p["drivetrain.damping"]
         data = self.data
-        turned = random.uniform(0.0, 2.0 * math.pi / ROLLERS_PER_ROW, WHEELS)  # which part of which roller bears
+        turned = random.uniform(0.0, 2.0 * math.pi / p["roller.per_row"], WHEELS)  # which part of which roller bears
         if wheel_rad is not None:
             turned[:] = wheel_rad
         data.qpos[self._rotor_q] = data.qpos[self._wheel_q] = turned
@@ -114,7 +114,8 @@ class Plant:
         self._at = {
             name: getattr(self, name).ctypes.data for name in ("angle", "torque", "motor", "felt", "sensed", "counts")
         }
-        self._law, self._coulomb, self._slope = robot.friction, p["roller.coulomb_torque"], p["roller.tanh_slope"]
+        self._law, self._slope = robot.friction, p["roller.tanh_slope"]
+        self._coulomb = self.model.dof_frictionloss.copy()
         self._per_stribeck = p["roller.radius"] / p["roller.stribeck_speed"]
         self._bearing: list[int] = []  # joints of the rollers on the floor
         self._force = np.zeros(6)
@@ -171,8 +172,7 @@ class Plant:
         if self._law == EACH:
             return
         data, loss = self.data, self.model.dof_frictionloss
-        for dof in self._bearing:
-            loss[dof] = self._coulomb
+        loss[self._bearing] = self._coulomb[self._bearing]
         bodies = self.model.geom_bodyid[data.contact.geom[: data.ncon]].max(axis=1)
         wheels = self.robot.wheel_of_body[bodies]
         numbers = np.flatnonzero(wheels >= 0)
@@ -186,7 +186,7 @@ class Plant:
             whole = np.bincount(wheels[numbers], loads, WHEELS)
             shares = (loads / np.maximum(whole[wheels[numbers]], 1e-9)).tolist()
         for dof, share in zip(self._bearing, shares, strict=True):
-            strength = self._coulomb * share
+            strength = float(self._coulomb[dof]) * share
             if self._law == FILE:
                 spin = abs(float(data.qvel[dof]))
                 stuck = math.exp(-((spin * self._per_stribeck) ** 2))
@@ -234,8 +234,7 @@ class Plant:
     def close(self) -> None:
         """The slider waits far away again: the model is that of the next run, too."""
         self.model.body_pos[self.robot.rail_body, :2] = FAR_M, 0.0
-        for dof in self._bearing:
-            self.model.dof_frictionloss[dof] = self._coulomb
+        self.model.dof_frictionloss[:] = self._coulomb
         self.drives.close()
 
     def contact(self) -> tuple[float, float, float, float]:

@@ -2,9 +2,9 @@
 
 Every roller is a body on a hinge. What the robot file does not say is assumed here:
 
-- Two rows of nine rollers a wheel, half a division apart, the rows' planes a wheel's width apart (`wheel.width`).
-- A roller is an ellipsoid that touches the circle of the wheel in its middle and where the other row takes over, 10
-  degrees from there; in between it stands out by up to 0.02 mm.
+- A roller (`roller.rows`, `roller.per_row`, `roller.row_distance`) is an ellipsoid that touches the circle of the wheel
+  in its middle, and is `roller.radius_dip` within it where the next row takes over. Its friction is its own
+  (`roller.friction_scatter`, drawn from `roller.seed`).
 - Its friction is that of a joint in MuJoCo, which sticks or slips. How strong it is: `file`, as the testbed's, (28) and
   stiction below `roller.stribeck_speed`, set anew twice a millisecond; `coulomb`, `roller.coulomb_torque` whatever the
   speed. The robot file gives it for a wheel: two rollers that both bear share it as they share the load. With `each`
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BUMPERS", "FRICTION", "GRAVITY_MPS2", "WHEELS", "SecondRobot", "build"]
 
-WHEELS, ROWS, ROLLERS_PER_ROW = 3, 2, 9
+WHEELS = 3
 AZIMUTHS_RAD = tuple(2.0 * math.pi * wheel / WHEELS for wheel in range(WHEELS))
 BUMPERS = ("none", "spring", "magnetic")
 FRICTION = FILE, COULOMB, EACH = "file", "coulomb", "each"
@@ -128,11 +128,16 @@ def _outline(p: Mapping[str, Any]) -> list[tuple[float, float]]:
     return [(p[f"outline.x[{i}]"], p[f"outline.y[{i}]"]) for i in range(int(p["outline.count"]))]
 
 
-def roller_half_length_m(wheel_radius_m: float, roller_radius_m: float) -> float:
-    """Of the ellipsoid that reaches the wheel's circle in its middle and at the hand-over to the other row."""
-    turn = math.pi / (ROWS * ROLLERS_PER_ROW)
-    reach = wheel_radius_m - (wheel_radius_m - roller_radius_m) * math.cos(turn)
-    return math.sqrt(reach**2 - (roller_radius_m * math.cos(turn)) ** 2) / math.sin(turn)
+def rollers(p: Mapping[str, Any]) -> int:
+    """Of a wheel."""
+    return int(p["roller.rows"]) * int(p["roller.per_row"])
+
+
+def roller_half_length_m(p: Mapping[str, Any]) -> float:
+    """Of the ellipsoid that has the wheel's radius in its middle, and the dip where the next row takes over."""
+    turn, roller = math.pi / rollers(p), p["roller.radius"]
+    reach = p["wheel.radius"] - p["roller.radius_dip"] - (p["wheel.radius"] - roller) * math.cos(turn)
+    return math.sqrt(reach**2 - (roller * math.cos(turn)) ** 2) / math.sin(turn)
 
 
 def _xml(p: Mapping[str, Any], bumper: str, step_s: float) -> str:
@@ -192,24 +197,27 @@ def _wheel(p: Mapping[str, Any], wheel: int) -> str:
     """Local x points outwards along the axle; a positive angle drives the base towards local y."""
     radius, roller, azimuth = p["wheel.radius"], p["roller.radius"], AZIMUTHS_RAD[wheel]
     centre, spin = radius - roller, p["wheel.inertia"]
-    half = roller_half_length_m(radius, roller)
-    rollers = []
-    for row in range(ROWS):
-        for number in range(ROLLERS_PER_ROW):
-            angle = 2.0 * math.pi * (number + row / ROWS) / ROLLERS_PER_ROW - 0.5 * math.pi
+    half = roller_half_length_m(p)
+    bodies = []
+    rows, per_row = int(p["roller.rows"]), int(p["roller.per_row"])
+    scatter = np.random.default_rng((int(p["roller.seed"]), wheel)).uniform(-1.0, 1.0, (rows, per_row))
+    for row in range(rows):
+        for number in range(per_row):
+            angle = 2.0 * math.pi * (number + row / rows) / per_row - 0.5 * math.pi
+            friction = p["roller.coulomb_torque"] * (1.0 + p["roller.friction_scatter"] * scatter[row, number])
             c, s = math.cos(angle), math.sin(angle)
             name = f"{wheel}_{row}_{number}"
-            rollers.append(
-                f'<body name="roller{name}" pos="{(row - 0.5) * p["wheel.width"]:.17g} {centre * c:.17g} '
+            bodies.append(
+                f'<body name="roller{name}" pos="{row_place_m(p, row):.17g} {centre * c:.17g} '
                 f'{centre * s:.17g}" zaxis="0 {-s:.17g} {c:.17g}">'
                 f'<inertial pos="0 0 0" mass="{SPECK_KG}" diaginertia="{_three(p["roller.inertia"])}"/>'
                 f'<joint name="roller{name}" type="hinge" axis="0 0 1" '
-                f'frictionloss="{p["roller.coulomb_torque"]:.17g}"/>'
+                f'frictionloss="{friction:.17g}"/>'
                 f'<geom type="ellipsoid" size="{roller:.17g} {roller:.17g} {half:.17g}" mass="0" contype="0" '
                 f'conaffinity="1"/></body>'
             )
-    inertia = spin - ROWS * ROLLERS_PER_ROW * SPECK_KG * centre**2
-    hub_kg = wheel_mass_kg(p) - ROWS * ROLLERS_PER_ROW * SPECK_KG
+    inertia = spin - rollers(p) * SPECK_KG * centre**2
+    hub_kg = wheel_mass_kg(p) - rollers(p) * SPECK_KG
     load_n = p["base.mass"] * GRAVITY_MPS2 / WHEELS
     suspension = p["wheel.floor_stiffness"] / (1.0 - 1.0 / ROLLER_STIFFNESS)
     place = (
@@ -230,8 +238,13 @@ def _wheel(p: Mapping[str, Any], wheel: int) -> str:
         f'<body name="cage{wheel}"><inertial pos="0 0 0" mass="{SPECK_KG}" diaginertia="{_three(SPECK_KGM2)}"/>'
         f'<joint name="cage{wheel}" type="slide" axis="1 0 0" '
         f'stiffness="{p[f"roller.presliding_stiffness[{wheel}]"]:.17g}" '
-        f'damping="{p["roller.presliding_damping"]:.17g}"/>\n' + "\n".join(rollers) + "</body></body>"
+        f'damping="{p["roller.presliding_damping"]:.17g}"/>\n' + "\n".join(bodies) + "</body></body>"
     )
+
+
+def row_place_m(p: Mapping[str, Any], row: float) -> float:
+    """Of a row, outwards along the axle from the wheel's middle."""
+    return float((row - 0.5 * (p["roller.rows"] - 1)) * p["roller.row_distance"])
 
 
 def _slider(p: Mapping[str, Any], bumper: str) -> str:
