@@ -134,7 +134,7 @@ def _run_one(work: tuple[Any, ...]) -> dict[str, Any]:
     traces = simulate(_models[key], drives, case.run)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        name = case.name.replace(" ", "_").replace(",", "")
+        name = case.name.translate({ord(" "): "_", ord("/"): "_per_", ord(","): None})
         np.savez_compressed(folder / f"{number:03d}_{name}.npz", **dict[str, Any](traces))
     record: dict[str, Any] = case.record(number, judged_record(traces, testbed, controller, _acceleration_limit()))
     record["peak_n"] = float(traces["testbed.truth.contact_force"].max())
