@@ -206,15 +206,21 @@ def test_an_uneven_robot_is_that_of_the_event_exact_method() -> None:
 def test_accelerometer_and_gyro_are_those_of_the_event_exact_method() -> None:
     """At rest nothing but their noise, vibration and lost samples, to rounding; in a hit the plant's difference too."""
     names = [f"testbed.sensor.{name}" for name in ("acceleration[0]", "acceleration[1]", "yaw_rate", "imu_counter")]
+    # Fine encoders: a count that flips at another tick moves a wheel's torque, and by that the base.
+    counts = 1_000_000
     fitted: dict[str, object] = {"imu.present": True, "imu.dropout": 0.2, "imu.vibration": 0.1, "imu.x": 0.1}
-    scenarios = [short(duration_s=0.3, testbed={**fitted, **other}) for other in ({"slider.present": False}, {})]
+    fitted["electronics.encoder_counts"] = counts
+    controller = {"estimator.encoder_counts": counts, "sensor_check.encoder_jump": counts}
+    scenarios = [
+        dataclasses.replace(short(duration_s=0.3, testbed={**fitted, **other}), controller=controller)
+        for other in ({"slider.present": False}, {})
+    ]
     exact, table = batch.run_many(scenarios, traces=names), fixed(scenarios, traces=names)
     assert set(table["method"].values) == {"fixed-step"}
     for name in names:
         one, other = exact[name].values, table[name].values
         assert np.abs(one[0]).max() > 0.0
         assert np.abs(one[0] - other[0]).max() < 1e-9, name  # what stands still rings by less
-        # Encoder counts that flip at another tick move a wheel's torque, and by that the base.
         assert np.abs(one[1] - other[1]).max() < 0.02 * np.abs(one[1]).max(), name
     assert (np.diff(exact["testbed.sensor.imu_counter"].values[0]) == 0).any()
     assert np.abs(exact["testbed.sensor.acceleration[0]"].values[1]).max() > 1.0  # m/s2, of the hit
