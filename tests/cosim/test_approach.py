@@ -208,6 +208,23 @@ def test_what_cannot_be_met_is_refused(case: str) -> None:
     with pytest.raises(GivewayError, match=words) as caught:
         meet(Approach(**given), parameters(), plan)  # type: ignore[arg-type]
     assert caught.value.field == field
+    assert field == "point_m" or caught.value.value == given[field]
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_a_slider_that_leaves_the_robot_straight_is_refused_for_its_speed(share: float) -> None:
+    """Nobody gave a direction that could be wrong: straight into a side that goes away faster."""
+    normal = normal_of(0)
+    away = Straight(0.2, math.atan2(-normal[1], -normal[0]), acceleration_mps2=None)
+    with pytest.raises(GivewayError, match="approach each other") as caught:
+        meet(Approach(MIDDLE, share * 0.2, time_s=0.5), parameters(), away)
+    assert caught.value.value == share * 0.2
+
+
+def test_a_rail_that_would_ask_for_too_fast_a_start_is_told_the_time() -> None:
+    with pytest.raises(GivewayError, match="rail's friction") as caught:
+        meet(Approach(MIDDLE, 0.5, time_s=60.0), parameters(slider__damping=10.0), Rest())
+    assert (caught.value.field, caught.value.value) == ("time_s", 60.0)
 
 
 @pytest.mark.parametrize(

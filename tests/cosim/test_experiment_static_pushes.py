@@ -20,7 +20,7 @@ from giveway.experiments.static_push_study.placements import (
     random_placements,
 )
 from giveway.experiments.static_push_study.robots import pushed_robot
-from giveway.experiments.static_push_study.study import Study
+from giveway.experiments.static_push_study.study import KNOWN_PUSHES, Study
 from giveway.experiments.static_push_study.trials import Readings, Trial
 from giveway.scenario.scenario import Scenario
 
@@ -61,6 +61,10 @@ def test_the_papers_controller_feels_less_than_the_push(findings: Findings) -> N
         median = row(findings, f"magnitude error, {which} of four pushes, median").ours
         assert median is not None
         assert -70.0 < median < -10.0
+
+
+def test_the_least_pushes_are_two(findings: Findings) -> None:
+    assert any(note.startswith(f"2, {KNOWN_PUSHES} and {2 * KNOWN_PUSHES} known pushes") for note in findings.notes)
 
 
 def test_every_number_of_the_paper_has_its_place(findings: Findings) -> None:

@@ -14,7 +14,8 @@ from cosim_helpers import short
 from giveway import batch
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.batch import LANES
-from giveway.bench import collisions
+from giveway.bench import co_simulation, collisions, solvers
+from giveway.bench.command import bench
 from giveway.experiments import moving
 from giveway.scenario.random_collisions import random_collisions
 from giveway.scenario.scenario import BUMPERS
@@ -395,3 +396,27 @@ def test_a_push_and_a_plan_act_as_in_the_event_exact_method() -> None:
 def test_wrong_options_name_what_is_allowed(arguments: dict[str, object], message: str) -> None:
     with pytest.raises((GivewayError, UnknownNameError), match=message):
         batch.run_many([short()], **arguments)  # type: ignore[arg-type]
+
+
+def test_the_row_of_another_engine_has_its_step_in_ms() -> None:
+    row = collisions._engine_row("MuJoCo", {"runs_per_s": 150.0, "step_s": 0.002}, 100.0)
+    assert row == ("MuJoCo", "150", "", "2", "", "1.5")
+    row = collisions._engine_row("ecos", {"runs_per_s": 7.0}, None)
+    assert row == ("ecos", "7", "", "adaptive", "", "")
+    assert "not here" in collisions._engine_row("ecos", None, 100.0)[0]
+
+
+@pytest.mark.parametrize("lines", [[], ["design 7: 12 ms, event-exact 13 ms"]])
+def test_the_benchmark_says_which_designs_were_detected_on_another_tick(
+    lines: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is printed, without the minutes of measurement."""
+    monkeypatch.setattr(co_simulation, "measure", lambda *_: [])
+    monkeypatch.setattr(solvers, "measure_solvers", lambda *_: [])
+    monkeypatch.setattr(collisions, "measure", lambda *_: [])
+    monkeypatch.setattr(collisions, "accuracy", lambda: ([], lines))
+    bench(repeats=1)
+    said = capsys.readouterr().out
+    assert ("All detected on the same tick." in said) == (not lines)
+    assert ("Detected on another tick:" in said) == bool(lines)
+    assert all(line in said for line in lines)

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 from figure_labels import check_panels, check_planted, curve
 from giveway.base import native
-from giveway.base.errors import GivewayError, SimulationError
+from giveway.base.errors import FileError, GivewayError, SimulationError
 from giveway.cli import _main
 from giveway.fmu_tools import page as run_page
+from giveway.fmu_tools.archive import Archive, ArchiveError
 from giveway.fmu_tools.description import read_description
 from giveway.fmu_tools.inputs import read_inputs
 from giveway.fmu_tools.run import run_fmu
 from giveway.robot.variables import table as variable_table
 from giveway.simulation.fmu import Instance, open_fmu
-from stub_fmus import VARIABLES_3, description_3, files, library, pack
+from stub_fmus import VARIABLES_3, description_3, entry, files, library, pack
 
 DRIVE = ["carrier.velocity=0.2", "bumper.kind=1"]  # the carrier's face moves into the plate's
 
@@ -252,3 +253,33 @@ def test_real_outputs_of_the_testbed_come_before_its_switches(tmp_path: Path) ->
     assert "truth.vx" in _labels(page) or "truth.x" in _labels(page)
     listed = page.split("<h2>Not drawn</h2>")[1].split("</p>")[0]
     assert "solver.steps" in listed
+
+
+def test_a_library_for_another_processor_is_not_loaded(tmp_path: Path) -> None:
+    binary = bytearray(library(3))
+    assert binary[:4] == b"\x7fELF"
+    binary[18:20] = (183 if binary[18] == 62 else 62).to_bytes(2, "little")  # AArch64 and x86-64
+    path = pack(tmp_path / "other.fmu", files(binary=bytes(binary)))
+    with pytest.raises(FileError, match=r"cannot be run: .* is for "):
+        run_fmu(path)
+
+
+def test_a_unit_without_base_units_shifts_nothing() -> None:
+    """And what another part of the description calls Output is none."""
+    text = description_3().replace("</UnitDefinitions>", '<Unit name="piece"/></UnitDefinitions>')
+    annotation = '<Annotations><Output valueReference="5"/></Annotations>'
+    text = text.replace("<DefaultExperiment", f"{annotation}<DefaultExperiment")
+    description = read_description(text.encode())
+    assert [unknown.key for unknown in description.outputs] == [3, 4]
+    piece = next(unit for unit in description.units if unit.name == "piece")
+    assert (piece.base, piece.factor, piece.offset) == (None, 1.0, 0.0)
+
+
+def test_a_name_that_ends_early_is_not_unpacked_for_what_it_began_with(tmp_path: Path) -> None:
+    """Python's zipfile cuts a name at its first zero byte; other programs do not."""
+    path = pack(tmp_path / "cut.fmu", files(), [entry("aXbb/../../x")])
+    path.write_bytes(path.read_bytes().replace(b"aXbb/../../x", b"a\0bb/../../x"))
+    (tmp_path / "out").mkdir()
+    with Archive(path) as archive, pytest.raises(ArchiveError, match="leads elsewhere"):
+        archive.extract(tmp_path / "out")
+    assert not (tmp_path / "out" / "a").exists()

@@ -13,6 +13,7 @@ import synthetic_collision as synthetic
 from giveway.base.errors import GivewayError
 from giveway.library import recorded
 from giveway.library.batch_library import native_metrics
+from giveway.scenario.body_regions import body_region
 from giveway.simulation.metrics import Collision, Metric, collision, design, evaluate, without_collision
 
 # Sums over a 1 ms grid against integrals: at most one step's worth of force (40 N x 1 ms) on 2 N s.
@@ -200,3 +201,12 @@ def test_metrics_never_hold_nan() -> None:
     metric = Metric("x", math.nan, "m", math.inf)
     assert metric.value is None
     assert metric.truth is None
+
+
+def test_without_a_body_region_no_share_of_its_limits_is_told() -> None:
+    region = body_region("lower leg")
+    traces = synthetic.traces()
+    told, untold = evaluate(traces, synthetic.PARAMETERS, region), evaluate(traces, synthetic.PARAMETERS)
+    for name in ("transient force share", "lasting force share"):
+        assert told[name].value is not None, name
+        assert untold[name].value is None, name

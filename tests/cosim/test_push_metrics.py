@@ -159,6 +159,7 @@ def by_the_paper() -> Result:
 
 def test_what_no_push_caused_is_told_with_its_times(by_the_paper: Result) -> None:
     rows = push_rows(by_the_paper)
+    assert {"felt after, ms", "detections", "force direction, deg"} <= set(rows[0])  # counts have no unit
     assert [row[1] for row in rows[1:]] == [rows[1][1], "not felt"]  # it was still giving way
     assert by_the_paper.metric("false detections").value == 3.0
     line = false_detection_line(by_the_paper)

@@ -15,12 +15,14 @@ from cosim_helpers import Cli, folder_content
 from giveway import batch
 from giveway.base import native
 from giveway.base.errors import GivewayError
-from giveway.experiments.roller_calibration import ARCS, RECORDED, arc_scenario, log_of
+from giveway.experiments.roller_calibration import ARCS, RECORDED, _change_s, arc_scenario, log_of
+from giveway.identification.disturbance import Limits, find_disturbance
 from giveway.identification.motion_log import MotionLog
-from giveway.identification.roller_fit import RestZone, fit, half_widths, prepare
+from giveway.identification.roller_fit import Fit, RestZone, Samples, fit, half_widths, prepare
 from giveway.identification.roller_friction import (
     Calibration,
     Estimate,
+    FittedLog,
     UnidentifiableError,
     _force_uncertainty,
     calibrate,
@@ -366,3 +368,42 @@ def test_command_keeps_the_old_robot_file(cli: Cli, tmp_path: Path, log_file: Pa
     assert done.returncode == 2
     assert "another file" in done.stderr
     assert (tmp_path / "robot.toml").read_text() == native.robot().read_text()
+
+
+def test_blocks_are_as_long_as_the_noise_hangs_together(robot: Robot) -> None:
+    """Three correlation times of 2 x 0.3 s; white noise hangs together through the smoothing, 0.05 s, alone."""
+    model = TorqueModel.of(robot)
+    lengths = []
+    for log in (GOOD, correlated(GOOD, 1, 0.1, 0.3)):
+        samples = prepare(log, model, 28.0)
+        lengths.append(fit([samples], [RestZone.of(robot).free(samples, model.roller_radius_m)], model).block_s)
+    assert lengths[0] == pytest.approx(3.0 * 2.0 * math.sqrt(math.pi) * 0.05, rel=0.5)
+    assert lengths[1] == pytest.approx(3.0 * 2.0 * 0.3, rel=0.5)
+
+
+@pytest.mark.parametrize("last", [149, 199])
+def test_a_disturbance_lasts_from_its_first_to_its_last_sample(last: int, robot: Robot) -> None:
+    """Also one at the end of the log: nothing comes after it."""
+    count, step_s = 200, 0.05
+    zeros, torque = np.zeros((count, 3)), np.zeros((count, 3))
+    torque[120 : last + 1] = (1.5, 1.5, 1.5)
+    sound = np.ones(count, dtype=bool)
+    samples = Samples(step_s * np.arange(count), zeros, torque, zeros, zeros, zeros, sound)
+    nothing = Fit(np.zeros(5), np.zeros((1, 5)), np.zeros((5, 5)), 1, 1.0, 0.0)
+    limits = Limits(leak_n=3.0, impulse_newton_s=0.5)
+    found = find_disturbance([samples], [sound], nothing, TorqueModel.of(robot), limits)
+    assert found is not None
+    assert (found.begin_s, found.end_s) == (step_s * 120, step_s * last)
+
+
+@pytest.mark.parametrize("offsets_nm", [(0.0, 0.0, 0.0), (0.5, 0.0, -0.5)])
+def test_the_change_of_plateaus_is_that_of_wheel_0_without_its_tare(offsets_nm: tuple[float, float, float]) -> None:
+    """A wave of 1 N m that takes 0.2 s from 0.9 to -0.9 and back, over a tare that differs from wheel to wheel."""
+    time_s = 0.01 * np.arange(1000)
+    phase = np.mod(time_s, 4.0)
+    wave = np.clip((np.abs(phase - 2.0) - 1.0) * 9.0, -1.0, 1.0)  # 1.8 of the way at 9 per second
+    zeros, every = np.zeros((1000, 3)), np.ones(1000, dtype=bool)
+    torque = np.stack([wave, zeros[:, 0], zeros[:, 0]], axis=1) + offsets_nm
+    log = FittedLog("log", time_s, zeros, torque, zeros, torque, every, every, np.array(offsets_nm))
+    # To two samples: each end is one of them.
+    assert _change_s(log, 1.0) == pytest.approx(0.2, abs=0.021)

@@ -17,7 +17,7 @@ from giveway.base.errors import GivewayError
 from giveway.robot.changes import NewValue, changed_robot
 from giveway.study.answers import Answers, load
 from giveway.study.engine import sweep
-from giveway.study.export import SSV, export_design, export_table
+from giveway.study.export import SSV, _powers, export_design, export_table
 from lxml import etree
 from study_helpers import LATCH, SPRING, small_study, stored_runs
 
@@ -168,3 +168,16 @@ def test_what_cannot_be_exported_is_said(
     with pytest.raises(GivewayError, match=words):
         export_design(answers, design, tmp_path / name, **keys)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("unit", "powers"),
+    [
+        ("kg.m2", {"kg": 1, "m": 2}),
+        ("N.m.s/rad", {"kg": 1, "m": 2, "s": -1, "rad": -1}),
+        ("m/s2", {"m": 1, "s": -2}),
+        ("1", {}),
+    ],
+)
+def test_a_unit_is_told_in_base_units(unit: str, powers: dict[str, int]) -> None:
+    assert _powers(unit) == powers

@@ -199,6 +199,23 @@ def test_an_event_that_happened_does_not_happen_again(version: int, make: Callab
 
 
 @VERSIONS
+def test_an_input_set_in_event_mode_changes_the_states_only_if_it_changes(
+    version: int, make: Callable[..., Fmu]
+) -> None:
+    """Of the states one counts the discontinuities: an importer that is told restarts its integration."""
+    fmu = make("drivetrain", version)
+    enter_continuous_time(fmu)
+    assert fmu.get("motor.torque") == 0.0
+    for torque, jumps in ((0.0, False), (1.0, True), (1.0, False), (2.0, True)):  # less than the gear's stiction
+        before = fmu.get("state.discontinuities")
+        assert fmu.call("EnterEventMode") == OK
+        assert fmu.set("motor.torque", torque) == OK
+        assert bool(fmu.settle()["states_changed"]) == jumps
+        assert fmu.get("state.discontinuities") == before + jumps
+        assert fmu.call("EnterContinuousTimeMode") == OK
+
+
+@VERSIONS
 def test_without_a_servo_no_time_event_and_with_it_every_tick(version: int, make: Callable[..., Fmu]) -> None:
     assert not enter_continuous_time(make("drivetrain", version))["has_next_time"]
     fmu = make("drivetrain", version)
