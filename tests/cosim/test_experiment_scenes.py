@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import synthetic_collision as synthetic
 from figure_labels import Curve, check_panels, check_planted, curve, in_si, unit_of_axis
 from giveway import batch, experiments
 from giveway.base.errors import UnknownNameError
 from giveway.experiments.reproduction.findings import Effort, Findings
-from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, _judged_by, scenario
+from giveway.experiments.scenes import SCENES, STEADY_S, VARIANTS, _creeping_roller, _judged_by, scenario
 from giveway.robot.footprint import hull, wheel_corners
 from giveway.scenario.body_regions import NOTICE
 from giveway.scenario.plan import Straight
@@ -182,3 +185,27 @@ def check_obstacle(axes: Axes, unit: tuple[float, str], radius_m: float | None, 
     assert isinstance(disc, Circle)
     assert in_si(disc.get_radius(), unit, "m") == pytest.approx(radius_m)
     assert np.linalg.norm(in_si(disc.get_center(), unit, "m") - nose) == pytest.approx(radius_m)
+
+
+def test_the_note_tells_what_a_creeping_roller_holds_and_what_its_law_knows() -> None:
+    """Two hits of a drawn collision, of which the second is late; wheel 0's roller creeps at 2 mm/s."""
+    traces = synthetic.traces()
+    count = traces["controller.detection.count"].values.copy()
+    count[-5:] += 1
+    contact = traces["testbed.truth.contact"].values & (traces["time"].values < traces["time"].values[-1] - 0.5)
+    size = len(count)
+    put = {
+        "controller.detection.count": count,
+        "testbed.truth.contact": contact,
+        "testbed.truth.theta": np.zeros(size),
+        "testbed.truth.vx": np.full(size, 0.002),
+        "testbed.truth.vy": np.full(size, 0.3),
+        "testbed.truth.roller_force[0]": np.full(size, 7.0),
+    }
+    traces = traces.assign({name: ("time", values) for name, values in put.items()})
+    friction = {"roller.radius": 0.01, "roller.coulomb_torque": 0.02, "roller.tanh_slope": 2.5}
+    parameters = {**synthetic.PARAMETERS, "testbed": {**synthetic.PARAMETERS["testbed"], **friction}}
+    (note,) = _creeping_roller("a scene", SimpleNamespace(traces=traces, manifest={"parameters": parameters}))  # type: ignore[arg-type]
+    # 0.02/0.01 tanh(2.5 x 0.002/0.01) = 0.92 N
+    assert "direction of wheel 0, whose roller creeps at 2.0 mm/s: stuck, it holds 7 N" in note
+    assert "of which (28) knows 0.9 N" in note
