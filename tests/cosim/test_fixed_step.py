@@ -276,6 +276,15 @@ def test_rollers_one_by_one_shake_the_estimate() -> None:
     assert np.fft.rfftfreq(3000, 1e-3)[spectrum.argmax()] == pytest.approx(rate, abs=1.0 / 3.0)
 
 
+@pytest.mark.parametrize("bumper", ["none", "spring"])
+def test_a_gear_breaks_away_when_its_torque_arrives(bumper: str) -> None:
+    """Were it noticed at the end of the step only, the motion would be the same, with one event more for each gear."""
+    scenarios = [short(bumper, duration_s=0.4)]
+    exact, table = (run(scenarios, traces=["testbed.events"]) for run in (batch.run_many, fixed))
+    assert set(table["method"].values) == {"fixed-step"}
+    assert table["testbed.events"].values[0, -1] == exact["testbed.events"].values[0, -1] > 3
+
+
 def test_the_wall_throws_the_slider_back_as_in_the_event_exact_method() -> None:
     thrown = {"rope.attached": False, "wall.present": True, "slider.speed": -0.3}
     names = [f"testbed.truth.{name}" for name in ("wall_force", "slider_position", "slider_speed")]
