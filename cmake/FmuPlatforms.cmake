@@ -44,6 +44,9 @@ function(giveway_add_platforms)
                  "-DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/cmake/Platform.cmake" "-DGIVEWAY_PLATFORM=${_platform}"
                  "-DGIVEWAY_ZIG=${GIVEWAY_ZIG}" "-DGIVEWAY_SUNDIALS_VENDOR=${GIVEWAY_SUNDIALS_VENDOR}"
                  "-DPython3_EXECUTABLE=${Python3_EXECUTABLE}" "-DCMAKE_MAKE_PROGRAM=${CMAKE_MAKE_PROGRAM}"
+                 # One link at a time: with an empty cache two that make zig's run-time routines can wait for each
+                 # other's lock for ever.
+                 -DCMAKE_JOB_POOLS=linking=1 -DCMAKE_JOB_POOL_LINK=linking
       BUILD_COMMAND "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_folder}/zig-cache" "ZIG_LOCAL_CACHE_DIR=${_folder}/zig-cache"
                     "NINJA_STATUS=[FMUs %f/%t] " "${CMAKE_COMMAND}" --build <BINARY_DIR> --target fmu_binaries
       BUILD_ALWAYS ON # that tree knows what has changed
