@@ -352,6 +352,7 @@ def test_the_command_writes_tables_and_refuses_what_it_cannot_do(
     for wrong, said in (
         (["--draw", "both"], "both"),
         (["--robots", "0"], "--robots"),
+        (["--threads", "0"], "--threads"),
         (["--group", "floating"], "floating"),
         (["--set", "testbed.base.mass=40"], "testbed.base.mass"),
         (["--set", "controller.no=1"], "no"),

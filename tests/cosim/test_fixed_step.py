@@ -204,16 +204,23 @@ def test_an_uneven_robot_is_that_of_the_event_exact_method() -> None:
     assert abs(peak[0] / peak[1] - 1.0) > 1e-3
 
 
+def with_fine_encoders(scenario: giveway.Scenario) -> giveway.Scenario:
+    """A million counts: one that flips at another tick moves a torque by more than the plant's own error."""
+    counts = 1_000_000
+    controller = {"estimator.encoder_counts": counts, "sensor_check.encoder_jump": counts}
+    return dataclasses.replace(
+        scenario,
+        testbed={**scenario.testbed, "electronics.encoder_counts": counts},
+        controller={**scenario.controller, **controller},
+    )
+
+
 def test_accelerometer_and_gyro_are_those_of_the_event_exact_method() -> None:
     """At rest nothing but their noise, vibration and lost samples, to rounding; in a hit the plant's difference too."""
     names = [f"testbed.sensor.{name}" for name in ("acceleration[0]", "acceleration[1]", "yaw_rate", "imu_counter")]
-    # Fine encoders: a count that flips at another tick moves a wheel's torque, and by that the base.
-    counts = 1_000_000
     fitted: dict[str, object] = {"imu.present": True, "imu.dropout": 0.2, "imu.vibration": 0.1, "imu.x": 0.1}
-    fitted["electronics.encoder_counts"] = counts
-    controller = {"estimator.encoder_counts": counts, "sensor_check.encoder_jump": counts}
     scenarios = [
-        dataclasses.replace(short(duration_s=0.3, testbed={**fitted, **other}), controller=controller)
+        with_fine_encoders(short(duration_s=0.3, testbed={**fitted, **other}))
         for other in ({"slider.present": False}, {})
     ]
     exact, table = batch.run_many(scenarios, traces=names), fixed(scenarios, traces=names)
@@ -237,15 +244,10 @@ def on_rollers(duration_s: float, **testbed: object) -> giveway.Scenario:
 def test_rollers_one_by_one_are_those_of_the_event_exact_method() -> None:
     """Through 60 hand-overs; the account's error falls with the step as without them: measured 1/17 for half of it.
 
-    Encoders of a million counts, since a count that flips moves a torque by more than the plant's own error. Even so
-    they, and the controller's single precision, are what is left: 2e-4 of the torques at any step.
+    Even fine encoders, and the controller's single precision, are what is left: 2e-4 of the torques at any step.
     """
     names = ["testbed.truth.vx", "testbed.truth.wheel_torque[0]", "testbed.truth.wheel_torque[1]", "testbed.events"]
-    counts = 1_000_000
-    fine = {"electronics.encoder_counts": counts, "roller.phase[0]": 0.05, "roller.phase[1]": 0.12}
-    scenario = on_rollers(7.0, **fine)
-    controller = {"estimator.encoder_counts": counts, "sensor_check.encoder_jump": counts}
-    scenario = dataclasses.replace(scenario, controller={**scenario.controller, **controller})
+    scenario = with_fine_encoders(on_rollers(7.0, **{"roller.phase[0]": 0.05, "roller.phase[1]": 0.12}))
     exact = batch.run_many([scenario], traces=names)
     assert exact["testbed.events"].values[0, -1] > 60
     residuals = []

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from giveway.scenario.plan import Circle, Plan, Rest, Straight, TimedPush
+from giveway.crowd.drive import Drive, Leg, tare_s
+from giveway.scenario.plan import Circle, Plan, Rest, TimedPush
 
 from verify.second_simulator.loop import Hit, Run
 from verify.second_simulator.mjcf import BUMPERS
@@ -20,38 +21,14 @@ from verify.second_simulator.mjcf import BUMPERS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Case", "StartAndStop", "cases"]
+__all__ = ["Case", "cases"]
 
 SPEED_MPS = 0.5  # of what hits
 PLACES_PER_SIDE, SPREAD = 5, 0.75  # of the side's half length
 REST_HIT_S, AFTER_HIT_S = 1.0, 3.0
 CIRCLE_M, CIRCLE_MPS, CIRCLE_MPS2 = 1.5, 0.16, 0.3
-TARE_S = 0.1  # the plan begins after it
+CRUISE_S = 1.0  # of what stops again
 PUSH_N, PUSH_S, PUSH_RAMP_S, UNTOUCHED_S = 20.0, 2.0, 0.2, 10.0
-
-
-@dataclass(frozen=True)
-class StartAndStop:
-    """From rest along a straight line, and to rest again.
-
-    Attributes:
-        line: with its acceleration, which is also the deceleration.
-        stop_s: path time at which it begins to slow down.
-    """
-
-    line: Straight
-    stop_s: float
-
-    def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As `Plan`: the same ramp begins again, backwards."""
-        late = np.maximum(time_s - self.stop_s, 0.0)
-        table = self.line(time_s) - self.line(late)
-        table[:, :3] += self.line(np.zeros(1))[0, :3]
-        return table
-
-    @property
-    def end_s(self) -> float:
-        return self.stop_s + self.line.ramp_s
 
 
 @dataclass(frozen=True)
@@ -137,13 +114,9 @@ def _at_rest(p: Mapping[str, Any], _rng: np.random.Generator) -> Iterator[Case]:
             yield Case(f"rest, {place[0]}, {bumper}", "rest", "free", bumper, run)
 
 
-def _line(rng: np.random.Generator, heading: float) -> Straight:
-    return Straight(
-        rng.uniform(0.08, 0.4),
-        direction_rad=heading,
-        theta_rad=rng.uniform(-math.pi, math.pi),
-        acceleration_mps2=rng.uniform(0.3, 1.0),
-    )
+def _straight(rng: np.random.Generator, heading: float, cruise_s: float = math.inf) -> Drive:
+    speed, theta, acceleration = rng.uniform(0.08, 0.4), rng.uniform(-math.pi, math.pi), rng.uniform(0.3, 1.0)
+    return Drive((Leg(0.0, speed, acceleration, cruise_s, heading),), theta)
 
 
 def _around(rng: np.random.Generator, turning: bool) -> Circle:
@@ -166,10 +139,10 @@ def _in_motion(p: Mapping[str, Any], rng: np.random.Generator) -> Iterator[Case]
     for number, heading in enumerate(_headings(len(places) * len(BUMPERS))):
         place, bumper = places[(4 * number) % len(places)], BUMPERS[number % len(BUMPERS)]
         circle = number % 2 == 1
-        line = _line(rng, heading)
-        plan: Plan = _around(rng, number % 4 == 3) if circle else line
-        ramp_s = 0.5 * math.pi * CIRCLE_MPS / CIRCLE_MPS2 if circle else line.ramp_s
-        at_s = TARE_S + ramp_s + rng.uniform(0.3, 1.5)
+        straight = _straight(rng, heading)
+        plan: Plan = _around(rng, number % 4 == 3) if circle else straight
+        ramp_s = 0.5 * math.pi * CIRCLE_MPS / CIRCLE_MPS2 if circle else straight.legs[0].ramp_s
+        at_s = tare_s() + ramp_s + rng.uniform(0.3, 1.5)
         run = Run(at_s + AFTER_HIT_S, plan, hits=(_hit(at_s, place),))
         where = "circle" if circle else "straight"
         yield Case(f"{where}, {place[0]}, {bumper}", "motion", "free", bumper, run)
@@ -179,15 +152,10 @@ def _ramp_hits(p: Mapping[str, Any], rng: np.random.Generator, starting: bool) -
     places = _places(p)
     for number, heading in enumerate(_headings(24)):
         place, bumper = places[(7 * number) % len(places)], BUMPERS[number % len(BUMPERS)]
-        line = _line(rng, heading)
-        share = rng.uniform(0.1, 0.9) * line.ramp_s
-        if starting:
-            at_s, name = TARE_S + share, "starting"
-            plan: Plan = line
-        else:
-            stop_s = line.ramp_s + 1.0
-            at_s, name = TARE_S + stop_s + share, "stopping"
-            plan = StartAndStop(line, stop_s)
+        plan = _straight(rng, heading, math.inf if starting else CRUISE_S)
+        (leg,) = plan.legs
+        at_s = tare_s() + (0.0 if starting else leg.cruise_to_s) + rng.uniform(0.1, 0.9) * leg.ramp_s
+        name = "starting" if starting else "stopping"
         run = Run(at_s + AFTER_HIT_S, plan, hits=(_hit(at_s, place),))
         yield Case(f"{name}, {place[0]}, {bumper}", name, "free", bumper, run)
 
@@ -233,9 +201,8 @@ def _starts_and_stops(p: Mapping[str, Any], rng: np.random.Generator) -> Iterato
     for number, heading in enumerate(_headings(30)):
         growth = (0.05, 0.2, 0.6)[number % 3]
         speed = (0.1, 0.2, 0.4)[number % 3]
-        line = Straight(speed, heading, theta_rad=rng.uniform(-math.pi, math.pi), acceleration_mps2=growth)
-        plan = StartAndStop(line, line.ramp_s + 1.0)
-        run = Run(TARE_S + plan.end_s + 1.5, plan)
+        leg = Leg(0.0, speed, growth, CRUISE_S, heading)
+        run = Run(tare_s() + leg.end_s + 1.5, Drive((leg,), rng.uniform(-math.pi, math.pi)))
         yield Case(
             f"start and stop, {math.degrees(heading):+.0f} deg at {growth:g} m/s2",
             "starts and stops",

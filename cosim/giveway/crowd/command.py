@@ -77,6 +77,14 @@ def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
     return overrides["controller"]
 
 
+def _threads(threads: int | None) -> int:
+    from giveway.base.checks import whole
+    from giveway.library.batch_library import THREADS_MAX
+    from giveway.study.native_part import default_threads
+
+    return default_threads() if threads is None else whole("--threads", threads, 1, THREADS_MAX)
+
+
 def _all(
     draw: str,
     robots: int,
@@ -94,12 +102,11 @@ def _all(
     from giveway.crowd.population import GROUPS
     from giveway.crowd.table import TARGET_HEADER, short_cells, short_header, tables, target_rows, write
     from giveway.study.messages import duration, showing
-    from giveway.study.native_part import default_threads
 
     whole("--robots", robots, 1, ROBOTS_MAX)
     if group is not None and group not in GROUPS:
         raise UnknownNameError("--group", group, GROUPS)
-    threads = threads or default_threads()
+    threads = _threads(threads)
     found, notes = (
         _calibrate(draw, robots, folder.with_name(f"{folder.name}-of-robots"), threads) if calibrated else (None, [])
     )
@@ -247,14 +254,14 @@ def _endure(
     from giveway.crowd.endurance import HOURS, RUN_S, endurance, rates
     from giveway.crowd.parts import go_on
     from giveway.study.messages import duration, showing
-    from giveway.study.native_part import default_threads
 
+    threads = _threads(threads)
     found = {}
     interrupted = False
     for group in groups:
         work = endurance(draw, group, share * HOURS[group], controller)
         with showing(work.name) as progress:
-            done = go_on(work, out / group.replace(" ", "-"), threads or default_threads(), progress)
+            done = go_on(work, out / group.replace(" ", "-"), threads, progress)
         found[group] = {"asked": dict(work.asked), **rates(done.records)}
         if done.ran:
             speed = done.ran * RUN_S / done.wall_s

@@ -10,12 +10,18 @@ import numpy as np
 
 from giveway.base.checks import finite
 from giveway.base.errors import GivewayError
-from giveway.scenario.plan import PLAN_INPUTS
+from giveway.crowd.population import start_value
+from giveway.scenario.plan import PLAN_INPUTS, travel_from_rest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Drive", "Leg"]
+__all__ = ["Drive", "Leg", "tare_s"]
+
+
+def tare_s() -> float:
+    """Length of the controller's first tare: the plan begins after it."""
+    return start_value("estimator.tare_ticks", "controller") * start_value("controller.period", "controller")
 
 
 @dataclass(frozen=True)
@@ -73,16 +79,7 @@ class Leg:
 
     def _risen(self, time_s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """Travel, speed and acceleration of a start at time 0 that never stops."""
-        rate = math.pi / self.ramp_s
-        phase = np.clip(rate * time_s, 0.0, math.pi)
-        travel = 0.5 * self.speed_mps * (phase - np.sin(phase)) / rate
-        travel += self.speed_mps * np.maximum(time_s - self.ramp_s, 0.0)
-        inside = (time_s > 0.0) & (time_s < self.ramp_s)
-        return (
-            travel,
-            0.5 * self.speed_mps * (1.0 - np.cos(phase)),
-            np.where(inside, self.acceleration_mps2 * np.sin(phase), 0.0),
-        )
+        return travel_from_rest(np.maximum(time_s, 0.0), self.speed_mps, self.acceleration_mps2)
 
     def travel(self, time_s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """Travel, speed and acceleration along the path at path times (n,), each of shape (n,)."""

@@ -17,8 +17,7 @@ import numpy as np
 
 from giveway import batch
 from giveway.base.errors import UnknownNameError
-from giveway.crowd.drive import Drive, Leg
-from giveway.crowd.hits import tare_s
+from giveway.crowd.drive import Drive, Leg, tare_s
 from giveway.crowd.parts import Interrupted, Record, Work
 from giveway.crowd.population import DRAWS, GROUPS, Robot, robot_of
 from giveway.crowd.statistics import rate_upper_bound

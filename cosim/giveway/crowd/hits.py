@@ -20,7 +20,7 @@ import numpy as np
 from giveway.base.errors import GivewayError
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.crowd.blow import Blow
-from giveway.crowd.drive import Drive, Leg
+from giveway.crowd.drive import Drive, Leg, tare_s
 from giveway.crowd.population import DRAWS, GROUP_PATTERN, Robot, robot, start_value, start_values
 from giveway.robot.variables import Value
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
@@ -31,7 +31,7 @@ from giveway.scenario.stated_contact import StatedContact
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["DRAWN", "PATTERN", "PER_ROBOT", "Hit", "hit", "tare_s"]
+__all__ = ["DRAWN", "PATTERN", "PER_ROBOT", "Hit", "hit"]
 
 PATTERN: tuple[tuple[str, str], ...] = (
     ("rest", "free"),
@@ -125,11 +125,6 @@ def hit(draw: str, number: int, controller: Mapping[str, Value] | None = None) -
         # Half of the robots of every plant, which repeat after ten.
         situation = "motion" if (whose.number + whose.number // len(GROUP_PATTERN)) % 2 else "rest"
     return _Draw(draw, number, whose, situation, kind).hit(controller or {})
-
-
-def tare_s() -> float:
-    """Length of the controller's first tare: the plan begins after it."""
-    return start_value("estimator.tare_ticks", "controller") * start_value("controller.period", "controller")
 
 
 @functools.cache

@@ -32,6 +32,7 @@ __all__ = [
     "Straight",
     "TimedPush",
     "start_values",
+    "travel_from_rest",
 ]
 
 PLAN_INPUTS = tuple(f"plan.{column}" for column in ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha"))
@@ -118,7 +119,7 @@ class Straight:
     def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
         import numpy as np
 
-        travel = _travel(time_s, self.speed_mps, self.acceleration_mps2)
+        travel = travel_from_rest(time_s, self.speed_mps, self.acceleration_mps2)
         table = np.zeros((len(time_s), len(PLAN_INPUTS)))
         for derivative, along in enumerate(travel):
             table[:, 3 * derivative] = math.cos(self.direction_rad) * along
@@ -163,7 +164,8 @@ class Circle:
         import numpy as np
 
         radius = 0.5 * self.diameter_m
-        turned, rate, growth = (along / radius for along in _travel(time_s, self.speed_mps, self.acceleration_mps2))
+        travel = travel_from_rest(time_s, self.speed_mps, self.acceleration_mps2)
+        turned, rate, growth = (along / radius for along in travel)
         angle = self.start_rad + turned
         outward = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         ahead = radius * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
@@ -279,7 +281,7 @@ def _check_acceleration(field: str, value: float | None) -> None:
         finite(field, value, 1e-3, MAXIMUM_ACCELERATION_MPS2, "m/s2")
 
 
-def _travel(
+def travel_from_rest(
     time_s: NDArray[np.float64], speed_mps: float, acceleration_mps2: float | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Distance, speed and acceleration along a path, each of shape (n,).
