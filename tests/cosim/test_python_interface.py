@@ -12,7 +12,7 @@ import giveway
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
-from giveway.study import Study, study_file
+from giveway.study import Study, study_file, variations
 from giveway.study.designs import OPTIONS
 
 USER_FILE = """
@@ -81,8 +81,8 @@ def keywords(method: object) -> set[str]:
 
 def test_the_keywords_are_all_keys_of_a_study_file() -> None:
     assert keywords(Study.collision) == set(study_file._COLLISION)
-    assert keywords(Study.vary) == set(study_file._VARY)
-    assert keywords(Study.tolerance) == set(study_file._TOLERANCE)
+    assert keywords(Study.vary) == set(variations.VARY)
+    assert keywords(Study.tolerance) == set(variations.TOLERANCE)
     assert keywords(Study.designs) == {"kind", *(option for options in OPTIONS.values() for option in options)}
     goal = set(study_file._GOAL)
     assert keywords(Study.objective) == goal | {"goal", "weight"}

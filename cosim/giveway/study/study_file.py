@@ -6,31 +6,25 @@
 
 from __future__ import annotations
 
-import csv
-import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from giveway.base.checks import finite, whole
-from giveway.base.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.base.errors import GivewayError, InputFileError, UnknownNameError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
-from giveway.base.units import WrittenUnit, factor
 from giveway.library.batch_library import METHODS, PLANT_STEP_RANGE_S
 from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan_of
 from giveway.scenario.scenario import Scenario
 from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
 from giveway.simulation.run_warnings import plan_speed
-from giveway.study import designs as design_module
-from giveway.study.designs import DesignPlan
-from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
+from giveway.study.distributions import Varied
 from giveway.study.metrics import find_metric
-from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns, find
+from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns
 from giveway.study.runs import COVER
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
+from giveway.study.variations import TOLERANCE, VARY, designs_of, refuse_twice, tolerance_of, varied_of, written_unit
 
 __all__ = ["check", "read"]
 
@@ -44,13 +38,10 @@ _SCENARIO = (
     "controller",
 )  # fmt: skip
 _COLLISION = ("name", "mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
-_SPREAD = ("low", "high", "mode", "mean", "sigma")
-_VARY = ("quantity", "also", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
-_TOLERANCE = ("quantity", "also", "unit", "relative", "absolute", "distribution")
 _GOAL = ("metric", "collisions", "tolerances")
 OVER_COLLISIONS, OVER_TOLERANCES = ("worst", "mean"), ("worst", "mean", "nominal")
 TOLERANCE_KINDS = ("sobol", "latin-hypercube", "corners")
-LEVELS_MAX, SAMPLES_MAX, PART_MAX, CHOSEN_MAX, CORNERS_MAX = 100_000, 1_000_000, 65_536, 20, 12
+SAMPLES_MAX, PART_MAX, CHOSEN_MAX, CORNERS_MAX = 1_000_000, 65_536, 20, 12
 LIMITS = ("transient limit", "lasting limit")
 
 
@@ -77,13 +68,13 @@ def check(
         raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
     method = top.choice("method", METHODS, METHODS[0])
     cases = _cases(top, folder)
-    varied = tuple(_varied(Section(f"vary[{i}]", one, _VARY)) for i, one in enumerate(_list(top, "vary")))
-    _refuse_twice("vary", [one.quantity.name for one in varied])
+    varied = tuple(varied_of(Section(f"vary[{i}]", one, VARY)) for i, one in enumerate(_list(top, "vary")))
+    refuse_twice("vary", [one.quantity.name for one in varied])
     tolerances = tuple(
-        _tolerance(Section(f"tolerance[{i}]", one, _TOLERANCE)) for i, one in enumerate(_list(top, "tolerance"))
+        tolerance_of(Section(f"tolerance[{i}]", one, TOLERANCE)) for i, one in enumerate(_list(top, "tolerance"))
     )
-    _refuse_twice("tolerance", [one.quantity.name for one in tolerances])
-    plan, varied = _designs(top, varied, folder)
+    refuse_twice("tolerance", [one.quantity.name for one in tolerances])
+    plan, varied = designs_of(top, varied, folder)
     for i, one in enumerate(varied):
         _fits_cases(f"vary[{i}].quantity", one.quantity, cases, [v.quantity.name for v in varied])
     for i, tolerance in enumerate(tolerances):
@@ -152,12 +143,6 @@ def _list(top: Section, key: str) -> list[Any]:
     return found
 
 
-def _refuse_twice(table: str, names: Sequence[str]) -> None:
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            raise GivewayError(f"{table}[{index}].quantity", name, "a quantity that is not there already")
-
-
 def _cases(top: Section, folder: Path) -> tuple[Case, ...]:
     shared = top.table("scenario", _SCENARIO) or Section("scenario", top.required("scenario", "a table"), _SCENARIO)
     collisions = _list(top, "collision")
@@ -206,204 +191,6 @@ def _case(name: str, shared: dict[str, Any], hit: dict[str, Any] | None, folder:
         ),
         document,
     )
-
-
-def _quantity(section: Section) -> Quantity:
-    """The quantity of a table, and those that ``also`` have its value."""
-    quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
-    others = section.values.get("also", [])
-    if not isinstance(others, list):
-        raise GivewayError(section.full("also"), others, "a list of quantities")
-    for index, name in enumerate(others):
-        field = f"{section.full('also')}[{index}]"
-        other = find(field, str(name))
-        if not (quantity.columns and other.columns) or (other.kind, other.unit) != (quantity.kind, quantity.unit):
-            raise GivewayError(field, name, f"a parameter of the same kind and unit as {quantity.name}")
-        quantity = dataclasses.replace(
-            quantity,
-            minimum=max(quantity.minimum, other.minimum),
-            maximum=min(quantity.maximum, other.maximum),
-            columns=(*quantity.columns, *other.columns),
-        )
-    return quantity
-
-
-def _written(section: Section, unit: str) -> WrittenUnit | None:
-    """The unit that the table states; None: ours."""
-    if "unit" not in section.values:
-        return None
-    name = section.text("unit")
-    return WrittenUnit(name, factor(section.full("unit"), name, unit))
-
-
-def _varied(section: Section) -> Varied:
-    quantity = _quantity(section)
-    if "unit" in section.values and quantity.unit == "":
-        raise GivewayError(section.full("unit"), section.values["unit"], f"none: {quantity.name} has no unit")
-    written = _written(section, quantity.unit)
-    scale = 1.0 if written is None else written.scale
-    nominal = None
-    if "nominal" in section.values:
-        nominal = _value(section.full("nominal"), section.values["nominal"], quantity, scale)
-    if "values" in section.values:
-        for key in ("levels", "scale", "distribution", *_SPREAD):
-            if key in section.values:
-                raise GivewayError(section.full(key), section.values[key], "nothing: the values are listed")
-        values = section.values["values"]
-        if not isinstance(values, list) or not values:
-            raise GivewayError(section.full("values"), values, "a list with at least one value")
-        levels = tuple(_value(section.full("values"), value, quantity, scale) for value in values)
-        return Varied(quantity, nominal, levels, written=written)
-    kind = section.text("distribution", "loguniform" if _logarithmic(section) else "uniform")
-    given = {key: section.number(key) * scale for key in _SPREAD if key in section.values}
-    spread = check_spread(section.name, quantity, kind, given)
-    for key, value in (("low", spread.low), ("high", spread.high)):
-        where = section.full(key if key in section.values else "sigma")
-        _value(where, value, quantity, 1.0, whole_needed=False)
-    levels = ()
-    if "levels" in section.values:
-        count = whole(section.full("levels"), section.values["levels"], 2, LEVELS_MAX)
-        space = np.geomspace if kind == "loguniform" else np.linspace
-        found = space(spread.low, spread.high, count)
-        found = np.rint(found) if quantity.kind == "integer" else found
-        levels = tuple(float(value) for value in dict.fromkeys(found.tolist()))
-    return Varied(quantity, nominal, levels, spread, written)
-
-
-def _logarithmic(section: Section) -> bool:
-    if "scale" in section.values and "distribution" in section.values:
-        raise GivewayError(section.full("scale"), section.values["scale"], "nothing beside a distribution")
-    return section.choice("scale", ("linear", "log"), "linear") == "log"
-
-
-def _value(field: str, value: Any, quantity: Quantity, scale: float, whole_needed: bool = True) -> float:
-    """One value of a quantity, in its own unit."""
-    if quantity.kind == "choice":
-        if value not in quantity.choices:
-            raise UnknownNameError(field, str(value), quantity.choices)
-        return float(quantity.choices.index(value))
-    if quantity.kind == "boolean":
-        if not isinstance(value, bool):
-            raise GivewayError(field, value, quantity.allowed)
-        return float(value)
-    number = finite(field, value) * scale
-    fraction = quantity.kind == "integer" and whole_needed and number != round(number)
-    if fraction or not quantity.minimum <= number <= quantity.maximum:
-        raise GivewayError(field, value if scale == 1.0 else f"{value} (= {number:g})", quantity.allowed)
-    return number
-
-
-def _tolerance(section: Section) -> Tolerance:
-    quantity = _quantity(section)
-    if quantity.kind != "real":
-        raise GivewayError(section.full("quantity"), quantity.name, "a quantity of real numbers")
-    keys = [key for key in ("relative", "absolute") if key in section.values]
-    if len(keys) != 1:
-        found = "both" if keys else "nothing"
-        raise GivewayError(section.full("relative"), found, "one of relative and absolute")
-    relative = keys[0] == "relative"
-    scale, written = 1.0, None
-    if "unit" in section.values:
-        unit = section.text("unit")
-        scale = factor(section.full("unit"), "degC" if unit == "K" else unit, "1" if relative else quantity.unit)
-        written = WrittenUnit(unit, scale)
-    half = finite(section.full(keys[0]), section.values[keys[0]] * scale if _is_number(section, keys[0]) else None)
-    if half <= 0.0 or (relative and half >= 1.0):
-        allowed = "above 0 and below 1 (0.3: by 30 %)" if relative else f"above 0 {quantity.unit}"
-        raise GivewayError(section.full(keys[0]), section.values[keys[0]], allowed)
-    kind = section.choice("distribution", ("uniform", "normal", "triangular"), "uniform")
-    # Of a normal distribution, the stated ends are three standard deviations away.
-    return Tolerance(quantity, relative, Spread(kind, -half, half, 0.0, 0.0, half / 3.0), written)
-
-
-def _is_number(section: Section, key: str) -> bool:
-    section.number(key)
-    return True
-
-
-def _designs(top: Section, varied: tuple[Varied, ...], folder: Path) -> tuple[DesignPlan, tuple[Varied, ...]]:
-    values = top.values.get("designs", {"kind": "factorial"})
-    kind = Section("designs", values, None).choice("kind", design_module.KINDS)
-    section = Section("designs", values, ("kind", *design_module.OPTIONS[kind]))
-    if kind == "csv":
-        if varied:
-            raise GivewayError("vary[0].quantity", varied[0].quantity.name, "no [[vary]] beside a CSV file of designs")
-        found, rows = _csv(folder / section.text("file"), section)
-        return DesignPlan(kind, rows=rows), found
-    if not varied:
-        if kind != "factorial":
-            raise GivewayError("designs.kind", kind, "at least one [[vary]]")
-        return DesignPlan("factorial"), ()
-    if kind in ("factorial", "one-at-a-time"):
-        for index, one in enumerate(varied):
-            if not one.levels:
-                raise GivewayError(f"vary[{index}].levels", "nothing", f"levels or values: {kind} needs them")
-    plan = DesignPlan(
-        kind,
-        count=whole("designs.count", section.required("count", "a whole number"), 2, design_module.COUNT_MAX)
-        if "count" in design_module.OPTIONS[kind]
-        else 0,
-        trajectories=whole("designs.trajectories", section.values.get("trajectories", 20), 2, 10_000),
-        grid=whole("designs.grid", section.values.get("grid", 4), 2, 100),
-    )
-    if plan.grid % 2:
-        raise GivewayError("designs.grid", plan.grid, "an even number of levels")
-    if kind in ("morris", "sobol-indices") and len(varied) < 2:
-        raise GivewayError("designs.kind", kind, "at least two [[vary]]")
-    if (size := plan.size(varied)) > design_module.COUNT_MAX:
-        key = "designs.count" if "count" in section.values else "designs.kind"
-        raise GivewayError(key, f"{size} designs", f"at most {design_module.COUNT_MAX}")
-    return plan, varied
-
-
-def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
-    """Quantities and designs of a CSV file: a line of names (``testbed.bumper.travel [mm]``), one line per design."""
-    if not path.is_file():
-        raise GivewayError(section.full("file"), section.values["file"], "a CSV file, its path seen from this file")
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            rows_read = list(enumerate(csv.reader(stream), 1))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
-    lines = [(number, row) for number, row in rows_read if any(cell.strip() for cell in row)]
-    if len(lines) < 2:
-        raise InputFileError(path, 1, GivewayError("designs", f"{len(lines)} lines", "names, then designs"))
-    head_line, head = lines[0]
-    found: list[Varied] = []
-    scales: list[float] = []
-    try:
-        for cell in head:
-            name, _, unit = cell.strip().partition("[")
-            quantity = find(f"column {len(found) + 1}", name.strip())
-            label = unit.strip(" ]")
-            scales.append(factor(name.strip(), label, quantity.unit) if unit else 1.0)
-            found.append(Varied(quantity, written=WrittenUnit(label, scales[-1]) if unit else None))
-        _refuse_twice("column", [one.quantity.name for one in found])
-    except GivewayError as error:
-        raise InputFileError(path, head_line, error) from None
-    rows = np.empty((len(lines) - 1, len(found)))
-    for index, (number, row) in enumerate(lines[1:]):
-        try:
-            if len(row) != len(found):
-                raise GivewayError("columns", len(row), f"{len(found)}, as in the first line")
-            rows[index] = [
-                _value(one.quantity.name, _cell(cell.strip(), one.quantity), one.quantity, scale)
-                for one, cell, scale in zip(found, row, scales, strict=True)
-            ]
-        except GivewayError as error:
-            raise InputFileError(path, number, error) from None
-    return tuple(found), rows
-
-
-def _cell(text: str, quantity: Quantity) -> Any:
-    if quantity.kind == "choice":
-        return text
-    if quantity.kind == "boolean":
-        return {"true": True, "1": True, "false": False, "0": False}.get(text.lower(), text)
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _fits_cases(field: str, quantity: Quantity, cases: Sequence[Case], varied: Sequence[str]) -> None:
@@ -486,7 +273,7 @@ def _constraint(field: str, entry: Any, judged: Scenario) -> Constraint:
     goal = _goal(section, 1 if "maximum" in section.values else -1)
     key = "maximum" if "maximum" in section.values else "minimum"
     value = section.values[key]
-    written = _written(section, goal.metric.unit)
+    written = written_unit(section, goal.metric.unit)
     if isinstance(value, str):
         if value not in LIMITS:
             raise UnknownNameError(section.full(key), value, LIMITS)
