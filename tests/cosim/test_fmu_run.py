@@ -264,7 +264,7 @@ def test_a_library_for_another_processor_is_not_loaded(tmp_path: Path) -> None:
         run_fmu(path)
 
 
-def test_a_unit_without_base_units_shifts_nothing() -> None:
+def test_a_unit_without_base_units_has_factor_one() -> None:
     """And what another part of the description calls Output is none."""
     text = description_3().replace("</UnitDefinitions>", '<Unit name="piece"/></UnitDefinitions>')
     annotation = '<Annotations><Output valueReference="5"/></Annotations>'
@@ -272,7 +272,7 @@ def test_a_unit_without_base_units_shifts_nothing() -> None:
     description = read_description(text.encode())
     assert [unknown.key for unknown in description.outputs] == [3, 4]
     piece = next(unit for unit in description.units if unit.name == "piece")
-    assert (piece.base, piece.factor, piece.offset) == (None, 1.0, 0.0)
+    assert (piece.base, piece.factor) == (None, 1.0)
 
 
 def test_a_name_that_ends_early_is_not_unpacked_for_what_it_began_with(tmp_path: Path) -> None:

@@ -53,12 +53,11 @@ class VersionError(XmlError):
 
 @dataclass(frozen=True)
 class Unit:
-    """Exponents of the base units, factor and offset; ``base`` is None if the file has none."""
+    """Exponents of the base units, and factor; ``base`` is None if the file has none."""
 
     name: str
     base: tuple[int, ...] | None
     factor: float
-    offset: float
     display_units: frozenset[str]
 
 
@@ -298,7 +297,6 @@ class _Reader:
             name=self._open.get("name", ""),
             base=None if base is None else tuple(self._whole(base, symbol, self._line, "0") for symbol in _BASE_UNITS),
             factor=1.0 if base is None else self._real(base, "factor", "1"),
-            offset=0.0 if base is None else self._real(base, "offset", "0"),
             display_units=frozenset(self._children),
         )
 
