@@ -72,11 +72,11 @@ def test_a_slider_slower_than_its_rails_friction_builds_up_meets_the_robot_in_ti
 
 
 @pytest.mark.parametrize("rope", [True, False])
-def test_travels_on_the_way_are_those_of_the_testbed(rope: bool) -> None:
+def test_travels_before_contact_are_those_of_the_testbed(rope: bool) -> None:
     approach = Approach(MIDDLE, 0.5, rope=rope, time_s=None if rope else 0.4)
     values = parameters(slider__friction=4.0, slider__damping=3.0)
     scenario = giveway.Scenario(
-        "way",
+        "run up",
         0.15,
         bumper="none",
         testbed={k: v for k, v in values.items() if k != "bumper.kind"} | meet(approach, values, Rest()),
@@ -89,11 +89,11 @@ def test_travels_on_the_way_are_those_of_the_testbed(rope: bool) -> None:
     run_up["rope.attached"], run_up["end_speed_mps"], run_up["duration_s"] = rope, 0.5, 0.4
     times = traces["time"].values
     travels = find_run_ups(run_up, times[None, :])[0]
-    on_the_way = times < run_up["duration_s"]
-    assert on_the_way.sum() > 100
+    before_contact = times < run_up["duration_s"]
+    assert before_contact.sum() > 100
     # The cubic between the knots is good to a micrometre.
     found = traces["testbed.truth.slider_position"].values
-    np.testing.assert_allclose(travels[on_the_way], found[on_the_way], rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(travels[before_contact], found[before_contact], rtol=0.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("changes", [

@@ -91,7 +91,7 @@ def test_the_reduced_experiment_has_every_row(findings: Findings) -> None:
 
 def test_rollers_that_rub_unlike_the_model_do_raise_false_alarms(findings: Findings) -> None:
     # The count of undisturbed rounds could not be trusted if nothing ever raised one: 20 % of 42 N is 8.4 N, far above
-    # the 3 N that are forgiven in motion, and below the 9 N of the last row.
+    # the 3 N that the detector ignores in motion, and below the 9 N of the last row.
     for word in ("more", "less"):
         assert row(findings, f"rollers may rub so much {word} without a false alarm, full") == 0.0
     assert row(findings, "false alarms in a round each at friction +-20 %") == 0.0

@@ -161,9 +161,9 @@ def test_contact_and_rebound_speed_are_of_the_rows_next_to_the_contact(evaluate:
     traces = changed({})
     speed = np.full(traces.sizes["time"] - 1, 9.0)
     speed[CONTACT - 2], speed[LAST_TOUCH + 1] = 0.7, 0.3
-    way = np.concatenate([[0.0], np.cumsum(1e-3 * speed)])
+    distance = np.concatenate([[0.0], np.cumsum(1e-3 * speed)])
     for axis, share in (("x", 0.6), ("y", -0.8)):
-        traces[f"testbed.truth.nose_{axis}"].values[:] = share * way
+        traces[f"testbed.truth.nose_{axis}"].values[:] = share * distance
     found = evaluate(traces, PARAMETERS)
     # Displacements of some metres, 1 ms apart: rounding of 1e-12.
     assert found["contact speed"][0] == pytest.approx(0.7, rel=1e-11)
@@ -186,9 +186,9 @@ def test_touches_less_than_a_tenth_of_a_second_apart_are_one_contact(
     traces = changed(touches)
     # 9 m/s after the first touch, 2 m/s after the second.
     speed = np.where(np.arange(traces.sizes["time"] - 1) < again.start, 9.0, 2.0)
-    way = np.concatenate([[0.0], np.cumsum(1e-3 * speed)])
+    distance = np.concatenate([[0.0], np.cumsum(1e-3 * speed)])
     for axis, share in (("x", 0.6), ("y", -0.8)):
-        traces[f"testbed.truth.nose_{axis}"].values[:] = share * way
+        traces[f"testbed.truth.nose_{axis}"].values[:] = share * distance
     found = evaluate(traces, PARAMETERS)
     assert (found["contacts"][0], found["peak force of the first contact"][0]) == (contacts, first_n)
     assert found["peak force of the run"][0] == 60.0

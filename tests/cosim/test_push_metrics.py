@@ -150,7 +150,7 @@ def test_rows_are_kept_with_the_run(pushed: Result, tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def by_the_paper() -> Result:
-    """The example with the paper's estimator, which takes the start of its way back for a push; the next comes then."""
+    """The example with the paper's estimator, which takes the start of its return for a push; the next comes then."""
     scenario = giveway.read_scenario(EXAMPLE)
     first, second = scenario.push.pushes  # type: ignore[union-attr]
     schedule = Pushes((first, dataclasses.replace(second, start_s=17.0)))

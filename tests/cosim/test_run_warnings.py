@@ -108,7 +108,7 @@ def too_fast(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
 # A run, the codes that it has, and words of the first line.
 RUNS: dict[str, tuple[giveway.Scenario, list[str], str]] = {
     "motionless": (short(), [], ""),
-    "motionless, pulled a longer way": (
+    "motionless, pulled over a longer distance": (
         short("none", testbed={"slider.present": True, "slider.run_up": 0.06}),
         ["contact speed"],
         "asked for 0.5 m/s",

@@ -1,4 +1,4 @@
-"""The tube forgives a short time and a small value, and nothing else."""
+"""The tube tolerates a short time and a small value, and nothing else."""
 
 import numpy as np
 from giveway_modelica.tube import at, excess

@@ -78,13 +78,13 @@ def jacobian(p: Parameters) -> NDArray[np.float64]:
     return np.array(rows) / float(p["wheel.radius"])
 
 
-def _driven(plant: Plant, way: Straight, seconds: float, p: Parameters) -> NDArray[np.float64]:
-    """The wheels follow ``way``. Per millisecond: torques, wheel angles, velocity of the centre of mass."""
+def _driven(plant: Plant, path: Straight, seconds: float, p: Parameters) -> NDArray[np.float64]:
+    """The wheels follow ``path``. Per millisecond: torques, wheel angles, velocity of the centre of mass."""
     rows = []
     wheels = jacobian(p)
     command = np.zeros(2 * WHEELS)
     data, height = plant.data, p["base.com_height"]
-    for planned in way(np.arange(round(seconds / TICK_S), dtype=np.float64) * TICK_S):
+    for planned in path(np.arange(round(seconds / TICK_S), dtype=np.float64) * TICK_S):
         command[:WHEELS] = (wheels @ planned[:3] + math.pi) % (2.0 * math.pi) - math.pi
         command[WHEELS:] = wheels @ planned[3:6]
         plant.sample()
@@ -168,17 +168,17 @@ def _drag(p: Parameters, wheel_angle: NDArray[np.float64], direction: float) -> 
 def drag_and_inertia(bench: Bench) -> list[Finding]:
     """Torques at constant speed are the rollers' friction; the rest while accelerating is (27)."""
     p = bench.formula
-    way = Straight(1.0, direction_rad=math.radians(20.0), acceleration_mps2=1.0)
+    path = Straight(1.0, direction_rad=math.radians(20.0), acceleration_mps2=1.0)
     plant = bench.plant()
-    rows = _driven(plant, way, 3.3, p)
+    rows = _driven(plant, path, 3.3, p)
     wrench = rows[:, :WHEELS] @ jacobian(p)
-    direction = np.array([math.cos(way.direction_rad), math.sin(way.direction_rad)])
+    direction = np.array([math.cos(path.direction_rad), math.sin(path.direction_rad)])
     pull = wrench[:, :2] @ direction
-    drag = _drag(p, rows[:, WHEELS : 2 * WHEELS], way.direction_rad)
-    steady = slice(round((way.ramp_s + 0.7) / TICK_S), None)
+    drag = _drag(p, rows[:, WHEELS : 2 * WHEELS], path.direction_rad)
+    steady = slice(round((path.ramp_s + 0.7) / TICK_S), None)
     # By momentum, from where the rollers slip to after the ramp.
     speed = rows[:, 6:8] @ direction
-    span = slice(round(0.2 * way.ramp_s / TICK_S), round((way.ramp_s + 0.3) / TICK_S))
+    span = slice(round(0.2 * path.ramp_s / TICK_S), round((path.ramp_s + 0.3) / TICK_S))
     inertia = float((pull[span] - drag[span]).sum() * TICK_S / (speed[span.stop] - speed[span.start]))
     mass = (
         p["base.mass"]

@@ -26,7 +26,7 @@ def tare_s() -> float:
 
 @dataclass(frozen=True)
 class Leg:
-    """One way from rest to rest; acceleration and deceleration are half a sine wave over time.
+    """A motion from rest to rest; acceleration and deceleration are half a sine wave over time.
 
     Attributes:
         start_s: path time at which it begins.

@@ -104,11 +104,11 @@ def before_resting(
                 float(testbed[f"slider.{name}"]) for name in ("direction", "target_x", "target_y")
             )
             plan = Straight(speed_mps, direction + math.pi)
-            way_m = plan.ramp_m + speed_mps * steady_s
+            travel_m = plan.ramp_m + speed_mps * steady_s
             return plan, {
                 "slider.run_up": 0.0,
-                "slider.target_x": target_x + way_m * math.cos(plan.direction_rad),
-                "slider.target_y": target_y + way_m * math.sin(plan.direction_rad),
+                "slider.target_x": target_x + travel_m * math.cos(plan.direction_rad),
+                "slider.target_y": target_y + travel_m * math.sin(plan.direction_rad),
             }
         outline = outline_of_robot(robot)
         point = edge_middle(outline, SIDE)

@@ -37,7 +37,7 @@ AFTER_S = 6.0  # most of the escape, whose time constant is 1.25 s
 SIDE_RAD = math.pi / 3.0  # the robot drives with the side between wheels 0 and 1 ahead
 ROLLER_RUBBER_NPM = 1e5  # estimate: the rollers' tread
 FRICTION_ON_FLOOR = 0.5  # estimate: cloth, skin and tyres, sideways
-WAY_BACK_M = 0.4  # of the escape of 0.5 m, after 6 s and the overshoot
+MOVES_AWAY_MIN_M = 0.4  # of the escape of 0.5 m, after 6 s and the overshoot
 WORST_DEG, WORST_CM = 12.0, 11.0  # the paper's of 5.1: it has none for these scenes
 MEASURED: Mapping[str, Value] = {"estimator.velocity_source": 1, "estimator.acceleration_source": 1}
 VARIANTS: Mapping[str, tuple[Mapping[str, Value], Mapping[str, Value]]] = {
@@ -132,7 +132,7 @@ def scenario(name: str) -> Scenario:
     scene = SCENES[name]
     start = {v.name: v.start for v in table("testbed").select("parameter") if v.start is not None}
     plan = Straight(scene.speed_mps, scene.direction_rad)
-    way_m = plan.ramp_m + scene.speed_mps * STEADY_S
+    travel_m = plan.ramp_m + scene.speed_mps * STEADY_S
     controller = table("controller")
     tare_s = float(controller["estimator.tare_ticks"].start or 0) * float(controller["controller.period"].start or 0.0)
     whole = hull([*outline_of(start), *wheel_corners(start).reshape(-1, 2)])
@@ -142,7 +142,7 @@ def scenario(name: str) -> Scenario:
         math.ceil(1e3 * (tare_s + plan.ramp_s + STEADY_S + AFTER_S)) / 1e3,
         bumper="none",
         testbed={
-            **_obstacle(scene, start, way_m),
+            **_obstacle(scene, start, travel_m),
             "slider.present": True,
             "slider.mass": scene.mass_kg,
             "slider.friction": scene.friction_n,
@@ -158,8 +158,8 @@ def scenario(name: str) -> Scenario:
     )
 
 
-def _obstacle(scene: Scene, testbed: Mapping[str, Value], way_m: float) -> dict[str, Value]:
-    """Position and shape of the obstacle, so that the robot meets it after ``way_m`` of travel."""
+def _obstacle(scene: Scene, testbed: Mapping[str, Value], travel_m: float) -> dict[str, Value]:
+    """Position and shape of the obstacle, so that the robot meets it after ``travel_m`` of travel."""
     import numpy as np
 
     ahead = np.array([math.cos(scene.direction_rad), math.sin(scene.direction_rad)])
@@ -170,7 +170,7 @@ def _obstacle(scene: Scene, testbed: Mapping[str, Value], way_m: float) -> dict[
     if scene.edge_rad is not None:
         facing = scene.direction_rad + math.pi + scene.edge_rad
         normal = -np.array([math.cos(facing), math.sin(facing)])
-        tip = normal * float((corners @ normal).max() + way_m * (ahead @ normal))
+        tip = normal * float((corners @ normal).max() + travel_m * (ahead @ normal))
         return {
             "contact.nose_shape": 1,
             "slider.direction": math.remainder(facing, 2.0 * math.pi),
@@ -179,7 +179,7 @@ def _obstacle(scene: Scene, testbed: Mapping[str, Value], way_m: float) -> dict[
         }
     # A disc: as far ahead as the robot's outline reaches on that line, or the wheel there.
     reach = _reach(testbed, scene, ahead, left)
-    tip = left * scene.aside_m + ahead * (reach + way_m)
+    tip = left * scene.aside_m + ahead * (reach + travel_m)
     return {
         "contact.nose_radius": scene.radius_m,
         "slider.direction": math.remainder(scene.direction_rad + math.pi, 2.0 * math.pi),
@@ -301,7 +301,7 @@ def _judged_by(region: str) -> dict[str, tuple[str, Target | None, int]]:
         "detection time": ("ms", Target(0.0, text="happens"), 0),
         "direction error": ("deg", Target(maximum=WORST_DEG), 1),
         "location error": ("cm", Target(maximum=WORST_CM), 1),
-        "moves away by": ("m", Target(minimum=WAY_BACK_M), 2),
+        "moves away by": ("m", Target(minimum=MOVES_AWAY_MIN_M), 2),
         "false detections": ("1", Target(maximum=0.0), 0),
         "peak force": ("N", peak, 0),
         "lasting force": ("N", lasting, 0),

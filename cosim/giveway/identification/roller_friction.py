@@ -307,7 +307,7 @@ def _refusal(
         small_nm = curve.all_nm / data.model.wheel_radius_m * data.model.roller_radius_m
         return (
             f"the friction of the rollers does not show: without any, (27) leaves {curve.all_nm:.2g} N m of noise",
-            f"B_r is not above some {small_nm:.1g} N m, and the detector forgives a force of {data.leak_n:g} N",
+            f"B_r is not above some {small_nm:.1g} N m, and the detector ignores a force of {data.leak_n:g} N",
         )
     if found.explained < EXPLAINED_MIN:
         return (
@@ -322,7 +322,7 @@ def _refusal(
     seconds = sum(float(rows.sum()) * s.step_s for s, rows in zip(samples, used, strict=True))
     missing, remedy = _too_little(data, found, rates, seconds, curve)
     by = f"uncertain by {uncertainty_n:.2g} N" if math.isfinite(uncertainty_n) else "undetermined"
-    reason = f"at some speed the friction force of a roller would be {by}; the detector forgives {data.leak_n:g} N"
+    reason = f"at some speed the friction force of a roller would be {by}; the detector ignores {data.leak_n:g} N"
     return f"{missing} ({reason})", remedy
 
 

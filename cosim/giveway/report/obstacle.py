@@ -52,7 +52,7 @@ def plate(testbed: Mapping[str, Any]) -> dict[str, Any] | None:
     x, y = float(testbed["bumper.mount_x"]), float(testbed["bumper.mount_y"])
     inward = (-math.cos(azimuth), -math.sin(azimuth))
     across = (0.5 * PLATE_M * inward[1], -0.5 * PLATE_M * inward[0])
-    depth = _way_to_outline((x, y), inward, testbed)
+    depth = _distance_to_outline((x, y), inward, testbed)
     return {
         "ends": [[x + across[0], y + across[1]], [x - across[0], y - across[1]]],
         "inward": list(inward),
@@ -64,7 +64,7 @@ def _box(start: float, end: float, width: float) -> list[list[float]]:
     return [[start, 0.5 * width], [end, 0.5 * width], [end, -0.5 * width], [start, -0.5 * width]]
 
 
-def _way_to_outline(point: tuple[float, float], inward: tuple[float, float], testbed: Mapping[str, Any]) -> float:
+def _distance_to_outline(point: tuple[float, float], inward: tuple[float, float], testbed: Mapping[str, Any]) -> float:
     """From a point outside along ``inward`` to the first side of the outline, m; to the middle if there is none."""
     corners = outline_of(testbed)
     found = []
@@ -73,8 +73,8 @@ def _way_to_outline(point: tuple[float, float], inward: tuple[float, float], tes
         if determinant == 0.0:
             continue
         dx, dy = ax - point[0], ay - point[1]
-        way = (dx * (ay - by) - dy * (ax - bx)) / determinant
+        distance = (dx * (ay - by) - dy * (ax - bx)) / determinant
         share = (inward[0] * dy - inward[1] * dx) / determinant
-        if way >= 0.0 and 0.0 <= share <= 1.0:
-            found.append(way)
+        if distance >= 0.0 and 0.0 <= share <= 1.0:
+            found.append(distance)
     return min(found, default=math.hypot(*point))

@@ -349,8 +349,8 @@ def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: N
     """The runs in which the nose touches the robot before it reaches the point, and the times."""
     duration = np.maximum(nose.run_up.duration_s - SAMPLE_S, 0.0)
     longest = float(duration.max(initial=0.0))
-    way = _at(plan, np.arange(0.0, longest + SAMPLE_S, SAMPLE_S))[:, :3]
-    moved = np.abs(np.diff(way, axis=0)).sum(axis=0) @ [1.0, 1.0, float(np.hypot(*outline.T).max())]
+    path = _at(plan, np.arange(0.0, longest + SAMPLE_S, SAMPLE_S))[:, :3]
+    moved = np.abs(np.diff(path, axis=0)).sum(axis=0) @ [1.0, 1.0, float(np.hypot(*outline.T).max())]
     moved += float(np.abs(nose.run_up.length_m).max(initial=0.0))
     samples = 1 + max(1, math.ceil(min(longest / SAMPLE_S, moved / SAMPLE_M)))
     time_s, travel = nose.run_up.sampled(np.linspace(0.0, 1.0, samples), SAMPLE_S)

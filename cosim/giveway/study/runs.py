@@ -271,9 +271,9 @@ def _points(
     count = len(free["speed"])
     if not np.isnan(free["around"]).all():
         ends = np.concatenate([[0.0], np.cumsum(lengths)])
-        way = np.mod(free["around"], 1.0) * ends[-1]
-        side = np.clip(np.searchsorted(ends, way, side="right") - 1, 0, len(outline) - 1)
-        share = (way - ends[side]) / lengths[side]
+        distance = np.mod(free["around"], 1.0) * ends[-1]
+        side = np.clip(np.searchsorted(ends, distance, side="right") - 1, 0, len(outline) - 1)
+        share = (distance - ends[side]) / lengths[side]
         return outline[side] + share[:, None] * sides[side], inward[side]
     if hit.point_m is not None:
         from giveway.scenario.approach import outward_normal

@@ -92,8 +92,8 @@ def test_a_tipping_base_starts_at_rest_on_its_rollers(library: ctypes.CDLL) -> N
 
 @pytest.mark.parametrize("tipping", [False, True])
 def test_many_stiff_massless_rollers_are_an_endless_one(library: ctypes.CDLL, tipping: bool) -> None:
-    """No dip, no row distance: what remains of the hand-overs is the way on which the bristles are loaded again, which
-    is inverse to their stiffness."""
+    """No dip, no row distance: what remains of the hand-overs is the distance over which the bristles are loaded
+    again, which is inverse to their stiffness."""
     smooth = {"roller_rows": 1, "roller_per_row": 200, "roller_row_distance": 0.0, "roller_radius_dip": 0.0}
     errors = []
     for stiffness in (1.0e5, 1.0e6):

@@ -65,8 +65,8 @@ def _draw(axes: Axes, hit: Collision, testbed: Mapping[str, Any]) -> None:
         )
         axes.annotate("", estimated + arrow, estimated, arrowprops={"arrowstyle": "->", "color": ESTIMATE_COLOUR})
     path = np.stack([hit["testbed.truth.x"], hit["testbed.truth.y"]])
-    axes.plot(*path[:, :contact], ":", color=INK, linewidth=1.0, label="way to it")
-    axes.plot(*path[:, contact:], color=ESTIMATE_COLOUR, linewidth=1.2, label="way away")
+    axes.plot(*path[:, :contact], ":", color=INK, linewidth=1.0, label="path before contact")
+    axes.plot(*path[:, contact:], color=ESTIMATE_COLOUR, linewidth=1.2, label="path after contact")
     axes.set_aspect("equal")
     # Panels of equal size for any escape.
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))

@@ -70,7 +70,7 @@ class Trial:
     """One push on one robot.
 
     Attributes:
-        placement: where and which way.
+        placement: point and direction.
         stiffness_n_per_m: presliding stiffness of each wheel's roller: the robot.
         roller_load_n: load that earlier motion left in each roller, along the wheel's radial direction.
         seed: of the sensor noise.

@@ -16,7 +16,7 @@
   const toTime = v => v < half ? first + (knee - first) * v / half : knee + (last - knee) * (v - half) / half;
   const toSlider = t => t < knee ? half * (t - first) / (knee - first) : half + half * (t - knee) / Math.max(last - knee, 1e-9);
 
-  // From (way back from the tip of the nose, way to the left of the rail) to the world.
+  // From (distance behind the tip of the nose, distance to the left of the rail) to the world.
   function place(obstacle, nose) {
     const [x, y] = obstacle.rail;
     return ([back, left]) => [nose[0] - x * back - y * left, nose[1] - y * back + x * left];
