@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <tuple>
@@ -212,11 +213,13 @@ private:
     // Design i's share of rows.
     template <class Block> Block take(const double *rows, std::size_t i) const {
         static_assert(sizeof(Block) % sizeof(double) == 0);
-        std::array<double, sizeof(Block) / sizeof(double)> values;
-        for (std::size_t row = 0; row < values.size(); ++row) {
-            values[row] = rows[row * width_ + i];
+        Block block;
+        auto *to = reinterpret_cast<unsigned char *>(&block);
+#pragma GCC unroll 8 // 2 % of the instructions of a run over fixed steps
+        for (std::size_t at = 0; at < sizeof block; at += sizeof(double), rows += width_) {
+            std::memcpy(to + at, rows + i, sizeof(double));
         }
-        return std::bit_cast<Block>(values);
+        return block;
     }
 
     [[nodiscard]] testbed::PerWheel<double> motor_angles(std::size_t i) const {
@@ -225,9 +228,8 @@ private:
 
     // The sensor values of this bus cycle.
     void sample() {
-        std::array<double, imu_channels * widest> drawn{};
         if (channels_ > 0) {
-            noise_(seeds_.data(), channels_, cycle_, drawn.data());
+            noise_(seeds_.data(), channels_, cycle_, drawn_.data());
         }
         ++cycle_;
         each([&](Lane &lane, std::size_t i) {
@@ -235,9 +237,9 @@ private:
             const double *torque = plant_.outputs() + offsetof(Outputs, wheel_torque) / sizeof(double) * width_;
             testbed::write_sensors(lane.variables(),
                                    lane.drives().sample(motor_angles(i), take<testbed::PerWheel<double>>(torque, i),
-                                                        take<testbed::Deviates>(drawn.data(), i)));
+                                                        take<testbed::Deviates>(drawn_.data(), i)));
             if (lane.imu().options().present) {
-                const double *felt = drawn.data() + testbed::imu_first_channel * width_;
+                const double *felt = drawn_.data() + testbed::imu_first_channel * width_;
                 testbed::write_imu(lane.variables(),
                                    lane.imu().sample(testbed::imu_truth(take<Outputs>(plant_.outputs(), i)),
                                                      take<testbed::ImuDeviates>(felt, i)));
@@ -268,7 +270,8 @@ private:
     std::int64_t tick_ = 0;
     std::int64_t cycle_ = 0; // of the bus
     std::array<std::uint64_t, widest> seeds_{};
-    int channels_ = 0; // of noise that a lane needs
+    int channels_ = 0;                                  // of noise that a lane needs
+    std::array<double, imu_channels * widest> drawn_{}; // of this bus cycle, rows; zero where no lane needs them
     std::array<testbed::PerWheel<double>, widest> motor_torque_{};
 };
 
