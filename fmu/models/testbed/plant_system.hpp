@@ -40,6 +40,7 @@ public:
     // Computes the values that follow from the parameters, after these were loaded.
     void derive() {
         derived_ = plant::derive(parameters_);
+        evaluation_ = {};
         jacobian_.set_parameters(parameters_, derived_);
     }
 
@@ -68,10 +69,7 @@ public:
     [[nodiscard]] int event_count() const override { return tips() ? At::tipping_event_count : At::event_count; }
 
     void rhs(double, const double *state, double *rate) override {
-        with_state(state, [&](const auto &x) {
-            const auto value = plant::rhs(x, inputs_, modes_, parameters_, derived_);
-            std::copy(value.begin(), value.end(), rate);
-        });
+        with_state(state, [&](const auto &x) { write_rate(x, rate); });
     }
 
     bool jacobian(double, const double *state, double *matrix) override {
@@ -176,8 +174,20 @@ private:
         }
     }
 
+    // In one piece, and into an evaluation that is not cleared each time: 9 % of the instructions of an event-exact
+    // run.
+    [[gnu::noinline, gnu::flatten]] void write_rate(const plant::StateVector<double, Wheels> &x, double *rate) {
+        plant::evaluate_into(evaluation_, x, inputs_, modes_, parameters_, derived_);
+        std::copy(evaluation_.rate.begin(), evaluation_.rate.end(), rate);
+    }
+    void write_rate(const plant::TippingVector<double, Wheels> &x, double *rate) {
+        const auto value = plant::rhs(x, inputs_, modes_, parameters_, derived_);
+        std::copy(value.begin(), value.end(), rate);
+    }
+
     plant::Parameters<double, Wheels> parameters_{};
     plant::Derived<double> derived_{};
+    plant::Evaluation<double, Wheels> evaluation_{}; // room for rhs(): nothing of it is read from one call to the next
     plant::Jacobian<Wheels> jacobian_;
     plant::Inputs<double, Wheels> inputs_{};
     plant::Modes<double, Wheels> modes_{};
