@@ -1,4 +1,4 @@
-// One collision, three integration methods: events, states and energy agree within the tolerance.
+// One collision, three integration methods: events, states and energy agree within the tolerance. The tolerances.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -82,6 +82,20 @@ bool happened(const Collision &run, int index, int direction) {
 }
 
 } // namespace
+
+TEST(Tolerances, AreByTheUnitOfTheState) {
+    const PlantSystem system;
+    for (const int first : {At::motor_angle, At::wheel_angle, At::bristle, At::grip}) {
+        EXPECT_EQ(system.absolute_tolerance(first + 2), 1e-9) << first; // m, rad
+    }
+    for (const int first : {At::motor_speed, At::wheel_spin}) {
+        EXPECT_EQ(system.absolute_tolerance(first), 1e-8) << first; // rad/s
+        EXPECT_EQ(system.absolute_tolerance(first + 2), 1e-8) << first;
+    }
+    EXPECT_EQ(system.absolute_tolerance(At::base_x), 1e-9);
+    EXPECT_EQ(system.absolute_tolerance(At::slider_speed), 1e-8);
+    EXPECT_EQ(system.absolute_tolerance(At::dissipated), 1e-7); // J
+}
 
 TEST(Methods, AgreeOnEveryEventAndTheEnd) {
     struct Bumper {

@@ -377,6 +377,33 @@ TEST(Testbed, StandsOnAFloorThatFalls) {
     }
 }
 
+TEST(Testbed, AGearThatCannotHoldItsLoadTurnsFromTheStart) {
+    // An importer reads derivatives and indicators before its first event, and counts no event for what the start knew.
+    Bench run;
+    Variables &v = run.v();
+    v.slider_present = false;
+    v.floor_slope = 0.02;
+    v.start_theta = 0.4;
+    v.drivetrain_gear_coulomb = v.drivetrain_gear_stiction = 0.2; // N m
+    run.initialise();
+    using At = giveway::plant::Layout<>;
+    std::array<double, At::tipping_state_count> rate{};
+    std::array<double, At::tipping_event_count> margin{};
+    run.model->equations()->derivatives(rate.data());
+    run.model->equations()->indicators(margin.data());
+    int turning = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double load = v.truth_wheel_torque[i];
+        const bool turns = std::fabs(load) > v.drivetrain_gear_stiction;
+        const double beyond = turns ? std::copysign(v.drivetrain_gear_coulomb, load) - load : 0.0;
+        EXPECT_DOUBLE_EQ(rate[At::motor_speed + i], beyond / v.drivetrain_motor_inertia) << i;
+        EXPECT_GT(margin[At::event_gear + i], 0.0) << i; // no event is due
+        turning += turns ? 1 : 0;
+    }
+    EXPECT_GT(turning, 0);
+    EXPECT_LT(turning, 3);
+}
+
 TEST(Testbed, RefusesWhatDoesNotFitTogether) {
     const auto refusal = [](auto change) {
         Bench run;
