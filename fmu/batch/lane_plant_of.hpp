@@ -20,11 +20,10 @@ template <int N> struct Strided {
 
     explicit operator math::Lanes<N>() const {
         double row[N];
-        for (int i = 0; i < N; ++i) {
-            std::memcpy(&row[i],
-                        reinterpret_cast<const unsigned char *>(first) +
-                            static_cast<std::size_t>(i) * sizeof(LaneStart),
-                        sizeof(double));
+        std::size_t at = 0; // bytes
+        for (double &number : row) {
+            std::memcpy(&number, reinterpret_cast<const unsigned char *>(first) + at, sizeof number);
+            at += sizeof(LaneStart);
         }
         return math::Lanes<N>::load(row);
     }
