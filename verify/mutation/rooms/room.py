@@ -62,7 +62,8 @@ TESTS = ("tests/fmu", "tests/cosim")
 SLOW_TESTS = (
     *("test_bench_solvers.py", "test_c_master.py", "test_experiment_circle.py", "test_experiment_clamping.py"),
     *("test_experiment_impulse_share.py", "test_experiment_roller_calibration.py", "test_experiment_scenes.py"),
-    *("test_experiment_static_pushes.py", "test_fitting.py", "test_interrupt.py", "test_readme.py", "test_report.py"),
-    *("test_reproduction.py", "test_source_fmu.py", "test_study_command.py", "test_study_gallery.py"),
+    *("test_experiment_static_pushes.py", "test_failures.py", "test_fitting.py", "test_fmu_hostile.py"),
+    *("test_fmu_run.py", "test_interrupt.py", "test_progress.py", "test_readme.py", "test_report.py"),
+    *("test_reproduction.py", "test_source_fmu.py", "test_ssp.py", "test_study_command.py", "test_study_gallery.py"),
     *("test_study_runs.py", "test_frequency_response.py", "test_wrong_input.py"),
 )

@@ -82,27 +82,28 @@ class RoomTests:
         self.quick = self.slow = []
         self.kept.fates.clear()
 
-    def by_quick(self, mutants: Sequence[Mutant]) -> dict[Mutant, Fate]:
-        """The fates of ``mutants`` with the quick tests."""
+    def by_quick(self, mutants: Sequence[Mutant]) -> Iterator[tuple[Mutant, Fate]]:
+        """The fates of ``mutants`` with the quick tests, in their order, as they are known."""
         return self._met(mutants, "quick")
 
-    def by_slow(self, mutants: Sequence[Mutant]) -> dict[Mutant, Fate]:
-        """The fates of ``mutants`` with the slow tests."""
+    def by_slow(self, mutants: Sequence[Mutant]) -> Iterator[tuple[Mutant, Fate]]:
+        """The fates of ``mutants`` with the slow tests, in their order, as they are known."""
         return self._met(mutants, "slow")
 
-    def _met(self, mutants: Sequence[Mutant], stage: Literal["quick", "slow"]) -> dict[Mutant, Fate]:
+    def _met(self, mutants: Sequence[Mutant], stage: Literal["quick", "slow"]) -> Iterator[tuple[Mutant, Fate]]:
         """A trial that is interrupted ends after the tests that are running."""
-        found = {mutant: Fate(fate) for mutant in mutants if (fate := self.kept.get(mutant.key, stage))}
-        left = [mutant for mutant in mutants if mutant not in found]
-        tests: list[Test] = getattr(self, stage) if left else []
+        known = {mutant: Fate(fate) for mutant in mutants if (fate := self.kept.get(mutant.key, stage))}
+        tests: list[Test] = getattr(self, stage) if len(known) < len(mutants) else []
 
         def tried(mutant: Mutant) -> Fate:
+            if mutant in known:
+                return known[mutant]
             fate = self._fate(mutant, tests)
             self.kept.add(mutant.key, stage, fate.value)
             return fate
 
         with ThreadPoolExecutor(AT_A_TIME) as pool:
-            return found | dict(zip(left, pool.map(tried, left), strict=True))
+            yield from zip(mutants, pool.map(tried, mutants), strict=True)
 
     def _fate(self, mutant: Mutant, tests: Sequence[Test]) -> Fate:
         number = self.planted.drawn[mutant]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -41,18 +42,19 @@ class RoomsTrial:
 
 
 def try_all(tests: RoomTests, rooms: Iterable[Room] = ROOMS, say: Callable[[str], None] = print) -> RoomsTrial:
-    """Room by room; prints the score and the survivors of each.
+    """All rooms together, so that no room waits for another's survivors; prints the score and the survivors of each.
 
     A listed mutant is run on the quick tests only, since it is known to survive all tests.
     """
     listed = survivors.read(tests.context.root, LIST)
     of_rooms = {room: tests.planted.of(room) for room in rooms}
     fates: dict[Mutant, Fate] = {}
+    met = tests.by_quick([mutant for mutants in of_rooms.values() for mutant in mutants])
     for room, mutants in of_rooms.items():
-        fates |= tests.by_quick(mutants)
+        fates |= itertools.islice(met, len(mutants))
         say(f"{room.folder}: {_killed(fates, mutants)} of {len(mutants)} killed by the quick tests")
     left = [mutant for mutant, fate in fates.items() if fate is not Fate.KILLED and mutant.key not in listed]
-    fates |= {mutant: fate for mutant, fate in tests.by_slow(left).items() if fate is not Fate.UNREACHED}
+    fates |= {mutant: fate for mutant, fate in tests.by_slow(left) if fate is not Fate.UNREACHED}
     for room, mutants in of_rooms.items():
         say(f"{room.folder}: {_killed(fates, mutants)} of {len(mutants)} killed by all tests")
         for mutant in mutants:
