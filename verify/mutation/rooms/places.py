@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from verify.mutation.mutants import SEED, Mutant, shuffled
@@ -23,8 +24,9 @@ def main() -> None:
     parser.add_argument("--few", action="store_true", help="only as many as `make verify` tries")
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
-    cpp = cpp_mutants(given.root, given.root / "build", [room.folder for room in CPP])
-    places = PythonPlaces(given.root, [room.folder for room in PYTHON], PYTHON_PATH, LEFT_OUT)
+    with ProcessPoolExecutor(1) as beside:
+        cpp = beside.submit(cpp_mutants, given.root, given.root / "build", [room.folder for room in CPP])
+        places = PythonPlaces(given.root, [room.folder for room in PYTHON], PYTHON_PATH, LEFT_OUT)
     numbers: dict[Mutant, int] = {}
     for room in PYTHON:
         of_room = [mutant for mutant in places.mutants if mutant.key.file.startswith(room.folder + "/")]
@@ -32,7 +34,7 @@ def main() -> None:
             numbers[mutant] = len(numbers) + 1
     names = places.plant(numbers, given.tree)
     document = {
-        "cpp": [_plain(mutant) for mutant in cpp],
+        "cpp": [_plain(mutant) for mutant in cpp.result()],
         "python": [_plain(mutant) | {"chosen": numbers.get(mutant, 0)} for mutant in places.mutants],
         "names": names,
     }
