@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from verify.context import Context
+from verify.context import Context, Tool
 from verify.mutation.mutants import SEED
 from verify.mutation.rooms.planted import plant
 from verify.mutation.rooms.room import ROOMS
@@ -10,6 +10,7 @@ from verify.mutation.rooms.tests import RoomTests
 from verify.mutation.rooms.trial import judge, try_all
 from verify.rung import Figure, Rung, planted
 
+CXX, PYTEST = Tool("g++"), Tool("pytest")
 MUTANTS = sum(room.few for room in ROOMS)
 
 
@@ -33,4 +34,4 @@ def _unsaid(_line: str) -> None:
     """What has to be known of survivors stands in the evidence."""
 
 
-RUNG = Rung(f"{MUTANTS} mutants of the rooms outside c_core", (), check)
+RUNG = Rung(f"{MUTANTS} mutants of the rooms outside c_core", (CXX, PYTEST), check)
