@@ -1,6 +1,7 @@
 """The ladder of `make verify`: what its rungs say is written down, and nothing red passes for green."""
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 from verify import ladder
 from verify.context import Context, Tool
 from verify.rung import Figure, Rung, RungFailed, all_rungs, planted
+from verify.rungs.r08_deep_tests import passed
 from verify.sources import core_hash
 
 PYTHON = Tool("python3")
@@ -131,3 +133,15 @@ def test_tools_run_within_limits_of_memory_and_time(tmp_path: Path) -> None:
     with pytest.raises(RungFailed, match="exit code 3"):
         here.run("bash", "-c", "exit 3")
     assert here.run("bash", "-c", "exit 3", expect=3).returncode == 3
+
+
+def test_deep_tests_are_run_by_the_interpreter_that_has_the_project(tmp_path: Path) -> None:
+    """Another pytest in front on the PATH, as that of the tools is, is not asked."""
+    other = tmp_path / "bin" / "pytest"
+    other.parent.mkdir()
+    other.write_text("#!/bin/sh\nexit 1\n", encoding="utf-8")
+    other.chmod(0o755)
+    test = tmp_path / "test_one.py"
+    test.write_text("import giveway, pytest\n\n\n@pytest.mark.deep\ndef test_one():\n    pass\n", encoding="utf-8")
+    path = f"{other.parent}{os.pathsep}{os.environ['PATH']}"
+    assert passed(Context(Path(__file__).parents[2], tmp_path, path), str(test)) == 1

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import re
+import sys
 
 from verify.context import Context, Tool
 from verify.rung import Figure, Rung, RungFailed, planted
 
 PYTEST = Tool("pytest")
+# Of this interpreter: the tools have a pytest of their own, in front on the PATH, without the project.
+COMMAND = (sys.executable, "-m", "pytest")
 PASSED = re.compile(r"^(?:=+ )?(\d+) passed\b[^\n]*", re.MULTILINE)
 
 
 def check(context: Context) -> Figure:
-    tests = _passed(context, "tests")
+    tests = passed(context, "tests")
     _check_planted(context)
     return Figure(f"{tests} tests passed; 1 planted fault seen", {"tests": tests, "planted_faults": 1})
 
 
-def _passed(context: Context, *arguments: str, environment: dict[str, str] | None = None) -> int:
+def passed(context: Context, *arguments: str, environment: dict[str, str] | None = None) -> int:
     """The number of deep tests that passed; `RungFailed` if one failed or none was found."""
     answer = context.run(
-        context.which(PYTEST), "-q", "-m", "deep", *arguments,
+        *COMMAND, "-q", "-m", "deep", *arguments,
         cwd=context.root, timeout_s=2400.0, memory_gib=None,
         environment={"OPENBLAS_NUM_THREADS": "1", **(environment or {})},
     )  # fmt: skip
@@ -44,7 +47,7 @@ def _check_planted(context: Context) -> None:
     (context.work / "sitecustomize.py").write_text(NO_LIMIT, encoding="utf-8")
     with planted("a gigabyte is unpacked", shows=r"FAILED tests/cosim/test_fmu_hostile\.py\S*bomb-info"):
         tests = "tests/cosim/test_fmu_hostile.py::test_what_is_large_is_refused_in_little_memory"
-        _passed(context, tests, "-k", "info and bomb", environment={"PYTHONPATH": str(context.work)})
+        passed(context, tests, "-k", "info and bomb", environment={"PYTHONPATH": str(context.work)})
 
 
 RUNG = Rung("the tests that take too long for every commit", (PYTEST,), check)
