@@ -7,6 +7,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from pathlib import Path
 
 from verify.failure import RungFailed
 
-__all__ = ["Context", "Finished", "Tool", "kill_all"]
+__all__ = ["PYTEST", "Context", "Finished", "Tool", "kill_all"]
 
 LAST_LINES = 60  # characters of a tool's output that are kept as evidence
 
@@ -29,6 +30,11 @@ class Tool:
     name: str
     version: tuple[str, ...] = ("--version",)
     package: str = ""  # the package to install, if its name is not that of the tool
+    folder: Path | None = None  # looked into before the PATH
+
+
+# Of this interpreter: the tools have a pytest of their own, in front on the PATH, without the project.
+PYTEST = Tool("pytest", folder=Path(sys.executable).parent)
 
 
 @dataclass(frozen=True)
@@ -58,7 +64,8 @@ class Context:
 
     def which(self, tool: Tool) -> str:
         """The tool's program; `RungFailed` if it is not there."""
-        found = shutil.which(tool.name, path=self.path)
+        path = self.path if tool.folder is None else f"{tool.folder}{os.pathsep}{self.path}"
+        found = shutil.which(tool.name, path=path)
         if found is None:
             package = f" (package {tool.package})" if tool.package else ""
             raise RungFailed(f"missing tool: {tool.name}{package}; see verify/system_packages.sh")

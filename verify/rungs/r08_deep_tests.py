@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import re
-import sys
 
-from verify.context import Context, Tool
+from verify.context import PYTEST, Context
 from verify.rung import Figure, Rung, RungFailed, planted
 
-PYTEST = Tool("pytest")
-# Of this interpreter: the tools have a pytest of their own, in front on the PATH, without the project.
-COMMAND = (sys.executable, "-m", "pytest")
 PASSED = re.compile(r"^(?:=+ )?(\d+) passed\b[^\n]*", re.MULTILINE)
 
 
@@ -23,7 +19,7 @@ def check(context: Context) -> Figure:
 def passed(context: Context, *arguments: str, environment: dict[str, str] | None = None) -> int:
     """The number of deep tests that passed; `RungFailed` if one failed or none was found."""
     answer = context.run(
-        *COMMAND, "-q", "-m", "deep", *arguments,
+        context.which(PYTEST), "-q", "-m", "deep", *arguments,
         cwd=context.root, timeout_s=2400.0, memory_gib=None,
         environment={"OPENBLAS_NUM_THREADS": "1", **(environment or {})},
     )  # fmt: skip

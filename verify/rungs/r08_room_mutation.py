@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from verify.context import Context, Tool
+from verify.context import PYTEST, Context, Tool
 from verify.mutation.mutants import SEED
 from verify.mutation.rooms.planted import plant
 from verify.mutation.rooms.room import ROOMS
@@ -10,7 +10,7 @@ from verify.mutation.rooms.tests import RoomTests
 from verify.mutation.rooms.trial import judge, try_all
 from verify.rung import Figure, Rung, planted
 
-CXX, PYTEST = Tool("g++"), Tool("pytest")
+CXX = Tool("g++")
 MUTANTS = sum(room.few for room in ROOMS)
 
 
