@@ -76,10 +76,7 @@ def title(axes: Axes) -> str:
 
 
 def unit_of_axis(figure: Figure, axes: Axes, which: str) -> Unit | None:
-    """From the axis' own label, its title, the label of the panels that it shares its axis with, or the figure's.
-
-    Where lengths are equal in both directions the unit is, too.
-    """
+    """From the axis' own label, its title, the label of the panels that it shares its axis with, or the figure's."""
     if found := unit_in(axes.get_xlabel() if which == "x" else axes.get_ylabel()):
         return found
     if which == "y" and (found := unit_in(title(axes))):
@@ -96,8 +93,6 @@ def unit_of_axis(figure: Figure, axes: Axes, which: str) -> Unit | None:
             return found
     if which == "y" and (found := unit_in(figure.get_supylabel())):
         return found
-    if which == "y" and axes.get_aspect() == 1.0:
-        return unit_of_axis(figure, axes, "x")
     return None
 
 

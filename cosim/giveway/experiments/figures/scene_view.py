@@ -41,6 +41,7 @@ def scenes_figure(results: Mapping[str, Result]) -> Figure:
                 axes, Collision(result.traces, result.manifest["parameters"]), result.manifest["parameters"]["testbed"]
             )
             axes.set_title(title, fontsize=8.5)
+        figure.axes[0].set_ylabel("y (m)")
         handles, labels = axes.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     return figure
