@@ -110,6 +110,14 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
     return status;
 }
 
+void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction)
+{
+    const gw_real_t distance_m = admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
+    const gw_vector_t limited = limit_components(direction, (gw_real_t)1.01); /* a unit vector, rounded */
+    admittance->goal_m.x = distance_m * limited.x;
+    admittance->goal_m.y = distance_m * limited.y;
+}
+
 /* Changes the velocity towards the wanted one within the acceleration limit. */
 static gw_admittance_output_t approach_velocity(const gw_admittance_t *admittance, gw_vector_t wanted_mps)
 {

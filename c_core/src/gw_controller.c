@@ -12,6 +12,7 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     gw_estimator_config_trikey(&config->estimator);
     gw_contact_config_trikey(&config->contact);
     gw_detector_config_trikey(&config->detector);
+    gw_channels_config_trikey(&config->channels);
     gw_admittance_config_trikey(&config->admittance);
     gw_reference_config_trikey(&config->reference);
     gw_supervisor_config_trikey(&config->supervisor);
@@ -29,6 +30,7 @@ gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_
     gw_estimator_config_check(&config->estimator, error);
     gw_contact_config_check(&config->contact, error);
     gw_detector_config_check(&config->detector, error);
+    gw_channels_config_check(&config->channels, error);
     gw_admittance_config_check(&config->admittance, error);
     gw_reference_config_check(&config->reference, config->period_s, error);
     gw_supervisor_config_check(&config->supervisor, error);
@@ -50,8 +52,26 @@ static void blank_tick(gw_controller_t *controller)
 {
     static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
     static const gw_detector_output_t no_detection = {0};
+    static const gw_channels_output_t nothing_found = {0};
     controller->estimate = no_estimate;
     controller->detection = no_detection;
+    controller->contact_found = nothing_found;
+}
+
+/* What the sensors add to the balance of forces. */
+static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const gw_estimator_t *estimator)
+{
+    gw_channels_noise_t noise;
+    const gw_real_t twist_rad = config->estimator.torque_noise_nm * estimator->rate_constants.compliance_rad_per_nm;
+    noise.period_s = config->period_s;
+    noise.cutoff_radps = config->estimator.rate_cutoff_radps;
+    noise.encoder_step_m = estimator->rate_constants.rad_per_count * config->geometry.wheel_radius_m;
+    noise.twist_noise_m = twist_rad * config->geometry.wheel_radius_m;
+    noise.force_noise_n = estimator->sigma.force_n;
+    noise.mass_kg = estimator->nominal.total_mass_kg;
+    noise.yaw_inertia_kgm2 = estimator->nominal.total_yaw_inertia_kgm2;
+    noise.wheel_distance_m = config->geometry.wheel_distance_m;
+    return noise;
 }
 
 gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
@@ -75,6 +95,8 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
                                     &config->friction, config->period_s);
             (void)gw_contact_init(&controller->contact, &config->contact);
             (void)gw_detector_init(&controller->detector, &config->detector, config->period_s);
+            const gw_channels_noise_t noise = noise_of(config, &controller->estimator);
+            gw_channels_init(&controller->channels, &config->channels, &noise);
             (void)gw_admittance_init(&controller->admittance, &config->admittance, config->period_s);
             (void)gw_reference_init(&controller->reference, &config->reference, config->period_s);
             (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
@@ -143,10 +165,21 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
     return gw_estimator_step(&controller->estimator, &estimator_input, &controller->estimate);
 }
 
-/* Is the robot being hit? */
-static void detect(gw_controller_t *controller, bool slow)
+static bool uses_channels(const gw_controller_t *controller)
+{
+    return controller->detector.config.kind == GW_DETECTOR_CHANNELS;
+}
+
+static bool looks_for_hits(const gw_controller_t *controller)
 {
     const gw_mode_t mode = controller->supervisor.mode;
+    return (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
+           (mode == GW_MODE_REJOINING);
+}
+
+/* The paper's detectors. */
+static void detect_by_threshold(gw_controller_t *controller, bool slow)
+{
     gw_detector_input_t detector_input;
     if (controller->estimate.zero_changed) {
         gw_detector_clear(&controller->detector);
@@ -156,19 +189,57 @@ static void detect(gw_controller_t *controller, bool slow)
     detector_input.mean = controller->estimate.mean;
     detector_input.mean_samples = controller->estimate.mean_samples;
     detector_input.regime = controller->estimate.regime;
-    detector_input.enabled = (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
-                             (mode == GW_MODE_REJOINING);
+    detector_input.enabled = looks_for_hits(controller);
     detector_input.reaction_over = slow;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &controller->detection);
+}
+
+/* The two channels; their answer in the form of a detector's. */
+static void detect_by_channels(gw_controller_t *controller, bool slow)
+{
+    gw_channels_input_t input;
+    input.wrench = controller->estimate.wrench;
+    input.zero_step = controller->estimate.zero_step;
+    input.forces = controller->estimate.forces;
+    input.inertia_moment_nm = controller->estimate.inertia_moment_nm;
+    input.regime = controller->estimate.regime;
+    input.turned = controller->estimate.turned;
+    input.enabled = looks_for_hits(controller);
+    input.reaction_over = slow;
+    gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);
+    controller->detection.tripped = controller->contact_found.tripped;
+    controller->detection.active = controller->contact_found.active;
+    controller->detection.statistic = controller->contact_found.statistic;
+    controller->detection.mean_wrench = controller->contact_found.mean_wrench;
+    controller->detection.samples = 1U;
+}
+
+/* Is the robot being hit? */
+static void detect(gw_controller_t *controller, bool slow)
+{
+    if (uses_channels(controller)) {
+        detect_by_channels(controller, slow);
+    } else {
+        detect_by_threshold(controller, slow);
+    }
     if (controller->detection.tripped) {
         controller->detection_count = (controller->detection_count + 1U) & GW_TICK_MASK;
         controller->detection_tick = (int32_t)controller->tick;
+    }
+    if (controller->detection.tripped || controller->contact_found.refining) {
         controller->detection_wrench = controller->detection.mean_wrench;
         (void)gw_contact_locate(&controller->contact, controller->detection.mean_wrench,
                                 sigma_of_mean(controller->estimate.sigma, controller->detection.samples),
                                 &controller->detection_contact);
     }
+}
+
+/* The detector forgets the past, after a gap in the samples or with another zero. */
+static void restart_detector(gw_controller_t *controller)
+{
+    gw_detector_reset(&controller->detector);
+    gw_channels_restart(&controller->channels);
 }
 
 /* A new tare of the run was asked for: only a robot that stands may take one. */
@@ -209,6 +280,8 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
         (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller));
+    } else if ((mode == GW_MODE_REACTING) && controller->contact_found.refining) {
+        gw_admittance_redirect(&controller->admittance, hit_direction(controller));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
             /* After an interruption the space may no longer be free: come to rest, do not go on with the escape. */
@@ -216,11 +289,15 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
             (void)gw_admittance_start(&controller->admittance, velocity, nowhere);
         } else if (mode == GW_MODE_TARING) {
             gw_estimator_start_tare(&controller->estimator);
-            gw_detector_reset(&controller->detector);
+            restart_detector(controller);
         } else {
             gw_detector_reset(&controller->detector);
         }
+        if (before == GW_MODE_TARING) {
+            restart_detector(controller);
+        }
         if (mode == GW_MODE_FAULT) {
+            restart_detector(controller);
             gw_estimator_restart(&controller->estimator);
         }
     } else {
@@ -241,7 +318,9 @@ static gw_vector_t live_force(const gw_controller_t *controller)
     if (just_hit && (regime == GW_REGIME_CREEPING)) {
         regime = GW_REGIME_MOTION;
     }
-    const gw_real_t left = length - gw_detector_leak(&controller->detector, regime);
+    const gw_real_t leak_n = uses_channels(controller) ? gw_force_floor(controller->channels.config.slow, regime)
+                                                       : gw_detector_leak(&controller->detector, regime);
+    const gw_real_t left = length - leak_n;
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
         const gw_real_t share = gw_fraction(left, length);
@@ -328,10 +407,11 @@ static void report(const gw_controller_t *controller, gw_controller_output_t *ou
     (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
                             sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples),
                             &output->contact);
-    output->detection_active = controller->detector.active;
+    output->detection_active = controller->detection.active;
     output->detection_statistic = controller->detection.statistic;
     output->detection_count = controller->detection_count;
     output->detection_tick = controller->detection_tick;
+    output->detection_channel = controller->contact_found.channel;
     output->detection_wrench = controller->detection_wrench;
     output->detection_contact = controller->detection_contact;
     output->reference_pose = gw_reference_pose(&controller->reference);
@@ -353,7 +433,9 @@ static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 static bool is_quiet(const gw_controller_t *controller)
 {
     const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
-    return gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime);
+    return uses_channels(controller)
+               ? (!controller->contact_found.active)
+               : (gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime));
 }
 
 /* Checks the sensors, estimates the push, and decides whether it is a hit. */
@@ -445,6 +527,7 @@ bool gw_controller_invariant_holds(const gw_controller_t *controller)
             gw_sensor_check_invariant_holds(&controller->sensor_check) &&
             gw_estimator_invariant_holds(&controller->estimator) && gw_contact_invariant_holds(&controller->contact) &&
             gw_detector_invariant_holds(&controller->detector) &&
+            gw_channels_invariant_holds(&controller->channels) &&
             gw_admittance_invariant_holds(&controller->admittance) &&
             gw_reference_invariant_holds(&controller->reference) && gw_joint_invariant_holds(&controller->joint) &&
             gw_supervisor_invariant_holds(&controller->supervisor) && (controller->detection_count <= GW_TICK_MASK) &&

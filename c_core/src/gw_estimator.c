@@ -21,6 +21,7 @@ void gw_estimator_config_trikey(gw_estimator_config_t *config)
     config->retare_ticks = 100U;
     config->tare_variation_nm = (gw_real_t)0.5;
     config->friction_model = GW_FRICTION_TANH;
+    config->aligned = 0U;
     gw_presliding_config_trikey(&config->presliding);
 }
 
@@ -40,6 +41,10 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_RETARE_TICKS, config->retare_ticks);
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, config->tare_variation_nm);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, config->friction_model);
+    gw_config_check_count(error, GW_FIELD_ESTIMATOR_ALIGNED, config->aligned);
+    if (config->acceleration_source != GW_SOURCE_MEASURED) {
+        gw_config_check_relation(error, GW_FIELD_ESTIMATOR_ALIGNED, 0U, (gw_real_t)config->aligned, GW_ZERO, GW_ZERO);
+    }
     gw_presliding_config_check(&config->presliding, error);
 }
 
@@ -115,6 +120,8 @@ static void restart_filters(gw_estimator_t *estimator)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_restart(&estimator->rate[i]);
+        gw_lowpass_restart(&estimator->aligned_torque[i]);
+        gw_lowpass_restart(&estimator->aligned_friction[i]);
     }
     gw_moving_average_reset(&estimator->average);
 }
@@ -213,6 +220,11 @@ static gw_real_t faster_of(const gw_estimator_t *estimator, gw_twist_t twist)
     return gw_max(gw_length(velocity), rim);
 }
 
+static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
+{
+    return estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
+}
+
 /* Decides whether the robot is at rest, and takes the tare after a stop. Returns true if the decision changed. */
 static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, gw_real_t speed_mps)
 {
@@ -256,12 +268,38 @@ static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, gw
     return acceleration;
 }
 
+/* Passes three values through the low-pass of the measured acceleration, if the balance is to be aligned. */
+static gw_wheels_t aligned(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_COUNT],
+                           const gw_wheels_t *values)
+{
+    gw_wheels_t result = *values;
+    if (estimator->config.aligned != 0U) {
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            result.wheel[i] =
+                gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
+        }
+    }
+    return result;
+}
+
+/* The model's forces, for whoever wants to know how uncertain they are. */
+static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm,
+                        gw_acceleration_t acceleration, gw_estimator_output_t *output)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        output->forces.friction_n.wheel[i] = friction_nm->wheel[i] * estimator->kinematics.per_roller_radius;
+    }
+    output->forces.inertia_n.x = estimator->nominal.total_mass_kg * acceleration.ax_mps2;
+    output->forces.inertia_n.y = estimator->nominal.total_mass_kg * acceleration.ay_mps2;
+    output->inertia_moment_nm = estimator->nominal.total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
+}
+
 /* T|0 from the present zero and the model. */
 static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                                      const gw_wheels_t *torque_nm, gw_twist_t planned_twist, gw_twist_t measured_twist,
-                                     gw_acceleration_t acceleration)
+                                     gw_acceleration_t acceleration, gw_estimator_output_t *output)
 {
-    const gw_wheels_t *const zero = estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
+    const gw_wheels_t *const zero = present_zero(estimator);
     gw_twist_t twist = {GW_ZERO, GW_ZERO, GW_ZERO};
     if (estimator->config.velocity_source == GW_SOURCE_MEASURED) {
         twist = measured_twist;
@@ -280,6 +318,9 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+    friction_nm = aligned(estimator, estimator->aligned_friction, &friction_nm);
+    tell_forces(estimator, &friction_nm, acceleration, output);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     gw_wheels_t nominal =
         gw_nominal_torques(&estimator->nominal, &estimator->kinematics, twist, acceleration, &friction_nm);
     GW_UNROLLED
@@ -287,6 +328,16 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         nominal.wheel[i] += zero->wheel[i];
     }
     return nominal;
+}
+
+/* Has an encoder moved since the last sample? */
+static bool has_turned(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
+{
+    bool turned = false;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        turned = turned || (estimator->rate[i].started && (input->encoder_count[i] != estimator->rate[i].last_count));
+    }
+    return turned;
 }
 
 /* Rates of the wheels and their derivatives, after this sample. */
@@ -347,7 +398,10 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_twist_t planned_twist = limited_twist(input->planned_twist);
         const gw_acceleration_t planned_acceleration = limited_acceleration(input->planned_acceleration);
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
+        const gw_wheels_t zero_before = *present_zero(estimator);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
+        output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), &zero_before);
+        output->turned = has_turned(estimator, input);
         if (output->zero_changed) {
             gw_moving_average_reset(&estimator->average);
         }
@@ -360,8 +414,10 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
             chosen_acceleration(estimator, planned_acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
-            nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration);
-        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &torque_nm);
+            nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+        const gw_wheels_t sensed_nm = aligned(estimator, estimator->aligned_torque, &torque_nm);
+        output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &sensed_nm);
         output->sigma = estimator->sigma;
         status = gw_moving_average_add(&estimator->average, output->wrench);
         if (status == GW_STATUS_OK) {

@@ -65,7 +65,8 @@ extern "C" {
     ROW(COUNT, GW_FIELD_ESTIMATOR_TARE_TICKS, "estimator.tare_ticks", OF tare_ticks, 0, 100000) \
     ROW(COUNT, GW_FIELD_ESTIMATOR_RETARE_TICKS, "estimator.retare_ticks", OF retare_ticks, 1, 100000) \
     ROW(REAL, GW_FIELD_ESTIMATOR_TARE_VARIATION, "estimator.tare_variation", OF tare_variation_nm, 0, 100) \
-    ROW(COUNT, GW_FIELD_ESTIMATOR_FRICTION_MODEL, "estimator.friction_model", OF friction_model, 0, 1)
+    ROW(COUNT, GW_FIELD_ESTIMATOR_FRICTION_MODEL, "estimator.friction_model", OF friction_model, 0, 1) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_ALIGNED, "estimator.aligned", OF aligned, 0, 1)
 
 #define GW_PRESLIDING_FIELDS(ROW, OF) \
     ROW(WHEEL_REAL, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, "estimator.presliding_stiffness", \
@@ -83,7 +84,7 @@ extern "C" {
     ROW(RULE, GW_FIELD_OUTLINE_CONVEX, "outline (counter-clockwise, strictly convex)", OF vertex_m, 0, 0)
 
 #define GW_DETECTOR_FIELDS(ROW, OF) \
-    ROW(COUNT, GW_FIELD_DETECTOR_KIND, "detector.kind", OF kind, 0, 1) \
+    ROW(COUNT, GW_FIELD_DETECTOR_KIND, "detector.kind", OF kind, 0, 2) \
     ROW(REAL, GW_FIELD_DETECTOR_FORCE_THRESHOLD, "detector.force_threshold", OF force_threshold_n, 0.01, 10000) \
     ROW(REAL, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, "detector.impulse_threshold", OF impulse_threshold_newton_s, 0.001, \
         1000) \
@@ -92,6 +93,30 @@ extern "C" {
     ROW(REAL, GW_FIELD_DETECTOR_LEAK_MOTION, "detector.leak_motion", OF leak_motion_n, 0, 1000) \
     ROW(REAL, GW_FIELD_DETECTOR_RELEASE_FORCE, "detector.release_force", OF release_force_n, 0, 10000) \
     ROW(COUNT, GW_FIELD_DETECTOR_BLANKING_TICKS, "detector.blanking_ticks", OF blanking_ticks, 0, 100000)
+
+#define GW_CHANNELS_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_CHANNELS_NOISE_MULTIPLE, "channels.noise_multiple", OF noise_multiple, 1, 100) \
+    ROW(REAL, GW_FIELD_CHANNELS_MODEL_MULTIPLE, "channels.model_multiple", OF model_multiple, 0, 100) \
+    ROW(REAL, GW_FIELD_CHANNELS_BASELINE_TIME, "channels.baseline_time", OF baseline_s, 0.01, 10) \
+    ROW(REAL, GW_FIELD_CHANNELS_SLOW_TIME, "channels.slow_time", OF slow_s, 0.005, 10) \
+    ROW(REAL, GW_FIELD_CHANNELS_FRICTION_SHAPE, "channels.friction_shape", OF friction_shape, 0, 1) \
+    ROW(REAL, GW_FIELD_CHANNELS_YAW_INERTIA, "channels.yaw_inertia", OF yaw_inertia, 0, 1) \
+    ROW(REAL, GW_FIELD_CHANNELS_CENTRE_OF_MASS, "channels.centre_of_mass", OF centre_of_mass_m, 0, 1) \
+    ROW(REAL, GW_FIELD_CHANNELS_FAST_REST, "channels.fast_rest", OF fast.rest_n, 0.01, 1000) \
+    ROW(REAL, GW_FIELD_CHANNELS_FAST_CREEP, "channels.fast_creep", OF fast.creep_n, 0.01, 1000) \
+    ROW(REAL, GW_FIELD_CHANNELS_FAST_MOTION, "channels.fast_motion", OF fast.motion_n, 0.01, 1000) \
+    ROW(REAL, GW_FIELD_CHANNELS_SLOW_REST, "channels.slow_rest", OF slow.rest_n, 0.01, 1000) \
+    ROW(REAL, GW_FIELD_CHANNELS_SLOW_CREEP, "channels.slow_creep", OF slow.creep_n, 0.01, 1000) \
+    ROW(REAL, GW_FIELD_CHANNELS_SLOW_MOTION, "channels.slow_motion", OF slow.motion_n, 0.01, 1000) \
+    ROW(COUNT, GW_FIELD_CHANNELS_SETTLE_TICKS, "channels.settle_ticks", OF settle_ticks, 0, 100000) \
+    ROW(COUNT, GW_FIELD_CHANNELS_LOCK_TICKS, "channels.lock_ticks", OF lock_ticks, 1, 100000)
+
+#define GW_FOLLOWER_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_FOLLOWER_FRICTION_COMMON, "follower.friction_common", OF friction_common, 0, 1) \
+    ROW(REAL, GW_FIELD_FOLLOWER_FRICTION_WHEEL, "follower.friction_wheel", OF friction_wheel, 0, 1) \
+    ROW(REAL, GW_FIELD_FOLLOWER_MASS, "follower.mass", OF mass, 0, 1) \
+    ROW(REAL, GW_FIELD_FOLLOWER_DRIFT, "follower.drift", OF drift_per_root_s, 0, 1) \
+    ROW(REAL, GW_FIELD_FOLLOWER_RESIDUAL, "follower.residual", OF residual_n, 0.1, 1000)
 
 #define GW_ADMITTANCE_FIELDS(ROW, OF) \
     ROW(COUNT, GW_FIELD_ADMITTANCE_KIND, "admittance.kind", OF kind, 0, 1) \
@@ -142,6 +167,8 @@ extern "C" {
     GW_PRESLIDING_FIELDS(ROW, OF estimator.presliding.) \
     GW_CONTACT_FIELDS(ROW, OF contact.) \
     GW_DETECTOR_FIELDS(ROW, OF detector.) \
+    GW_CHANNELS_FIELDS(ROW, OF channels.) \
+    GW_FOLLOWER_FIELDS(ROW, OF channels.follower.) \
     GW_ADMITTANCE_FIELDS(ROW, OF admittance.) \
     GW_REFERENCE_FIELDS(ROW, OF reference.) \
     GW_SUPERVISOR_FIELDS(ROW, OF supervisor.)

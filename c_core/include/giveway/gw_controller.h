@@ -10,6 +10,7 @@
 #define GW_CONTROLLER_H
 
 #include "giveway/gw_admittance.h"
+#include "giveway/gw_channels.h"
 #include "giveway/gw_config.h"
 #include "giveway/gw_contact.h"
 #include "giveway/gw_detector.h"
@@ -34,6 +35,7 @@ typedef struct {
     gw_estimator_config_t estimator;
     gw_contact_config_t contact;
     gw_detector_config_t detector;
+    gw_channels_config_t channels; /* read if detector.kind is GW_DETECTOR_CHANNELS, checked always */
     gw_admittance_config_t admittance;
     gw_reference_config_t reference;
     gw_supervisor_config_t supervisor;
@@ -65,6 +67,8 @@ typedef struct {
     int32_t detection_tick;
     gw_wrench_t detection_wrench;
     gw_contact_estimate_t detection_contact;
+    /* Which channel noticed it: GW_CHANNEL_NONE, GW_CHANNEL_FAST or GW_CHANNEL_SLOW. */
+    uint32_t detection_channel;
     /* Reference, world frame. */
     gw_pose_t reference_pose;
     gw_twist_t reference_twist;
@@ -78,6 +82,7 @@ typedef struct {
     gw_sensor_check_t sensor_check;
     gw_contact_t contact;
     gw_detector_t detector;
+    gw_channels_t channels;
     gw_admittance_t admittance;
     gw_reference_t reference;
     gw_joint_t joint;
@@ -89,6 +94,7 @@ typedef struct {
     uint32_t tick;
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
+    gw_channels_output_t contact_found;
     bool drives_enabled;
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */

@@ -24,9 +24,10 @@ extern "C" {
 
 #define GW_DETECTOR_FORCE_AVERAGE 0U
 #define GW_DETECTOR_IMPULSE 1U
+#define GW_DETECTOR_CHANNELS 2U /* not this module: gw_channels.h, which the controller asks instead */
 
 typedef struct {
-    /* GW_DETECTOR_FORCE_AVERAGE (0) or GW_DETECTOR_IMPULSE (1). */
+    /* GW_DETECTOR_FORCE_AVERAGE (0), GW_DETECTOR_IMPULSE (1) or GW_DETECTOR_CHANNELS (2). */
     uint32_t kind;
     /* Force average: trips above this force, N, [0.01, 10000]. */
     gw_real_t force_threshold_n;

@@ -20,7 +20,9 @@
 #define GW_ESTIMATOR_H
 
 #include "giveway/gw_config.h"
+#include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
+#include "giveway/gw_lowpass.h"
 #include "giveway/gw_moving_average.h"
 #include "giveway/gw_nominal.h"
 #include "giveway/gw_presliding.h"
@@ -70,6 +72,9 @@ typedef struct {
     /* Friction of the rollers: GW_FRICTION_TANH (0), the paper's (28) at velocity_source, or GW_FRICTION_BRISTLE (1),
      * presliding at the measured motion. */
     uint32_t friction_model;
+    /* 1: torques and friction pass the low-pass of the measured acceleration, so that no term of the balance comes
+     * earlier than another; only with acceleration_source GW_SOURCE_MEASURED. 0: as the paper, each as it comes. */
+    uint32_t aligned;
     /* Read by GW_FRICTION_BRISTLE only, checked always. */
     gw_presliding_config_t presliding;
 } gw_estimator_config_t;
@@ -81,6 +86,8 @@ typedef struct {
     gw_rate_filter_constants_t rate_constants;
     gw_rate_filter_t rate[GW_WHEEL_COUNT];
     gw_presliding_t presliding;
+    gw_lowpass_t aligned_torque[GW_WHEEL_COUNT];
+    gw_lowpass_t aligned_friction[GW_WHEEL_COUNT];
     gw_tare_t run_tare;
     gw_tare_t stop_tare;
     gw_wheels_t run_zero_nm;
@@ -110,6 +117,11 @@ typedef struct {
     gw_twist_t measured_twist;
     gw_regime_t regime;
     bool zero_changed; /* the robot came to rest or left it in this tick */
+    /* What another zero has changed in the wrench in this tick, and the model's forces in the balance. */
+    gw_wrench_t zero_step;
+    gw_model_forces_t forces;
+    gw_real_t inertia_moment_nm;
+    bool turned; /* an encoder has moved since the last sample */
 } gw_estimator_output_t;
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */

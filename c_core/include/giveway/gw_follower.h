@@ -1,0 +1,77 @@
+/* How far roller friction and mass differ from the configuration: followed while nothing touches the robot, with the
+ * uncertainty that remains.
+ *
+ * Without contact the residual of the force balance is  e = -(sum_i d_i n_i f_i + d_m M a) + noise,  where n_i f_i is
+ * the configured friction force of the rollers of wheel i, M a the configured inertial force, and d the unknown
+ * relative differences. A Kalman filter with slowly drifting d follows them: friction of each wheel on its own, but
+ * with a common part expected, and the mass. What it does not know yet is the covariance P of d. With it the detector
+ * knows how much force the model may be wrong by, for the motion at hand.
+ *
+ * Life cycle: gw_follower_init, then gw_follower_learn as often as nothing touches. All members are private.
+ */
+#ifndef GW_FOLLOWER_H
+#define GW_FOLLOWER_H
+
+#include "giveway/gw_config.h"
+#include "giveway/gw_kinematics.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GW_FOLLOWED_COUNT (GW_WHEEL_COUNT + 1U) /* friction of each wheel, mass */
+
+typedef struct {
+    /* Standard deviations of what the configuration may be wrong by, relative: friction of all wheels in common, of
+     * each wheel on its own, and mass; [0, 1]. */
+    gw_real_t friction_common;
+    gw_real_t friction_wheel;
+    gw_real_t mass;
+    /* Drift of the friction, relative per root of a second, [0, 1]. */
+    gw_real_t drift_per_root_s;
+    /* Error of the balance that neither friction nor mass explains, N, [0.1, 1000]. */
+    gw_real_t residual_n;
+} gw_follower_config_t;
+
+typedef struct {
+    gw_follower_config_t config;
+    gw_real_t difference[GW_FOLLOWED_COUNT];
+    gw_real_t covariance[GW_FOLLOWED_COUNT][GW_FOLLOWED_COUNT];
+    gw_real_t drift_per_call;
+} gw_follower_t;
+
+/* The forces that the model computed for one moment, base frame: the regressors of the differences. */
+typedef struct {
+    gw_wheels_t friction_n; /* of the rollers of each wheel, along its radial direction */
+    gw_vector_t inertia_n;  /* M a */
+} gw_model_forces_t;
+
+/* Covariance of a planar force, N^2. */
+typedef struct {
+    gw_real_t xx;
+    gw_real_t xy;
+    gw_real_t yy;
+} gw_planar_covariance_t;
+
+/* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
+void gw_follower_config_trikey(gw_follower_config_t *config);
+void gw_follower_config_check(const gw_follower_config_t *config, gw_config_error_t *error);
+/* The configuration was checked. interval: time between two calls of gw_follower_learn, s. Pointers not NULL. */
+void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *config, gw_real_t interval_s);
+bool gw_follower_invariant_holds(const gw_follower_t *follower);
+/* The force that the model lacks by what is known of the differences: to be added to the residual. Not NULL. */
+gw_vector_t gw_follower_correction(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
+                                   const gw_model_forces_t *forces);
+/* How uncertain the model's force still is. shape_variance: of each wheel's friction besides, relative, squared. */
+gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
+                                               const gw_model_forces_t *forces, gw_real_t shape_variance);
+/* Learns from a residual without contact. Pointers not NULL. */
+void gw_follower_learn(gw_follower_t *follower, const gw_kinematics_t *kinematics, const gw_model_forces_t *forces,
+                       gw_vector_t residual_n);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
