@@ -10,6 +10,7 @@
 #define RELEASE_BANK 2U       /* low-pass that decides on the end of a contact, and sets the baseline there */
 #define RELEASE_FLOOR_N2 ((gw_real_t)16.0)
 #define CALM ((gw_real_t)0.5) /* of the threshold: noise and model are followed below */
+#define HELD_TIME_S ((gw_real_t)1.0) /* for which the end of an old contact is forgiven */
 #define NOISE_TIME_S ((gw_real_t)3.0)
 #define NOISE_CLIP ((gw_real_t)6.0) /* an outlier counts as this many variances */
 /* Least noise of each set over the predicted one, and the first guess: slow wheels count irregularly. */
@@ -34,6 +35,7 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->slow.motion_n = (gw_real_t)7.0;
     config->settle_ticks = 500U;
     config->lock_ticks = 100U;
+    config->rearm_ticks = 300U;
     gw_follower_config_trikey(&config->follower);
 }
 
@@ -54,6 +56,7 @@ void gw_channels_config_check(const gw_channels_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_CHANNELS_SLOW_MOTION, config->slow.motion_n);
     gw_config_check_count(error, GW_FIELD_CHANNELS_SETTLE_TICKS, config->settle_ticks);
     gw_config_check_count(error, GW_FIELD_CHANNELS_LOCK_TICKS, config->lock_ticks);
+    gw_config_check_count(error, GW_FIELD_CHANNELS_REARM_TICKS, config->rearm_ticks);
     gw_follower_config_check(&config->follower, error);
 }
 
@@ -84,6 +87,7 @@ void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *confi
     channels->moment_per_force_m2 = (gyration_m2 * gyration_m2) / ((GW_TWO * arm_m) * arm_m);
     channels->baseline_share = -gw_expm1(-noise->period_s / config->baseline_s);
     channels->slow_share = -gw_expm1(-noise->period_s / config->slow_s);
+    channels->held_share = noise->period_s / HELD_TIME_S;
     channels->noise_share = noise->period_s / NOISE_TIME_S;
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         channels->bank_share[j] = -gw_expm1(-noise->period_s / bank_s[j]);
@@ -121,6 +125,7 @@ void gw_channels_restart(gw_channels_t *channels)
     clear_signals(&channels->slow);
     clear_bank(channels);
     channels->slow_zero_n = no_force;
+    channels->held_n = no_force;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->ticks_since_trip = 0U;
@@ -192,12 +197,20 @@ static gw_signals_t signals_of(const gw_channels_input_t *input)
     return now;
 }
 
+/* A statistic beyond this is as good as any; it keeps sums finite. */
+#define STATISTIC_MAX ((gw_real_t)1.0e6)
+
+static gw_real_t ratio_of(gw_real_t part, gw_real_t whole)
+{
+    return gw_min(part / gw_max(whole, (gw_real_t)1.0e-9), STATISTIC_MAX);
+}
+
 /* x^T S^-1 x. The floor keeps S away from singular. */
 static gw_real_t distance(gw_planar_covariance_t s, gw_real_t x, gw_real_t y)
 {
     const gw_real_t determinant = (s.xx * s.yy) - (s.xy * s.xy);
     const gw_real_t weighted = (((s.yy * x) * x) - ((GW_TWO * s.xy) * (x * y))) + ((s.xx * y) * y);
-    return gw_fraction_inline(gw_max(weighted, GW_ZERO), gw_max(determinant, (gw_real_t)1.0e-12));
+    return ratio_of(gw_max(weighted, GW_ZERO), determinant);
 }
 
 static gw_planar_covariance_t with_floor(gw_planar_covariance_t model, gw_real_t multiple, gw_real_t floor_n2)
@@ -233,15 +246,36 @@ static void follow_noise(gw_channels_t *channels, uint32_t set, uint32_t j)
                                         channels->least_noise_n2[set][j]);
 }
 
-/* The fast channel: moves the bank, returns the largest statistic and its low-pass, and that of the release. */
-static gw_real_t step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_signals_t *now,
-                           uint32_t set, uint32_t *widest, gw_real_t *release)
+/* What the fast channel finds in a tick. */
+typedef struct {
+    gw_real_t largest;               /* statistic */
+    uint32_t widest;                 /* the low-pass that has it */
+    gw_real_t release;               /* statistic for the end of a contact */
+    gw_planar_covariance_t release_n2; /* its covariance */
+} fast_t;
+
+/* The end of a contact that the baseline still holds is forgiven: a change against its direction, up to its size. */
+static gw_planar_covariance_t with_held(const gw_channels_t *channels, gw_planar_covariance_t s, gw_real_t x,
+                                        gw_real_t y)
+{
+    gw_planar_covariance_t sum = s;
+    const gw_vector_t held = channels->held_n;
+    if (((held.x * x) + (held.y * y)) < GW_ZERO) {
+        sum.xx += held.x * held.x;
+        sum.xy += held.x * held.y;
+        sum.yy += held.y * held.y;
+    }
+    return sum;
+}
+
+/* The fast channel: moves the bank and compares it. */
+static void step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_signals_t *now,
+                      uint32_t set, fast_t *found)
 {
     const gw_channels_config_t *const config = &channels->config;
     const gw_real_t floor_n = gw_force_floor(config->fast, (gw_regime_t)set);
     const gw_real_t noise_square = config->noise_multiple * config->noise_multiple;
     const gw_real_t model_square = config->model_multiple * config->model_multiple;
-    gw_real_t largest = GW_ZERO;
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         gw_signals_t *const x = &channels->bank[j];
         for (uint32_t i = 0U; i < GW_SIGNAL_COUNT; i++) {
@@ -253,7 +287,8 @@ static gw_real_t step_bank(gw_channels_t *channels, const gw_kinematics_t *kinem
         const gw_planar_covariance_t model = gw_follower_uncertainty(
             &channels->follower, kinematics, &forces, config->friction_shape * config->friction_shape);
         const gw_planar_covariance_t s = with_floor(model, config->model_multiple, least_n2);
-        const gw_real_t of_force = distance(s, x->value[0], x->value[1]);
+        const gw_real_t of_force =
+            distance(with_held(channels, s, x->value[0], x->value[1]), x->value[0], x->value[1]);
         const gw_real_t turning_nm = config->yaw_inertia * x->value[GW_SIGNAL_INERTIA + 2U];
         const gw_real_t offset2_nm2 =
             (config->centre_of_mass_m * config->centre_of_mass_m) *
@@ -261,20 +296,20 @@ static gw_real_t step_bank(gw_channels_t *channels, const gw_kinematics_t *kinem
         const gw_real_t moment_nm2 = (least_n2 * channels->moment_per_force_m2) +
                                      (model_square * ((turning_nm * turning_nm) + offset2_nm2));
         const gw_real_t of_moment =
-            gw_fraction_inline(x->value[2] * x->value[2], gw_max(moment_nm2, (gw_real_t)1.0e-12));
-        if ((of_force + of_moment) > largest) {
-            largest = of_force + of_moment;
-            *widest = j;
+            ratio_of(x->value[2] * x->value[2], moment_nm2);
+        if ((of_force + of_moment) > found->largest) {
+            found->largest = of_force + of_moment;
+            found->widest = j;
         }
         if (j == RELEASE_BANK) {
             const gw_planar_covariance_t wider = {s.xx + RELEASE_FLOOR_N2, s.xy, s.yy + RELEASE_FLOOR_N2};
-            *release = distance(wider, x->value[0], x->value[1]);
+            found->release = distance(wider, x->value[0], x->value[1]);
+            found->release_n2 = wider;
         }
         if ((!channels->active) && (of_force < CALM) && (of_moment < CALM)) {
             follow_noise(channels, set, j);
         }
     }
-    return largest;
 }
 
 static bool is_step(gw_wrench_t step)
@@ -331,16 +366,24 @@ static void take_as_baseline(gw_channels_t *channels, uint32_t j)
     clear_bank(channels);
 }
 
-static void end_contact(gw_channels_t *channels)
+static void end_contact(gw_channels_t *channels, gw_planar_covariance_t s)
 {
+    /* Along the contact's direction: what is left of it, and what nobody knows of it. */
+    const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
+    const gw_vector_t d = gw_unit(impulse.x, impulse.y, gw_length(impulse));
+    const gw_signals_t *const x = &channels->bank[RELEASE_BANK];
+    const gw_real_t left_n = gw_max((x->value[0] * d.x) + (x->value[1] * d.y), GW_ZERO);
+    const gw_real_t unknown_n2 = (((s.xx * d.x) * d.x) + ((GW_TWO * s.xy) * (d.x * d.y))) + ((s.yy * d.y) * d.y);
+    const gw_real_t held_n = left_n + gw_sqrt(gw_max(unknown_n2, GW_ZERO));
+    channels->held_n.x = held_n * d.x;
+    channels->held_n.y = held_n * d.y;
     take_as_baseline(channels, RELEASE_BANK);
     channels->active = false;
     channels->ticks_since_release = 0U;
 }
 
 /* While a contact lasts: its impulse grows, until it is over. */
-static void continue_contact(gw_channels_t *channels, const gw_signals_t *now, gw_real_t release, gw_real_t slow,
-                             bool reaction_over)
+static void continue_contact(gw_channels_t *channels, const gw_signals_t *now, const fast_t *found, gw_real_t slow)
 {
     channels->ticks_since_trip = one_more(channels->ticks_since_trip);
     if (channels->ticks_since_trip <= GW_REFINE_TICKS) {
@@ -349,15 +392,11 @@ static void continue_contact(gw_channels_t *channels, const gw_signals_t *now, g
         channels->impulse.force_y_n += (now->value[1] - channels->baseline.value[1]) * channels->period_s;
         channels->impulse.torque_nm += (now->value[2] - channels->baseline.value[2]) * channels->period_s;
     }
-    channels->quiet_ticks = ((release < CALM) && (slow < GW_ONE)) ? (channels->quiet_ticks + 1U) : 0U;
-    if (channels->ticks_since_trip >= channels->config.lock_ticks) {
-        if (channels->quiet_ticks > QUIET_TICKS) {
-            end_contact(channels);
-        } else if (reaction_over) {
-            channels->active = false; /* the push lasts: it may trip again */
-        } else {
-            /* goes on */
-        }
+    const bool quiet = (found->release < CALM) && (slow < GW_ONE);
+    channels->quiet_ticks = quiet ? (channels->quiet_ticks + 1U) : 0U;
+    if (((channels->quiet_ticks > QUIET_TICKS) && (channels->ticks_since_trip >= channels->config.lock_ticks)) ||
+        (channels->ticks_since_trip >= channels->config.rearm_ticks)) {
+        end_contact(channels, found->release_n2);
     }
 }
 
@@ -423,23 +462,26 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
         warm_up(channels, &raw, &now);
     } else {
         const uint32_t set = (uint32_t)set_of(channels, input);
-        uint32_t widest = 0U;
-        gw_real_t release = GW_ZERO;
+        static const fast_t nothing_found = {0};
+        fast_t found = nothing_found;
         gw_vector_t slow_n;
-        const gw_real_t fast = step_bank(channels, kinematics, &now, set, &widest, &release);
+        step_bank(channels, kinematics, &now, set, &found);
+        channels->held_n.x -= channels->held_share * channels->held_n.x;
+        channels->held_n.y -= channels->held_share * channels->held_n.y;
         approach(&channels->slow, &raw, channels->slow_share);
         const gw_real_t slow = step_slow(channels, kinematics, input, set, &slow_n);
-        const gw_real_t largest = gw_max(fast, slow);
+        /* In a reaction a lasting force is told from wrong friction by nothing: impacts alone count. */
+        const gw_real_t largest = input->reacting ? found.largest : gw_max(found.largest, slow);
         output->statistic = gw_sqrt_of_square(gw_limited(largest, GW_WRENCH_MAX));
         if (channels->active) {
-            continue_contact(channels, &now, release, slow, input->reaction_over);
+            continue_contact(channels, &now, &found, slow);
         } else if (input->enabled && (largest > GW_ONE)) {
-            const gw_signals_t *const x = &channels->bank[widest];
+            const gw_signals_t *const x = &channels->bank[found.widest];
             const gw_wrench_t quick = {x->value[0], x->value[1], x->value[2]};
             const gw_wrench_t lasting = {slow_n.x, slow_n.y, channels->slow.value[2]};
-            const bool is_fast = fast > GW_ONE;
+            const bool is_fast = found.largest > GW_ONE;
             begin_contact(channels, is_fast ? GW_CHANNEL_FAST : GW_CHANNEL_SLOW, is_fast ? quick : lasting,
-                          is_fast ? bank_s[widest] : channels->config.slow_s);
+                          is_fast ? bank_s[found.widest] : channels->config.slow_s);
             output->tripped = true;
         } else {
             approach(&channels->baseline, &now, channels->baseline_share);

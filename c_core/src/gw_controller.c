@@ -206,6 +206,7 @@ static void detect_by_channels(gw_controller_t *controller, bool slow)
     input.regime = controller->estimate.regime;
     input.turned = controller->estimate.turned;
     input.enabled = looks_for_hits(controller);
+    input.reacting = controller->supervisor.mode == GW_MODE_REACTING;
     input.reaction_over = slow;
     gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);
     controller->detection.tripped = controller->contact_found.tripped;

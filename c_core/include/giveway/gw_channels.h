@@ -9,7 +9,9 @@
  * through the same filters) + floor^2. It trips if x^T S^-1 x > 1. The noise of each low-pass is followed, too.
  *
  * From a trip to the end of the contact the baseline stands still: the contact force is the difference from it. The
- * contact is over when that has stayed within its uncertainty for 40 ticks. The mean wrench of the hit is refined for
+ * contact is over when that has stayed within its uncertainty for 40 ticks; after rearm_ticks the detector is armed in
+ * any case. What then is left of the contact, or could be, may end later without being taken for a hit from the other
+ * side. The mean wrench of the hit is refined for
  * GW_REFINE_TICKS after the trip.
  *
  * Life cycle: gw_channels_init, gw_channels_step per tick, gw_channels_restart after a gap. All members are private.
@@ -71,6 +73,8 @@ typedef struct {
     uint32_t settle_ticks;
     /* Shortest time from a trip to the next, ticks, [1, 100000]. */
     uint32_t lock_ticks;
+    /* Time from a trip after which the detector is armed again even if the contact lasts, ticks, [1, 100000]. */
+    uint32_t rearm_ticks;
     gw_follower_config_t follower;
 } gw_channels_config_t;
 
@@ -85,6 +89,8 @@ typedef struct {
     bool turned;
     /* False: hits are not looked for. */
     bool enabled;
+    /* The robot gives way. */
+    bool reacting;
     /* The reaction is over: a push that still lasts may trip again. */
     bool reaction_over;
 } gw_channels_input_t;
@@ -108,6 +114,7 @@ typedef struct {
     gw_real_t baseline_share;
     gw_real_t slow_share;
     gw_real_t noise_share;
+    gw_real_t held_share;
     gw_real_t moment_per_force_m2; /* variance of the moment's noise over that of the force's */
     gw_real_t least_noise_n2[GW_NOISE_SETS][GW_BANK_COUNT];
     gw_real_t noise_n2[GW_NOISE_SETS][GW_BANK_COUNT];
@@ -115,6 +122,7 @@ typedef struct {
     gw_signals_t bank[GW_BANK_COUNT];
     gw_signals_t slow;
     gw_vector_t slow_zero_n;
+    gw_vector_t held_n; /* what the baseline may still hold of the last contact: its end is no hit */
     gw_wrench_t impulse; /* N s, N m s */
     gw_real_t impulse_s;
     uint32_t ticks_since_trip;

@@ -109,7 +109,8 @@ extern "C" {
     ROW(REAL, GW_FIELD_CHANNELS_SLOW_CREEP, "channels.slow_creep", OF slow.creep_n, 0.01, 1000) \
     ROW(REAL, GW_FIELD_CHANNELS_SLOW_MOTION, "channels.slow_motion", OF slow.motion_n, 0.01, 1000) \
     ROW(COUNT, GW_FIELD_CHANNELS_SETTLE_TICKS, "channels.settle_ticks", OF settle_ticks, 0, 100000) \
-    ROW(COUNT, GW_FIELD_CHANNELS_LOCK_TICKS, "channels.lock_ticks", OF lock_ticks, 1, 100000)
+    ROW(COUNT, GW_FIELD_CHANNELS_LOCK_TICKS, "channels.lock_ticks", OF lock_ticks, 1, 100000) \
+    ROW(COUNT, GW_FIELD_CHANNELS_REARM_TICKS, "channels.rearm_ticks", OF rearm_ticks, 1, 100000)
 
 #define GW_FOLLOWER_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_FOLLOWER_FRICTION_COMMON, "follower.friction_common", OF friction_common, 0, 1) \
