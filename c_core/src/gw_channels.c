@@ -20,22 +20,23 @@ static const gw_real_t bank_s[GW_BANK_COUNT] = {(gw_real_t)0.002, (gw_real_t)0.0
 
 void gw_channels_config_trikey(gw_channels_config_t *config)
 {
-    config->noise_multiple = (gw_real_t)6.5;
+    config->noise_multiple = (gw_real_t)8.0;
     config->model_multiple = (gw_real_t)2.5;
     config->baseline_s = (gw_real_t)0.3;
     config->slow_s = (gw_real_t)0.05;
-    config->friction_shape = (gw_real_t)0.08;
+    config->friction_shape = (gw_real_t)0.12;
     config->yaw_inertia = (gw_real_t)0.2;
     config->centre_of_mass_m = (gw_real_t)0.03;
-    config->fast.rest_n = (gw_real_t)1.5;
+    config->lever_m = (gw_real_t)0.01;
+    config->fast.rest_n = (gw_real_t)3.0;
     config->fast.creep_n = (gw_real_t)12.0;
     config->fast.motion_n = (gw_real_t)7.0;
-    config->slow.rest_n = (gw_real_t)2.0;
-    config->slow.creep_n = (gw_real_t)12.0;
-    config->slow.motion_n = (gw_real_t)7.0;
+    config->slow.rest_n = (gw_real_t)4.0;
+    config->slow.creep_n = (gw_real_t)40.0;
+    config->slow.motion_n = (gw_real_t)12.0;
     config->settle_ticks = 500U;
     config->lock_ticks = 100U;
-    config->rearm_ticks = 300U;
+    config->rearm_ticks = 600U;
     gw_follower_config_trikey(&config->follower);
 }
 
@@ -48,6 +49,7 @@ void gw_channels_config_check(const gw_channels_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_CHANNELS_FRICTION_SHAPE, config->friction_shape);
     gw_config_check_real(error, GW_FIELD_CHANNELS_YAW_INERTIA, config->yaw_inertia);
     gw_config_check_real(error, GW_FIELD_CHANNELS_CENTRE_OF_MASS, config->centre_of_mass_m);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_LEVER, config->lever_m);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_REST, config->fast.rest_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_CREEP, config->fast.creep_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_MOTION, config->fast.motion_n);
@@ -225,7 +227,9 @@ static gw_planar_covariance_t with_floor(gw_planar_covariance_t model, gw_real_t
 static gw_regime_t set_of(const gw_channels_t *channels, const gw_channels_input_t *input)
 {
     gw_regime_t set = input->regime;
-    if ((set != GW_REGIME_REST) && (channels->ticks_since_release < channels->config.settle_ticks)) {
+    const bool settled = (channels->ticks_since_release >= channels->config.settle_ticks) &&
+                         (channels->ticks_of_motion >= channels->config.settle_ticks);
+    if ((set != GW_REGIME_REST) && (!settled)) {
         set = GW_REGIME_CREEPING;
     } else if ((set == GW_REGIME_REST) && (channels->ticks_without_turn < TURN_TICKS)) {
         set = GW_REGIME_MOTION;
@@ -268,6 +272,17 @@ static gw_planar_covariance_t with_held(const gw_channels_t *channels, gw_planar
     return sum;
 }
 
+/* Wheels touch the floor with one row of rollers or the other: the moment that all forces make about the centre is
+ * uncertain by this, N^2 m^2. */
+static gw_real_t moment_of_levers(const gw_channels_t *channels)
+{
+    gw_real_t sum_n2 = GW_ZERO;
+    for (uint32_t i = GW_SIGNAL_FRICTION; i < (GW_SIGNAL_INERTIA + 2U); i++) {
+        sum_n2 += channels->slow.value[i] * channels->slow.value[i];
+    }
+    return (channels->config.lever_m * channels->config.lever_m) * sum_n2;
+}
+
 /* The fast channel: moves the bank and compares it. */
 static void step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_signals_t *now,
                       uint32_t set, fast_t *found)
@@ -276,6 +291,7 @@ static void step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics
     const gw_real_t floor_n = gw_force_floor(config->fast, (gw_regime_t)set);
     const gw_real_t noise_square = config->noise_multiple * config->noise_multiple;
     const gw_real_t model_square = config->model_multiple * config->model_multiple;
+    const gw_real_t lever_nm2 = moment_of_levers(channels);
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         gw_signals_t *const x = &channels->bank[j];
         for (uint32_t i = 0U; i < GW_SIGNAL_COUNT; i++) {
@@ -294,7 +310,7 @@ static void step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics
             (config->centre_of_mass_m * config->centre_of_mass_m) *
             ((forces.inertia_n.x * forces.inertia_n.x) + (forces.inertia_n.y * forces.inertia_n.y));
         const gw_real_t moment_nm2 = (least_n2 * channels->moment_per_force_m2) +
-                                     (model_square * ((turning_nm * turning_nm) + offset2_nm2));
+                                     (model_square * (((turning_nm * turning_nm) + offset2_nm2) + lever_nm2));
         const gw_real_t of_moment =
             ratio_of(x->value[2] * x->value[2], moment_nm2);
         if ((of_force + of_moment) > found->largest) {
@@ -328,7 +344,8 @@ static gw_real_t step_slow(gw_channels_t *channels, const gw_kinematics_t *kinem
     gw_planar_covariance_t model = {GW_ZERO, GW_ZERO, GW_ZERO};
     gw_regime_t floor_regime = GW_REGIME_REST;
     if (input->regime != GW_REGIME_REST) {
-        model = gw_follower_uncertainty(&channels->follower, kinematics, &forces, GW_ZERO);
+        model = gw_follower_uncertainty(&channels->follower, kinematics, &forces,
+                                        config->friction_shape * config->friction_shape);
         floor_regime = (settled && (set == (uint32_t)GW_REGIME_MOTION)) ? GW_REGIME_MOTION : GW_REGIME_CREEPING;
     }
     const gw_real_t floor_n = gw_force_floor(config->slow, floor_regime);

@@ -14,7 +14,7 @@ void gw_follower_config_trikey(gw_follower_config_t *config)
     config->friction_wheel = (gw_real_t)0.087;  /* +-15 % */
     config->mass = (gw_real_t)0.12;             /* -5 to +25 % */
     config->drift_per_root_s = (gw_real_t)0.01;
-    config->residual_n = (gw_real_t)3.5;
+    config->residual_n = (gw_real_t)5.0;
 }
 
 void gw_follower_config_check(const gw_follower_config_t *config, gw_config_error_t *error)

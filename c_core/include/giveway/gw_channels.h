@@ -66,6 +66,8 @@ typedef struct {
     /* What the configuration may be wrong by: yaw inertia, relative, [0, 1]; centre of mass, m, [0, 1]. */
     gw_real_t yaw_inertia;
     gw_real_t centre_of_mass_m;
+    /* Arm of the wheels' forces that changes with the row of rollers, m, [0, 0.1]. */
+    gw_real_t lever_m;
     /* Smallest force of the fast channel and of the slow one, in each regime, N, [0.01, 1000]. */
     gw_force_floors_t fast;
     gw_force_floors_t slow;
