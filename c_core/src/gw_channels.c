@@ -175,6 +175,17 @@ static gw_model_forces_t forces_of(const gw_signals_t *signals)
     return forces;
 }
 
+/* The wrench of signals, less what is known of friction and mass. All filters are linear, so the correction belongs
+ * behind them: what was learned meanwhile does not look like a change of the force. */
+static gw_wrench_t corrected(const gw_channels_t *channels, const gw_kinematics_t *kinematics,
+                             const gw_signals_t *signals)
+{
+    const gw_model_forces_t forces = forces_of(signals);
+    const gw_vector_t correction = gw_follower_correction(&channels->follower, kinematics, &forces);
+    const gw_wrench_t wrench = {signals->value[0] + correction.x, signals->value[1] + correction.y, signals->value[2]};
+    return wrench;
+}
+
 static void approach(gw_signals_t *signals, const gw_signals_t *target, gw_real_t share)
 {
     for (uint32_t i = 0U; i < GW_SIGNAL_COUNT; i++) {
@@ -240,11 +251,10 @@ static gw_regime_t set_of(const gw_channels_t *channels, const gw_channels_input
 }
 
 /* Follows the noise of a low-pass, as long as nothing touches. */
-static void follow_noise(gw_channels_t *channels, uint32_t set, uint32_t j)
+static void follow_noise(gw_channels_t *channels, uint32_t set, uint32_t j, gw_wrench_t felt)
 {
-    const gw_signals_t *const x = &channels->bank[j];
     const gw_real_t before_n2 = channels->noise_n2[set][j];
-    const gw_real_t square_n2 = GW_HALF * ((x->value[0] * x->value[0]) + (x->value[1] * x->value[1]));
+    const gw_real_t square_n2 = GW_HALF * ((felt.force_x_n * felt.force_x_n) + (felt.force_y_n * felt.force_y_n));
     const gw_real_t clipped_n2 = gw_min(square_n2, NOISE_CLIP * before_n2);
     channels->noise_n2[set][j] = gw_max(before_n2 + (channels->noise_share * (clipped_n2 - before_n2)),
                                         channels->least_noise_n2[set][j]);
@@ -254,6 +264,8 @@ static void follow_noise(gw_channels_t *channels, uint32_t set, uint32_t j)
 typedef struct {
     gw_real_t largest;               /* statistic */
     uint32_t widest;                 /* the low-pass that has it */
+    gw_wrench_t wrench;              /* and what it holds */
+    gw_wrench_t left;                /* what the low-pass holds that decides on the end of a contact */
     gw_real_t release;               /* statistic for the end of a contact */
     gw_planar_covariance_t release_n2; /* its covariance */
 } fast_t;
@@ -299,12 +311,13 @@ static void step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics
                 channels->bank_share[j] * ((now->value[i] - channels->baseline.value[i]) - x->value[i]);
         }
         const gw_model_forces_t forces = forces_of(x);
+        const gw_wrench_t felt = corrected(channels, kinematics, x);
         const gw_real_t least_n2 = (noise_square * channels->noise_n2[set][j]) + (floor_n * floor_n);
         const gw_planar_covariance_t model = gw_follower_uncertainty(
             &channels->follower, kinematics, &forces, config->friction_shape * config->friction_shape);
         const gw_planar_covariance_t s = with_floor(model, config->model_multiple, least_n2);
         const gw_real_t of_force =
-            distance(with_held(channels, s, x->value[0], x->value[1]), x->value[0], x->value[1]);
+            distance(with_held(channels, s, felt.force_x_n, felt.force_y_n), felt.force_x_n, felt.force_y_n);
         const gw_real_t turning_nm = config->yaw_inertia * x->value[GW_SIGNAL_INERTIA + 2U];
         const gw_real_t offset2_nm2 =
             (config->centre_of_mass_m * config->centre_of_mass_m) *
@@ -316,14 +329,16 @@ static void step_bank(gw_channels_t *channels, const gw_kinematics_t *kinematics
         if ((of_force + of_moment) > found->largest) {
             found->largest = of_force + of_moment;
             found->widest = j;
+            found->wrench = felt;
         }
         if (j == RELEASE_BANK) {
             const gw_planar_covariance_t wider = {s.xx + RELEASE_FLOOR_N2, s.xy, s.yy + RELEASE_FLOOR_N2};
-            found->release = distance(wider, x->value[0], x->value[1]);
+            found->release = distance(wider, felt.force_x_n, felt.force_y_n);
+            found->left = felt;
             found->release_n2 = wider;
         }
         if ((!channels->active) && (of_force < CALM) && (of_moment < CALM)) {
-            follow_noise(channels, set, j);
+            follow_noise(channels, set, j, felt);
         }
     }
 }
@@ -383,13 +398,13 @@ static void take_as_baseline(gw_channels_t *channels, uint32_t j)
     clear_bank(channels);
 }
 
-static void end_contact(gw_channels_t *channels, gw_planar_covariance_t s)
+static void end_contact(gw_channels_t *channels, const fast_t *found)
 {
     /* Along the contact's direction: what is left of it, and what nobody knows of it. */
     const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
     const gw_vector_t d = gw_unit(impulse.x, impulse.y, gw_length(impulse));
-    const gw_signals_t *const x = &channels->bank[RELEASE_BANK];
-    const gw_real_t left_n = gw_max((x->value[0] * d.x) + (x->value[1] * d.y), GW_ZERO);
+    const gw_planar_covariance_t s = found->release_n2;
+    const gw_real_t left_n = gw_max((found->left.force_x_n * d.x) + (found->left.force_y_n * d.y), GW_ZERO);
     const gw_real_t unknown_n2 = (((s.xx * d.x) * d.x) + ((GW_TWO * s.xy) * (d.x * d.y))) + ((s.yy * d.y) * d.y);
     const gw_real_t held_n = left_n + gw_sqrt(gw_max(unknown_n2, GW_ZERO));
     channels->held_n.x = held_n * d.x;
@@ -400,20 +415,26 @@ static void end_contact(gw_channels_t *channels, gw_planar_covariance_t s)
 }
 
 /* While a contact lasts: its impulse grows, until it is over. */
-static void continue_contact(gw_channels_t *channels, const gw_signals_t *now, const fast_t *found, gw_real_t slow)
+static void continue_contact(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_signals_t *now,
+                             const fast_t *found, gw_real_t slow)
 {
     channels->ticks_since_trip = one_more(channels->ticks_since_trip);
     if (channels->ticks_since_trip <= GW_REFINE_TICKS) {
+        gw_signals_t change = *now;
+        for (uint32_t i = 0U; i < GW_SIGNAL_COUNT; i++) {
+            change.value[i] = now->value[i] - channels->baseline.value[i];
+        }
+        const gw_wrench_t felt = corrected(channels, kinematics, &change);
         channels->impulse_s += channels->period_s;
-        channels->impulse.force_x_n += (now->value[0] - channels->baseline.value[0]) * channels->period_s;
-        channels->impulse.force_y_n += (now->value[1] - channels->baseline.value[1]) * channels->period_s;
-        channels->impulse.torque_nm += (now->value[2] - channels->baseline.value[2]) * channels->period_s;
+        channels->impulse.force_x_n += felt.force_x_n * channels->period_s;
+        channels->impulse.force_y_n += felt.force_y_n * channels->period_s;
+        channels->impulse.torque_nm += felt.torque_nm * channels->period_s;
     }
     const bool quiet = (found->release < CALM) && (slow < GW_ONE);
     channels->quiet_ticks = quiet ? (channels->quiet_ticks + 1U) : 0U;
     if (((channels->quiet_ticks > QUIET_TICKS) && (channels->ticks_since_trip >= channels->config.lock_ticks)) ||
         (channels->ticks_since_trip >= channels->config.rearm_ticks)) {
-        end_contact(channels, found->release_n2);
+        end_contact(channels, found);
     }
 }
 
@@ -454,29 +475,24 @@ static void count_ticks(gw_channels_t *channels, const gw_channels_input_t *inpu
 }
 
 /* The first mean of the signals; nothing is detected meanwhile. */
-static void warm_up(gw_channels_t *channels, const gw_signals_t *raw, const gw_signals_t *corrected)
+static void warm_up(gw_channels_t *channels, const gw_signals_t *now)
 {
     channels->warm_up_ticks++;
     const gw_real_t share = GW_ONE / (gw_real_t)channels->warm_up_ticks;
-    approach(&channels->baseline, corrected, share);
-    approach(&channels->slow, raw, share);
+    approach(&channels->baseline, now, share);
+    approach(&channels->slow, now, share);
 }
 
 void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                       gw_channels_output_t *output)
 {
-    const gw_signals_t raw = signals_of(input);
-    const gw_model_forces_t forces = forces_of(&raw);
-    const gw_vector_t correction = gw_follower_correction(&channels->follower, kinematics, &forces);
-    gw_signals_t now = raw;
-    now.value[0] += correction.x;
-    now.value[1] += correction.y;
+    const gw_signals_t now = signals_of(input);
     output->tripped = false;
     output->statistic = GW_ZERO;
     take_zero_step(channels, input->zero_step);
     count_ticks(channels, input);
     if (channels->warm_up_ticks < WARM_UP_TICKS) {
-        warm_up(channels, &raw, &now);
+        warm_up(channels, &now);
     } else {
         const uint32_t set = (uint32_t)set_of(channels, input);
         static const fast_t nothing_found = {0};
@@ -485,19 +501,17 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
         step_bank(channels, kinematics, &now, set, &found);
         channels->held_n.x -= channels->held_share * channels->held_n.x;
         channels->held_n.y -= channels->held_share * channels->held_n.y;
-        approach(&channels->slow, &raw, channels->slow_share);
+        approach(&channels->slow, &now, channels->slow_share);
         const gw_real_t slow = step_slow(channels, kinematics, input, set, &slow_n);
         /* In a reaction a lasting force is told from wrong friction by nothing: impacts alone count. */
         const gw_real_t largest = input->reacting ? found.largest : gw_max(found.largest, slow);
         output->statistic = gw_sqrt_of_square(gw_limited(largest, GW_WRENCH_MAX));
         if (channels->active) {
-            continue_contact(channels, &now, &found, slow);
+            continue_contact(channels, kinematics, &now, &found, slow);
         } else if (input->enabled && (largest > GW_ONE)) {
-            const gw_signals_t *const x = &channels->bank[found.widest];
-            const gw_wrench_t quick = {x->value[0], x->value[1], x->value[2]};
             const gw_wrench_t lasting = {slow_n.x, slow_n.y, channels->slow.value[2]};
             const bool is_fast = found.largest > GW_ONE;
-            begin_contact(channels, is_fast ? GW_CHANNEL_FAST : GW_CHANNEL_SLOW, is_fast ? quick : lasting,
+            begin_contact(channels, is_fast ? GW_CHANNEL_FAST : GW_CHANNEL_SLOW, is_fast ? found.wrench : lasting,
                           is_fast ? bank_s[found.widest] : channels->config.slow_s);
             output->tripped = true;
         } else {
