@@ -47,15 +47,20 @@ static void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
+static void find_nothing(gw_controller_t *controller)
+{
+    static const gw_detector_output_t no_detection = {0};
+    static const gw_channels_output_t nothing_found = {0};
+    controller->detection = no_detection;
+    controller->contact_found = nothing_found;
+}
+
 /* A tick without an estimate: no push is known, and the model is not reliable. */
 static void blank_tick(gw_controller_t *controller)
 {
     static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
-    static const gw_detector_output_t no_detection = {0};
-    static const gw_channels_output_t nothing_found = {0};
     controller->estimate = no_estimate;
-    controller->detection = no_detection;
-    controller->contact_found = nothing_found;
+    find_nothing(controller);
 }
 
 /* What the sensors add to the balance of forces. */
@@ -68,6 +73,7 @@ static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const 
     noise.encoder_step_m = estimator->rate_constants.rad_per_count * config->geometry.wheel_radius_m;
     noise.twist_noise_m = twist_rad * config->geometry.wheel_radius_m;
     noise.force_noise_n = estimator->sigma.force_n;
+    noise.sliding_n = config->friction.coulomb_torque_nm * estimator->kinematics.per_roller_radius;
     noise.mass_kg = estimator->nominal.total_mass_kg;
     noise.yaw_inertia_kgm2 = estimator->nominal.total_yaw_inertia_kgm2;
     noise.wheel_distance_m = config->geometry.wheel_distance_m;
@@ -170,9 +176,8 @@ static bool uses_channels(const gw_controller_t *controller)
     return controller->detector.config.kind == GW_DETECTOR_CHANNELS;
 }
 
-static bool looks_for_hits(const gw_controller_t *controller)
+static bool looks_for_hits(gw_mode_t mode)
 {
-    const gw_mode_t mode = controller->supervisor.mode;
     return (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
            (mode == GW_MODE_REJOINING);
 }
@@ -189,25 +194,24 @@ static void detect_by_threshold(gw_controller_t *controller, bool slow)
     detector_input.mean = controller->estimate.mean;
     detector_input.mean_samples = controller->estimate.mean_samples;
     detector_input.regime = controller->estimate.regime;
-    detector_input.enabled = looks_for_hits(controller);
+    detector_input.enabled = looks_for_hits(controller->supervisor.mode);
     detector_input.reaction_over = slow;
     /* The estimate is valid, so the detector cannot refuse it. */
     (void)gw_detector_step(&controller->detector, &detector_input, &controller->detection);
 }
 
 /* The two channels; their answer in the form of a detector's. */
-static void detect_by_channels(gw_controller_t *controller, bool slow)
+static void detect_by_channels(gw_controller_t *controller)
 {
     gw_channels_input_t input;
-    input.wrench = controller->estimate.wrench;
-    input.zero_step = controller->estimate.zero_step;
-    input.forces = controller->estimate.forces;
-    input.inertia_moment_nm = controller->estimate.inertia_moment_nm;
+    input.wrench = &controller->estimate.wrench;
+    input.zero_step = &controller->estimate.zero_step;
+    input.forces = &controller->estimate.forces;
+    input.zero_changed = controller->estimate.zero_changed;
     input.regime = controller->estimate.regime;
     input.turned = controller->estimate.turned;
-    input.enabled = looks_for_hits(controller);
+    input.enabled = looks_for_hits(controller->supervisor.mode);
     input.reacting = controller->supervisor.mode == GW_MODE_REACTING;
-    input.reaction_over = slow;
     gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);
     controller->detection.tripped = controller->contact_found.tripped;
     controller->detection.active = controller->contact_found.active;
@@ -219,28 +223,23 @@ static void detect_by_channels(gw_controller_t *controller, bool slow)
 /* Is the robot being hit? */
 static void detect(gw_controller_t *controller, bool slow)
 {
-    if (uses_channels(controller)) {
-        detect_by_channels(controller, slow);
-    } else {
+    if (!uses_channels(controller)) {
         detect_by_threshold(controller, slow);
+    } else if (looks_for_hits(controller->supervisor.mode)) {
+        detect_by_channels(controller);
+    } else {
+        find_nothing(controller); /* they begin anew afterwards */
     }
     if (controller->detection.tripped) {
         controller->detection_count = (controller->detection_count + 1U) & GW_TICK_MASK;
         controller->detection_tick = (int32_t)controller->tick;
     }
-    if (controller->detection.tripped || controller->contact_found.refining) {
+    if (controller->detection.tripped || controller->contact_found.refined) { /* the channels' mean becomes better */
         controller->detection_wrench = controller->detection.mean_wrench;
         (void)gw_contact_locate(&controller->contact, controller->detection.mean_wrench,
                                 sigma_of_mean(controller->estimate.sigma, controller->detection.samples),
                                 &controller->detection_contact);
     }
-}
-
-/* The detector forgets the past, after a gap in the samples or with another zero. */
-static void restart_detector(gw_controller_t *controller)
-{
-    gw_detector_reset(&controller->detector);
-    gw_channels_restart(&controller->channels);
 }
 
 /* A new tare of the run was asked for: only a robot that stands may take one. */
@@ -281,7 +280,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
         (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller));
-    } else if ((mode == GW_MODE_REACTING) && controller->contact_found.refining) {
+    } else if ((mode == GW_MODE_REACTING) && controller->contact_found.refined) {
         gw_admittance_redirect(&controller->admittance, hit_direction(controller));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
@@ -290,15 +289,14 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
             (void)gw_admittance_start(&controller->admittance, velocity, nowhere);
         } else if (mode == GW_MODE_TARING) {
             gw_estimator_start_tare(&controller->estimator);
-            restart_detector(controller);
+            gw_detector_reset(&controller->detector);
         } else {
             gw_detector_reset(&controller->detector);
         }
-        if (before == GW_MODE_TARING) {
-            restart_detector(controller);
+        if (!looks_for_hits(before)) {
+            gw_channels_restart(&controller->channels);
         }
         if (mode == GW_MODE_FAULT) {
-            restart_detector(controller);
             gw_estimator_restart(&controller->estimator);
         }
     } else {
@@ -404,11 +402,17 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
 static void report(const gw_controller_t *controller, gw_controller_output_t *output)
 {
     output->estimate = controller->estimate.mean;
-    /* The estimate is valid or zero; both are accepted. */
-    (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
-                            sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples),
-                            &output->contact);
-    output->detection_active = controller->detection.active;
+    if (uses_channels(controller) && (controller->contact_found.refining || (!controller->contact_found.active))) {
+        /* The contact as it was located last, or none. */
+        static const gw_contact_estimate_t no_contact = {0};
+        output->contact = controller->contact_found.active ? controller->detection_contact : no_contact;
+    } else {
+        /* The estimate is valid or zero; both are accepted. */
+        (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
+                                sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples),
+                                &output->contact);
+    }
+    output->detection_active = uses_channels(controller) ? controller->channels.active : controller->detector.active;
     output->detection_statistic = controller->detection.statistic;
     output->detection_count = controller->detection_count;
     output->detection_tick = controller->detection_tick;
@@ -527,8 +531,7 @@ bool gw_controller_invariant_holds(const gw_controller_t *controller)
         holds =
             gw_sensor_check_invariant_holds(&controller->sensor_check) &&
             gw_estimator_invariant_holds(&controller->estimator) && gw_contact_invariant_holds(&controller->contact) &&
-            gw_detector_invariant_holds(&controller->detector) &&
-            gw_channels_invariant_holds(&controller->channels) &&
+            gw_detector_invariant_holds(&controller->detector) && gw_channels_invariant_holds(&controller->channels) &&
             gw_admittance_invariant_holds(&controller->admittance) &&
             gw_reference_invariant_holds(&controller->reference) && gw_joint_invariant_holds(&controller->joint) &&
             gw_supervisor_invariant_holds(&controller->supervisor) && (controller->detection_count <= GW_TICK_MASK) &&

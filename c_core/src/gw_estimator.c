@@ -4,6 +4,7 @@
 #include "giveway/gw_trikey.h"
 
 static const gw_wheels_t no_torque = {0};
+static const gw_wrench_t no_wrench = {0};
 
 void gw_estimator_config_trikey(gw_estimator_config_t *config)
 {
@@ -275,23 +276,22 @@ static gw_wheels_t aligned(const gw_estimator_t *estimator, gw_lowpass_t filter[
     gw_wheels_t result = *values;
     if (estimator->config.aligned != 0U) {
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            result.wheel[i] =
-                gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
+            result.wheel[i] = gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
         }
     }
     return result;
 }
 
 /* The model's forces, for whoever wants to know how uncertain they are. */
-static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm,
-                        gw_acceleration_t acceleration, gw_estimator_output_t *output)
+static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
+                        gw_estimator_output_t *output)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         output->forces.friction_n.wheel[i] = friction_nm->wheel[i] * estimator->kinematics.per_roller_radius;
     }
     output->forces.inertia_n.x = estimator->nominal.total_mass_kg * acceleration.ax_mps2;
     output->forces.inertia_n.y = estimator->nominal.total_mass_kg * acceleration.ay_mps2;
-    output->inertia_moment_nm = estimator->nominal.total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
+    output->forces.inertia_moment_nm = estimator->nominal.total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
 }
 
 /* T|0 from the present zero and the model. */
@@ -400,9 +400,10 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
         const gw_wheels_t zero_before = *present_zero(estimator);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
-        output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), &zero_before);
+        output->zero_step = no_wrench;
         output->turned = has_turned(estimator, input);
         if (output->zero_changed) {
+            output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), &zero_before);
             gw_moving_average_reset(&estimator->average);
         }
         output->regime = regime_of(estimator, speed_mps);

@@ -12,7 +12,7 @@ void gw_follower_config_trikey(gw_follower_config_t *config)
 {
     config->friction_common = (gw_real_t)0.173; /* +-30 %, uniform */
     config->friction_wheel = (gw_real_t)0.087;  /* +-15 % */
-    config->mass = (gw_real_t)0.12;             /* -5 to +25 % */
+    config->mass = (gw_real_t)0.15;             /* -5 to +25 % */
     config->drift_per_root_s = (gw_real_t)0.01;
     config->residual_n = (gw_real_t)5.0;
 }
@@ -67,55 +67,54 @@ bool gw_follower_invariant_holds(const gw_follower_t *follower)
     return holds;
 }
 
-/* The columns of the regressor: what a relative difference of one changes in the force. */
-static void columns_of(const gw_kinematics_t *kinematics, const gw_model_forces_t *forces,
-                       gw_vector_t column[GW_FOLLOWED_COUNT])
+gw_regressors_t gw_follower_regressors(const gw_kinematics_t *kinematics, const gw_model_forces_t *forces)
 {
+    gw_regressors_t regressors;
+    GW_UNROLLED
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        column[i].x = kinematics->radial[i].x * forces->friction_n.wheel[i];
-        column[i].y = kinematics->radial[i].y * forces->friction_n.wheel[i];
+        regressors.of[i].x = kinematics->radial[i].x * forces->friction_n.wheel[i];
+        regressors.of[i].y = kinematics->radial[i].y * forces->friction_n.wheel[i];
     }
-    column[MASS] = forces->inertia_n;
+    regressors.of[MASS] = forces->inertia_n;
+    return regressors;
 }
 
 gw_vector_t gw_follower_correction(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
                                    const gw_model_forces_t *forces)
 {
-    gw_vector_t sum = {GW_ZERO, GW_ZERO};
-    gw_vector_t column[GW_FOLLOWED_COUNT];
-    columns_of(kinematics, forces, column);
-    for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
-        sum.x += follower->difference[i] * column[i].x;
-        sum.y += follower->difference[i] * column[i].y;
+    gw_vector_t sum = {follower->difference[MASS] * forces->inertia_n.x,
+                       follower->difference[MASS] * forces->inertia_n.y};
+    GW_UNROLLED
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_real_t missing_n = follower->difference[i] * forces->friction_n.wheel[i];
+        sum.x += missing_n * kinematics->radial[i].x;
+        sum.y += missing_n * kinematics->radial[i].y;
     }
     return sum;
 }
 
-gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
-                                               const gw_model_forces_t *forces, gw_real_t shape_variance)
+gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_regressors_t *regressors)
 {
     gw_planar_covariance_t sum = {GW_ZERO, GW_ZERO, GW_ZERO};
-    gw_vector_t column[GW_FOLLOWED_COUNT];
-    columns_of(kinematics, forces, column);
+    GW_UNROLLED
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
-        /* P is symmetric: row i of P times the columns. */
-        gw_vector_t row = {GW_ZERO, GW_ZERO};
-        for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
-            row.x += follower->covariance[i][k] * column[k].x;
-            row.y += follower->covariance[i][k] * column[k].y;
+        /* P is symmetric: twice what is right of the diagonal, times the regressors. */
+        const gw_vector_t g = regressors->of[i];
+        const gw_real_t own = follower->covariance[i][i];
+        gw_vector_t row = {own * g.x, own * g.y};
+        GW_UNROLLED
+        for (uint32_t k = i + 1U; k < GW_FOLLOWED_COUNT; k++) {
+            row.x += (GW_TWO * follower->covariance[i][k]) * regressors->of[k].x;
+            row.y += (GW_TWO * follower->covariance[i][k]) * regressors->of[k].y;
         }
-        if (i < MASS) {
-            row.x += shape_variance * column[i].x;
-            row.y += shape_variance * column[i].y;
-        }
-        sum.xx += row.x * column[i].x;
-        sum.xy += row.x * column[i].y;
-        sum.yy += row.y * column[i].y;
+        sum.xx += row.x * g.x;
+        sum.xy += GW_HALF * ((row.x * g.y) + (row.y * g.x));
+        sum.yy += row.y * g.y;
     }
     return sum;
 }
 
-/* One component of the residual: a scalar measurement h d = residual. */
+/* A scalar measurement, h d = residual. */
 static void learn_component(gw_follower_t *follower, const gw_real_t h[GW_FOLLOWED_COUNT], gw_real_t residual_n)
 {
     gw_real_t gain[GW_FOLLOWED_COUNT];
@@ -131,33 +130,27 @@ static void learn_component(gw_follower_t *follower, const gw_real_t h[GW_FOLLOW
     }
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
         const gw_real_t share = gain[i] / variance;
-        follower->difference[i] = gw_clamp(follower->difference[i] + (share * surprise_n), -DIFFERENCE_MAX,
-                                           DIFFERENCE_MAX);
+        follower->difference[i] =
+            gw_clamp(follower->difference[i] + (share * surprise_n), -DIFFERENCE_MAX, DIFFERENCE_MAX);
         for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
             follower->covariance[i][k] = gw_clamp(follower->covariance[i][k] - (share * gain[k]), -GW_TWO, GW_TWO);
         }
     }
 }
 
-void gw_follower_learn(gw_follower_t *follower, const gw_kinematics_t *kinematics, const gw_model_forces_t *forces,
-                       gw_vector_t residual_n)
+void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressors, gw_vector_t residual_n, bool along_y)
 {
-    gw_vector_t column[GW_FOLLOWED_COUNT];
-    gw_real_t h_x[GW_FOLLOWED_COUNT];
-    gw_real_t h_y[GW_FOLLOWED_COUNT];
-    columns_of(kinematics, forces, column);
-    if (gw_length(forces->inertia_n) < INERTIA_MIN_N) {
-        column[MASS].x = GW_ZERO;
-        column[MASS].y = GW_ZERO;
-    }
+    const bool tells_mass = gw_length(regressors->of[MASS]) >= INERTIA_MIN_N;
+    gw_real_t h[GW_FOLLOWED_COUNT];
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
-        h_x[i] = -column[i].x;
-        h_y[i] = -column[i].y;
-        /* Drift; no more is forgotten than was ever learned. */
-        if ((i < MASS) && (follower->covariance[i][i] < first_variance(follower, i))) {
+        h[i] = -(along_y ? regressors->of[i].y : regressors->of[i].x);
+        /* Drift, of a payload as of friction; no more is forgotten than was ever learned. */
+        if (follower->covariance[i][i] < first_variance(follower, i)) {
             follower->covariance[i][i] += follower->drift_per_call;
         }
     }
-    learn_component(follower, h_x, residual_n.x);
-    learn_component(follower, h_y, residual_n.y);
+    if (!tells_mass) {
+        h[MASS] = GW_ZERO;
+    }
+    learn_component(follower, h, along_y ? residual_n.y : residual_n.x);
 }

@@ -100,6 +100,7 @@ extern "C" {
     ROW(REAL, GW_FIELD_CHANNELS_BASELINE_TIME, "channels.baseline_time", OF baseline_s, 0.01, 10) \
     ROW(REAL, GW_FIELD_CHANNELS_SLOW_TIME, "channels.slow_time", OF slow_s, 0.005, 10) \
     ROW(REAL, GW_FIELD_CHANNELS_FRICTION_SHAPE, "channels.friction_shape", OF friction_shape, 0, 1) \
+    ROW(REAL, GW_FIELD_CHANNELS_PRESLIDING, "channels.presliding", OF presliding, 0, 1) \
     ROW(REAL, GW_FIELD_CHANNELS_YAW_INERTIA, "channels.yaw_inertia", OF yaw_inertia, 0, 1) \
     ROW(REAL, GW_FIELD_CHANNELS_CENTRE_OF_MASS, "channels.centre_of_mass", OF centre_of_mass_m, 0, 1) \
     ROW(REAL, GW_FIELD_CHANNELS_LEVER, "channels.lever", OF lever_m, 0, 0.1) \

@@ -19,8 +19,8 @@
 #ifndef GW_ESTIMATOR_H
 #define GW_ESTIMATOR_H
 
+#include "giveway/gw_balance.h"
 #include "giveway/gw_config.h"
-#include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
 #include "giveway/gw_lowpass.h"
 #include "giveway/gw_moving_average.h"
@@ -116,11 +116,10 @@ typedef struct {
     gw_wheels_t nominal_nm;  /* T|0 */
     gw_twist_t measured_twist;
     gw_regime_t regime;
-    bool zero_changed; /* the robot came to rest or left it in this tick */
-    /* What another zero has changed in the wrench in this tick, and the model's forces in the balance. */
-    gw_wrench_t zero_step;
+    bool zero_changed;     /* the robot came to rest or left it in this tick */
+    gw_wrench_t zero_step; /* by how much the wrench jumped then */
+    /* The model's forces in the balance. */
     gw_model_forces_t forces;
-    gw_real_t inertia_moment_nm;
     bool turned; /* an encoder has moved since the last sample */
 } gw_estimator_output_t;
 

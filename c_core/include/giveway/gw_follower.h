@@ -12,8 +12,10 @@
 #ifndef GW_FOLLOWER_H
 #define GW_FOLLOWER_H
 
+#include "giveway/gw_balance.h"
 #include "giveway/gw_config.h"
 #include "giveway/gw_kinematics.h"
+#include "giveway/gw_planar_covariance.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -41,18 +43,10 @@ typedef struct {
     gw_real_t drift_per_call;
 } gw_follower_t;
 
-/* The forces that the model computed for one moment, base frame: the regressors of the differences. */
+/* What a relative difference of one changes in the force, N: friction of each wheel, mass. */
 typedef struct {
-    gw_wheels_t friction_n; /* of the rollers of each wheel, along its radial direction */
-    gw_vector_t inertia_n;  /* M a */
-} gw_model_forces_t;
-
-/* Covariance of a planar force, N^2. */
-typedef struct {
-    gw_real_t xx;
-    gw_real_t xy;
-    gw_real_t yy;
-} gw_planar_covariance_t;
+    gw_vector_t of[GW_FOLLOWED_COUNT];
+} gw_regressors_t;
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_follower_config_trikey(gw_follower_config_t *config);
@@ -60,15 +54,16 @@ void gw_follower_config_check(const gw_follower_config_t *config, gw_config_erro
 /* The configuration was checked. interval: time between two calls of gw_follower_learn, s. Pointers not NULL. */
 void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *config, gw_real_t interval_s);
 bool gw_follower_invariant_holds(const gw_follower_t *follower);
+/* The regressors of the differences in these forces. Pointers not NULL. */
+gw_regressors_t gw_follower_regressors(const gw_kinematics_t *kinematics, const gw_model_forces_t *forces);
 /* The force that the model lacks by what is known of the differences: to be added to the residual. Not NULL. */
 gw_vector_t gw_follower_correction(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
                                    const gw_model_forces_t *forces);
-/* How uncertain the model's force still is. shape_variance: of each wheel's friction besides, relative, squared. */
-gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
-                                               const gw_model_forces_t *forces, gw_real_t shape_variance);
-/* Learns from a residual without contact. Pointers not NULL. */
-void gw_follower_learn(gw_follower_t *follower, const gw_kinematics_t *kinematics, const gw_model_forces_t *forces,
-                       gw_vector_t residual_n);
+/* How uncertain the model's force still is: G P G^T. Pointers not NULL. */
+gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_regressors_t *regressors);
+/* Learns from one component of a residual without contact, N; the other one's turn is later. Pointers not NULL. */
+void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressors, gw_vector_t residual_n,
+                       bool along_y);
 
 #ifdef __cplusplus
 }

@@ -108,6 +108,19 @@ static inline gw_real_t gw_limited(gw_real_t x, gw_real_t limit)
 #endif
 }
 
+/* value, moved towards target by a share of the difference. With 0 <= share <= 0.5 it keeps a limit that both keep:
+ * verify/esbmc/approach.c proves it, so only provers that look at ranges need to be told. */
+static inline gw_real_t gw_approached(gw_real_t value, gw_real_t target, gw_real_t share, gw_real_t limit)
+{
+    const gw_real_t moved = value + (share * (target - value));
+#if defined(__FRAMAC__)
+    return gw_limited(moved, limit);
+#else
+    (void)limit;
+    return moved;
+#endif
+}
+
 /* True unless x is NaN or infinite. */
 static inline bool gw_is_finite(gw_real_t x)
 {

@@ -1,0 +1,93 @@
+/* The fast channel of the detector: impacts.
+ *
+ * A baseline follows the balance of forces slowly, so friction, inertia and zeros that are wrong slowly do not matter.
+ * The change from the baseline, less what is known of friction and mass, passes a bank of low-passes, short ones for
+ * hard impacts and long ones for soft ones. Each is compared with a covariance
+ *
+ *     S = (k_n^2 noise + floor^2) I + k_m^2 M + h h^T
+ *
+ * where the noise of each low-pass is followed, M is what the follower does not know of friction and mass with the
+ * forces of this tick, and h is what the baseline may still hold of the last contact: its end, a change against its
+ * direction, is no hit. The moment has a variance of its own. The channel trips if x^T S^-1 x > 1.
+ *
+ * Life cycle: gw_fast_channel_init, gw_fast_channel_restart, gw_fast_channel_begin for each tick of the first mean,
+ * then gw_fast_channel_step per tick. All members of gw_fast_channel_t are private.
+ */
+#ifndef GW_FAST_CHANNEL_H
+#define GW_FAST_CHANNEL_H
+
+#include "giveway/gw_balance.h"
+#include "giveway/gw_channels_config.h"
+#include "giveway/gw_follower.h"
+#include "giveway/gw_kinematics.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GW_BANK_COUNT 4U
+/* Largest change from the baseline, N and N m: two balances and what the follower corrects. */
+#define GW_CHANGE_MAX ((gw_real_t)1.0e6)
+#define GW_NOISE_SETS 3U /* at rest, slow or unsettled, in motion: as gw_regime_t */
+
+typedef struct {
+    gw_real_t bank_share[GW_BANK_COUNT];
+    gw_real_t baseline_share;
+    gw_real_t model_share;
+    gw_real_t noise_share;
+    gw_real_t held_keep;
+    gw_real_t sliding_n;           /* friction of a wheel whose rollers slide */
+    gw_real_t moment_per_force_m2; /* variance of the moment's noise over that of the force's */
+    gw_real_t least_noise_n2[GW_NOISE_SETS][GW_BANK_COUNT];
+    gw_real_t noise_n2[GW_NOISE_SETS][GW_BANK_COUNT];
+    gw_balance_t baseline;
+    gw_model_forces_t model; /* their change, smoothed */
+    gw_wrench_t bank[GW_BANK_COUNT];
+    gw_planar_covariance_t model_n2; /* k_m^2 M */
+    gw_real_t moment_nm2;            /* likewise of the moment */
+    gw_vector_t held_n;
+    uint32_t followed; /* the low-pass whose noise is followed in this tick */
+} gw_fast_channel_t;
+
+/* What the channel finds in a tick. */
+typedef struct {
+    gw_wrench_t change;   /* from the baseline, corrected */
+    gw_real_t statistic;  /* x^T S^-1 x of the low-pass that has the largest */
+    uint32_t widest;      /* which it is */
+    gw_real_t release;    /* the same of the low-pass that decides on the end of a contact, with a floor of its own */
+    gw_real_t release_n2; /* variance there, along the axes, without M */
+} gw_fast_found_t;
+
+/* Time constant of a low-pass of the bank, s; j < GW_BANK_COUNT. */
+gw_real_t gw_fast_channel_time(uint32_t j);
+/* The configuration was checked. Pointers not NULL here and below. */
+void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                          const gw_channels_noise_t *noise);
+/* Forgets the balance and the last contact, keeps what was learned of the noise. */
+void gw_fast_channel_restart(gw_fast_channel_t *channel);
+bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel);
+/* A tick of the baseline's first mean: share is 1/(n + 1) in the n-th. */
+void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
+/* What the model may be wrong by from now on; every second tick is enough. lever_nm2: variance of the moment by the
+ * rows of rollers. */
+void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                           const gw_kinematics_t *kinematics, const gw_follower_t *follower,
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t lever_nm2);
+/* One tick, in a regime. quiet: nothing touches, the noise may be followed. */
+void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                          const gw_kinematics_t *kinematics, const gw_follower_t *follower, const gw_balance_t *balance,
+                          gw_regime_t regime, bool quiet, gw_fast_found_t *found);
+/* Moves the baseline towards this balance. */
+void gw_fast_channel_follow(gw_fast_channel_t *channel, const gw_balance_t *balance);
+/* Another zero: the residual jumps by this. adopt: what the widest low-pass holds becomes part of the baseline. */
+void gw_fast_channel_take_zero(gw_fast_channel_t *channel, gw_wrench_t step, bool adopt);
+/* A contact in this direction, a unit vector or zero, is over: what is left of it becomes part of the baseline. */
+void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *balance, const gw_fast_found_t *found,
+                             gw_vector_t direction);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,51 @@
+/* The slow channel of the detector: pushes.
+ *
+ * The balance of forces itself, behind a low-pass and less what is known of friction and mass, is compared with its
+ * covariance S = floor^2 I + k_m^2 M, as in gw_fast_channel.h; at rest with the floor alone, since the tare says all.
+ * It trips if x^T S^-1 x > 1.
+ *
+ * Life cycle: gw_slow_channel_init, gw_slow_channel_restart, gw_slow_channel_begin for each tick of the first mean,
+ * then gw_slow_channel_step per tick. All members of gw_slow_channel_t are private.
+ */
+#ifndef GW_SLOW_CHANNEL_H
+#define GW_SLOW_CHANNEL_H
+
+#include "giveway/gw_balance.h"
+#include "giveway/gw_channels_config.h"
+#include "giveway/gw_follower.h"
+#include "giveway/gw_kinematics.h"
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    gw_real_t share;
+    gw_real_t sliding_n; /* friction of a wheel whose rollers slide */
+    gw_balance_t mean;
+    gw_vector_t zero_n; /* what it held when the last zero was taken */
+    gw_vector_t force_n;
+    gw_real_t statistic;
+} gw_slow_channel_t;
+
+/* The configuration was checked. Pointers not NULL here and below. */
+void gw_slow_channel_init(gw_slow_channel_t *channel, const gw_channels_config_t *config,
+                          const gw_channels_noise_t *noise);
+void gw_slow_channel_restart(gw_slow_channel_t *channel);
+bool gw_slow_channel_invariant_holds(const gw_slow_channel_t *channel);
+/* A tick of the first mean: share is 1/(n + 1) in the n-th. */
+void gw_slow_channel_begin(gw_slow_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
+void gw_slow_channel_step(gw_slow_channel_t *channel, const gw_balance_t *balance);
+/* Another zero: the residual jumps by this. At rest what the channel holds now is taken as zero. */
+void gw_slow_channel_take_zero(gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,
+                               const gw_follower_t *follower, gw_wrench_t step, gw_regime_t regime);
+/* Compares; every few ticks is enough. floor: of which regime the floor is. */
+void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
+                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

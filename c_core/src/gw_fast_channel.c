@@ -1,0 +1,254 @@
+#include "giveway/gw_fast_channel.h"
+
+#include "giveway/gw_math.h"
+#include "giveway/gw_model_covariance.h"
+#include "giveway/gw_planar_covariance.h"
+
+#define BANK_OF_RELEASE 2U /* decides on the end of a contact, and sets the baseline there */
+#define RELEASE_FLOOR_N2 ((gw_real_t)16.0)
+#define MODEL_TIME_S ((gw_real_t)0.012) /* the measured acceleration alone is too noisy to say how wrong the model is \
+                                         */
+#define HELD_TIME_S ((gw_real_t)1.0)    /* for which the end of an old contact is forgiven */
+#define NOISE_TIME_S ((gw_real_t)3.0)
+#define NOISE_MIN_N2 ((gw_real_t)1.0e-9)
+#define NOISE_MAX_N2 ((gw_real_t)1.0e10)
+#define NOISE_CLIP ((gw_real_t)6.0) /* an outlier counts as this many variances */
+/* Bounds of what is kept, for every configuration. */
+#define VARIANCE_MAX ((gw_real_t)1.0e18)
+#define HELD_MAX_N ((gw_real_t)1.0e10)
+#define MOMENT_PER_FORCE_MAX ((gw_real_t)1.0e12)
+/* Least noise of each regime over the predicted one, and the first guess: slow wheels count irregularly. */
+static const gw_real_t least_share[GW_NOISE_SETS] = {(gw_real_t)0.4, (gw_real_t)0.5, (gw_real_t)0.6};
+static const gw_real_t first_share[GW_NOISE_SETS] = {(gw_real_t)1.0, (gw_real_t)2.0, (gw_real_t)1.0};
+static const gw_real_t bank_s[GW_BANK_COUNT] = {(gw_real_t)0.002, (gw_real_t)0.006, (gw_real_t)0.018, (gw_real_t)0.05};
+
+gw_real_t gw_fast_channel_time(uint32_t j)
+{
+    return bank_s[j];
+}
+
+/* Variance of a force behind a low-pass of the bank, from white noise of a position and of a force. With the
+ * alignment's corner w and a = 1/tau the integrals of |s^2 G|^2 and |G|^2, G = w^2 a/((s + w)^2 (s + a)), have these
+ * closed forms. */
+static gw_real_t predicted_n2(const gw_channels_noise_t *noise, gw_real_t tau_s, gw_real_t position_m2)
+{
+    const gw_real_t w = noise->cutoff_radps;
+    const gw_real_t a = GW_ONE / tau_s;
+    const gw_real_t both = (w + a) * (w + a);
+    const gw_real_t force_n_per_m = gw_min((noise->mass_kg * w) * (w * a), (gw_real_t)1.0e12);
+    const gw_real_t of_position = ((w + (GW_TWO * a)) / ((gw_real_t)4.0 * both)) * (force_n_per_m * force_n_per_m);
+    const gw_real_t of_force = ((w * a) * ((GW_TWO * w) + a)) / ((gw_real_t)4.0 * both);
+    return noise->period_s * ((of_position * position_m2) + ((of_force * noise->force_noise_n) * noise->force_noise_n));
+}
+
+void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                          const gw_channels_noise_t *noise)
+{
+    const gw_real_t arm_m = noise->wheel_distance_m;
+    const gw_real_t gyration_m2 = noise->yaw_inertia_kgm2 / noise->mass_kg;
+    /* Of a position of the base: that of a wheel times 2/n, as the wheels add up. */
+    const gw_real_t twist_m = gw_min(noise->twist_noise_m, GW_ONE);
+    const gw_real_t count_m = gw_min(noise->encoder_step_m, GW_ONE);
+    const gw_real_t twist_m2 = GW_TWO_PER_WHEEL * (twist_m * twist_m);
+    const gw_real_t count_m2 = GW_TWO_PER_WHEEL * ((count_m * count_m) / (gw_real_t)12.0);
+    channel->sliding_n = gw_min(noise->sliding_n, GW_CHANGE_MAX);
+    channel->moment_per_force_m2 =
+        gw_min((gyration_m2 * gyration_m2) / ((GW_TWO * arm_m) * arm_m), MOMENT_PER_FORCE_MAX);
+    channel->baseline_share = gw_share_of(noise->period_s, config->baseline_s);
+    channel->model_share = gw_share_of(noise->period_s, MODEL_TIME_S);
+    channel->held_keep = gw_max(GW_ONE - (noise->period_s / HELD_TIME_S), GW_ZERO);
+    channel->noise_share = gw_share_of((gw_real_t)GW_BANK_COUNT * noise->period_s, NOISE_TIME_S); /* one per tick */
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        channel->bank_share[j] = gw_share_of(noise->period_s, bank_s[j]);
+        for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
+            const bool counting = (set != (uint32_t)GW_REGIME_REST);
+            const gw_real_t variance_n2 =
+                gw_clamp(predicted_n2(noise, bank_s[j], counting ? (twist_m2 + count_m2) : twist_m2), NOISE_MIN_N2,
+                         NOISE_MAX_N2 / first_share[set]);
+            channel->least_noise_n2[set][j] = least_share[set] * variance_n2;
+            channel->noise_n2[set][j] = first_share[set] * variance_n2;
+        }
+    }
+    gw_fast_channel_restart(channel);
+}
+
+static void clear_bank(gw_fast_channel_t *channel)
+{
+    static const gw_wrench_t nothing = {0};
+    static const gw_model_forces_t no_forces = {0};
+    channel->model = no_forces;
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        channel->bank[j] = nothing;
+    }
+}
+
+void gw_fast_channel_restart(gw_fast_channel_t *channel)
+{
+    static const gw_balance_t no_balance = {0};
+    static const gw_vector_t no_force = {0};
+    static const gw_planar_covariance_t no_doubt = {0};
+    channel->baseline = no_balance;
+    channel->model_n2 = no_doubt;
+    channel->moment_nm2 = GW_ZERO;
+    channel->held_n = no_force;
+    channel->followed = 0U;
+    clear_bank(channel);
+}
+
+/* What the initialisation sets, and what is followed of the noise. */
+static bool shares_and_noise_hold(const gw_fast_channel_t *channel)
+{
+    bool holds =
+        gw_in_range(channel->baseline_share, GW_ZERO, GW_HALF) && gw_in_range(channel->model_share, GW_ZERO, GW_HALF) &&
+        gw_in_range(channel->noise_share, GW_ZERO, GW_HALF) && gw_in_range(channel->held_keep, GW_ZERO, GW_ONE) &&
+        gw_in_range(channel->sliding_n, GW_ZERO, GW_CHANGE_MAX) &&
+        gw_in_range(channel->moment_per_force_m2, GW_ZERO, MOMENT_PER_FORCE_MAX);
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        holds = holds && gw_in_range(channel->bank_share[j], GW_ZERO, GW_HALF);
+        for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
+            holds = holds && gw_in_range(channel->least_noise_n2[set][j], GW_ZERO, NOISE_MAX_N2) &&
+                    gw_in_range(channel->noise_n2[set][j], GW_ZERO, NOISE_MAX_N2);
+        }
+    }
+    return holds;
+}
+
+bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
+{
+    bool holds = (channel != NULL);
+    if (holds) {
+        holds = shares_and_noise_hold(channel) && gw_balance_is_within(&channel->baseline, GW_BALANCE_MAX) &&
+                gw_model_forces_are_within(&channel->model, GW_CHANGE_MAX) &&
+                gw_planar_is_within(channel->model_n2, VARIANCE_MAX) &&
+                gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) && gw_within(channel->held_n.x, HELD_MAX_N) &&
+                gw_within(channel->held_n.y, HELD_MAX_N) && (channel->followed < GW_BANK_COUNT);
+        for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+            holds = holds && gw_wrench_is_within(&channel->bank[j], GW_CHANGE_MAX);
+        }
+    }
+    return holds;
+}
+
+void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share)
+{
+    gw_balance_approach(&channel->baseline, balance, share);
+}
+
+void gw_fast_channel_follow(gw_fast_channel_t *channel, const gw_balance_t *balance)
+{
+    gw_balance_approach(&channel->baseline, balance, channel->baseline_share);
+}
+
+/* What yaw inertia and centre of mass may be wrong by, and the rows of rollers: variance of the moment. */
+static gw_real_t moment_of_model(const gw_channels_config_t *config, const gw_model_forces_t *change,
+                                 gw_real_t lever_nm2)
+{
+    const gw_real_t turning_nm = config->yaw_inertia * change->inertia_moment_nm;
+    const gw_real_t offset_nm2 =
+        (config->centre_of_mass_m * config->centre_of_mass_m) *
+        ((change->inertia_n.x * change->inertia_n.x) + (change->inertia_n.y * change->inertia_n.y));
+    return (config->model_multiple * config->model_multiple) * (((turning_nm * turning_nm) + offset_nm2) + lever_nm2);
+}
+
+static void move_bank(gw_fast_channel_t *channel, const gw_wrench_t *change)
+{
+    GW_UNROLLED
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        gw_wrench_approach(&channel->bank[j], change, channel->bank_share[j], GW_CHANGE_MAX);
+    }
+}
+
+/* Follows the noise of a low-pass: one in a tick is enough. */
+static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
+{
+    const uint32_t j = channel->followed;
+    const gw_wrench_t *const felt = &channel->bank[j];
+    const gw_real_t before_n2 = channel->noise_n2[regime][j];
+    const gw_real_t square_n2 = GW_HALF * ((felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n));
+    const gw_real_t clipped_n2 = gw_min(square_n2, NOISE_CLIP * before_n2);
+    const gw_real_t after_n2 = before_n2 + (channel->noise_share * (clipped_n2 - before_n2));
+    channel->noise_n2[regime][j] = gw_clamp(after_n2, channel->least_noise_n2[regime][j], NOISE_MAX_N2);
+}
+
+void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                           const gw_kinematics_t *kinematics, const gw_follower_t *follower,
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t lever_nm2)
+{
+    channel->model_n2 = gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
+                                            (regime == GW_REGIME_REST) ? GW_ZERO : channel->sliding_n);
+    channel->moment_nm2 = moment_of_model(config, &channel->model, lever_nm2);
+}
+
+void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                          const gw_kinematics_t *kinematics, const gw_follower_t *follower, const gw_balance_t *balance,
+                          gw_regime_t regime, bool quiet, gw_fast_found_t *found)
+{
+    const gw_balance_t change = gw_balance_difference(balance, &channel->baseline);
+    const gw_vector_t correction = gw_follower_correction(follower, kinematics, &change.model);
+    const gw_vector_t held = channel->held_n;
+    found->change.force_x_n = change.residual.force_x_n + correction.x;
+    found->change.force_y_n = change.residual.force_y_n + correction.y;
+    found->change.torque_nm = change.residual.torque_nm;
+    move_bank(channel, &found->change);
+    gw_model_forces_approach(&channel->model, &change.model, channel->model_share, GW_CHANGE_MAX);
+    const gw_planar_spread_t along = gw_planar_spread(channel->model_n2);
+    const gw_planar_spread_t against = gw_planar_spread(gw_planar_widened(channel->model_n2, held));
+    const gw_real_t floor_n = gw_force_floor(config->fast, regime);
+    const gw_real_t noise_square = config->noise_multiple * config->noise_multiple;
+    found->statistic = GW_ZERO;
+    found->widest = 0U;
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        const gw_wrench_t *const x = &channel->bank[j];
+        const gw_real_t n2 = (noise_square * channel->noise_n2[regime][j]) + (floor_n * floor_n);
+        const gw_vector_t force_n = {x->force_x_n, x->force_y_n};
+        const bool ends = ((held.x * force_n.x) + (held.y * force_n.y)) < GW_ZERO;
+        const gw_planar_spread_t *const spread = ends ? &against : &along;
+        const gw_real_t statistic =
+            gw_planar_distance(spread, n2, force_n) +
+            gw_planar_ratio(x->torque_nm * x->torque_nm, (n2 * channel->moment_per_force_m2) + channel->moment_nm2);
+        if (statistic > found->statistic) {
+            found->statistic = statistic;
+            found->widest = j;
+        }
+        if (j == BANK_OF_RELEASE) {
+            found->release_n2 = n2 + RELEASE_FLOOR_N2;
+            found->release = gw_planar_distance(spread, found->release_n2, force_n);
+        }
+    }
+    channel->held_n.x = channel->held_keep * held.x;
+    channel->held_n.y = channel->held_keep * held.y;
+    if (quiet && (found->statistic < GW_HALF)) {
+        follow_noise(channel, regime);
+    }
+    channel->followed = (channel->followed + 1U) % GW_BANK_COUNT;
+}
+
+void gw_fast_channel_take_zero(gw_fast_channel_t *channel, gw_wrench_t step, bool adopt)
+{
+    channel->baseline.residual = gw_balance_sum(channel->baseline.residual, step);
+    if (adopt) {
+        channel->baseline.residual = gw_balance_sum(channel->baseline.residual, channel->bank[GW_BANK_COUNT - 1U]);
+        clear_bank(channel);
+    }
+}
+
+void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *balance, const gw_fast_found_t *found,
+                             gw_vector_t direction)
+{
+    /* Along the contact's direction: what is left of it, and what nobody knows of it. */
+    const gw_vector_t d = direction;
+    const gw_wrench_t *const left = &channel->bank[BANK_OF_RELEASE];
+    const gw_planar_covariance_t m = channel->model_n2;
+    const gw_real_t left_n = gw_max((left->force_x_n * d.x) + (left->force_y_n * d.y), GW_ZERO);
+    const gw_real_t unknown_n2 =
+        ((((m.xx * d.x) * d.x) + ((GW_TWO * m.xy) * (d.x * d.y))) + ((m.yy * d.y) * d.y)) + found->release_n2;
+    const gw_real_t held_n = left_n + gw_sqrt(gw_max(unknown_n2, GW_ZERO));
+    channel->held_n.x = held_n * d.x;
+    channel->held_n.y = held_n * d.y;
+    /* The baseline becomes this balance, but for the change beyond what the low-pass holds: that is noise. */
+    channel->baseline.model = balance->model;
+    const gw_wrench_t beyond = {left->force_x_n - found->change.force_x_n, left->force_y_n - found->change.force_y_n,
+                                left->torque_nm - found->change.torque_nm};
+    channel->baseline.residual = gw_balance_sum(balance->residual, beyond);
+    clear_bank(channel);
+}

@@ -1,0 +1,24 @@
+#include "giveway/gw_model_covariance.h"
+
+#include "giveway/gw_math.h"
+
+gw_planar_covariance_t gw_model_covariance(const gw_channels_config_t *config, const gw_kinematics_t *kinematics,
+                                           const gw_follower_t *follower, const gw_model_forces_t *change,
+                                           const gw_model_forces_t *model, gw_real_t sliding_n)
+{
+    const gw_real_t shape = config->friction_shape * config->friction_shape;
+    const gw_real_t presliding = config->presliding * config->presliding;
+    const gw_regressors_t regressors = gw_follower_regressors(kinematics, change);
+    gw_planar_covariance_t sum = gw_follower_uncertainty(follower, &regressors);
+    GW_UNROLLED
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_vector_t g = regressors.of[i];
+        const gw_vector_t n = kinematics->radial[i];
+        const gw_real_t friction_n = model->friction_n.wheel[i];
+        const gw_real_t missing_n2 = presliding * gw_max((sliding_n * sliding_n) - (friction_n * friction_n), GW_ZERO);
+        sum.xx += (shape * (g.x * g.x)) + (missing_n2 * (n.x * n.x));
+        sum.xy += (shape * (g.x * g.y)) + (missing_n2 * (n.x * n.y));
+        sum.yy += (shape * (g.y * g.y)) + (missing_n2 * (n.y * n.y));
+    }
+    return gw_planar_scaled(sum, config->model_multiple * config->model_multiple);
+}
