@@ -3,6 +3,8 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
 
+#if (GW_WITH_CHANNELS == 1)
+
 #define DOUBT_TICKS 2U /* between two looks at what the model may be wrong by */
 #define SLOW_TICKS 4U  /* between two judgements of the slow channel */
 #define LEARN_TICKS 8U /* between two calls of the follower, whose input is slower: x and y in turn */
@@ -317,3 +319,5 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
         output->mean_wrench = mean_wrench(channels);
     }
 }
+
+#endif

@@ -12,7 +12,9 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     gw_estimator_config_trikey(&config->estimator);
     gw_contact_config_trikey(&config->contact);
     gw_detector_config_trikey(&config->detector);
+#if (GW_WITH_CHANNELS == 1)
     gw_channels_config_trikey(&config->channels);
+#endif
     gw_admittance_config_trikey(&config->admittance);
     gw_reference_config_trikey(&config->reference);
     gw_supervisor_config_trikey(&config->supervisor);
@@ -30,7 +32,14 @@ gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_
     gw_estimator_config_check(&config->estimator, error);
     gw_contact_config_check(&config->contact, error);
     gw_detector_config_check(&config->detector, error);
+#if (GW_WITH_CHANNELS == 1)
     gw_channels_config_check(&config->channels, error);
+    if (config->estimator.aligned == 0U) {
+        /* The channels' noise is predicted for an aligned balance. */
+        gw_config_check_relation(error, GW_FIELD_DETECTOR_KIND, 0U, (gw_real_t)config->detector.kind, GW_ZERO,
+                                 (gw_real_t)GW_DETECTOR_IMPULSE);
+    }
+#endif
     gw_admittance_config_check(&config->admittance, error);
     gw_reference_config_check(&config->reference, config->period_s, error);
     gw_supervisor_config_check(&config->supervisor, error);
@@ -47,20 +56,16 @@ static void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
-static void find_nothing(gw_controller_t *controller)
+static bool looks_for_hits(gw_mode_t mode)
 {
-    static const gw_detector_output_t no_detection = {0};
-    static const gw_channels_output_t nothing_found = {0};
-    controller->detection = no_detection;
-    controller->contact_found = nothing_found;
+    return (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
+           (mode == GW_MODE_REJOINING);
 }
 
-/* A tick without an estimate: no push is known, and the model is not reliable. */
-static void blank_tick(gw_controller_t *controller)
+#if (GW_WITH_CHANNELS == 1)
+static bool uses_channels(const gw_controller_t *controller)
 {
-    static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
-    controller->estimate = no_estimate;
-    find_nothing(controller);
+    return controller->detector.config.kind == GW_DETECTOR_CHANNELS;
 }
 
 /* What the sensors add to the balance of forces. */
@@ -78,6 +83,158 @@ static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const 
     noise.yaw_inertia_kgm2 = estimator->nominal.total_yaw_inertia_kgm2;
     noise.wheel_distance_m = config->geometry.wheel_distance_m;
     return noise;
+}
+
+static void init_channels(gw_controller_t *controller, const gw_controller_config_t *config)
+{
+    const gw_channels_noise_t noise = noise_of(config, &controller->estimator);
+    gw_channels_init(&controller->channels, &config->channels, &noise);
+}
+
+static void restart_channels(gw_controller_t *controller)
+{
+    gw_channels_restart(&controller->channels);
+    controller->contact_found.active = false;
+}
+
+/* The force below which a push is not felt. */
+static gw_real_t channels_leak(const gw_controller_t *controller, gw_regime_t regime)
+{
+    return gw_force_floor(controller->channels.config.slow, regime);
+}
+
+static bool channels_hold(const gw_controller_t *controller)
+{
+    return gw_channels_invariant_holds(&controller->channels);
+}
+
+static void forget_contact(gw_controller_t *controller)
+{
+    static const gw_channels_output_t nothing_found = {0};
+    controller->contact_found = nothing_found;
+}
+
+/* Something touches the robot. */
+static bool is_felt(const gw_controller_t *controller)
+{
+    return controller->contact_found.active;
+}
+
+static uint32_t deciding_channel(const gw_controller_t *controller)
+{
+    return controller->contact_found.channel;
+}
+
+/* The mean wrench of the contact has become better in this tick. */
+static bool is_refined(const gw_controller_t *controller)
+{
+    return controller->contact_found.refined;
+}
+
+/* The contact as it was located last, or none; it is located anew if it lasts longer than it is refined. */
+static bool contact_is_known(const gw_controller_t *controller)
+{
+    return uses_channels(controller) && (controller->contact_found.refining || (!controller->contact_found.active));
+}
+
+/* The two channels; their answer in the form of a detector's. */
+static void detect_by_channels(gw_controller_t *controller)
+{
+    gw_channels_input_t input;
+    input.wrench = &controller->estimate.wrench;
+    input.zero_step = &controller->estimate.zero_step;
+    input.forces = &controller->estimate.forces;
+    input.zero_changed = controller->estimate.zero_changed;
+    input.regime = controller->estimate.regime;
+    input.turned = controller->estimate.turned;
+    input.enabled = looks_for_hits(controller->supervisor.mode);
+    input.reacting = controller->supervisor.mode == GW_MODE_REACTING;
+    gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);
+    controller->detection.tripped = controller->contact_found.tripped;
+    controller->detection.active = controller->contact_found.active;
+    controller->detection.statistic = controller->contact_found.statistic;
+    controller->detection.mean_wrench = controller->contact_found.mean_wrench;
+    controller->detection.samples = 1U;
+}
+#else
+static bool uses_channels(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
+}
+
+static void init_channels(const gw_controller_t *controller, const gw_controller_config_t *config)
+{
+    (void)controller;
+    (void)config;
+}
+
+static void restart_channels(const gw_controller_t *controller)
+{
+    (void)controller;
+}
+
+static gw_real_t channels_leak(const gw_controller_t *controller, gw_regime_t regime)
+{
+    (void)controller;
+    (void)regime;
+    return GW_ZERO;
+}
+
+static bool channels_hold(const gw_controller_t *controller)
+{
+    (void)controller;
+    return true;
+}
+
+static void forget_contact(const gw_controller_t *controller)
+{
+    (void)controller;
+}
+
+static bool is_felt(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
+}
+
+static uint32_t deciding_channel(const gw_controller_t *controller)
+{
+    (void)controller;
+    return GW_CHANNEL_NONE;
+}
+
+static bool is_refined(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
+}
+
+static bool contact_is_known(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
+}
+
+static void detect_by_channels(const gw_controller_t *controller)
+{
+    (void)controller;
+}
+#endif
+
+static void find_nothing(gw_controller_t *controller)
+{
+    static const gw_detector_output_t no_detection = {0};
+    controller->detection = no_detection;
+    forget_contact(controller);
+}
+
+/* A tick without an estimate: no push is known, and the model is not reliable. */
+static void blank_tick(gw_controller_t *controller)
+{
+    static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
+    controller->estimate = no_estimate;
+    find_nothing(controller);
 }
 
 gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
@@ -101,8 +258,7 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
                                     &config->friction, config->period_s);
             (void)gw_contact_init(&controller->contact, &config->contact);
             (void)gw_detector_init(&controller->detector, &config->detector, config->period_s);
-            const gw_channels_noise_t noise = noise_of(config, &controller->estimator);
-            gw_channels_init(&controller->channels, &config->channels, &noise);
+            init_channels(controller, config);
             (void)gw_admittance_init(&controller->admittance, &config->admittance, config->period_s);
             (void)gw_reference_init(&controller->reference, &config->reference, config->period_s);
             (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
@@ -171,17 +327,6 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
     return gw_estimator_step(&controller->estimator, &estimator_input, &controller->estimate);
 }
 
-static bool uses_channels(const gw_controller_t *controller)
-{
-    return controller->detector.config.kind == GW_DETECTOR_CHANNELS;
-}
-
-static bool looks_for_hits(gw_mode_t mode)
-{
-    return (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
-           (mode == GW_MODE_REJOINING);
-}
-
 /* The paper's detectors. */
 static void detect_by_threshold(gw_controller_t *controller, bool slow)
 {
@@ -200,26 +345,6 @@ static void detect_by_threshold(gw_controller_t *controller, bool slow)
     (void)gw_detector_step(&controller->detector, &detector_input, &controller->detection);
 }
 
-/* The two channels; their answer in the form of a detector's. */
-static void detect_by_channels(gw_controller_t *controller)
-{
-    gw_channels_input_t input;
-    input.wrench = &controller->estimate.wrench;
-    input.zero_step = &controller->estimate.zero_step;
-    input.forces = &controller->estimate.forces;
-    input.zero_changed = controller->estimate.zero_changed;
-    input.regime = controller->estimate.regime;
-    input.turned = controller->estimate.turned;
-    input.enabled = looks_for_hits(controller->supervisor.mode);
-    input.reacting = controller->supervisor.mode == GW_MODE_REACTING;
-    gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);
-    controller->detection.tripped = controller->contact_found.tripped;
-    controller->detection.active = controller->contact_found.active;
-    controller->detection.statistic = controller->contact_found.statistic;
-    controller->detection.mean_wrench = controller->contact_found.mean_wrench;
-    controller->detection.samples = 1U;
-}
-
 /* Is the robot being hit? */
 static void detect(gw_controller_t *controller, bool slow)
 {
@@ -234,7 +359,7 @@ static void detect(gw_controller_t *controller, bool slow)
         controller->detection_count = (controller->detection_count + 1U) & GW_TICK_MASK;
         controller->detection_tick = (int32_t)controller->tick;
     }
-    if (controller->detection.tripped || controller->contact_found.refined) { /* the channels' mean becomes better */
+    if (controller->detection.tripped || is_refined(controller)) {
         controller->detection_wrench = controller->detection.mean_wrench;
         (void)gw_contact_locate(&controller->contact, controller->detection.mean_wrench,
                                 sigma_of_mean(controller->estimate.sigma, controller->detection.samples),
@@ -280,7 +405,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
         (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller));
-    } else if ((mode == GW_MODE_REACTING) && controller->contact_found.refined) {
+    } else if ((mode == GW_MODE_REACTING) && is_refined(controller)) {
         gw_admittance_redirect(&controller->admittance, hit_direction(controller));
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
@@ -294,7 +419,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
             gw_detector_reset(&controller->detector);
         }
         if (!looks_for_hits(before)) {
-            gw_channels_restart(&controller->channels);
+            restart_channels(controller);
         }
         if (mode == GW_MODE_FAULT) {
             gw_estimator_restart(&controller->estimator);
@@ -317,8 +442,8 @@ static gw_vector_t live_force(const gw_controller_t *controller)
     if (just_hit && (regime == GW_REGIME_CREEPING)) {
         regime = GW_REGIME_MOTION;
     }
-    const gw_real_t leak_n = uses_channels(controller) ? gw_force_floor(controller->channels.config.slow, regime)
-                                                       : gw_detector_leak(&controller->detector, regime);
+    const gw_real_t leak_n =
+        uses_channels(controller) ? channels_leak(controller, regime) : gw_detector_leak(&controller->detector, regime);
     const gw_real_t left = length - leak_n;
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {
@@ -402,21 +527,20 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
 static void report(const gw_controller_t *controller, gw_controller_output_t *output)
 {
     output->estimate = controller->estimate.mean;
-    if (uses_channels(controller) && (controller->contact_found.refining || (!controller->contact_found.active))) {
-        /* The contact as it was located last, or none. */
+    if (contact_is_known(controller)) {
         static const gw_contact_estimate_t no_contact = {0};
-        output->contact = controller->contact_found.active ? controller->detection_contact : no_contact;
+        output->contact = is_felt(controller) ? controller->detection_contact : no_contact;
     } else {
         /* The estimate is valid or zero; both are accepted. */
         (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
                                 sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples),
                                 &output->contact);
     }
-    output->detection_active = uses_channels(controller) ? controller->channels.active : controller->detector.active;
+    output->detection_active = uses_channels(controller) ? is_felt(controller) : controller->detector.active;
     output->detection_statistic = controller->detection.statistic;
     output->detection_count = controller->detection_count;
     output->detection_tick = controller->detection_tick;
-    output->detection_channel = controller->contact_found.channel;
+    output->detection_channel = deciding_channel(controller);
     output->detection_wrench = controller->detection_wrench;
     output->detection_contact = controller->detection_contact;
     output->reference_pose = gw_reference_pose(&controller->reference);
@@ -439,7 +563,7 @@ static bool is_quiet(const gw_controller_t *controller)
 {
     const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     return uses_channels(controller)
-               ? (!controller->contact_found.active)
+               ? (!is_felt(controller))
                : (gw_length(force) < gw_detector_leak(&controller->detector, controller->estimate.regime));
 }
 
@@ -531,7 +655,7 @@ bool gw_controller_invariant_holds(const gw_controller_t *controller)
         holds =
             gw_sensor_check_invariant_holds(&controller->sensor_check) &&
             gw_estimator_invariant_holds(&controller->estimator) && gw_contact_invariant_holds(&controller->contact) &&
-            gw_detector_invariant_holds(&controller->detector) && gw_channels_invariant_holds(&controller->channels) &&
+            gw_detector_invariant_holds(&controller->detector) && channels_hold(controller) &&
             gw_admittance_invariant_holds(&controller->admittance) &&
             gw_reference_invariant_holds(&controller->reference) && gw_joint_invariant_holds(&controller->joint) &&
             gw_supervisor_invariant_holds(&controller->supervisor) && (controller->detection_count <= GW_TICK_MASK) &&

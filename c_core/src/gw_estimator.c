@@ -4,7 +4,6 @@
 #include "giveway/gw_trikey.h"
 
 static const gw_wheels_t no_torque = {0};
-static const gw_wrench_t no_wrench = {0};
 
 void gw_estimator_config_trikey(gw_estimator_config_t *config)
 {
@@ -43,9 +42,11 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_TARE_VARIATION, config->tare_variation_nm);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, config->friction_model);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_ALIGNED, config->aligned);
+#if (GW_WITH_CHANNELS == 1)
     if (config->acceleration_source != GW_SOURCE_MEASURED) {
         gw_config_check_relation(error, GW_FIELD_ESTIMATOR_ALIGNED, 0U, (gw_real_t)config->aligned, GW_ZERO, GW_ZERO);
     }
+#endif
     gw_presliding_config_check(&config->presliding, error);
 }
 
@@ -117,13 +118,107 @@ bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
     return holds;
 }
 
+static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
+{
+    return estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
+}
+
+#if (GW_WITH_CHANNELS == 1)
+/* Passes three values through the low-pass of the measured acceleration, if the balance is to be aligned. */
+static gw_wheels_t aligned(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_COUNT],
+                           const gw_wheels_t *values)
+{
+    gw_wheels_t result = *values;
+    if (estimator->config.aligned != 0U) {
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            result.wheel[i] = gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
+        }
+    }
+    return result;
+}
+
+/* The model's forces, for whoever wants to know how uncertain they are. */
+static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
+                        gw_estimator_output_t *output)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        output->forces.friction_n.wheel[i] = friction_nm->wheel[i] * estimator->kinematics.per_roller_radius;
+    }
+    output->forces.inertia_n.x = estimator->nominal.total_mass_kg * acceleration.ax_mps2;
+    output->forces.inertia_n.y = estimator->nominal.total_mass_kg * acceleration.ay_mps2;
+    output->forces.inertia_moment_nm = estimator->nominal.total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
+}
+
+/* Whether an encoder has moved since the last sample. */
+static void tell_turns(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                       gw_estimator_output_t *output)
+{
+    output->turned = false;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_rate_filter_t *const filter = &estimator->rate[i];
+        output->turned = output->turned || (filter->started && (input->encoder_count[i] != filter->last_count));
+    }
+}
+
+/* By how much another zero has changed the wrench. */
+static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *zero_before_nm,
+                           gw_estimator_output_t *output)
+{
+    output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), zero_before_nm);
+}
+
+static void restart_alignment(gw_estimator_t *estimator)
+{
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        gw_lowpass_restart(&estimator->aligned_torque[i]);
+        gw_lowpass_restart(&estimator->aligned_friction[i]);
+    }
+}
+#else
+static gw_wheels_t aligned(const gw_estimator_t *estimator, const gw_lowpass_t *filter, const gw_wheels_t *values)
+{
+    (void)estimator;
+    (void)filter;
+    return *values;
+}
+
+static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
+                        const gw_estimator_output_t *output)
+{
+    (void)estimator;
+    (void)friction_nm;
+    (void)acceleration;
+    (void)output;
+}
+
+static void tell_turns(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                       const gw_estimator_output_t *output)
+{
+    (void)estimator;
+    (void)input;
+    (void)output;
+}
+
+static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *zero_before_nm,
+                           const gw_estimator_output_t *output)
+{
+    (void)estimator;
+    (void)zero_before_nm;
+    (void)output;
+}
+
+static void restart_alignment(const gw_estimator_t *estimator)
+{
+    (void)estimator;
+}
+#endif
+
 static void restart_filters(gw_estimator_t *estimator)
 {
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         gw_rate_filter_restart(&estimator->rate[i]);
-        gw_lowpass_restart(&estimator->aligned_torque[i]);
-        gw_lowpass_restart(&estimator->aligned_friction[i]);
     }
+    restart_alignment(estimator);
     gw_moving_average_reset(&estimator->average);
 }
 
@@ -221,11 +316,6 @@ static gw_real_t faster_of(const gw_estimator_t *estimator, gw_twist_t twist)
     return gw_max(gw_length(velocity), rim);
 }
 
-static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
-{
-    return estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
-}
-
 /* Decides whether the robot is at rest, and takes the tare after a stop. Returns true if the decision changed. */
 static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, gw_real_t speed_mps)
 {
@@ -269,31 +359,6 @@ static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, gw
     return acceleration;
 }
 
-/* Passes three values through the low-pass of the measured acceleration, if the balance is to be aligned. */
-static gw_wheels_t aligned(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_COUNT],
-                           const gw_wheels_t *values)
-{
-    gw_wheels_t result = *values;
-    if (estimator->config.aligned != 0U) {
-        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            result.wheel[i] = gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
-        }
-    }
-    return result;
-}
-
-/* The model's forces, for whoever wants to know how uncertain they are. */
-static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
-                        gw_estimator_output_t *output)
-{
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        output->forces.friction_n.wheel[i] = friction_nm->wheel[i] * estimator->kinematics.per_roller_radius;
-    }
-    output->forces.inertia_n.x = estimator->nominal.total_mass_kg * acceleration.ax_mps2;
-    output->forces.inertia_n.y = estimator->nominal.total_mass_kg * acceleration.ay_mps2;
-    output->forces.inertia_moment_nm = estimator->nominal.total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
-}
-
 /* T|0 from the present zero and the model. */
 static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                                      const gw_wheels_t *torque_nm, gw_twist_t planned_twist, gw_twist_t measured_twist,
@@ -328,16 +393,6 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         nominal.wheel[i] += zero->wheel[i];
     }
     return nominal;
-}
-
-/* Has an encoder moved since the last sample? */
-static bool has_turned(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
-{
-    bool turned = false;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        turned = turned || (estimator->rate[i].started && (input->encoder_count[i] != estimator->rate[i].last_count));
-    }
-    return turned;
 }
 
 /* Rates of the wheels and their derivatives, after this sample. */
@@ -400,10 +455,9 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
         const gw_wheels_t zero_before = *present_zero(estimator);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
-        output->zero_step = no_wrench;
-        output->turned = has_turned(estimator, input);
+        tell_turns(estimator, input, output);
         if (output->zero_changed) {
-            output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), &zero_before);
+            tell_zero_step(estimator, &zero_before, output);
             gw_moving_average_reset(&estimator->average);
         }
         output->regime = regime_of(estimator, speed_mps);

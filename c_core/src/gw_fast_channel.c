@@ -4,11 +4,14 @@
 #include "giveway/gw_model_covariance.h"
 #include "giveway/gw_planar_covariance.h"
 
+#if (GW_WITH_CHANNELS == 1)
+
 #define BANK_OF_RELEASE 2U /* decides on the end of a contact, and sets the baseline there */
 #define RELEASE_FLOOR_N2 ((gw_real_t)16.0)
-#define MODEL_TIME_S ((gw_real_t)0.012) /* the measured acceleration alone is too noisy to say how wrong the model is \
-                                         */
-#define HELD_TIME_S ((gw_real_t)1.0)    /* for which the end of an old contact is forgiven */
+#define MODEL_TIME_S \
+    ((gw_real_t)0.012)               /* the measured acceleration alone is too noisy to say how wrong the model is \
+                                      */
+#define HELD_TIME_S ((gw_real_t)1.0) /* for which the end of an old contact is forgiven */
 #define NOISE_TIME_S ((gw_real_t)3.0)
 #define NOISE_MIN_N2 ((gw_real_t)1.0e-9)
 #define NOISE_MAX_N2 ((gw_real_t)1.0e10)
@@ -252,3 +255,5 @@ void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *bal
     channel->baseline.residual = gw_balance_sum(balance->residual, beyond);
     clear_bank(channel);
 }
+
+#endif

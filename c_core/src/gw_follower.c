@@ -2,6 +2,8 @@
 
 #include "giveway/gw_math.h"
 
+#if (GW_WITH_CHANNELS == 1)
+
 #define MASS GW_WHEEL_COUNT /* index of the mass among the followed */
 /* A smaller inertial force tells nothing of the mass, N: the measured acceleration is noise. */
 #define INERTIA_MIN_N ((gw_real_t)8.0)
@@ -154,3 +156,5 @@ void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressor
     }
     learn_component(follower, h, along_y ? residual_n.y : residual_n.x);
 }
+
+#endif

@@ -2,6 +2,8 @@
 
 #include "giveway/gw_math.h"
 
+#if (GW_WITH_CHANNELS == 1)
+
 gw_planar_covariance_t gw_model_covariance(const gw_channels_config_t *config, const gw_kinematics_t *kinematics,
                                            const gw_follower_t *follower, const gw_model_forces_t *change,
                                            const gw_model_forces_t *model, gw_real_t sliding_n)
@@ -22,3 +24,5 @@ gw_planar_covariance_t gw_model_covariance(const gw_channels_config_t *config, c
     }
     return gw_planar_scaled(sum, config->model_multiple * config->model_multiple);
 }
+
+#endif

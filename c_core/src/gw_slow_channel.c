@@ -4,6 +4,8 @@
 #include "giveway/gw_model_covariance.h"
 #include "giveway/gw_planar_covariance.h"
 
+#if (GW_WITH_CHANNELS == 1)
+
 /* Residual, correction and zero. */
 #define FORCE_MAX_N ((gw_real_t)1.0e6)
 
@@ -79,3 +81,5 @@ void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_
     channel->force_n.y = force_n.y - channel->zero_n.y;
     channel->statistic = gw_planar_distance(&spread, floor_n * floor_n, channel->force_n);
 }
+
+#endif

@@ -66,7 +66,7 @@ extern "C" {
     ROW(COUNT, GW_FIELD_ESTIMATOR_RETARE_TICKS, "estimator.retare_ticks", OF retare_ticks, 1, 100000) \
     ROW(REAL, GW_FIELD_ESTIMATOR_TARE_VARIATION, "estimator.tare_variation", OF tare_variation_nm, 0, 100) \
     ROW(COUNT, GW_FIELD_ESTIMATOR_FRICTION_MODEL, "estimator.friction_model", OF friction_model, 0, 1) \
-    ROW(COUNT, GW_FIELD_ESTIMATOR_ALIGNED, "estimator.aligned", OF aligned, 0, 1)
+    ROW(COUNT, GW_FIELD_ESTIMATOR_ALIGNED, "estimator.aligned", OF aligned, 0, GW_ALIGNED_MAX)
 
 #define GW_PRESLIDING_FIELDS(ROW, OF) \
     ROW(WHEEL_REAL, GW_FIELD_ESTIMATOR_PRESLIDING_STIFFNESS, "estimator.presliding_stiffness", \
@@ -84,7 +84,7 @@ extern "C" {
     ROW(RULE, GW_FIELD_OUTLINE_CONVEX, "outline (counter-clockwise, strictly convex)", OF vertex_m, 0, 0)
 
 #define GW_DETECTOR_FIELDS(ROW, OF) \
-    ROW(COUNT, GW_FIELD_DETECTOR_KIND, "detector.kind", OF kind, 0, 2) \
+    ROW(COUNT, GW_FIELD_DETECTOR_KIND, "detector.kind", OF kind, 0, GW_DETECTOR_KIND_MAX) \
     ROW(REAL, GW_FIELD_DETECTOR_FORCE_THRESHOLD, "detector.force_threshold", OF force_threshold_n, 0.01, 10000) \
     ROW(REAL, GW_FIELD_DETECTOR_IMPULSE_THRESHOLD, "detector.impulse_threshold", OF impulse_threshold_newton_s, 0.001, \
         1000) \
@@ -94,6 +94,7 @@ extern "C" {
     ROW(REAL, GW_FIELD_DETECTOR_RELEASE_FORCE, "detector.release_force", OF release_force_n, 0, 10000) \
     ROW(COUNT, GW_FIELD_DETECTOR_BLANKING_TICKS, "detector.blanking_ticks", OF blanking_ticks, 0, 100000)
 
+#if (GW_WITH_CHANNELS == 1)
 #define GW_CHANNELS_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_CHANNELS_NOISE_MULTIPLE, "channels.noise_multiple", OF noise_multiple, 1, 100) \
     ROW(REAL, GW_FIELD_CHANNELS_MODEL_MULTIPLE, "channels.model_multiple", OF model_multiple, 0, 100) \
@@ -120,6 +121,10 @@ extern "C" {
     ROW(REAL, GW_FIELD_FOLLOWER_MASS, "follower.mass", OF mass, 0, 1) \
     ROW(REAL, GW_FIELD_FOLLOWER_DRIFT, "follower.drift", OF drift_per_root_s, 0, 1) \
     ROW(REAL, GW_FIELD_FOLLOWER_RESIDUAL, "follower.residual", OF residual_n, 0.1, 1000)
+#else
+#define GW_CHANNELS_FIELDS(ROW, OF)
+#define GW_FOLLOWER_FIELDS(ROW, OF)
+#endif
 
 #define GW_ADMITTANCE_FIELDS(ROW, OF) \
     ROW(COUNT, GW_FIELD_ADMITTANCE_KIND, "admittance.kind", OF kind, 0, 1) \

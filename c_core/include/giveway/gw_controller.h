@@ -35,7 +35,9 @@ typedef struct {
     gw_estimator_config_t estimator;
     gw_contact_config_t contact;
     gw_detector_config_t detector;
+#if (GW_WITH_CHANNELS == 1)
     gw_channels_config_t channels; /* read if detector.kind is GW_DETECTOR_CHANNELS, checked always */
+#endif
     gw_admittance_config_t admittance;
     gw_reference_config_t reference;
     gw_supervisor_config_t supervisor;
@@ -82,7 +84,10 @@ typedef struct {
     gw_sensor_check_t sensor_check;
     gw_contact_t contact;
     gw_detector_t detector;
+#if (GW_WITH_CHANNELS == 1)
     gw_channels_t channels;
+    gw_channels_output_t contact_found;
+#endif
     gw_admittance_t admittance;
     gw_reference_t reference;
     gw_joint_t joint;
@@ -94,7 +99,6 @@ typedef struct {
     uint32_t tick;
     gw_estimator_output_t estimate;
     gw_detector_output_t detection;
-    gw_channels_output_t contact_found;
     bool drives_enabled;
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */

@@ -117,7 +117,7 @@ typedef struct {
     gw_twist_t measured_twist;
     gw_regime_t regime;
     bool zero_changed;     /* the robot came to rest or left it in this tick */
-    gw_wrench_t zero_step; /* by how much the wrench jumped then */
+    gw_wrench_t zero_step; /* by how much the wrench jumped then; kept until the next change */
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
     bool turned; /* an encoder has moved since the last sample */
