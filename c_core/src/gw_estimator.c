@@ -125,16 +125,14 @@ static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
 
 #if (GW_WITH_CHANNELS == 1)
 /* Passes three values through the low-pass of the measured acceleration, if the balance is to be aligned. */
-static gw_wheels_t aligned(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_COUNT],
-                           const gw_wheels_t *values)
+static void align(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_COUNT], gw_wheels_t *values)
 {
-    gw_wheels_t result = *values;
     if (estimator->config.aligned != 0U) {
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            result.wheel[i] = gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
+            values->wheel[i] =
+                gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
         }
     }
-    return result;
 }
 
 /* The model's forces, for whoever wants to know how uncertain they are. */
@@ -175,11 +173,11 @@ static void restart_alignment(gw_estimator_t *estimator)
     }
 }
 #else
-static gw_wheels_t aligned(const gw_estimator_t *estimator, const gw_lowpass_t *filter, const gw_wheels_t *values)
+static void align(const gw_estimator_t *estimator, const gw_lowpass_t *filter, const gw_wheels_t *values)
 {
     (void)estimator;
     (void)filter;
-    return *values;
+    (void)values;
 }
 
 static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
@@ -382,8 +380,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         const gw_wheels_t roller_rates = gw_kinematics_roller_rates(&estimator->kinematics, twist);
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    friction_nm = aligned(estimator, estimator->aligned_friction, &friction_nm);
+    align(estimator, estimator->aligned_friction, &friction_nm);
     tell_forces(estimator, &friction_nm, acceleration, output);
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     gw_wheels_t nominal =
@@ -470,8 +467,8 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         output->measured_twist = measured_twist;
         output->nominal_nm =
             nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
-        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-        const gw_wheels_t sensed_nm = aligned(estimator, estimator->aligned_torque, &torque_nm);
+        gw_wheels_t sensed_nm = torque_nm;
+        align(estimator, estimator->aligned_torque, &sensed_nm);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &sensed_nm);
         output->sigma = estimator->sigma;
         status = gw_moving_average_add(&estimator->average, output->wrench);
