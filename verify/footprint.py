@@ -38,11 +38,15 @@ ENTRIES = ("gw_controller_init", "gw_controller_step", "gw_servo_init", "gw_serv
 SOURCES = "tests/c_core/footprint"
 # Usual firmware flags: one section per function, so that the linker drops functions that are not called.
 FLAGS = ("-O2", "-ffunction-sections", "-fdata-sections")
+WITHOUT_CHANNELS = "-DGW_WITH_CHANNELS=0"
 
 
 @dataclass(frozen=True)
 class Footprint:
-    """Bytes and instructions; steps are the longest over the recorded collision and the longest found by search."""
+    """Bytes and instructions; steps are the longest over the recorded collision and the longest found by search.
+
+    ``all_``: with the two channels and all that the detector can use switched on; the others: without the channels.
+    """
 
     flash: int
     controller_ram: int  # without the window of the filter
@@ -53,6 +57,10 @@ class Footprint:
     step_searched: int
     step_bristles: int
     servo_step: int
+    all_flash: int
+    all_ram: int
+    all_stack: int
+    all_step: int
 
 
 # For Cortex-M4F.
@@ -66,6 +74,10 @@ TARGET = Footprint(
     step_searched=3000,
     step_bristles=4000,
     servo_step=300,
+    all_flash=32768,
+    all_ram=2048,
+    all_stack=640,
+    all_step=4500,
 )
 ROWS = {
     "flash": "Flash, bytes: init and step of controller and servo",
@@ -77,6 +89,10 @@ ROWS = {
     "step_searched": "Longest step found by search, instructions",
     "step_bristles": "The same with bristles for the rollers' friction",
     "servo_step": "Longest servo step, instructions",
+    "all_flash": "Flash with the two channels, bytes",
+    "all_ram": "RAM of the controller with them, bytes, without the window",
+    "all_stack": "Worst stack with them, bytes",
+    "all_step": "Longest step found by search with them, everything on, instructions",
 }
 
 
@@ -94,7 +110,15 @@ SMALL = ("-Os", *FLAGS[1:])
 def measure(context: Context, target: Target) -> Footprint:
     """Everything, at -O2 in float."""
     linked = _link(context, target)
-    return Footprint(flash=_flash(context, linked), stack=_stack(context, linked), **_run(context, target))
+    everything = _link(context, target, without=())
+    return Footprint(
+        flash=_flash(context, linked),
+        stack=_stack(context, linked),
+        **_run(context, target, WITHOUT_CHANNELS),
+        all_flash=_flash(context, everything),
+        all_stack=_stack(context, everything),
+        **_run(context, target),
+    )
 
 
 def measure_parts(context: Context, target: Target) -> dict[str, tuple[int, int]]:
@@ -118,13 +142,19 @@ def check_parts(root: Path, parts: dict[str, tuple[int, int]]) -> None:
         raise RungFailed(f"c_core/README.md does not show what was measured:\n{parts_table(parts)}")
 
 
-def _link(context: Context, target: Target, part: int | None = None, flags: tuple[str, ...] = FLAGS) -> Path:
+def _link(
+    context: Context,
+    target: Target,
+    part: int | None = None,
+    flags: tuple[str, ...] = FLAGS,
+    without: tuple[str, ...] = (WITHOUT_CHANNELS,),
+) -> Path:
     """A program that contains only c_core and calls to it; gcc's .su files are next to it."""
     bare = replace(target, flags=tuple(flag for flag in target.flags if "specs" not in flag), support=())
     source = context.root / SOURCES / ("linked.c" if part is None else "parts.c")
     link = ("-nostartfiles", "-Wl,--gc-sections,-e,firmware", "-fstack-usage", f"-DPART={part or 0}")
-    program = context.work / f"{target.name}{flags[0]}_{part or 0}.elf"
-    return bare.build(context, [*core_sources(context.core), source], program, *flags, *link)
+    program = context.work / f"{target.name}{flags[0]}_{part or 0}{'' if without else '_all'}.elf"
+    return bare.build(context, [*core_sources(context.core), source], program, *flags, *without, *link)
 
 
 def _flash(context: Context, linked: Path) -> int:
@@ -134,7 +164,7 @@ def _flash(context: Context, linked: Path) -> int:
     return int(text) + int(data)
 
 
-def _run(context: Context, target: Target) -> dict[str, int]:
+def _run(context: Context, target: Target, *flags: str) -> dict[str, int]:
     assert target.emulator is not None
     counting = replace(target, emulator_arguments=("-icount", "shift=0", *target.emulator_arguments))
     golden = context.root / "tests/c_core/golden"
@@ -147,7 +177,8 @@ def _run(context: Context, target: Target) -> dict[str, int]:
         example / "recorded_collision.c",
     ]
     includes = (f"-I{golden}", f"-I{example}")
-    program = counting.build(context, sources, context.work / f"{target.name}_measure", *FLAGS, *includes)
+    program = context.work / f"{target.name}_measure{len(flags)}"
+    program = counting.build(context, sources, program, *FLAGS, *flags, *includes)
     answer = counting.run(context, program, timeout_s=600.0)
     return {name: int(value) for name, value in (line.split() for line in answer.stdout.splitlines())}
 

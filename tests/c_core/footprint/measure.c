@@ -82,7 +82,7 @@ static uint32_t worst_over_recorded_collision(void)
 }
 
 /* Configurations that make the step long, by the bits of `variant`; all have the longest outline. */
-static void demanding_config(gw_controller_config_t *config, uint32_t variant, uint32_t friction_model, bool everything)
+static void demanding_config(gw_controller_config_t *config, uint32_t variant, uint32_t friction_model)
 {
     gw_controller_config_trikey(config);
     config->geometry.azimuth_rad = (gw_real_t)0.7;
@@ -91,12 +91,12 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     config->detector.kind = ((variant & 2U) != 0U) ? GW_DETECTOR_FORCE_AVERAGE : GW_DETECTOR_IMPULSE;
     config->admittance.kind = ((variant & 4U) != 0U) ? GW_ADMITTANCE_LIVE_FORCE : GW_ADMITTANCE_FROZEN_IMPULSE;
     config->estimator.friction_model = friction_model;
-    if (everything) {
-        config->estimator.velocity_source = GW_SOURCE_MEASURED;
-        config->estimator.acceleration_source = GW_SOURCE_MEASURED;
-        config->estimator.aligned = 1U;
-        config->detector.kind = GW_DETECTOR_CHANNELS;
-    }
+#if (GW_WITH_CHANNELS == 1)
+    config->estimator.velocity_source = GW_SOURCE_MEASURED;
+    config->estimator.acceleration_source = GW_SOURCE_MEASURED;
+    config->estimator.aligned = 1U;
+    config->detector.kind = GW_DETECTOR_CHANNELS;
+#endif
     config->estimator.rest_ticks = 100U;
     config->detector.blanking_ticks = 50U;
     config->supervisor.settled_ticks = 50U;
@@ -108,13 +108,13 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     }
 }
 
-static uint32_t worst_found_by_search(uint32_t friction_model, bool everything)
+static uint32_t worst_found_by_search(uint32_t friction_model)
 {
     static script_t script;
     uint32_t most = 0U;
     for (uint32_t variant = 0U; variant < 8U; variant++) {
         gw_controller_config_t config;
-        demanding_config(&config, variant, friction_model, everything);
+        demanding_config(&config, variant, friction_model);
         (void)gw_controller_init(&controller, &config, NULL);
         gw_controller_safe_output(&output);
         script_begin(&script, &config, 100U + variant, false);
@@ -170,13 +170,17 @@ int main(void)
     SYST_RVR = LONGEST;
     SYST_CVR = 0U;
     SYST_CSR = COUNT_DOWN_AT_PROCESSOR_CLOCK;
+#if (GW_WITH_CHANNELS == 1)
+    (void)printf("all_ram %" PRIu32 "\n", (uint32_t)sizeof(gw_controller_t) - window);
+    (void)printf("all_step %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_BRISTLE));
+#else
     (void)printf("controller_ram %" PRIu32 "\n", (uint32_t)sizeof(gw_controller_t) - window);
     (void)printf("window_ram %" PRIu32 "\n", window);
     (void)printf("servo_ram %" PRIu32 "\n", (uint32_t)sizeof(gw_servo_t));
     (void)printf("step_recorded %" PRIu32 "\n", worst_over_recorded_collision());
-    (void)printf("step_searched %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_TANH, false));
-    (void)printf("step_bristles %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_BRISTLE, false));
-    (void)printf("step_everything %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_BRISTLE, true));
+    (void)printf("step_searched %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_TANH));
+    (void)printf("step_bristles %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_BRISTLE));
     (void)printf("servo_step %" PRIu32 "\n", worst_servo_step());
+#endif
     return 0;
 }
