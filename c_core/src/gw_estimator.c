@@ -112,6 +112,8 @@ bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
                 (estimator->average.window == estimator->config.average_window);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             holds = holds && gw_rate_filter_invariant_holds(&estimator->rate[i]) &&
+                    gw_lowpass_invariant_holds(&estimator->aligned_torque[i], GW_TORQUE_MAX) &&
+                    gw_lowpass_invariant_holds(&estimator->aligned_friction[i], GW_TORQUE_MAX) &&
                     gw_is_finite(estimator->run_zero_nm.wheel[i]) && gw_is_finite(estimator->rest_zero_nm.wheel[i]);
         }
     }

@@ -9,6 +9,9 @@
 #define INERTIA_MIN_N ((gw_real_t)8.0)
 /* No difference is larger; the limit keeps a wrong model from running away. */
 #define DIFFERENCE_MAX ((gw_real_t)0.8)
+/* Largest variance of a difference before anything was learned, and largest drift between two calls. */
+#define COVARIANCE_MAX GW_TWO
+#define DRIFT_MAX GW_TWO
 
 void gw_follower_config_trikey(gw_follower_config_t *config)
 {
@@ -40,7 +43,7 @@ static gw_real_t first_variance(const gw_follower_t *follower, uint32_t index)
 void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *config, gw_real_t interval_s)
 {
     follower->config = *config;
-    follower->drift_per_call = (config->drift_per_root_s * config->drift_per_root_s) * interval_s;
+    follower->drift_per_call = gw_min((config->drift_per_root_s * config->drift_per_root_s) * interval_s, DRIFT_MAX);
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
         follower->difference[i] = GW_ZERO;
         for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
@@ -58,11 +61,12 @@ bool gw_follower_invariant_holds(const gw_follower_t *follower)
         gw_config_error_t error;
         gw_config_check_begin(&error);
         gw_follower_config_check(&follower->config, &error);
-        holds = (error.field == GW_FIELD_NONE);
+        holds = (error.field == GW_FIELD_NONE) && gw_in_range(follower->drift_per_call, GW_ZERO, DRIFT_MAX);
         for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
             holds = holds && gw_within(follower->difference[i], DIFFERENCE_MAX);
+            holds = holds && (follower->covariance[i][i] >= GW_ZERO);
             for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
-                holds = holds && gw_within(follower->covariance[i][k], GW_TWO);
+                holds = holds && gw_within(follower->covariance[i][k], COVARIANCE_MAX);
             }
         }
     }
@@ -113,6 +117,9 @@ gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, co
         sum.xy += GW_HALF * ((row.x * g.y) + (row.y * g.x));
         sum.yy += row.y * g.y;
     }
+    /* Rounding must not make a variance negative. */
+    sum.xx = gw_max(sum.xx, GW_ZERO);
+    sum.yy = gw_max(sum.yy, GW_ZERO);
     return sum;
 }
 
@@ -120,23 +127,27 @@ gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, co
 static void learn_component(gw_follower_t *follower, const gw_real_t h[GW_FOLLOWED_COUNT], gw_real_t residual_n)
 {
     gw_real_t gain[GW_FOLLOWED_COUNT];
-    gw_real_t variance = follower->config.residual_n * follower->config.residual_n;
+    const gw_real_t least_n2 = follower->config.residual_n * follower->config.residual_n;
+    gw_real_t variance_n2 = least_n2;
     gw_real_t surprise_n = residual_n;
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
         gain[i] = GW_ZERO;
         for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
             gain[i] += follower->covariance[i][k] * h[k];
         }
-        variance += gain[i] * h[i];
+        variance_n2 += gain[i] * h[i];
         surprise_n -= h[i] * follower->difference[i];
     }
+    variance_n2 = gw_max(variance_n2, least_n2); /* as a covariance demands; rounding does not know */
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
-        const gw_real_t share = gain[i] / variance;
+        const gw_real_t share = gain[i] / variance_n2;
         follower->difference[i] =
             gw_clamp(follower->difference[i] + (share * surprise_n), -DIFFERENCE_MAX, DIFFERENCE_MAX);
         for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
-            follower->covariance[i][k] = gw_clamp(follower->covariance[i][k] - (share * gain[k]), -GW_TWO, GW_TWO);
+            follower->covariance[i][k] =
+                gw_clamp(follower->covariance[i][k] - (share * gain[k]), -COVARIANCE_MAX, COVARIANCE_MAX);
         }
+        follower->covariance[i][i] = gw_max(follower->covariance[i][i], GW_ZERO);
     }
 }
 

@@ -67,10 +67,10 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
 /* A hit: from the present velocity along the unit vector direction; (0, 0) means: come to rest here.
  * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction);
-/* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
- * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */
 /* A better estimate of the direction of the hit, a unit vector: what was moved so far counts. Pointer not NULL. */
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction);
+/* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
+ * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */
 gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output);
 
 #ifdef __cplusplus

@@ -56,12 +56,13 @@ void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *confi
 bool gw_follower_invariant_holds(const gw_follower_t *follower);
 /* The regressors of the differences in these forces. Pointers not NULL. */
 gw_regressors_t gw_follower_regressors(const gw_kinematics_t *kinematics, const gw_model_forces_t *forces);
-/* The force that the model lacks by what is known of the differences: to be added to the residual. Not NULL. */
+/* The force that the model lacks by what is known of the differences: to be added to the residual. Here and below no
+ * pointer is NULL, and no force beyond GW_WRENCH_MAX. */
 gw_vector_t gw_follower_correction(const gw_follower_t *follower, const gw_kinematics_t *kinematics,
                                    const gw_model_forces_t *forces);
-/* How uncertain the model's force still is: G P G^T. Pointers not NULL. */
+/* How uncertain the model's force still is: G P G^T; no variance is negative. */
 gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_regressors_t *regressors);
-/* Learns from one component of a residual without contact, N; the other one's turn is later. Pointers not NULL. */
+/* Learns from one component of a residual without contact, N; the other one's turn is later. */
 void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressors, gw_vector_t residual_n,
                        bool along_y);
 

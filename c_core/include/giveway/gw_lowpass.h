@@ -28,7 +28,7 @@ static inline void gw_lowpass_restart(gw_lowpass_t *filter)
     filter->started = false;
 }
 
-/* One tick; the input is held over it. |input| <= limit; the output keeps that limit. */
+/* One tick; the input is held over it. limit > 0; input and output are kept within it, whatever the input is. */
 static inline gw_real_t gw_lowpass_step(gw_lowpass_t *filter, const gw_rate_filter_constants_t *constants,
                                         gw_real_t input, gw_real_t limit)
 {
@@ -41,11 +41,17 @@ static inline gw_real_t gw_lowpass_step(gw_lowpass_t *filter, const gw_rate_filt
         filter->value = gw_limited(input + (constants->decay * (error + (constants->period_s * mixed))), limit);
         filter->derivative = gw_limited(derivative, GW_RATE_DERIVATIVE_MAX);
     } else {
-        filter->value = input;
+        filter->value = gw_limited(input, limit);
         filter->derivative = GW_ZERO;
         filter->started = true;
     }
     return filter->value;
+}
+
+/* Pointer not NULL. */
+static inline bool gw_lowpass_invariant_holds(const gw_lowpass_t *filter, gw_real_t limit)
+{
+    return gw_within(filter->value, limit) && gw_within(filter->derivative, GW_RATE_DERIVATIVE_MAX);
 }
 
 #ifdef __cplusplus

@@ -160,6 +160,49 @@ static void what_is_not_finite_is_refused(void)
     }
 }
 
+/* A better direction in the middle of an escape: it ends where an escape in this direction would have ended. */
+static void a_better_direction_leads_to_another_goal(void)
+{
+    const gw_vector_t better = {R(0.6), R(-0.8)};
+    gw_admittance_t admittance = made(GW_ADMITTANCE_FROZEN_IMPULSE);
+    gw_vector_t moved = nothing;
+    CHECK_STATUS(gw_admittance_start(&admittance, nothing, along_x), GW_STATUS_OK);
+    for (uint32_t tick = 0U; tick < 40000U; tick++) {
+        const gw_admittance_output_t output = step(&admittance, nothing);
+        moved.x += output.displacement_m.x;
+        moved.y += output.displacement_m.y;
+        if (tick == 60U) {
+            CHECK(moved.x > R(0.001));
+            gw_admittance_redirect(&admittance, better);
+            CHECK(gw_admittance_invariant_holds(&admittance));
+        }
+    }
+    /* Plain sums of some ten thousand displacements, as above. */
+    CHECK_NEAR(moved.x, R(0.3), R(1000.0) * ULP);
+    CHECK_NEAR(moved.y, R(-0.4), R(1000.0) * ULP);
+    CHECK((admittance.velocity_mps.x == GW_ZERO) && (admittance.velocity_mps.y == GW_ZERO));
+}
+
+static void a_direction_that_is_none_keeps_the_invariant(void)
+{
+    const struct {
+        gw_vector_t direction;
+        gw_vector_t goal_m;
+    } rows[] = {
+        {{R(2.0), R(-2.0)}, {R(0.505), R(-0.505)}},
+        {{unit_nan(), R(1.0)}, {R(-0.505), R(0.5)}},
+        {{R(1.0), unit_infinity()}, {R(0.5), R(0.505)}},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_admittance_t admittance = made(GW_ADMITTANCE_FROZEN_IMPULSE);
+        unit_row(i);
+        gw_admittance_redirect(&admittance, rows[i].direction);
+        CHECK(gw_admittance_invariant_holds(&admittance));
+        CHECK_NEAR(admittance.goal_m.x, rows[i].goal_m.x, ROUNDING);
+        CHECK_NEAR(admittance.goal_m.y, rows[i].goal_m.y, ROUNDING);
+    }
+}
+
 /* Rare states of an escape: the step has to stay within its limits in each. */
 static void rare_states_keep_the_limits(void)
 {
@@ -220,6 +263,8 @@ void suite_admittance(void)
     unit_run("the_live_force_is_that_of_1", the_live_force_is_that_of_1);
     unit_run("a_strong_live_force_meets_the_limits", a_strong_live_force_meets_the_limits);
     unit_run("what_is_not_finite_is_refused", what_is_not_finite_is_refused);
+    unit_run("a_better_direction_leads_to_another_goal", a_better_direction_leads_to_another_goal);
+    unit_run("a_direction_that_is_none_keeps_the_invariant", a_direction_that_is_none_keeps_the_invariant);
     unit_run("rare_states_keep_the_limits", rare_states_keep_the_limits);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

@@ -30,6 +30,7 @@ static robot_t robot(void)
 {
     robot_t made;
     gw_controller_config_trikey(&made.controller);
+    made.controller.estimator.acceleration_source = GW_SOURCE_MEASURED; /* aligned may be 1 with this alone */
     for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
         const gw_rotation_t at = gw_sincos(R(0.39) * (gw_real_t)i);
         made.controller.contact.vertex_m[i].x = R(0.4) * at.cosine;
@@ -207,6 +208,7 @@ static void the_paper_s_settings_are_these(void)
         {GW_FIELD_ESTIMATOR_RETARE_TICKS, R(100.0)},
         {GW_FIELD_ESTIMATOR_TARE_VARIATION, R(0.5)},
         {GW_FIELD_ESTIMATOR_FRICTION_MODEL, R(0.0)},
+        {GW_FIELD_ESTIMATOR_ALIGNED, R(0.0)},
         {GW_FIELD_CONTACT_MINIMUM_FORCE, R(1.0)},
         {GW_FIELD_OUTLINE_COUNT, R(3.0)},
         {GW_FIELD_DETECTOR_KIND, R(1.0)},
@@ -214,6 +216,11 @@ static void the_paper_s_settings_are_these(void)
         {GW_FIELD_DETECTOR_LEAK_CREEP, R(42.0)},
         {GW_FIELD_DETECTOR_RELEASE_FORCE, R(6.0)},
         {GW_FIELD_DETECTOR_BLANKING_TICKS, R(300.0)},
+        {GW_FIELD_FOLLOWER_FRICTION_COMMON, R(0.173)},
+        {GW_FIELD_FOLLOWER_FRICTION_WHEEL, R(0.087)},
+        {GW_FIELD_FOLLOWER_MASS, R(0.15)},
+        {GW_FIELD_FOLLOWER_DRIFT, R(0.01)},
+        {GW_FIELD_FOLLOWER_RESIDUAL, R(5.0)},
         {GW_FIELD_ADMITTANCE_KIND, R(0.0)},
         {GW_FIELD_ADMITTANCE_FINISH_SPEED, R(0.01)},
         {GW_FIELD_REFERENCE_FOLLOW_GAIN, R(2.0)},
@@ -244,6 +251,22 @@ static void the_paper_s_settings_are_these(void)
     for (uint32_t i = made.controller.contact.vertex_count; i < GW_OUTLINE_VERTEX_MAX; i++) {
         unit_row(i);
         CHECK((made.controller.contact.vertex_m[i].x == GW_ZERO) && (made.controller.contact.vertex_m[i].y == GW_ZERO));
+    }
+}
+
+static void only_a_measured_acceleration_can_be_aligned_with(void)
+{
+    const uint32_t sources[] = {GW_SOURCE_PLANNED, GW_SOURCE_ZERO};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(sources); i++) {
+        robot_t made = robot();
+        made.controller.estimator.aligned = 1U;
+        made.controller.estimator.acceleration_source = sources[i];
+        const gw_config_error_t error = refused(&made);
+        unit_row(i);
+        CHECK_STATUS(error.field, GW_FIELD_ESTIMATOR_ALIGNED);
+        CHECK((error.value == GW_ONE) && (error.minimum == GW_ZERO) && (error.maximum == GW_ZERO));
+        made.controller.estimator.aligned = 0U;
+        CHECK_STATUS(refused(&made).field, GW_FIELD_NONE);
     }
 }
 
@@ -304,6 +327,7 @@ void suite_config(void)
     unit_run("wheel_slots_meet_their_bounds", wheel_slots_meet_their_bounds);
     unit_run("the_first_bad_field_is_the_one_that_is_named", the_first_bad_field_is_the_one_that_is_named);
     unit_run("the_paper_s_settings_are_these", the_paper_s_settings_are_these);
+    unit_run("only_a_measured_acceleration_can_be_aligned_with", only_a_measured_acceleration_can_be_aligned_with);
     unit_run("a_check_begins_with_nothing_to_blame", a_check_begins_with_nothing_to_blame);
     unit_run("every_roller_s_stiffness_meets_its_bounds", every_roller_s_stiffness_meets_its_bounds);
     unit_run("what_is_no_field_has_the_row_of_none", what_is_no_field_has_the_row_of_none);

@@ -298,6 +298,187 @@ static void with_bristles_a_tare_leaves_the_rollers_part_to_the_model(void)
     CHECK(estimator.run_zero_nm.wheel[1] != GW_ZERO);
 }
 
+/* A robot without friction whose wheels deliver a sudden force of 20 N along x: it accelerates, nothing touches it. */
+static gw_real_t largest_false_force(uint32_t is_aligned)
+{
+    gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);
+    gw_real_t largest = GW_ZERO;
+    gw_real_t speed = GW_ZERO;
+    gw_real_t counts[GW_WHEEL_COUNT] = {GW_ZERO, GW_ZERO, GW_ZERO};
+    set_robot();
+    robot.friction.coulomb_torque_nm = GW_ZERO;
+    robot.estimator.acceleration_source = GW_SOURCE_MEASURED;
+    robot.estimator.aligned = is_aligned;
+    robot.estimator.encoder_counts = 1000000U;
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    const gw_real_t acceleration = R(20.0) / estimator.nominal.total_mass_kg;
+    for (uint32_t tick = 0U; tick < 200U; tick++) {
+        if (tick > 20U) {
+            input.torque_nm = torques(GW_ZERO, R(-1.15470053837925153), R(1.15470053837925153));
+            speed += R(0.5) * acceleration * PERIOD; /* the mean over the tick */
+            const gw_wheels_t rates = gw_kinematics_wheel_rates(&estimator.kinematics, ahead(speed));
+            speed += R(0.5) * acceleration * PERIOD;
+            for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+                counts[k] += rates.wheel[k] * PERIOD * R(159154.943091895336); /* 1e6/2 pi */
+                input.encoder_count[k] = (int32_t)counts[k];
+            }
+        }
+        const gw_estimator_output_t output = step(&input, GW_STATUS_OK);
+        largest = gw_max(largest, gw_abs(output.wrench.force_x_n));
+    }
+    return largest;
+}
+
+/* Nearly all of the 20 N seem to be a push in the first ticks, unless torque and acceleration pass the same filter.
+ * What is left then is the jitter of the encoders: a count is 0.63 um of the floor, so 0.63 mm/s for a tick, of which
+ * the filter's derivative shows (200 rad/s)^2 * 1 ms, times some 36 kg is 0.9 N. */
+static void aligned_terms_of_the_balance_cancel(void)
+{
+    CHECK(largest_false_force(0U) > R(18.0));
+    CHECK_NEAR(largest_false_force(1U), GW_ZERO, R(0.9));
+}
+
+/* Aligned, a step of the friction reaches the balance as that of 1 - (1 + w t) e^(-w t), at w t = 1. */
+static void aligned_friction_comes_with_the_acceleration(void)
+{
+    for (uint32_t is_aligned = 0U; is_aligned < 2U; is_aligned++) {
+        gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);
+        gw_estimator_output_t output;
+        set_robot();
+        robot.estimator.acceleration_source = GW_SOURCE_MEASURED;
+        robot.estimator.aligned = is_aligned;
+        CHECK_STATUS(init(), GW_STATUS_OK);
+        unit_row(is_aligned);
+        output = step(&input, GW_STATUS_OK);
+        CHECK((output.forces.friction_n.wheel[0] == GW_ZERO) && (output.wrench.force_x_n == GW_ZERO));
+        input.planned_twist = ahead(R(-0.1));
+        for (uint32_t i = 0U; i < 5U; i++) {
+            output = step(&input, GW_STATUS_OK);
+        }
+        const gw_real_t share = (is_aligned == 1U) ? R(0.26424111765711536) : GW_ONE;
+        const gw_wheels_t rates = gw_kinematics_roller_rates(&estimator.kinematics, input.planned_twist);
+        const gw_wheels_t friction = gw_friction_torques(&robot.friction, &rates);
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            CHECK_NEAR(output.forces.friction_n.wheel[k], (share * friction.wheel[k]) / robot.geometry.roller_radius_m,
+                       R(100.0) * ROUNDING);
+        }
+        /* The encoders stand, so friction is all there is. */
+        const gw_vector_t sum = gw_kinematics_radial_sum(&estimator.kinematics, &output.forces.friction_n);
+        CHECK(gw_abs(sum.x) > R(5.0));
+        CHECK_NEAR(output.wrench.force_x_n, sum.x, R(100.0) * ROUNDING);
+    }
+}
+
+/* Aligned filters begin with what they see first, also after a gap. */
+static void aligned_filters_start_afresh_after_a_gap(void)
+{
+    const gw_estimator_input_t first = input_of(torques(R(1.0), R(2.0), R(-3.0)), ahead(R(0.1)));
+    const gw_estimator_input_t second = input_of(torques(R(-1.0), R(5.0), R(7.0)), ahead(R(-0.2)));
+    gw_estimator_input_t bad = first;
+    bad.torque_nm.wheel[0] = unit_nan();
+    set_robot();
+    robot.estimator.acceleration_source = GW_SOURCE_MEASURED;
+    robot.estimator.aligned = 1U;
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    (void)step(&first, GW_STATUS_OK);
+    const gw_wrench_t delayed = step(&second, GW_STATUS_OK).wrench;
+    (void)step(&bad, GW_STATUS_INPUT_INVALID);
+    const gw_wrench_t afresh = step(&second, GW_STATUS_OK).wrench;
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    const gw_wrench_t begun = step(&second, GW_STATUS_OK).wrench;
+    CHECK((afresh.force_x_n == begun.force_x_n) && (afresh.force_y_n == begun.force_y_n));
+    CHECK(afresh.torque_nm == begun.torque_nm);
+    CHECK(gw_abs(delayed.force_y_n - begun.force_y_n) > R(10.0));
+}
+
+static void check_wrench(gw_wrench_t actual, gw_wrench_t expected)
+{
+    CHECK_NEAR(actual.force_x_n, expected.force_x_n, R(10.0) * ROUNDING);
+    CHECK_NEAR(actual.force_y_n, expected.force_y_n, R(10.0) * ROUNDING);
+    CHECK_NEAR(actual.torque_nm, expected.torque_nm, R(10.0) * ROUNDING);
+}
+
+/* Coming to rest and leaving it another zero holds: the wrench jumps by exactly what the estimator says. */
+static void the_step_of_the_zero_is_told(void)
+{
+    const gw_wheels_t leaning = torques(R(0.3), R(-0.1), R(0.05));
+    const gw_estimator_input_t moving = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), ahead(R(0.2)));
+    const gw_estimator_input_t resting = input_of(leaning, still);
+    const gw_estimator_input_t leaving = input_of(leaning, ahead(R(0.01)));
+    const gw_wrench_t none = {GW_ZERO, GW_ZERO, GW_ZERO};
+    const gw_real_t root_3 = R(1.73205080756887729);
+    gw_estimator_output_t output;
+    gw_wrench_t before;
+    start();
+    robot.friction.coulomb_torque_nm = GW_ZERO;
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    tare(moving.torque_nm);
+    CHECK(gw_kinematics_wrench_of_torques(&estimator.kinematics, &leaning).torque_nm > R(0.6));
+    output = step(&moving, GW_STATUS_OK);
+    check_wrench(output.zero_step, none);
+    for (uint32_t i = 1U; i <= 12U; i++) {
+        before = output.wrench;
+        output = step(&resting, GW_STATUS_OK);
+        unit_row(i);
+        if (i == 10U) {
+            /* Wheels at 0, 120 and 240 degrees, 1/r_w = 10: forces along (0, 1), (-sqrt 3, -1)/2, (sqrt 3, -1)/2. */
+            const gw_wrench_t expected = {R(5.0) * root_3 * R(0.15), R(3.0) + R(0.25), R(0.25) * R(2.5)};
+            CHECK(output.zero_changed);
+            check_wrench(output.zero_step, expected);
+            check_wrench(output.wrench, none);
+            CHECK_NEAR(output.wrench.force_y_n - before.force_y_n, output.zero_step.force_y_n, R(10.0) * ROUNDING);
+        } else {
+            CHECK((output.zero_step.force_x_n == GW_ZERO) && (output.zero_step.torque_nm == GW_ZERO));
+        }
+    }
+    before = output.wrench;
+    output = step(&leaving, GW_STATUS_OK);
+    CHECK(output.zero_changed);
+    CHECK_NEAR(output.zero_step.force_x_n, output.wrench.force_x_n - before.force_x_n, R(10.0) * ROUNDING);
+    CHECK_NEAR(output.zero_step.force_y_n, R(-3.25), R(10.0) * ROUNDING);
+    CHECK_NEAR(output.zero_step.torque_nm, R(-0.625), R(10.0) * ROUNDING);
+}
+
+/* The forces in the balance are those of the model. */
+static void the_forces_of_the_model_are_told(void)
+{
+    gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), ahead(R(0.2)));
+    const gw_acceleration_t planned = {R(0.5), R(-0.25), R(2.0)};
+    start();
+    input.planned_acceleration = planned;
+    const gw_estimator_output_t output = step(&input, GW_STATUS_OK);
+    const gw_wheels_t rates = gw_kinematics_roller_rates(&estimator.kinematics, ahead(R(0.2)));
+    const gw_wheels_t friction = gw_friction_torques(&robot.friction, &rates);
+    for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+        unit_row(k);
+        CHECK_NEAR(output.forces.friction_n.wheel[k], friction.wheel[k] / robot.geometry.roller_radius_m,
+                   R(100.0) * ROUNDING);
+    }
+    CHECK(gw_abs(output.forces.friction_n.wheel[0]) > R(1.0));
+    CHECK_NEAR(output.forces.inertia_n.x, R(0.5) * estimator.nominal.total_mass_kg, R(100.0) * ROUNDING);
+    CHECK_NEAR(output.forces.inertia_n.y, R(-0.25) * estimator.nominal.total_mass_kg, R(100.0) * ROUNDING);
+    CHECK_NEAR(output.forces.inertia_moment_nm, GW_TWO * estimator.nominal.total_yaw_inertia_kgm2, R(100.0) * ROUNDING);
+}
+
+/* Any encoder, but none before the first sample or after a gap: then there is nothing to compare with. */
+static void it_is_told_that_a_wheel_turned(void)
+{
+    gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);
+    start();
+    input.encoder_count[1] = 5;
+    CHECK(!step(&input, GW_STATUS_OK).turned);
+    CHECK(!step(&input, GW_STATUS_OK).turned);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        unit_row(i);
+        input.encoder_count[i] += 1 - (2 * (int32_t)(i & 1U));
+        CHECK(step(&input, GW_STATUS_OK).turned);
+        CHECK(!step(&input, GW_STATUS_OK).turned);
+    }
+    gw_estimator_restart(&estimator);
+    input.encoder_count[2] = 77;
+    CHECK(!step(&input, GW_STATUS_OK).turned);
+}
+
 static void what_is_beyond_any_robot_is_refused(void)
 {
     const gw_estimator_input_t good = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);
@@ -397,6 +578,12 @@ static void the_invariant_sees_every_member(void)
     estimator.rate[2].rate_radps = unit_nan();
     CHECK(!gw_estimator_invariant_holds(&estimator));
     start();
+    estimator.aligned_torque[1].value = unit_above(GW_TORQUE_MAX);
+    CHECK(!gw_estimator_invariant_holds(&estimator));
+    start();
+    estimator.aligned_friction[2].derivative = unit_nan();
+    CHECK(!gw_estimator_invariant_holds(&estimator));
+    start();
     estimator.run_zero_nm.wheel[1] = unit_nan();
     CHECK(!gw_estimator_invariant_holds(&estimator));
     start();
@@ -418,6 +605,12 @@ void suite_estimator(void)
     unit_run("the_motion_comes_from_the_source_that_is_chosen", the_motion_comes_from_the_source_that_is_chosen);
     unit_run("with_bristles_a_tare_leaves_the_rollers_part_to_the_model",
              with_bristles_a_tare_leaves_the_rollers_part_to_the_model);
+    unit_run("aligned_terms_of_the_balance_cancel", aligned_terms_of_the_balance_cancel);
+    unit_run("aligned_friction_comes_with_the_acceleration", aligned_friction_comes_with_the_acceleration);
+    unit_run("aligned_filters_start_afresh_after_a_gap", aligned_filters_start_afresh_after_a_gap);
+    unit_run("the_step_of_the_zero_is_told", the_step_of_the_zero_is_told);
+    unit_run("the_forces_of_the_model_are_told", the_forces_of_the_model_are_told);
+    unit_run("it_is_told_that_a_wheel_turned", it_is_told_that_a_wheel_turned);
     unit_run("what_is_beyond_any_robot_is_refused", what_is_beyond_any_robot_is_refused);
     unit_run("a_wrench_beyond_any_push_is_refused", a_wrench_beyond_any_push_is_refused);
     unit_run("angles_of_counts_are_within_a_turn", angles_of_counts_are_within_a_turn);

@@ -11,6 +11,8 @@ int main(void)
     suite_friction();
     suite_nominal();
     suite_rate_filter();
+    suite_lowpass();
+    suite_follower();
     suite_presliding();
     suite_wrench();
     suite_tare();
