@@ -17,13 +17,25 @@ static void draw_configs(void)
     geometry.wheel_slot[2] = 0U;
 }
 
-static void part_init(void)
+static void part_init_succeeds(void)
 {
-    draw_configs();
     demand_count((uint32_t)gw_estimator_init(&estimator, &config, &geometry, &inertia, &friction,
                                              draw_setting(GW_FIELD_CONTROLLER_PERIOD)),
                  0U, 0U);
     hold_estimator(&estimator);
+}
+
+/* Aligned is valid with a measured acceleration only. */
+static void part_init(void)
+{
+    draw_configs();
+    if (any_flag()) {
+        config.aligned = 0U;
+        part_init_succeeds();
+    } else {
+        config.acceleration_source = GW_SOURCE_MEASURED;
+        part_init_succeeds();
+    }
 }
 
 static void part_step(void)
@@ -41,6 +53,10 @@ static void part_step(void)
         (void)gw_estimator_step(&estimator, &input, &output);
         hold_wrench(&output.mean, (gw_real_t)1.1e12);
         hold_wrench(&output.window_mean, (gw_real_t)1.1e12);
+        hold_wrench(&output.zero_step, (gw_real_t)1.0e20);
+        hold_wheels(&output.forces.friction_n, GW_REAL_MAX);
+        hold_vector(&output.forces.inertia_n, (gw_real_t)1.0e25);
+        demand_real(output.inertia_moment_nm, (gw_real_t)-1.0e25, (gw_real_t)1.0e25);
     } else if (kind == 1U) {
         (void)gw_estimator_tare(&estimator, &torque_nm);
     } else if (kind == 2U) {

@@ -1,9 +1,11 @@
-/* gw_rate_filter, gw_presliding, gw_moving_average, gw_tare and gw_sum: the parts of gw_estimator that have a state. */
+/* gw_rate_filter, gw_lowpass, gw_presliding, gw_moving_average, gw_tare and gw_sum: the parts of gw_estimator that have
+ * a state. */
 #include "parts.h"
 
 static gw_kinematics_t kinematics;
 static gw_rate_filter_constants_t constants;
 static gw_rate_filter_t rate;
+static gw_lowpass_t lowpass;
 static gw_presliding_t presliding;
 static gw_presliding_config_t presliding_config;
 static gw_friction_config_t friction;
@@ -24,9 +26,11 @@ static void part_init(void)
     demand_count((uint32_t)gw_presliding_init(&presliding, &presliding_config, &friction, &kinematics), 0U, 0U);
     demand_count((uint32_t)gw_moving_average_init(&average, draw_count(1U, GW_MOVING_AVERAGE_CAPACITY)), 0U, 0U);
     gw_rate_filter_restart(&rate);
+    gw_lowpass_restart(&lowpass);
     gw_tare_start(&tare);
     hold_rate_constants(&constants);
     hold_rate_filter(&rate);
+    hold_lowpass(&lowpass);
     hold_presliding(&presliding);
     hold_moving_average(&average);
     hold_tare(&tare);
@@ -54,6 +58,7 @@ static void part_step(void)
     draw_kinematics(&kinematics);
     draw_rate_constants(&constants);
     draw_rate_filter(&rate);
+    draw_lowpass(&lowpass);
     draw_presliding(&presliding);
     draw_moving_average(&average);
     draw_tare(&tare);
@@ -63,6 +68,7 @@ static void part_step(void)
     twist.omega_radps = draw_real((gw_real_t)-1.0e9, (gw_real_t)1.0e9);
     gw_rate_filter_presume(&rate, any_real());
     gw_rate_filter_step(&rate, &constants, any_int, torque_nm.wheel[0]);
+    (void)gw_lowpass_step(&lowpass, &constants, torque_nm.wheel[1], GW_TORQUE_MAX);
     (void)gw_presliding_step(&presliding, &kinematics, &constants, counts, &torque_nm, twist);
     (void)gw_presliding_elastic_torques(&presliding, &kinematics);
     (void)gw_moving_average_add(&average, wrench);
@@ -71,11 +77,13 @@ static void part_step(void)
     hold_wheels(&mean_nm, GW_TORQUE_MAX);
     gw_presliding_settle(&presliding, &mean_nm);
     hold_rate_filter(&rate);
+    hold_lowpass(&lowpass);
     hold_presliding(&presliding);
     hold_moving_average(&average);
     hold_tare(&tare);
     step_sums();
     (void)gw_rate_filter_invariant_holds(&rate);
+    (void)gw_lowpass_invariant_holds(&lowpass, GW_TORQUE_MAX);
     (void)gw_presliding_invariant_holds(&presliding);
     (void)gw_moving_average_invariant_holds(&average);
     (void)gw_tare_invariant_holds(&tare);
@@ -94,6 +102,8 @@ static void part_refusals(void)
     (void)gw_moving_average_init(any_flag() ? &average : NULL, any_flag() ? 0U : (GW_MOVING_AVERAGE_CAPACITY + 1U));
     (void)gw_moving_average_add(NULL, gw_moving_average_mean(&average));
     disturb_rate_filter(&rate);
+    disturb_lowpass(&lowpass);
+    (void)gw_lowpass_invariant_holds(&lowpass, GW_TORQUE_MAX);
     disturb_presliding(&presliding);
     disturb_tare(&tare);
     average.window = any_count;

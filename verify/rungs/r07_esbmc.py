@@ -53,6 +53,20 @@ HARNESSES = {
         "filter->rate_radps = rate_radps * GW_TWO;",
         "include/giveway/gw_rate_filter.h",
     ),
+    "lowpass": Harness(
+        ("gw_math",),
+        "filter->value = gw_limited(input, limit);",
+        "filter->value = input;",
+        "include/giveway/gw_lowpass.h",
+        checks=(),  # an infinite input is limited behind the arithmetic; eva proves that valid inputs do not overflow
+    ),
+    "follower": Harness(
+        ("gw_math", "gw_kinematics", "gw_config"),
+        "follower->covariance[i][i] = gw_max(follower->covariance[i][i], GW_ZERO);",
+        "",
+        "src/gw_follower.c",
+        checks=(),  # likewise
+    ),
     "tare": Harness(
         ("gw_tare", "gw_math", "gw_sum", "gw_wrench", "gw_kinematics", "gw_config"),
         "valid_nm = gw_limited(torque_nm->wheel[i], GW_TORQUE_MAX);",
