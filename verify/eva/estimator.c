@@ -54,9 +54,7 @@ static void part_step(void)
         hold_wrench(&output.mean, (gw_real_t)1.1e12);
         hold_wrench(&output.window_mean, (gw_real_t)1.1e12);
         hold_wrench(&output.zero_step, (gw_real_t)1.0e20);
-        hold_wheels(&output.forces.friction_n, GW_REAL_MAX);
-        hold_vector(&output.forces.inertia_n, (gw_real_t)1.0e25);
-        demand_real(output.inertia_moment_nm, (gw_real_t)-1.0e25, (gw_real_t)1.0e25);
+        hold_model_forces(&output.forces, GW_REAL_MAX);
     } else if (kind == 1U) {
         (void)gw_estimator_tare(&estimator, &torque_nm);
     } else if (kind == 2U) {

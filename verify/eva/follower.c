@@ -4,14 +4,6 @@ static gw_follower_t follower;
 static gw_follower_config_t config;
 static gw_kinematics_t kinematics;
 
-static gw_model_forces_t any_forces(void)
-{
-    gw_model_forces_t forces;
-    draw_wheels(&forces.friction_n, GW_WRENCH_MAX);
-    draw_vector(&forces.inertia_n, GW_WRENCH_MAX);
-    return forces;
-}
-
 static void part_init(void)
 {
     draw_follower_config(&config);
@@ -21,19 +13,20 @@ static void part_init(void)
 
 static void part_step(void)
 {
-    const gw_model_forces_t forces = any_forces();
+    gw_model_forces_t forces;
     gw_vector_t residual_n;
     draw_follower(&follower);
     draw_kinematics(&kinematics);
+    draw_model_forces(&forces, GW_WRENCH_MAX);
     draw_vector(&residual_n, GW_WRENCH_MAX);
-    gw_vector_t correction = gw_follower_correction(&follower, &kinematics, &forces);
+    const gw_regressors_t regressors = gw_follower_regressors(&kinematics, &forces);
+    gw_vector_t correction = gw_follower_correction(&follower, &regressors);
     hold_vector(&correction, (gw_real_t)4.2e9);
-    const gw_planar_covariance_t s =
-        gw_follower_uncertainty(&follower, &kinematics, &forces, draw_real(GW_ZERO, GW_ONE));
+    const gw_planar_covariance_t s = gw_follower_uncertainty(&follower, &regressors, draw_real(GW_ZERO, GW_ONE));
     demand_real(s.xx, GW_ZERO, (gw_real_t)1.0e20);
     demand_real(s.xy, (gw_real_t)-1.0e20, (gw_real_t)1.0e20);
     demand_real(s.yy, GW_ZERO, (gw_real_t)1.0e20);
-    gw_follower_learn(&follower, &kinematics, &forces, residual_n);
+    gw_follower_learn(&follower, &regressors, residual_n, any_flag());
     hold_follower(&follower);
     (void)gw_follower_invariant_holds(&follower);
 }
