@@ -16,6 +16,7 @@ static gw_channels_noise_t any_noise(void)
     noise.force_noise_n = draw_real(GW_ZERO, (gw_real_t)3.0e4);
     noise.mass_kg = draw_real((gw_real_t)0.1, (gw_real_t)2.2e6);
     noise.yaw_inertia_kgm2 = draw_real((gw_real_t)0.0001, (gw_real_t)3.1e7);
+    noise.sliding_n = draw_real(GW_ZERO, (gw_real_t)1.1e5);
     noise.wheel_distance_m = draw_setting(GW_FIELD_GEOMETRY_WHEEL_DISTANCE);
     return noise;
 }
@@ -42,6 +43,7 @@ static void part_step(void)
     input.turned = any_flag();
     input.enabled = any_flag();
     input.reacting = any_flag();
+    draw_wrench(&output.mean_wrench, GW_WRENCH_MAX); /* written when it is refined, else kept */
     draw_channels(&channels);
     draw_kinematics(&kinematics);
     if (any_flag()) {
@@ -60,4 +62,6 @@ static void part_refusals(void)
 {
     disturb_channels(&channels);
     (void)gw_channels_invariant_holds(any_flag() ? &channels : NULL);
+    (void)gw_fast_channel_invariant_holds(any_flag() ? &channels.fast : NULL);
+    (void)gw_slow_channel_invariant_holds(any_flag() ? &channels.slow : NULL);
 }

@@ -20,9 +20,9 @@ static void part_step(void)
     draw_model_forces(&forces, GW_WRENCH_MAX);
     draw_vector(&residual_n, GW_WRENCH_MAX);
     const gw_regressors_t regressors = gw_follower_regressors(&kinematics, &forces);
-    gw_vector_t correction = gw_follower_correction(&follower, &regressors);
+    gw_vector_t correction = gw_follower_correction(&follower, &kinematics, &forces);
     hold_vector(&correction, (gw_real_t)4.2e9);
-    const gw_planar_covariance_t s = gw_follower_uncertainty(&follower, &regressors, draw_real(GW_ZERO, GW_ONE));
+    const gw_planar_covariance_t s = gw_follower_uncertainty(&follower, &regressors);
     demand_real(s.xx, GW_ZERO, (gw_real_t)1.0e20);
     demand_real(s.xy, (gw_real_t)-1.0e20, (gw_real_t)1.0e20);
     demand_real(s.yy, GW_ZERO, (gw_real_t)1.0e20);

@@ -92,7 +92,13 @@ DRIVERS = {
         "gw_contact_init:0",
     ),
     "detector": Driver(Mutant("gw_detector.c", "output->mean_wrench = gw_wrench_limited(output->mean_wrench);", "")),
-    "channels": Driver(Mutant("gw_channels.c", "gw_balance_limited(&input->wrench, &input->forces)", "wild")),
+    "channels": Driver(
+        Mutant(
+            "../include/giveway/gw_balance.h",
+            "gw_limited(value + (share * (target - value)), GW_BALANCE_STATE_MAX)",
+            "value + (share * (target - value))",
+        )
+    ),
     "admittance": Driver(
         Mutant("gw_admittance.c", "output->velocity_mps = limit_components(output->velocity_mps, SPEED_MAX);", "")
     ),
