@@ -24,15 +24,17 @@ static void part_init(void)
     config.geometry.wheel_slot[1] = 2U;
     config.geometry.wheel_slot[2] = 0U;
     disturb_controller(&controller);
-    /* 1024 samples at once, so that Eva does not have to follow the loop over them */
-    controller.estimator.average = empty;
-    /* Whether an outline is convex and a gain fits the period: both checks are called twice with the same answer, which
-     * Eva cannot know. contact.c and reference.c prove the results of a successful init of these two. */
+    /* Whether an outline is convex, a gain fits the period and an acceleration is measured: these checks are called
+     * twice with the same answer, which Eva cannot know. contact.c, reference.c and estimator.c prove the results of a
+     * successful init of these three. */
     draw_contact(&controller.contact);
+    draw_estimator(&controller.estimator);
+    controller.estimator.average = empty; /* 1024 samples at once: Eva does not have to follow the loop over them */
     draw_reference(&controller.reference);
     if (gw_controller_init(&controller, &config, any_flag() ? &error : NULL) == GW_STATUS_OK) {
         controller.contact.initialised = true;
         controller.reference.initialised = true;
+        controller.estimator.initialised = true;
         hold_controller(&controller);
     }
 }

@@ -12,6 +12,8 @@ int main(void)
     suite_nominal();
     suite_rate_filter();
     suite_lowpass();
+    suite_balance();
+    suite_planar_covariance();
     suite_follower();
     suite_presliding();
     suite_wrench();

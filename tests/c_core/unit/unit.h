@@ -51,6 +51,7 @@ gw_real_t unit_below(gw_real_t x);
 
 /* The suites, one per module. */
 void suite_admittance(void);
+void suite_balance(void);
 void suite_config(void);
 void suite_contact(void);
 void suite_controller(void);
@@ -66,6 +67,7 @@ void suite_lowpass(void);
 void suite_math(void);
 void suite_moving_average(void);
 void suite_nominal(void);
+void suite_planar_covariance(void);
 void suite_presliding(void);
 void suite_rate_filter(void);
 void suite_reference(void);
