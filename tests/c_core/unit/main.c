@@ -15,6 +15,7 @@ int main(void)
     suite_balance();
     suite_planar_covariance();
     suite_follower();
+    suite_model_covariance();
     suite_presliding();
     suite_wrench();
     suite_tare();
