@@ -36,7 +36,7 @@ public:
         covariance.setZero();
         covariance.topLeftCorner<3, 3>().setConstant(common * common);
         covariance.diagonal() += Eigen::Vector4d(wheel * wheel, wheel * wheel, wheel * wheel, mass * mass);
-        first_ = covariance(0, 0);
+        first_ = covariance.diagonal();
     }
 
     void learn(const Regressor &columns, const Eigen::Vector2d &residual, int component)
@@ -45,8 +45,8 @@ public:
         if (columns.col(3).norm() < 8.0) {
             h(3) = 0.0;
         }
-        for (int i = 0; i < 3; ++i) {
-            if (covariance(i, i) < first_) {
+        for (int i = 0; i < 4; ++i) {
+            if (covariance(i, i) < first_(i)) {
                 covariance(i, i) += std::pow(config_.drift_per_root_s, 2) * interval;
             }
         }
@@ -62,7 +62,7 @@ public:
 
 private:
     gw_follower_config_t config_;
-    double first_ = 0.0;
+    State first_;
 };
 
 // What happens to one robot: its model's forces and the residual without contact.
