@@ -33,11 +33,14 @@ static void part_step(void)
 {
     gw_channels_input_t input;
     gw_channels_output_t output;
-    input.wrench.force_x_n = any_real();
-    input.wrench.force_y_n = any_real();
-    input.wrench.torque_nm = any_real();
-    draw_model_forces(&input.forces, GW_REAL_MAX);
-    draw_wrench(&input.zero_step, (gw_real_t)1.0e20);
+    const gw_wrench_t wrench = {any_real(), any_real(), any_real()};
+    gw_model_forces_t forces;
+    gw_wrench_t zero_step;
+    draw_model_forces(&forces, GW_REAL_MAX);
+    draw_wrench(&zero_step, (gw_real_t)1.0e20);
+    input.wrench = &wrench;
+    input.forces = &forces;
+    input.zero_step = &zero_step;
     input.zero_changed = any_flag();
     input.regime = (gw_regime_t)draw_count(0U, (uint32_t)GW_REGIME_MOTION);
     input.turned = any_flag();

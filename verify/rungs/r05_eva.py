@@ -93,11 +93,7 @@ DRIVERS = {
     ),
     "detector": Driver(Mutant("gw_detector.c", "output->mean_wrench = gw_wrench_limited(output->mean_wrench);", "")),
     "channels": Driver(
-        Mutant(
-            "../include/giveway/gw_balance.h",
-            "gw_limited(value + (share * (target - value)), GW_BALANCE_STATE_MAX)",
-            "value + (share * (target - value))",
-        )
+        Mutant("../include/giveway/gw_math.h", "return gw_limited(moved, limit);", "return moved;"),
     ),
     "admittance": Driver(
         Mutant("gw_admittance.c", "output->velocity_mps = limit_components(output->velocity_mps, SPEED_MAX);", "")

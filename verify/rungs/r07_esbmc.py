@@ -53,6 +53,12 @@ HARNESSES = {
         "filter->rate_radps = rate_radps * GW_TWO;",
         "include/giveway/gw_rate_filter.h",
     ),
+    "approach": Harness(
+        ("gw_math",),
+        "value + (share * (target - value))",
+        "value + ((GW_TWO * share) * (target - value))",
+        "include/giveway/gw_math.h",
+    ),
     "lowpass": Harness(
         ("gw_math",),
         "filter->value = gw_limited(input, limit);",
