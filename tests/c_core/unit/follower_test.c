@@ -250,6 +250,8 @@ static void the_largest_forces_keep_the_invariant(void)
     const gw_real_t sizes[] = {R(1.0e9), R(-1.0e9), R(1.0e5), R(-3.0), GW_ZERO};
     gw_follower_t follower;
     gw_follower_init(&follower, &config, R(100.0)); /* even at such intervals the drift is limited */
+    CHECK(gw_follower_invariant_holds(&follower));
+    CHECK((follower.covariance[0][0] == GW_TWO) && (follower.drift_per_call == GW_TWO));
     for (uint32_t i = 0U; i < 3125U; i++) {
         const gw_model_forces_t at = forces(sizes[i % 5U], sizes[(i / 5U) % 5U], sizes[(i / 25U) % 5U],
                                             sizes[(i / 125U) % 5U], sizes[(i / 625U) % 5U]);
