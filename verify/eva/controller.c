@@ -30,6 +30,7 @@ static void part_init(void)
     draw_contact(&controller.contact);
     draw_estimator(&controller.estimator);
     controller.estimator.average = empty; /* 1024 samples at once: Eva does not have to follow the loop over them */
+    controller.estimator.average.window = draw_count(1U, GW_MOVING_AVERAGE_CAPACITY);
     draw_reference(&controller.reference);
     if (gw_controller_init(&controller, &config, any_flag() ? &error : NULL) == GW_STATUS_OK) {
         controller.contact.initialised = true;
