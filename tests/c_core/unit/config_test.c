@@ -30,7 +30,9 @@ static robot_t robot(void)
 {
     robot_t made;
     gw_controller_config_trikey(&made.controller);
-    made.controller.estimator.acceleration_source = GW_SOURCE_MEASURED; /* aligned may be 1 with this alone */
+    /* The channels need an aligned balance, and that a measured acceleration. */
+    made.controller.estimator.acceleration_source = GW_SOURCE_MEASURED;
+    made.controller.estimator.aligned = 1U;
     for (uint32_t i = 0U; i < GW_OUTLINE_VERTEX_MAX; i++) {
         const gw_rotation_t at = gw_sincos(R(0.39) * (gw_real_t)i);
         made.controller.contact.vertex_m[i].x = R(0.4) * at.cosine;
@@ -58,6 +60,9 @@ static robot_t with_real(const place_t *place, gw_real_t value)
 static robot_t with_count(const place_t *place, uint32_t value)
 {
     robot_t made = robot();
+    if (place->field == GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE) {
+        made.controller.estimator.aligned = 0U;
+    }
     *(uint32_t *)(void *)((uint8_t *)&made + place->offset) = value;
     return made;
 }
@@ -270,6 +275,15 @@ static void only_a_measured_acceleration_can_be_aligned_with(void)
     }
 }
 
+static void the_channels_need_an_aligned_balance(void)
+{
+    robot_t made = robot();
+    made.controller.detector.kind = GW_DETECTOR_CHANNELS;
+    CHECK_STATUS(refused(&made).field, GW_FIELD_NONE);
+    made.controller.estimator.aligned = 0U;
+    CHECK_STATUS(refused(&made).field, GW_FIELD_DETECTOR_KIND);
+}
+
 static void a_check_begins_with_nothing_to_blame(void)
 {
     gw_config_error_t error = {GW_FIELD_BASE_MASS, 9U, R(9.0), R(9.0), R(9.0)};
@@ -328,6 +342,7 @@ void suite_config(void)
     unit_run("the_first_bad_field_is_the_one_that_is_named", the_first_bad_field_is_the_one_that_is_named);
     unit_run("the_paper_s_settings_are_these", the_paper_s_settings_are_these);
     unit_run("only_a_measured_acceleration_can_be_aligned_with", only_a_measured_acceleration_can_be_aligned_with);
+    unit_run("the_channels_need_an_aligned_balance", the_channels_need_an_aligned_balance);
     unit_run("a_check_begins_with_nothing_to_blame", a_check_begins_with_nothing_to_blame);
     unit_run("every_roller_s_stiffness_meets_its_bounds", every_roller_s_stiffness_meets_its_bounds);
     unit_run("what_is_no_field_has_the_row_of_none", what_is_no_field_has_the_row_of_none);
