@@ -167,6 +167,7 @@ static gw_real_t moment_of_levers(const gw_channels_t *channels)
 
 static void learn(gw_channels_t *channels, const gw_kinematics_t *kinematics)
 {
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_regressors_t regressors = gw_follower_regressors(kinematics, &channels->slow.mean.model);
     const gw_vector_t residual_n = {channels->slow.mean.residual.force_x_n, channels->slow.mean.residual.force_y_n};
     gw_follower_learn(&channels->follower, &regressors, residual_n, (channels->tick & LEARN_TICKS) != 0U);
@@ -255,7 +256,8 @@ static void continue_contact(gw_channels_t *channels, const gw_balance_t *balanc
 static void warm_up(gw_channels_t *channels, const gw_balance_t *balance)
 {
     channels->warm_up_ticks++;
-    const gw_real_t share = GW_ONE / (gw_real_t)(channels->warm_up_ticks + 1U); /* the zero before counts as one tick */
+    const uint32_t ticks = channels->warm_up_ticks + 1U; /* the zero before counts as one */
+    const gw_real_t share = GW_ONE / (gw_real_t)ticks;
     gw_fast_channel_begin(&channels->fast, balance, share);
     gw_slow_channel_begin(&channels->slow, balance, share);
 }

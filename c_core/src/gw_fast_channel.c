@@ -17,12 +17,9 @@
 #define NOISE_MAX_N2 ((gw_real_t)1.0e10)
 #define NOISE_CLIP ((gw_real_t)6.0) /* an outlier counts as this many variances */
 /* Bounds of what is kept, for every configuration. */
-#define VARIANCE_MAX ((gw_real_t)1.0e18)
-#define HELD_MAX_N ((gw_real_t)1.0e10)
+#define VARIANCE_MAX ((gw_real_t)8.0e17)
+#define HELD_MAX_N ((gw_real_t)1.0e6)
 #define MOMENT_PER_FORCE_MAX ((gw_real_t)1.0e12)
-/* Least noise of each regime over the predicted one, and the first guess: slow wheels count irregularly. */
-static const gw_real_t least_share[GW_NOISE_SETS] = {(gw_real_t)0.4, (gw_real_t)0.5, (gw_real_t)0.6};
-static const gw_real_t first_share[GW_NOISE_SETS] = {(gw_real_t)1.0, (gw_real_t)2.0, (gw_real_t)1.0};
 static const gw_real_t bank_s[GW_BANK_COUNT] = {(gw_real_t)0.002, (gw_real_t)0.006, (gw_real_t)0.018, (gw_real_t)0.05};
 
 gw_real_t gw_fast_channel_time(uint32_t j)
@@ -47,6 +44,9 @@ static gw_real_t predicted_n2(const gw_channels_noise_t *noise, gw_real_t tau_s,
 void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_channels_noise_t *noise)
 {
+    /* Least noise of each regime over the predicted one, and the first guess: slow wheels count irregularly. */
+    static const gw_real_t least_share[GW_NOISE_SETS] = {(gw_real_t)0.4, (gw_real_t)0.5, (gw_real_t)0.6};
+    static const gw_real_t first_share[GW_NOISE_SETS] = {(gw_real_t)1.0, (gw_real_t)2.0, (gw_real_t)1.0};
     const gw_real_t arm_m = noise->wheel_distance_m;
     const gw_real_t gyration_m2 = noise->yaw_inertia_kgm2 / noise->mass_kg;
     /* Of a position of the base: that of a wheel times 2/n, as the wheels add up. */
@@ -245,7 +245,7 @@ void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *bal
     const gw_real_t left_n = gw_max((left->force_x_n * d.x) + (left->force_y_n * d.y), GW_ZERO);
     const gw_real_t unknown_n2 =
         ((((m.xx * d.x) * d.x) + ((GW_TWO * m.xy) * (d.x * d.y))) + ((m.yy * d.y) * d.y)) + found->release_n2;
-    const gw_real_t held_n = left_n + gw_sqrt(gw_max(unknown_n2, GW_ZERO));
+    const gw_real_t held_n = gw_min(left_n + gw_sqrt(gw_max(unknown_n2, GW_ZERO)), HELD_MAX_N);
     channel->held_n.x = held_n * d.x;
     channel->held_n.y = held_n * d.y;
     /* The baseline becomes this balance, but for the change beyond what the low-pass holds: that is noise. */

@@ -10,6 +10,7 @@ gw_planar_covariance_t gw_model_covariance(const gw_channels_config_t *config, c
 {
     const gw_real_t shape = config->friction_shape * config->friction_shape;
     const gw_real_t presliding = config->presliding * config->presliding;
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_regressors_t regressors = gw_follower_regressors(kinematics, change);
     gw_planar_covariance_t sum = gw_follower_uncertainty(follower, &regressors);
     GW_UNROLLED

@@ -47,14 +47,17 @@ static inline gw_planar_covariance_t gw_planar_widened(gw_planar_covariance_t m,
 /* Rounding may leave a singular covariance a determinant below zero. */
 static inline gw_planar_spread_t gw_planar_spread(gw_planar_covariance_t m)
 {
-    const gw_planar_spread_t spread = {m, m.xx + m.yy, gw_max((m.xx * m.yy) - (m.xy * m.xy), GW_ZERO)};
+    gw_planar_spread_t spread;
+    spread.m = m;
+    spread.trace = m.xx + m.yy;
+    spread.determinant = gw_max((m.xx * m.yy) - (m.xy * m.xy), GW_ZERO);
     return spread;
 }
 
 /* part/whole, at most GW_DISTANCE_MAX; part >= 0. */
 static inline gw_real_t gw_planar_ratio(gw_real_t part, gw_real_t whole)
 {
-    return gw_min(part / gw_max(whole, (gw_real_t)1.0e-9), GW_DISTANCE_MAX);
+    return gw_min(part / gw_max(whole, (gw_real_t)1.0e-8), GW_DISTANCE_MAX);
 }
 
 /* x^T (M + n I)^-1 x, n > 0. Pointer not NULL. */
