@@ -18,6 +18,7 @@
 #define LEVER_MAX_NM2 ((gw_real_t)1.0e10)
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
+#define SLIDING_SHARE ((gw_real_t)0.9) /* of the friction of sliding rollers */
 #define CALM ((gw_real_t)0.5) /* of the threshold: the model is followed, and a contact ends, below */
 
 void gw_channels_config_trikey(gw_channels_config_t *config)
@@ -165,6 +166,17 @@ static gw_real_t moment_of_levers(const gw_channels_t *channels)
     return (channels->config.lever_m * channels->config.lever_m) * sum_n2;
 }
 
+/* A roller that hardly turns has a friction of its own history: nothing is learned from it. */
+static bool all_wheels_slide(const gw_channels_t *channels)
+{
+    bool slide = true;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        slide = slide && (gw_magnitude(channels->slow.mean.model.friction_n.wheel[i]) >=
+                          (SLIDING_SHARE * channels->slow.sliding_n));
+    }
+    return slide;
+}
+
 static void learn(gw_channels_t *channels, const gw_kinematics_t *kinematics)
 {
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
@@ -187,7 +199,7 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
         channels->lever_nm2 = moment_of_levers(channels);
         if (((channels->tick % LEARN_TICKS) == LEARN_PHASE) && (regime == GW_REGIME_MOTION) &&
             (input->regime == GW_REGIME_MOTION) && (!channels->active) &&
-            (gw_max(fast, channels->slow.statistic) < CALM)) {
+            (gw_max(fast, channels->slow.statistic) < CALM) && all_wheels_slide(channels)) {
             learn(channels, kinematics);
         }
     }
