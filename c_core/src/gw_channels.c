@@ -5,11 +5,11 @@
 
 #if (GW_WITH_CHANNELS == 1)
 
-#define DOUBT_TICKS 2U /* between two looks at what the model may be wrong by */
-#define SLOW_TICKS 4U  /* between two judgements of the slow channel */
-#define LEARN_TICKS 8U /* between two calls of the follower, whose input is slower: x and y in turn */
+#define DOUBT_TICKS 2U   /* between two looks at what the model may be wrong by */
+#define GW_SLOW_TICKS 4U /* between two judgements of the slow channel */
+#define LEARN_TICKS 8U   /* between two calls of the follower, whose input is slower: x and y in turn */
 #define LEARN_PHASE 2U
-#define FREE_PHASE 2U     /* among SLOW_TICKS: while a contact lasts nothing is due then */
+#define FREE_PHASE 2U     /* among GW_SLOW_TICKS: while a contact lasts nothing is due then */
 #define WARM_UP_TICKS 60U /* the baseline's first mean */
 #define QUIET_TICKS 40U   /* without a force before a contact counts as over */
 #define TURN_TICKS 60U    /* after the last count, wheels count as standing */
@@ -19,7 +19,7 @@
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
 #define SLIDING_SHARE ((gw_real_t)0.9) /* of the friction of sliding rollers */
-#define CALM ((gw_real_t)0.5) /* of the threshold: the model is followed, and a contact ends, below */
+#define CALM ((gw_real_t)0.5)          /* of the threshold: the model is followed, and a contact ends, below */
 
 void gw_channels_config_trikey(gw_channels_config_t *config)
 {
@@ -27,17 +27,18 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->model_multiple = (gw_real_t)2.5;
     config->baseline_s = (gw_real_t)0.3;
     config->slow_s = (gw_real_t)0.05;
+    config->slow_baseline_s = (gw_real_t)3.0;
     config->friction_shape = (gw_real_t)0.12;
     config->presliding = (gw_real_t)0.35;
     config->yaw_inertia = (gw_real_t)0.2;
     config->centre_of_mass_m = (gw_real_t)0.03;
     config->lever_m = (gw_real_t)0.01;
     config->fast.rest_n = (gw_real_t)3.0;
-    config->fast.creep_n = (gw_real_t)12.0;
+    config->fast.creep_n = (gw_real_t)14.0;
     config->fast.motion_n = (gw_real_t)7.0;
     config->slow.rest_n = (gw_real_t)4.0;
     config->slow.creep_n = (gw_real_t)40.0;
-    config->slow.motion_n = (gw_real_t)12.0;
+    config->slow.motion_n = (gw_real_t)14.0;
     config->settle_ticks = 500U;
     config->lock_ticks = 100U;
     config->rearm_ticks = 600U;
@@ -50,6 +51,7 @@ void gw_channels_config_check(const gw_channels_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_CHANNELS_MODEL_MULTIPLE, config->model_multiple);
     gw_config_check_real(error, GW_FIELD_CHANNELS_BASELINE_TIME, config->baseline_s);
     gw_config_check_real(error, GW_FIELD_CHANNELS_SLOW_TIME, config->slow_s);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_SLOW_BASELINE_TIME, config->slow_baseline_s);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FRICTION_SHAPE, config->friction_shape);
     gw_config_check_real(error, GW_FIELD_CHANNELS_PRESLIDING, config->presliding);
     gw_config_check_real(error, GW_FIELD_CHANNELS_YAW_INERTIA, config->yaw_inertia);
@@ -148,10 +150,10 @@ static gw_regime_t judged_regime(const gw_channels_t *channels, const gw_channel
 
 /* Another zero: the residual jumps, and all that follows it jumps with it. What was left of slow errors ends with the
  * motion: the thresholds of rest are too small for them. */
-static void take_zero_step(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input)
+static void take_zero_step(gw_channels_t *channels, const gw_channels_input_t *input)
 {
     gw_fast_channel_take_zero(&channels->fast, *input->zero_step, !channels->active);
-    gw_slow_channel_take_zero(&channels->slow, kinematics, &channels->follower, *input->zero_step, input->regime);
+    gw_slow_channel_take_zero(&channels->slow, *input->zero_step, input->regime);
 }
 
 /* Wheels touch the floor with one row of rollers or the other: the moment that all forces make about the centre is
@@ -192,11 +194,14 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
     if ((channels->tick % DOUBT_TICKS) != 0U) {
         gw_fast_channel_doubt(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
                               channels->lever_nm2);
-    } else if ((channels->tick % SLOW_TICKS) == 0U) {
+    } else if ((channels->tick % GW_SLOW_TICKS) == 0U) {
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
                               (input->regime == GW_REGIME_REST) ? GW_REGIME_REST : regime);
     } else {
         channels->lever_nm2 = moment_of_levers(channels);
+        if ((!channels->active) && (input->regime != GW_REGIME_REST)) {
+            gw_slow_channel_follow(&channels->slow, regime == GW_REGIME_MOTION);
+        }
         if (((channels->tick % LEARN_TICKS) == LEARN_PHASE) && (regime == GW_REGIME_MOTION) &&
             (input->regime == GW_REGIME_MOTION) && (!channels->active) &&
             (gw_max(fast, channels->slow.statistic) < CALM) && all_wheels_slide(channels)) {
@@ -208,7 +213,7 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
 /* A tick in which nothing else is due. */
 static bool has_time(const gw_channels_t *channels)
 {
-    return (channels->tick % SLOW_TICKS) == FREE_PHASE;
+    return (channels->tick % GW_SLOW_TICKS) == FREE_PHASE;
 }
 
 static void add_impulse(gw_channels_t *channels, gw_wrench_t wrench, gw_real_t time_s)
@@ -316,7 +321,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     gw_real_t largest = GW_ZERO;
     output->tripped = false;
     if (input->zero_changed) {
-        take_zero_step(channels, kinematics, input);
+        take_zero_step(channels, input);
     }
     count_ticks(channels, input);
     if (channels->warm_up_ticks < WARM_UP_TICKS) {

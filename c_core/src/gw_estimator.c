@@ -131,8 +131,7 @@ static void align(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_
 {
     if (estimator->config.aligned != 0U) {
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            values->wheel[i] =
-                gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
+            values->wheel[i] = gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
         }
     }
 }

@@ -15,9 +15,9 @@
 
 void gw_follower_config_trikey(gw_follower_config_t *config)
 {
-    config->friction_common = (gw_real_t)0.173; /* +-30 %, uniform */
-    config->friction_wheel = (gw_real_t)0.087;  /* +-15 % */
-    config->mass = (gw_real_t)0.15;             /* -5 to +25 % */
+    config->friction_common = (gw_real_t)0.3; /* +-30 %, and it may grow with a load of up to 25 % */
+    config->friction_wheel = (gw_real_t)0.1;  /* +-15 % */
+    config->mass = (gw_real_t)0.15;           /* -5 to +25 % */
     config->drift_per_root_s = (gw_real_t)0.01;
     config->residual_n = (gw_real_t)5.0;
 }

@@ -6,15 +6,18 @@
 
 #if (GW_WITH_CHANNELS == 1)
 
-/* Residual, correction and zero. */
+/* Of the baseline at the beginning of a motion. */
+#define UNSETTLED_TIME_S ((gw_real_t)0.5)
+/* Residual and correction. */
 #define FORCE_MAX_N ((gw_real_t)1.0e6)
-
-static const gw_vector_t no_force = {0};
 
 void gw_slow_channel_init(gw_slow_channel_t *channel, const gw_channels_config_t *config,
                           const gw_channels_noise_t *noise)
 {
     channel->share = gw_share_of(noise->period_s, config->slow_s);
+    const gw_real_t interval_s = noise->period_s * (gw_real_t)GW_SLOW_TICKS;
+    channel->settled_share = gw_share_of(interval_s, config->slow_baseline_s);
+    channel->unsettled_share = gw_share_of(interval_s, UNSETTLED_TIME_S);
     channel->sliding_n = gw_min(noise->sliding_n, GW_BALANCE_MAX);
     gw_slow_channel_restart(channel);
 }
@@ -22,8 +25,9 @@ void gw_slow_channel_init(gw_slow_channel_t *channel, const gw_channels_config_t
 void gw_slow_channel_restart(gw_slow_channel_t *channel)
 {
     static const gw_balance_t no_balance = {0};
+    static const gw_vector_t no_force = {0};
     channel->mean = no_balance;
-    channel->zero_n = no_force;
+    channel->baseline = no_balance;
     channel->force_n = no_force;
     channel->statistic = GW_ZERO;
 }
@@ -32,8 +36,10 @@ bool gw_slow_channel_invariant_holds(const gw_slow_channel_t *channel)
 {
     return (channel != NULL) && gw_in_range(channel->share, GW_ZERO, GW_HALF) &&
            gw_in_range(channel->sliding_n, GW_ZERO, GW_BALANCE_MAX) &&
-           gw_balance_is_within(&channel->mean, GW_BALANCE_MAX) && gw_within(channel->zero_n.x, FORCE_MAX_N) &&
-           gw_within(channel->zero_n.y, FORCE_MAX_N) && gw_within(channel->force_n.x, FORCE_MAX_N) &&
+           gw_in_range(channel->settled_share, GW_ZERO, GW_HALF) &&
+           gw_in_range(channel->unsettled_share, GW_ZERO, GW_HALF) &&
+           gw_balance_is_within(&channel->mean, GW_BALANCE_MAX) &&
+           gw_balance_is_within(&channel->baseline, GW_BALANCE_MAX) && gw_within(channel->force_n.x, FORCE_MAX_N) &&
            gw_within(channel->force_n.y, FORCE_MAX_N) && gw_in_range(channel->statistic, GW_ZERO, GW_DISTANCE_MAX);
 }
 
@@ -47,38 +53,37 @@ void gw_slow_channel_step(gw_slow_channel_t *channel, const gw_balance_t *balanc
     gw_balance_approach(&channel->mean, balance, channel->share);
 }
 
-static gw_vector_t corrected(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,
-                             const gw_follower_t *follower)
-{
-    const gw_vector_t correction = gw_follower_correction(follower, kinematics, &channel->mean.model);
-    const gw_vector_t force_n = {channel->mean.residual.force_x_n + correction.x,
-                                 channel->mean.residual.force_y_n + correction.y};
-    return force_n;
-}
-
-void gw_slow_channel_take_zero(gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,
-                               const gw_follower_t *follower, gw_wrench_t step, gw_regime_t regime)
+void gw_slow_channel_take_zero(gw_slow_channel_t *channel, gw_wrench_t step, gw_regime_t regime)
 {
     channel->mean.residual = gw_balance_sum(channel->mean.residual, step);
-    channel->zero_n = no_force;
     if (regime == GW_REGIME_REST) {
-        channel->zero_n = corrected(channel, kinematics, follower);
+        channel->baseline = channel->mean;
+    } else {
+        channel->baseline.residual = gw_balance_sum(channel->baseline.residual, step);
     }
+}
+
+void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled)
+{
+    gw_balance_approach(&channel->baseline, &channel->mean,
+                        settled ? channel->settled_share : channel->unsettled_share);
 }
 
 void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor)
 {
-    const gw_vector_t force_n = corrected(channel, kinematics, follower);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+    const gw_balance_t change = gw_balance_difference(&channel->mean, &channel->baseline);
+    const gw_vector_t correction = gw_follower_correction(follower, kinematics, &change.model);
     const gw_real_t floor_n = gw_force_floor(config->slow, floor);
     gw_planar_covariance_t model_n2 = {GW_ZERO, GW_ZERO, GW_ZERO};
     if (floor != GW_REGIME_REST) {
-        model_n2 = gw_model_covariance(config, kinematics, follower, &channel->mean.model, &channel->mean.model,
-                                       channel->sliding_n);
+        model_n2 =
+            gw_model_covariance(config, kinematics, follower, &change.model, &channel->mean.model, channel->sliding_n);
     }
     const gw_planar_spread_t spread = gw_planar_spread(model_n2);
-    channel->force_n.x = force_n.x - channel->zero_n.x;
-    channel->force_n.y = force_n.y - channel->zero_n.y;
+    channel->force_n.x = change.residual.force_x_n + correction.x;
+    channel->force_n.y = change.residual.force_y_n + correction.y;
     channel->statistic = gw_planar_distance(&spread, floor_n * floor_n, channel->force_n);
 }
 

@@ -25,6 +25,8 @@ typedef struct {
     /* Time constants of the baseline, s, [0.01, 10], and of the slow channel, s, [0.005, 10]. */
     gw_real_t baseline_s;
     gw_real_t slow_s;
+    /* Time constant of the slow channel's baseline in motion, s, [0.01, 100]. */
+    gw_real_t slow_baseline_s;
     /* Error of the friction's course that no factor explains, relative, [0, 1]. */
     gw_real_t friction_shape;
     /* Error of the friction of rollers that hardly turn, as a share of what is missing to full sliding, [0, 1]. */

@@ -100,6 +100,7 @@ extern "C" {
     ROW(REAL, GW_FIELD_CHANNELS_MODEL_MULTIPLE, "channels.model_multiple", OF model_multiple, 0, 100) \
     ROW(REAL, GW_FIELD_CHANNELS_BASELINE_TIME, "channels.baseline_time", OF baseline_s, 0.01, 10) \
     ROW(REAL, GW_FIELD_CHANNELS_SLOW_TIME, "channels.slow_time", OF slow_s, 0.005, 10) \
+    ROW(REAL, GW_FIELD_CHANNELS_SLOW_BASELINE_TIME, "channels.slow_baseline_time", OF slow_baseline_s, 0.01, 100) \
     ROW(REAL, GW_FIELD_CHANNELS_FRICTION_SHAPE, "channels.friction_shape", OF friction_shape, 0, 1) \
     ROW(REAL, GW_FIELD_CHANNELS_PRESLIDING, "channels.presliding", OF presliding, 0, 1) \
     ROW(REAL, GW_FIELD_CHANNELS_YAW_INERTIA, "channels.yaw_inertia", OF yaw_inertia, 0, 1) \

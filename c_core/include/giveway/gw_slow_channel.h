@@ -1,8 +1,9 @@
 /* The slow channel of the detector: pushes.
  *
- * The balance of forces itself, behind a low-pass and less what is known of friction and mass, is compared with its
- * covariance S = floor^2 I + k_m^2 M, as in gw_fast_channel.h; at rest with the floor alone, since the tare says all.
- * It trips if x^T S^-1 x > 1.
+ * The balance of forces, behind a low-pass and less what is known of friction and mass, is compared with a baseline of
+ * seconds: at rest that is what was there when the zero was taken, in motion it follows slowly, so that a slope and a
+ * zero that is wrong do not matter. S = floor^2 I + k_m^2 M, as in gw_fast_channel.h; at rest the floor alone. It trips
+ * if x^T S^-1 x > 1.
  *
  * Life cycle: gw_slow_channel_init, gw_slow_channel_restart, gw_slow_channel_begin for each tick of the first mean,
  * then gw_slow_channel_step per tick. All members of gw_slow_channel_t are private.
@@ -20,11 +21,15 @@
 extern "C" {
 #endif
 
+#define GW_SLOW_TICKS 4U
+
 typedef struct {
     gw_real_t share;
     gw_real_t sliding_n; /* friction of a wheel whose rollers slide */
     gw_balance_t mean;
-    gw_vector_t zero_n; /* what it held when the last zero was taken */
+    gw_real_t settled_share; /* of the baseline, between two calls of gw_slow_channel_follow */
+    gw_real_t unsettled_share;
+    gw_balance_t baseline;
     gw_vector_t force_n;
     gw_real_t statistic;
 } gw_slow_channel_t;
@@ -37,9 +42,10 @@ bool gw_slow_channel_invariant_holds(const gw_slow_channel_t *channel);
 /* A tick of the first mean: share is 1/(n + 1) in the n-th. */
 void gw_slow_channel_begin(gw_slow_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
 void gw_slow_channel_step(gw_slow_channel_t *channel, const gw_balance_t *balance);
-/* Another zero: the residual jumps by this. At rest what the channel holds now is taken as zero. */
-void gw_slow_channel_take_zero(gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,
-                               const gw_follower_t *follower, gw_wrench_t step, gw_regime_t regime);
+/* Another zero: the residual jumps by this. At rest what the channel holds now becomes the baseline. */
+void gw_slow_channel_take_zero(gw_slow_channel_t *channel, gw_wrench_t step, gw_regime_t regime);
+/* The baseline follows, in motion without contact; to be called every GW_SLOW_TICKS. */
+void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled);
 /* Compares; every few ticks is enough. floor: of which regime the floor is. */
 void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor);
