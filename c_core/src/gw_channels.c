@@ -24,6 +24,7 @@
 void gw_channels_config_trikey(gw_channels_config_t *config)
 {
     config->noise_multiple = (gw_real_t)8.0;
+    config->imu_noise_multiple = (gw_real_t)6.5;
     config->model_multiple = (gw_real_t)2.5;
     config->baseline_s = (gw_real_t)0.3;
     config->slow_s = (gw_real_t)0.05;
@@ -48,6 +49,7 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
 void gw_channels_config_check(const gw_channels_config_t *config, gw_config_error_t *error)
 {
     gw_config_check_real(error, GW_FIELD_CHANNELS_NOISE_MULTIPLE, config->noise_multiple);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_IMU_NOISE_MULTIPLE, config->imu_noise_multiple);
     gw_config_check_real(error, GW_FIELD_CHANNELS_MODEL_MULTIPLE, config->model_multiple);
     gw_config_check_real(error, GW_FIELD_CHANNELS_BASELINE_TIME, config->baseline_s);
     gw_config_check_real(error, GW_FIELD_CHANNELS_SLOW_TIME, config->slow_s);
@@ -235,7 +237,7 @@ static void begin_contact(gw_channels_t *channels, const gw_fast_found_t *found)
     channels->impulse_s = GW_ZERO;
     if (found->statistic > GW_ONE) {
         channels->channel = GW_CHANNEL_FAST;
-        add_impulse(channels, channels->fast.bank[found->widest], gw_fast_channel_time(found->widest));
+        add_impulse(channels, channels->fast.bank[found->widest], gw_fast_channel_time(&channels->fast, found->widest));
     } else {
         const gw_wrench_t lasting = {channels->slow.force_n.x, channels->slow.force_n.y,
                                      channels->slow.mean.residual.torque_nm};
@@ -320,6 +322,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     const gw_balance_t balance = gw_balance_limited(input->wrench, input->forces);
     gw_real_t largest = GW_ZERO;
     output->tripped = false;
+    gw_fast_channel_feel(&channels->fast, input->felt, input->shaking_mps2_2);
     if (input->zero_changed) {
         take_zero_step(channels, input);
     }

@@ -18,6 +18,9 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     gw_admittance_config_trikey(&config->admittance);
     gw_reference_config_trikey(&config->reference);
     gw_supervisor_config_trikey(&config->supervisor);
+#if (GW_WITH_CHANNELS == 1)
+    gw_imu_config_trikey(&config->imu);
+#endif
     config->drives_enabled = true;
 }
 
@@ -43,6 +46,9 @@ gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_
     gw_admittance_config_check(&config->admittance, error);
     gw_reference_config_check(&config->reference, config->period_s, error);
     gw_supervisor_config_check(&config->supervisor, error);
+#if (GW_WITH_CHANNELS == 1)
+    gw_imu_config_check(&config->imu, error);
+#endif
     return (error->field == GW_FIELD_NONE) ? GW_STATUS_OK : GW_STATUS_CONFIG_INVALID;
 }
 
@@ -69,7 +75,8 @@ static bool uses_channels(const gw_controller_t *controller)
 }
 
 /* What the sensors add to the balance of forces. */
-static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const gw_estimator_t *estimator)
+static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const gw_estimator_t *estimator,
+                                    const gw_imu_t *imu)
 {
     gw_channels_noise_t noise;
     const gw_real_t twist_rad = config->estimator.torque_noise_nm * estimator->rate_constants.compliance_rad_per_nm;
@@ -82,12 +89,17 @@ static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const 
     noise.mass_kg = estimator->nominal.total_mass_kg;
     noise.yaw_inertia_kgm2 = estimator->nominal.total_yaw_inertia_kgm2;
     noise.wheel_distance_m = config->geometry.wheel_distance_m;
+    noise.imu = gw_imu_noise(imu);
     return noise;
 }
 
 static void init_channels(gw_controller_t *controller, const gw_controller_config_t *config)
 {
-    const gw_channels_noise_t noise = noise_of(config, &controller->estimator);
+    static const gw_imu_output_t nothing_felt = {0};
+    (void)gw_imu_init(&controller->imu, &config->imu, config->period_s);
+    gw_estimator_set_imu_cutoff(&controller->estimator, config->imu.cutoff_radps);
+    controller->felt = nothing_felt;
+    const gw_channels_noise_t noise = noise_of(config, &controller->estimator, &controller->imu);
     gw_channels_init(&controller->channels, &config->channels, &noise);
 }
 
@@ -105,7 +117,7 @@ static gw_real_t channels_leak(const gw_controller_t *controller, gw_regime_t re
 
 static bool channels_hold(const gw_controller_t *controller)
 {
-    return gw_channels_invariant_holds(&controller->channels);
+    return gw_channels_invariant_holds(&controller->channels) && gw_imu_invariant_holds(&controller->imu);
 }
 
 static void forget_contact(gw_controller_t *controller)
@@ -137,6 +149,26 @@ static bool contact_is_known(const gw_controller_t *controller)
     return uses_channels(controller) && (controller->contact_found.refining || (!controller->contact_found.active));
 }
 
+/* The acceleration that the IMU shows; its bias is taken where the robot stands, as the last tick saw it. */
+static void feel(gw_controller_t *controller, const gw_controller_input_t *input)
+{
+    if (controller->estimator.config.acceleration_source == GW_SOURCE_IMU) {
+        /* Without it, or with a bad one, the encoders take its place: its status changes nothing else. */
+        (void)gw_imu_step(&controller->imu, &input->imu, controller->estimate.regime == GW_REGIME_REST,
+                          &controller->felt);
+    }
+}
+
+static gw_imu_output_t felt_by_imu(const gw_controller_t *controller)
+{
+    return controller->felt;
+}
+
+static bool is_imu_trusted(const gw_controller_t *controller)
+{
+    return controller->felt.trusted;
+}
+
 /* The two channels; their answer in the form of a detector's. */
 static void detect_by_channels(gw_controller_t *controller)
 {
@@ -148,6 +180,8 @@ static void detect_by_channels(gw_controller_t *controller)
     input.regime = controller->estimate.regime;
     input.turned = controller->estimate.turned;
     input.enabled = looks_for_hits(controller->supervisor.mode);
+    input.felt = controller->estimate.acceleration_source == GW_SOURCE_IMU;
+    input.shaking_mps2_2 = controller->felt.shaking_mps2_2;
     input.reacting = controller->supervisor.mode == GW_MODE_REACTING;
     gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);
     controller->detection.tripped = controller->contact_found.tripped;
@@ -211,6 +245,25 @@ static bool is_refined(const gw_controller_t *controller)
 }
 
 static bool contact_is_known(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
+}
+
+static void feel(const gw_controller_t *controller, const gw_controller_input_t *input)
+{
+    (void)controller;
+    (void)input;
+}
+
+static gw_imu_output_t felt_by_imu(const gw_controller_t *controller)
+{
+    static const gw_imu_output_t nothing = {0};
+    (void)controller;
+    return nothing;
+}
+
+static bool is_imu_trusted(const gw_controller_t *controller)
 {
     (void)controller;
     return false;
@@ -324,6 +377,7 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
     estimator_input.planned_acceleration.ax_mps2 = change.x;
     estimator_input.planned_acceleration.ay_mps2 = change.y;
     estimator_input.planned_acceleration.alpha_radps2 = acceleration.alpha_radps2;
+    estimator_input.imu = felt_by_imu(controller);
     return gw_estimator_step(&controller->estimator, &estimator_input, &controller->estimate);
 }
 
@@ -541,6 +595,8 @@ static void report(const gw_controller_t *controller, gw_controller_output_t *ou
     output->detection_count = controller->detection_count;
     output->detection_tick = controller->detection_tick;
     output->detection_channel = deciding_channel(controller);
+    output->imu_trusted = is_imu_trusted(controller);
+    output->acceleration_source = controller->estimate.acceleration_source;
     output->detection_wrench = controller->detection_wrench;
     output->detection_contact = controller->detection_contact;
     output->reference_pose = gw_reference_pose(&controller->reference);
@@ -571,6 +627,7 @@ static bool is_quiet(const gw_controller_t *controller)
 static gw_status_t sense(gw_controller_t *controller, const gw_controller_input_t *input, bool slow)
 {
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
+    feel(controller, input);
     if (status == GW_STATUS_OK) {
         status = estimate(controller, input);
     }

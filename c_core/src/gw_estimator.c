@@ -3,6 +3,9 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_trikey.h"
 
+/* Before the first tick: no source is another one. */
+#define NO_SOURCE UINT32_MAX
+
 static const gw_wheels_t no_torque = {0};
 
 void gw_estimator_config_trikey(gw_estimator_config_t *config)
@@ -43,7 +46,7 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_FRICTION_MODEL, config->friction_model);
     gw_config_check_count(error, GW_FIELD_ESTIMATOR_ALIGNED, config->aligned);
 #if (GW_WITH_CHANNELS == 1)
-    if (config->acceleration_source != GW_SOURCE_MEASURED) {
+    if ((config->acceleration_source != GW_SOURCE_MEASURED) && (config->acceleration_source != GW_SOURCE_IMU)) {
         gw_config_check_relation(error, GW_FIELD_ESTIMATOR_ALIGNED, 0U, (gw_real_t)config->aligned, GW_ZERO, GW_ZERO);
     }
 #endif
@@ -84,6 +87,7 @@ gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_conf
             estimator->run_zero_nm = no_torque;
             estimator->rest_zero_nm = no_torque;
             estimator->sigma = gw_wrench_noise(&estimator->kinematics, config->torque_noise_nm);
+            estimator->imu_constants = estimator->rate_constants;
             estimator->slow_ticks = 0U;
             estimator->rest = true;
             gw_tare_start(&estimator->run_tare);
@@ -125,13 +129,85 @@ static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
     return estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
 }
 
+/* No robot plans to move or accelerate beyond these; a reference that does is a fault. */
+#define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
+#define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
+
+static gw_acceleration_t limited_acceleration(gw_acceleration_t acceleration)
+{
+    const gw_acceleration_t limited = {gw_limited(acceleration.ax_mps2, PLANNED_ACCELERATION_MAX),
+                                       gw_limited(acceleration.ay_mps2, PLANNED_ACCELERATION_MAX),
+                                       gw_limited(acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX)};
+    return limited;
+}
+
 #if (GW_WITH_CHANNELS == 1)
+/* Where the acceleration comes from in this tick. */
+static uint32_t source_of(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
+{
+    uint32_t source = estimator->config.acceleration_source;
+    if (source == GW_SOURCE_IMU) {
+        const gw_acceleration_t felt = input->imu.acceleration;
+        const bool usable = input->imu.trusted && gw_within(felt.ax_mps2, GW_IMU_ACCELERATION_MAX) &&
+                            gw_within(felt.ay_mps2, GW_IMU_ACCELERATION_MAX) &&
+                            gw_within(felt.alpha_radps2, GW_IMU_ACCELERATION_MAX);
+        source = usable ? GW_SOURCE_IMU : GW_SOURCE_MEASURED;
+    }
+    return source;
+}
+
+static bool has_other_source(const gw_estimator_t *estimator, uint32_t source)
+{
+    return (estimator->last_source != NO_SOURCE) && (source != estimator->last_source);
+}
+
+static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
+{
+    return (source == GW_SOURCE_IMU) &&
+           ((gw_magnitude(input->imu.zero_step.ax_mps2) + gw_magnitude(input->imu.zero_step.ay_mps2)) > GW_ZERO);
+}
+
+/* Adds what another source of the acceleration, or another zero of the IMU, has changed in the wrench. */
+static void tell_source_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                             gw_estimator_output_t *output)
+{
+    gw_wrench_t *const step = &output->zero_step;
+    if (has_other_source(estimator, output->acceleration_source)) {
+        step->force_x_n = output->wrench.force_x_n - estimator->last_wrench.force_x_n;
+        step->force_y_n = output->wrench.force_y_n - estimator->last_wrench.force_y_n;
+        step->torque_nm = output->wrench.torque_nm - estimator->last_wrench.torque_nm;
+    } else if (has_other_bias(input, output->acceleration_source)) {
+        const gw_acceleration_t change = limited_acceleration(input->imu.zero_step);
+        step->force_x_n += estimator->nominal.total_mass_kg * change.ax_mps2;
+        step->force_y_n += estimator->nominal.total_mass_kg * change.ay_mps2;
+    } else {
+        /* as it was */
+    }
+    estimator->last_wrench = output->wrench;
+    estimator->last_source = output->acceleration_source;
+}
+
+static void forget_source(gw_estimator_t *estimator)
+{
+    estimator->last_source = NO_SOURCE;
+}
+
+void gw_estimator_set_imu_cutoff(gw_estimator_t *estimator, gw_real_t cutoff_radps)
+{
+    /* The period was checked; a cutoff that is refused changes nothing. */
+    (void)gw_rate_filter_constants(&estimator->imu_constants, estimator->rate_constants.period_s, cutoff_radps,
+                                   estimator->config.encoder_counts, GW_ZERO);
+}
+
 /* Passes three values through the low-pass of the measured acceleration, if the balance is to be aligned. */
-static void align(const gw_estimator_t *estimator, gw_lowpass_t filter[GW_WHEEL_COUNT], gw_wheels_t *values)
+static void align(const gw_estimator_t *estimator, uint32_t source, gw_lowpass_t filter[GW_WHEEL_COUNT],
+                  gw_wheels_t *values)
 {
     if (estimator->config.aligned != 0U) {
+        const gw_rate_filter_constants_t *const constants =
+            (source == GW_SOURCE_IMU) ? &estimator->imu_constants : &estimator->rate_constants;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            values->wheel[i] = gw_lowpass_step(&filter[i], &estimator->rate_constants, values->wheel[i], GW_TORQUE_MAX);
+            values->wheel[i] = gw_lowpass_step(&filter[i], constants, values->wheel[i], GW_TORQUE_MAX);
         }
     }
 }
@@ -174,9 +250,44 @@ static void restart_alignment(gw_estimator_t *estimator)
     }
 }
 #else
-static void align(const gw_estimator_t *estimator, const gw_lowpass_t *filter, const gw_wheels_t *values)
+static uint32_t source_of(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
+{
+    (void)input;
+    return estimator->config.acceleration_source;
+}
+
+static bool has_other_source(const gw_estimator_t *estimator, uint32_t source)
 {
     (void)estimator;
+    (void)source;
+    return false;
+}
+
+static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
+{
+    (void)input;
+    (void)source;
+    return false;
+}
+
+static void tell_source_step(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                             const gw_estimator_output_t *output)
+{
+    (void)estimator;
+    (void)input;
+    (void)output;
+}
+
+static void forget_source(const gw_estimator_t *estimator)
+{
+    (void)estimator;
+}
+
+static void align(const gw_estimator_t *estimator, uint32_t source, const gw_lowpass_t *filter,
+                  const gw_wheels_t *values)
+{
+    (void)estimator;
+    (void)source;
     (void)filter;
     (void)values;
 }
@@ -219,6 +330,7 @@ static void restart_filters(gw_estimator_t *estimator)
     }
     restart_alignment(estimator);
     gw_moving_average_reset(&estimator->average);
+    forget_source(estimator);
 }
 
 void gw_estimator_restart(gw_estimator_t *estimator)
@@ -275,10 +387,6 @@ gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t co
     return gw_wrap_angle((gw_real_t)within_turn * estimator->rate_constants.rad_per_count);
 }
 
-/* No robot plans to move or accelerate beyond these; a reference that does is a fault. */
-#define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
-#define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
-
 static bool input_is_valid(const gw_estimator_input_t *input)
 {
     return gw_within(input->planned_twist.vx_mps, PLANNED_SPEED_MAX) &&
@@ -296,14 +404,6 @@ static gw_twist_t limited_twist(gw_twist_t twist)
     const gw_twist_t limited = {gw_limited(twist.vx_mps, PLANNED_SPEED_MAX),
                                 gw_limited(twist.vy_mps, PLANNED_SPEED_MAX),
                                 gw_limited(twist.omega_radps, PLANNED_SPEED_MAX)};
-    return limited;
-}
-
-static gw_acceleration_t limited_acceleration(gw_acceleration_t acceleration)
-{
-    const gw_acceleration_t limited = {gw_limited(acceleration.ax_mps2, PLANNED_ACCELERATION_MAX),
-                                       gw_limited(acceleration.ay_mps2, PLANNED_ACCELERATION_MAX),
-                                       gw_limited(acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX)};
     return limited;
 }
 
@@ -344,13 +444,16 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, 
 }
 
 /* The acceleration that the model is given. At rest no acceleration is planned: the tare says all. */
-static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, gw_acceleration_t planned,
+static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, uint32_t source,
+                                             gw_acceleration_t planned, gw_acceleration_t felt,
                                              const gw_wheels_t *rates, const gw_wheels_t *derivatives)
 {
     gw_acceleration_t acceleration = {GW_ZERO, GW_ZERO, GW_ZERO};
-    if (estimator->config.acceleration_source == GW_SOURCE_MEASURED) {
+    if (source == GW_SOURCE_MEASURED) {
         acceleration = gw_kinematics_acceleration(&estimator->kinematics, rates, derivatives);
-    } else if ((estimator->config.acceleration_source == GW_SOURCE_PLANNED) && (!estimator->rest)) {
+    } else if (source == GW_SOURCE_IMU) {
+        acceleration = limited_acceleration(felt);
+    } else if ((source == GW_SOURCE_PLANNED) && (!estimator->rest)) {
         acceleration = planned;
     } else {
         /* none */
@@ -381,7 +484,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         const gw_wheels_t roller_rates = gw_kinematics_roller_rates(&estimator->kinematics, twist);
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
-    align(estimator, estimator->aligned_friction, &friction_nm);
+    align(estimator, output->acceleration_source, estimator->aligned_friction, &friction_nm);
     tell_forces(estimator, &friction_nm, acceleration, output);
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     gw_wheels_t nominal =
@@ -452,8 +555,13 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_acceleration_t planned_acceleration = limited_acceleration(input->planned_acceleration);
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
         const gw_wheels_t zero_before = *present_zero(estimator);
+        output->acceleration_source = source_of(estimator, input);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         tell_turns(estimator, input, output);
+        if (has_other_source(estimator, output->acceleration_source) ||
+            has_other_bias(input, output->acceleration_source)) {
+            output->zero_changed = true;
+        }
         if (output->zero_changed) {
             tell_zero_step(estimator, &zero_before, output);
             gw_moving_average_reset(&estimator->average);
@@ -464,14 +572,15 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
         const gw_acceleration_t acceleration =
-            chosen_acceleration(estimator, planned_acceleration, &rates, &derivatives);
+            chosen_acceleration(estimator, output->acceleration_source, planned_acceleration, input->imu.acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
             nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
         gw_wheels_t sensed_nm = torque_nm;
-        align(estimator, estimator->aligned_torque, &sensed_nm);
+        align(estimator, output->acceleration_source, estimator->aligned_torque, &sensed_nm);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &sensed_nm);
         output->sigma = estimator->sigma;
+        tell_source_step(estimator, input, output);
         status = gw_moving_average_add(&estimator->average, output->wrench);
         if (status == GW_STATUS_OK) {
             output->mean = gw_moving_average_mean(&estimator->average);

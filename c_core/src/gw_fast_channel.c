@@ -20,11 +20,14 @@
 #define VARIANCE_MAX ((gw_real_t)8.0e17)
 #define HELD_MAX_N ((gw_real_t)1.0e6)
 #define MOMENT_PER_FORCE_MAX ((gw_real_t)1.0e12)
-static const gw_real_t bank_s[GW_BANK_COUNT] = {(gw_real_t)0.002, (gw_real_t)0.006, (gw_real_t)0.018, (gw_real_t)0.05};
+static const gw_real_t bank_s[GW_SENSOR_COUNT][GW_BANK_COUNT] = {
+    {(gw_real_t)0.002, (gw_real_t)0.006, (gw_real_t)0.018, (gw_real_t)0.05},
+    {(gw_real_t)0.0015, (gw_real_t)0.004, (gw_real_t)0.018, (gw_real_t)0.05},
+};
 
-gw_real_t gw_fast_channel_time(uint32_t j)
+gw_real_t gw_fast_channel_time(const gw_fast_channel_t *channel, uint32_t j)
 {
-    return bank_s[j];
+    return bank_s[channel->sensor][j];
 }
 
 /* Variance of a force behind a low-pass of the bank, from white noise of a position and of a force. With the
@@ -41,12 +44,63 @@ static gw_real_t predicted_n2(const gw_channels_noise_t *noise, gw_real_t tau_s,
     return noise->period_s * ((of_position * position_m2) + ((of_force * noise->force_noise_n) * noise->force_noise_n));
 }
 
-void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
-                          const gw_channels_noise_t *noise)
+/* The same with an accelerometer, whose noise is white, and a gyro, whose derivative carries it to the centre:
+ * w^3 a^2/(4 (w + a)^2) is the integral of |s G|^2. */
+static gw_real_t felt_rate_share(const gw_channels_noise_t *noise, gw_real_t tau_s)
+{
+    const gw_real_t w = noise->imu.cutoff_radps;
+    const gw_real_t ratio = w / ((w * tau_s) + GW_ONE); /* w a/(w + a) */
+    const gw_real_t yaw_rate = noise->imu.yaw_rate_radps;
+    return (((noise->period_s * w) * (ratio * ratio)) * (yaw_rate * yaw_rate)) / (gw_real_t)4.0;
+}
+
+static gw_real_t felt_n2(const gw_channels_noise_t *noise, gw_real_t tau_s)
+{
+    const gw_real_t w = noise->imu.cutoff_radps;
+    const gw_real_t a = GW_ONE / tau_s;
+    const gw_real_t both = (w + a) * (w + a);
+    const gw_real_t of_force = noise->period_s * (((w * a) * ((GW_TWO * w) + a)) / ((gw_real_t)4.0 * both));
+    const gw_real_t white = noise->imu.acceleration_mps2;
+    const gw_real_t arm_m = noise->imu.arm_m;
+    const gw_real_t acceleration2 =
+        (of_force * (white * white)) + (GW_HALF * (felt_rate_share(noise, tau_s) * (arm_m * arm_m)));
+    return ((noise->mass_kg * noise->mass_kg) * acceleration2) +
+           ((of_force * noise->force_noise_n) * noise->force_noise_n);
+}
+
+/* Noise of both sensors in a regime, before anything was followed. In motion the errors of friction are larger than the
+ * noise of an IMU: what is forgiven with encoders is forgiven with it, too, between rest and motion always, in motion
+ * until it has been followed and as far as vibration may go. */
+static void set_noise(gw_fast_channel_t *channel, const gw_channels_noise_t *noise, uint32_t set, uint32_t j,
+                      gw_real_t position_m2)
 {
     /* Least noise of each regime over the predicted one, and the first guess: slow wheels count irregularly. */
     static const gw_real_t least_share[GW_NOISE_SETS] = {(gw_real_t)0.4, (gw_real_t)0.5, (gw_real_t)0.6};
     static const gw_real_t first_share[GW_NOISE_SETS] = {(gw_real_t)1.0, (gw_real_t)2.0, (gw_real_t)1.0};
+    const gw_real_t by_encoders_n2 = gw_clamp(predicted_n2(noise, bank_s[GW_BY_ENCODERS][j], position_m2), NOISE_MIN_N2,
+                                              NOISE_MAX_N2 / first_share[set]);
+    const gw_real_t by_imu_n2 = gw_clamp(felt_n2(noise, bank_s[GW_BY_IMU][j]), NOISE_MIN_N2, NOISE_MAX_N2);
+    channel->least_noise_n2[GW_BY_ENCODERS][set][j] = least_share[set] * by_encoders_n2;
+    channel->noise_n2[GW_BY_ENCODERS][set][j] = first_share[set] * by_encoders_n2;
+    const gw_real_t shaking_n = noise->mass_kg * noise->imu.vibration_mps2;
+    const gw_real_t forgiven_n2 = channel->noise_n2[GW_BY_ENCODERS][set][j];
+    gw_real_t *const least_n2 = &channel->least_noise_n2[GW_BY_IMU][set][j];
+    gw_real_t *const first_n2 = &channel->noise_n2[GW_BY_IMU][set][j];
+    *least_n2 = by_imu_n2;
+    *first_n2 = by_imu_n2;
+    if (set == (uint32_t)GW_REGIME_CREEPING) {
+        *least_n2 = gw_max(by_imu_n2, forgiven_n2);
+        *first_n2 = *least_n2;
+    } else if (set == (uint32_t)GW_REGIME_MOTION) {
+        *first_n2 = gw_max(by_imu_n2, gw_min(forgiven_n2, by_imu_n2 + (shaking_n * shaking_n)));
+    } else {
+        /* at rest the sensor's own noise */
+    }
+}
+
+void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                          const gw_channels_noise_t *noise)
+{
     const gw_real_t arm_m = noise->wheel_distance_m;
     const gw_real_t gyration_m2 = noise->yaw_inertia_kgm2 / noise->mass_kg;
     /* Of a position of the base: that of a wheel times 2/n, as the wheels add up. */
@@ -55,6 +109,7 @@ void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t
     const gw_real_t twist_m2 = GW_TWO_PER_WHEEL * (twist_m * twist_m);
     const gw_real_t count_m2 = GW_TWO_PER_WHEEL * ((count_m * count_m) / (gw_real_t)12.0);
     channel->sliding_n = gw_min(noise->sliding_n, GW_CHANGE_MAX);
+    channel->mass2_kg2 = noise->mass_kg * noise->mass_kg;
     channel->moment_per_force_m2 =
         gw_min((gyration_m2 * gyration_m2) / ((GW_TWO * arm_m) * arm_m), MOMENT_PER_FORCE_MAX);
     channel->baseline_share = gw_share_of(noise->period_s, config->baseline_s);
@@ -62,14 +117,16 @@ void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t
     channel->held_keep = gw_max(GW_ONE - (noise->period_s / HELD_TIME_S), GW_ZERO);
     channel->noise_share = gw_share_of((gw_real_t)GW_BANK_COUNT * noise->period_s, NOISE_TIME_S); /* one per tick */
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
-        channel->bank_share[j] = gw_share_of(noise->period_s, bank_s[j]);
+        channel->gyro_noise_nm2[GW_BY_ENCODERS][j] = GW_ZERO;
+        channel->gyro_noise_nm2[GW_BY_IMU][j] =
+            gw_min((noise->yaw_inertia_kgm2 * noise->yaw_inertia_kgm2) * felt_rate_share(noise, bank_s[GW_BY_IMU][j]),
+                   NOISE_MAX_N2);
         for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
             const bool counting = (set != (uint32_t)GW_REGIME_REST);
-            const gw_real_t variance_n2 =
-                gw_clamp(predicted_n2(noise, bank_s[j], counting ? (twist_m2 + count_m2) : twist_m2), NOISE_MIN_N2,
-                         NOISE_MAX_N2 / first_share[set]);
-            channel->least_noise_n2[set][j] = least_share[set] * variance_n2;
-            channel->noise_n2[set][j] = first_share[set] * variance_n2;
+            set_noise(channel, noise, set, j, counting ? (twist_m2 + count_m2) : twist_m2);
+        }
+        for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
+            channel->bank_share[sensor][j] = gw_share_of(noise->period_s, bank_s[sensor][j]);
         }
     }
     gw_fast_channel_restart(channel);
@@ -94,6 +151,8 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel)
     channel->model_n2 = no_doubt;
     channel->moment_nm2 = GW_ZERO;
     channel->held_n = no_force;
+    channel->sensor = GW_BY_ENCODERS;
+    channel->shaking_n2 = GW_ZERO;
     channel->followed = 0U;
     clear_bank(channel);
 }
@@ -107,10 +166,13 @@ static bool shares_and_noise_hold(const gw_fast_channel_t *channel)
         gw_in_range(channel->sliding_n, GW_ZERO, GW_CHANGE_MAX) &&
         gw_in_range(channel->moment_per_force_m2, GW_ZERO, MOMENT_PER_FORCE_MAX);
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
-        holds = holds && gw_in_range(channel->bank_share[j], GW_ZERO, GW_HALF);
-        for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
-            holds = holds && gw_in_range(channel->least_noise_n2[set][j], GW_ZERO, NOISE_MAX_N2) &&
-                    gw_in_range(channel->noise_n2[set][j], GW_ZERO, NOISE_MAX_N2);
+        for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
+            holds = holds && gw_in_range(channel->bank_share[sensor][j], GW_ZERO, GW_HALF) &&
+                    gw_in_range(channel->gyro_noise_nm2[sensor][j], GW_ZERO, NOISE_MAX_N2);
+            for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
+                holds = holds && gw_in_range(channel->least_noise_n2[sensor][set][j], GW_ZERO, NOISE_MAX_N2) &&
+                        gw_in_range(channel->noise_n2[sensor][set][j], GW_ZERO, NOISE_MAX_N2);
+            }
         }
     }
     return holds;
@@ -124,7 +186,8 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
                 gw_model_forces_are_within(&channel->model, GW_CHANGE_MAX) &&
                 gw_planar_is_within(channel->model_n2, VARIANCE_MAX) &&
                 gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) && gw_within(channel->held_n.x, HELD_MAX_N) &&
-                gw_within(channel->held_n.y, HELD_MAX_N) && (channel->followed < GW_BANK_COUNT);
+                gw_within(channel->held_n.y, HELD_MAX_N) && (channel->followed < GW_BANK_COUNT) &&
+                (channel->sensor < GW_SENSOR_COUNT) && gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2);
         for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
             holds = holds && gw_wrench_is_within(&channel->bank[j], GW_CHANGE_MAX);
         }
@@ -157,8 +220,22 @@ static void move_bank(gw_fast_channel_t *channel, const gw_wrench_t *change)
 {
     GW_UNROLLED
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
-        gw_wrench_approach(&channel->bank[j], change, channel->bank_share[j], GW_CHANGE_MAX);
+        gw_wrench_approach(&channel->bank[j], change, channel->bank_share[channel->sensor][j], GW_CHANGE_MAX);
     }
+}
+
+void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2)
+{
+    channel->sensor = felt ? GW_BY_IMU : GW_BY_ENCODERS;
+    channel->shaking_n2 = felt ? gw_clamp(channel->mass2_kg2 * shaking_mps2_2, GW_ZERO, NOISE_MAX_N2) : GW_ZERO;
+}
+
+/* The noise that was followed, and no less than the vibration that an IMU sees now, which may have grown since. */
+static gw_real_t noise_of(const gw_fast_channel_t *channel, gw_regime_t regime, uint32_t j)
+{
+    /* How much of it passes each low-pass: it is measured where it changes fast, 0.29 of it at 60 Hz. */
+    static const gw_real_t passed[GW_BANK_COUNT] = {(gw_real_t)3.0, (gw_real_t)1.0, (gw_real_t)0.08, (gw_real_t)0.01};
+    return gw_max(channel->noise_n2[channel->sensor][regime][j], passed[j] * channel->shaking_n2);
 }
 
 /* Follows the noise of a low-pass: one in a tick is enough. */
@@ -166,11 +243,12 @@ static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
 {
     const uint32_t j = channel->followed;
     const gw_wrench_t *const felt = &channel->bank[j];
-    const gw_real_t before_n2 = channel->noise_n2[regime][j];
+    const gw_real_t before_n2 = noise_of(channel, regime, j);
     const gw_real_t square_n2 = GW_HALF * ((felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n));
     const gw_real_t clipped_n2 = gw_min(square_n2, NOISE_CLIP * before_n2);
     const gw_real_t after_n2 = before_n2 + (channel->noise_share * (clipped_n2 - before_n2));
-    channel->noise_n2[regime][j] = gw_clamp(after_n2, channel->least_noise_n2[regime][j], NOISE_MAX_N2);
+    channel->noise_n2[channel->sensor][regime][j] =
+        gw_clamp(after_n2, channel->least_noise_n2[channel->sensor][regime][j], NOISE_MAX_N2);
 }
 
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
@@ -197,18 +275,21 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
     const gw_planar_spread_t along = gw_planar_spread(channel->model_n2);
     const gw_planar_spread_t against = gw_planar_spread(gw_planar_widened(channel->model_n2, held));
     const gw_real_t floor_n = gw_force_floor(config->fast, regime);
-    const gw_real_t noise_square = config->noise_multiple * config->noise_multiple;
+    const gw_real_t noise_multiple =
+        (channel->sensor == GW_BY_IMU) ? config->imu_noise_multiple : config->noise_multiple;
+    const gw_real_t noise_square = noise_multiple * noise_multiple;
     found->statistic = GW_ZERO;
     found->widest = 0U;
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         const gw_wrench_t *const x = &channel->bank[j];
-        const gw_real_t n2 = (noise_square * channel->noise_n2[regime][j]) + (floor_n * floor_n);
+        const gw_real_t n2 = (noise_square * noise_of(channel, regime, j)) + (floor_n * floor_n);
         const gw_vector_t force_n = {x->force_x_n, x->force_y_n};
         const bool ends = ((held.x * force_n.x) + (held.y * force_n.y)) < GW_ZERO;
         const gw_planar_spread_t *const spread = ends ? &against : &along;
-        const gw_real_t statistic =
-            gw_planar_distance(spread, n2, force_n) +
-            gw_planar_ratio(x->torque_nm * x->torque_nm, (n2 * channel->moment_per_force_m2) + channel->moment_nm2);
+        const gw_real_t statistic = gw_planar_distance(spread, n2, force_n) +
+                                    gw_planar_ratio(x->torque_nm * x->torque_nm,
+                                                    ((n2 * channel->moment_per_force_m2) + channel->moment_nm2) +
+                                                        (noise_square * channel->gyro_noise_nm2[channel->sensor][j]));
         if (statistic > found->statistic) {
             found->statistic = statistic;
             found->widest = j;

@@ -21,17 +21,18 @@
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
 /* Variables exchanged between the two; the names are the same in both. */
-static const char *const sensed_reals[] = {"sensor.torque[0]", "sensor.torque[1]", "sensor.torque[2]"};
+static const char *const sensed_reals[] = {"sensor.torque[0]",       "sensor.torque[1]",       "sensor.torque[2]",
+                                           "sensor.acceleration[0]", "sensor.acceleration[1]", "sensor.yaw_rate"};
 static const char *const sensed_integers[] = {"sensor.encoder[0]", "sensor.encoder[1]", "sensor.encoder[2]",
-                                              "sensor.counter"};
-static const char *const sensed_booleans[] = {"sensor.present"};
+                                              "sensor.counter", "sensor.imu_counter"};
+static const char *const sensed_booleans[] = {"sensor.present", "sensor.imu_present"};
 static const char *const commanded_reals[] = {"command.wheel_angle[0]", "command.wheel_angle[1]",
                                               "command.wheel_angle[2]", "command.wheel_speed[0]",
                                               "command.wheel_speed[1]", "command.wheel_speed[2]"};
 static const char *const commanded_booleans[] = {"command.enable"};
 
 typedef struct {
-    fmi3ValueReference reals[8], integers[4], booleans[1];
+    fmi3ValueReference reals[8], integers[8], booleans[2];
     size_t real_count, integer_count, boolean_count;
 } Bundle;
 
@@ -64,8 +65,8 @@ static Bundle commands_of(const Fmu *fmu)
 static void pass(const Fmu *from, const Bundle *outputs, const Fmu *to, const Bundle *inputs)
 {
     fmi3Float64 reals[8];
-    fmi3Int32 integers[4];
-    fmi3Boolean booleans[1];
+    fmi3Int32 integers[8];
+    fmi3Boolean booleans[2];
     const size_t n = outputs->real_count, m = outputs->integer_count, k = outputs->boolean_count;
     fmu_check(from, from->get_real(from->instance, outputs->reals, n, reals, n), "fmi3GetFloat64");
     fmu_check(to, to->set_real(to->instance, inputs->reals, n, reals, n), "fmi3SetFloat64");

@@ -9,10 +9,12 @@ from typing import Any, Protocol
 
 from report import STEP_S, stage, write_trace
 
-REALS = {"sensors": ["sensor.torque[0]", "sensor.torque[1]", "sensor.torque[2]"],
+REALS = {"sensors": [*(f"sensor.torque[{i}]" for i in range(3)),
+                     *(f"sensor.acceleration[{i}]" for i in range(2)), "sensor.yaw_rate"],
          "commands": [f"command.{w}[{i}]" for w in ("wheel_angle", "wheel_speed") for i in range(3)]}  # fmt: skip
-INTEGERS = {"sensors": [*(f"sensor.encoder[{i}]" for i in range(3)), "sensor.counter"], "commands": []}
-BOOLEANS = {"sensors": ["sensor.present"], "commands": ["command.enable"]}
+INTEGERS = {"sensors": [*(f"sensor.encoder[{i}]" for i in range(3)), "sensor.counter", "sensor.imu_counter"],
+            "commands": []}  # fmt: skip
+BOOLEANS = {"sensors": ["sensor.present", "sensor.imu_present"], "commands": ["command.enable"]}
 TICK_S, SUBSTEPS = 5e-4, 10
 KINDS = ("real", "integer", "boolean")
 

@@ -11,7 +11,8 @@ static gw_controller_input_t any_input(void)
          {any_real(), any_real(), any_real()},
          {any_real(), any_real(), any_real()}},
         any_flag(),
-        any_flag()};
+        any_flag(),
+        {{any_real(), any_real()}, any_real(), any_count, any_flag()}};
     return input;
 }
 

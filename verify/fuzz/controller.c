@@ -88,6 +88,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         input.plan.acceleration.alpha_radps2 = GW_ZERO;
         input.stop_request = (requests & 0x70U) == 0x70U;
         input.tare_request = (requests & 0x80U) != 0U;
+        for (uint32_t i = 0U; i < GW_IMU_AXES; i++) {
+            input.imu.specific_force_mps2[i] = take_value(&bytes, (gw_real_t)10.0);
+        }
+        input.imu.yaw_rate_radps = take_value(&bytes, GW_ONE);
+        input.imu.counter = counter;
+        input.imu.present = (requests & 0xC000U) != 0xC000U;
         const gw_status_t status = gw_controller_step(&controller, &input, &output);
         const bool bad = (status >= GW_STATUS_SENSOR_MISSING) && (status <= GW_STATUS_SENSOR_RECOVERING);
         DEMAND(gw_controller_invariant_holds(&controller));

@@ -46,6 +46,9 @@ typedef struct {
     bool enabled;
     /* The robot gives way. */
     bool reacting;
+    /* The acceleration in the balance comes from an IMU, which sees this vibration, (m/s2)^2. */
+    bool felt;
+    gw_real_t shaking_mps2_2;
 } gw_channels_input_t;
 
 typedef struct {

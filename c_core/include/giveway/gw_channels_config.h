@@ -4,6 +4,7 @@
 
 #include "giveway/gw_config.h"
 #include "giveway/gw_follower.h"
+#include "giveway/gw_imu.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -22,6 +23,8 @@ typedef struct {
      * and [0, 100]. */
     gw_real_t noise_multiple;
     gw_real_t model_multiple;
+    /* The first of them with an IMU, whose noise has no tails as that of counts has, [1, 100]. */
+    gw_real_t imu_noise_multiple;
     /* Time constants of the baseline, s, [0.01, 10], and of the slow channel, s, [0.005, 10]. */
     gw_real_t baseline_s;
     gw_real_t slow_s;
@@ -59,6 +62,7 @@ typedef struct {
     gw_real_t mass_kg;
     gw_real_t yaw_inertia_kgm2;
     gw_real_t wheel_distance_m;
+    gw_imu_noise_t imu; /* instead of what the encoders add, while it is used */
 } gw_channels_noise_t;
 
 /* The force that holds in a regime. */

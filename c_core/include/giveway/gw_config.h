@@ -51,7 +51,8 @@ extern "C" {
 
 #define GW_ESTIMATOR_FIELDS(ROW, OF) \
     ROW(COUNT, GW_FIELD_ESTIMATOR_VELOCITY_SOURCE, "estimator.velocity_source", OF velocity_source, 0, 1) \
-    ROW(COUNT, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, "estimator.acceleration_source", OF acceleration_source, 0, 2) \
+    ROW(COUNT, GW_FIELD_ESTIMATOR_ACCELERATION_SOURCE, "estimator.acceleration_source", OF acceleration_source, 0, \
+        GW_ACCELERATION_SOURCE_MAX) \
     ROW(REAL, GW_FIELD_ESTIMATOR_TORQUE_NOISE, "estimator.torque_noise", OF torque_noise_nm, 0, 100) \
     ROW(REAL, GW_FIELD_ESTIMATOR_RATE_CUTOFF, "estimator.rate_cutoff", OF rate_cutoff_radps, 0.1, 10000) \
     ROW(REAL, GW_FIELD_ESTIMATOR_DRIVETRAIN_STIFFNESS, "estimator.drivetrain_stiffness", \
@@ -97,6 +98,7 @@ extern "C" {
 #if (GW_WITH_CHANNELS == 1)
 #define GW_CHANNELS_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_CHANNELS_NOISE_MULTIPLE, "channels.noise_multiple", OF noise_multiple, 1, 100) \
+    ROW(REAL, GW_FIELD_CHANNELS_IMU_NOISE_MULTIPLE, "channels.imu_noise_multiple", OF imu_noise_multiple, 1, 100) \
     ROW(REAL, GW_FIELD_CHANNELS_MODEL_MULTIPLE, "channels.model_multiple", OF model_multiple, 0, 100) \
     ROW(REAL, GW_FIELD_CHANNELS_BASELINE_TIME, "channels.baseline_time", OF baseline_s, 0.01, 10) \
     ROW(REAL, GW_FIELD_CHANNELS_SLOW_TIME, "channels.slow_time", OF slow_s, 0.005, 10) \
@@ -122,9 +124,26 @@ extern "C" {
     ROW(REAL, GW_FIELD_FOLLOWER_MASS, "follower.mass", OF mass, 0, 1) \
     ROW(REAL, GW_FIELD_FOLLOWER_DRIFT, "follower.drift", OF drift_per_root_s, 0, 1) \
     ROW(REAL, GW_FIELD_FOLLOWER_RESIDUAL, "follower.residual", OF residual_n, 0.1, 1000)
+
+#define GW_IMU_FIELDS(ROW, OF) \
+    ROW(COUNT, GW_FIELD_IMU_USE, "imu.use", OF use, 0, 1) \
+    ROW(REAL, GW_FIELD_IMU_X, "imu.x", OF position_x_m, -2, 2) \
+    ROW(REAL, GW_FIELD_IMU_Y, "imu.y", OF position_y_m, -2, 2) \
+    ROW(REAL, GW_FIELD_IMU_ANGLE, "imu.angle", OF angle_rad, -3.2, 3.2) \
+    ROW(REAL, GW_FIELD_IMU_ACCELERATION_SCALE, "imu.acceleration_scale", OF acceleration_scale, 0.5, 2) \
+    ROW(REAL, GW_FIELD_IMU_GYRO_SCALE, "imu.gyro_scale", OF gyro_scale, 0.5, 2) \
+    ROW(REAL, GW_FIELD_IMU_ACCELERATION_LIMIT, "imu.acceleration_limit", OF acceleration_limit_mps2, 0.1, 10000) \
+    ROW(REAL, GW_FIELD_IMU_YAW_RATE_LIMIT, "imu.yaw_rate_limit", OF yaw_rate_limit_radps, 0.01, 1000) \
+    ROW(REAL, GW_FIELD_IMU_ACCELERATION_NOISE, "imu.acceleration_noise", OF acceleration_noise_mps2, 0, 100) \
+    ROW(REAL, GW_FIELD_IMU_GYRO_NOISE, "imu.gyro_noise", OF gyro_noise_radps, 0, 10) \
+    ROW(REAL, GW_FIELD_IMU_VIBRATION, "imu.vibration", OF vibration_mps2, 0, 100) \
+    ROW(COUNT, GW_FIELD_IMU_STALE_TICKS_MAX, "imu.stale_ticks_max", OF stale_ticks_max, 1, 1000) \
+    ROW(COUNT, GW_FIELD_IMU_TARE_TICKS, "imu.tare_ticks", OF tare_ticks, 1, 100000) \
+    ROW(REAL, GW_FIELD_IMU_CUTOFF, "imu.cutoff", OF cutoff_radps, 0.1, 10000)
 #else
 #define GW_CHANNELS_FIELDS(ROW, OF)
 #define GW_FOLLOWER_FIELDS(ROW, OF)
+#define GW_IMU_FIELDS(ROW, OF)
 #endif
 
 #define GW_ADMITTANCE_FIELDS(ROW, OF) \
@@ -180,7 +199,8 @@ extern "C" {
     GW_FOLLOWER_FIELDS(ROW, OF channels.follower.) \
     GW_ADMITTANCE_FIELDS(ROW, OF admittance.) \
     GW_REFERENCE_FIELDS(ROW, OF reference.) \
-    GW_SUPERVISOR_FIELDS(ROW, OF supervisor.)
+    GW_SUPERVISOR_FIELDS(ROW, OF supervisor.) \
+    GW_IMU_FIELDS(ROW, OF imu.)
 
 /* All there are. */
 #define GW_CONFIG_FIELDS(ROW) \

@@ -15,6 +15,7 @@
 #include "giveway/gw_contact.h"
 #include "giveway/gw_detector.h"
 #include "giveway/gw_estimator.h"
+#include "giveway/gw_imu.h"
 #include "giveway/gw_joint.h"
 #include "giveway/gw_reference.h"
 #include "giveway/gw_sensor_check.h"
@@ -41,6 +42,9 @@ typedef struct {
     gw_admittance_config_t admittance;
     gw_reference_config_t reference;
     gw_supervisor_config_t supervisor;
+#if (GW_WITH_CHANNELS == 1)
+    gw_imu_config_t imu; /* read if estimator.acceleration_source is GW_SOURCE_IMU, checked always */
+#endif
     /* False: the drives are never enabled; the robot estimates and detects only. */
     bool drives_enabled;
 } gw_controller_config_t;
@@ -52,6 +56,8 @@ typedef struct {
     bool stop_request;
     /* A rising edge asks for a new tare of the run; granted in TRACKING at planned rest and in SETTLED. */
     bool tare_request;
+    /* Accelerometer and gyro, optional. */
+    gw_imu_sample_t imu;
 } gw_controller_input_t;
 
 typedef struct {
@@ -71,6 +77,9 @@ typedef struct {
     gw_contact_estimate_t detection_contact;
     /* Which channel noticed it: GW_CHANNEL_NONE, GW_CHANNEL_FAST or GW_CHANNEL_SLOW. */
     uint32_t detection_channel;
+    /* The IMU can be trusted, and where the acceleration in the estimate comes from: GW_SOURCE_... */
+    bool imu_trusted;
+    uint32_t acceleration_source;
     /* Reference, world frame. */
     gw_pose_t reference_pose;
     gw_twist_t reference_twist;
@@ -87,6 +96,8 @@ typedef struct {
 #if (GW_WITH_CHANNELS == 1)
     gw_channels_t channels;
     gw_channels_output_t contact_found;
+    gw_imu_t imu;
+    gw_imu_output_t felt;
 #endif
     gw_admittance_t admittance;
     gw_reference_t reference;

@@ -21,6 +21,7 @@
 
 #include "giveway/gw_balance.h"
 #include "giveway/gw_config.h"
+#include "giveway/gw_imu.h"
 #include "giveway/gw_kinematics.h"
 #include "giveway/gw_lowpass.h"
 #include "giveway/gw_moving_average.h"
@@ -38,6 +39,7 @@ extern "C" {
 #define GW_SOURCE_PLANNED 0U
 #define GW_SOURCE_MEASURED 1U
 #define GW_SOURCE_ZERO 2U
+#define GW_SOURCE_IMU 3U
 
 #define GW_FRICTION_TANH 0U
 #define GW_FRICTION_BRISTLE 1U
@@ -45,7 +47,8 @@ extern "C" {
 typedef struct {
     /* Velocity of the friction model: GW_SOURCE_PLANNED (0) or GW_SOURCE_MEASURED (1). */
     uint32_t velocity_source;
-    /* Acceleration in (38): GW_SOURCE_PLANNED (0), GW_SOURCE_MEASURED (1) or GW_SOURCE_ZERO (2). */
+    /* Acceleration in (38): GW_SOURCE_PLANNED (0), GW_SOURCE_MEASURED (1), GW_SOURCE_ZERO (2), or GW_SOURCE_IMU (3)
+     * while the IMU can be trusted, else as measured. */
     uint32_t acceleration_source;
     /* Standard deviation of one torque sample, N m, [0, 100]. */
     gw_real_t torque_noise_nm;
@@ -73,7 +76,8 @@ typedef struct {
      * presliding at the measured motion. */
     uint32_t friction_model;
     /* 1: torques and friction pass the low-pass of the measured acceleration, so that no term of the balance comes
-     * earlier than another; only with acceleration_source GW_SOURCE_MEASURED. 0: as the paper, each as it comes. */
+     * earlier than another; only with acceleration_source GW_SOURCE_MEASURED or GW_SOURCE_IMU, then the IMU's low-pass.
+     * 0: as the paper, each as it comes. */
     uint32_t aligned;
     /* Read by GW_FRICTION_BRISTLE only, checked always. */
     gw_presliding_config_t presliding;
@@ -84,6 +88,7 @@ typedef struct {
     gw_kinematics_t kinematics;
     gw_nominal_t nominal;
     gw_rate_filter_constants_t rate_constants;
+    gw_rate_filter_constants_t imu_constants; /* of the low-pass that the IMU's acceleration has passed */
     gw_rate_filter_t rate[GW_WHEEL_COUNT];
     gw_presliding_t presliding;
     gw_lowpass_t aligned_torque[GW_WHEEL_COUNT];
@@ -93,6 +98,8 @@ typedef struct {
     gw_wheels_t run_zero_nm;
     gw_wheels_t rest_zero_nm;
     gw_wrench_sigma_t sigma; /* of one sample */
+    gw_wrench_t last_wrench; /* what a change of the acceleration's source is compared with */
+    uint32_t last_source;    /* of the acceleration */
     uint32_t slow_ticks;     /* ticks of standing, saturating */
     bool rest;
     bool initialised;
@@ -105,6 +112,7 @@ typedef struct {
     /* Planned motion at the time of the sample, along the base's axes. */
     gw_twist_t planned_twist;
     gw_acceleration_t planned_acceleration;
+    gw_imu_output_t imu; /* all zero: none */
 } gw_estimator_input_t;
 
 typedef struct {
@@ -116,11 +124,12 @@ typedef struct {
     gw_wheels_t nominal_nm;  /* T|0 */
     gw_twist_t measured_twist;
     gw_regime_t regime;
-    bool zero_changed;     /* the robot came to rest or left it in this tick */
+    bool zero_changed;     /* the robot came to rest or left it, or the acceleration has another source or zero */
     gw_wrench_t zero_step; /* by how much the wrench jumped then; kept until the next change */
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
-    bool turned; /* an encoder has moved since the last sample */
+    bool turned;                  /* an encoder has moved since the last sample */
+    uint32_t acceleration_source; /* the one that was used: GW_SOURCE_... */
 } gw_estimator_output_t;
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
@@ -136,6 +145,8 @@ void gw_estimator_start_tare(gw_estimator_t *estimator);
 gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm);
 /* Filters and average start afresh after a gap; zeros and mode stay. */
 void gw_estimator_restart(gw_estimator_t *estimator);
+/* The IMU's acceleration has passed a low-pass of this corner: what is aligned with it passes the same. After init. */
+void gw_estimator_set_imu_cutoff(gw_estimator_t *estimator, gw_real_t cutoff_radps);
 /* One tick. Input that is not finite or larger than any robot's, or a wrench that is not gw_wrench_is_valid:
  * GW_STATUS_INPUT_INVALID, wrench zero, filters and average start afresh. */
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,

@@ -10,6 +10,8 @@
  * forces of this tick, and h is what the baseline may still hold of the last contact: its end, a change against its
  * direction, is no hit. The moment has a variance of its own. The channel trips if x^T S^-1 x > 1.
  *
+ * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
+ *
  * Life cycle: gw_fast_channel_init, gw_fast_channel_restart, gw_fast_channel_begin for each tick of the first mean,
  * then gw_fast_channel_step per tick. All members of gw_fast_channel_t are private.
  */
@@ -27,20 +29,28 @@ extern "C" {
 #endif
 
 #define GW_BANK_COUNT 4U
+/* Where the acceleration in the balance comes from: noise and bank of their own. */
+#define GW_BY_ENCODERS 0U
+#define GW_BY_IMU 1U
+#define GW_SENSOR_COUNT 2U
 /* Largest change from the baseline, N and N m: two balances and what the follower corrects. */
 #define GW_CHANGE_MAX ((gw_real_t)1.0e6)
 #define GW_NOISE_SETS 3U /* at rest, slow or unsettled, in motion: as gw_regime_t */
 
 typedef struct {
-    gw_real_t bank_share[GW_BANK_COUNT];
+    gw_real_t bank_share[GW_SENSOR_COUNT][GW_BANK_COUNT];
     gw_real_t baseline_share;
     gw_real_t model_share;
     gw_real_t noise_share;
     gw_real_t held_keep;
     gw_real_t sliding_n;           /* friction of a wheel whose rollers slide */
     gw_real_t moment_per_force_m2; /* variance of the moment's noise over that of the force's */
-    gw_real_t least_noise_n2[GW_NOISE_SETS][GW_BANK_COUNT];
-    gw_real_t noise_n2[GW_NOISE_SETS][GW_BANK_COUNT];
+    gw_real_t gyro_noise_nm2[GW_SENSOR_COUNT][GW_BANK_COUNT]; /* what a gyro adds to that of the moment */
+    gw_real_t least_noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
+    gw_real_t noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
+    gw_real_t mass2_kg2;
+    gw_real_t shaking_n2; /* the vibration that an IMU sees, as a force */
+    uint32_t sensor;      /* GW_BY_ENCODERS or GW_BY_IMU */
     gw_balance_t baseline;
     gw_model_forces_t model; /* their change, smoothed */
     gw_wrench_t bank[GW_BANK_COUNT];
@@ -59,8 +69,8 @@ typedef struct {
     gw_real_t release_n2; /* variance there, along the axes, without M */
 } gw_fast_found_t;
 
-/* Time constant of a low-pass of the bank, s; j < GW_BANK_COUNT. */
-gw_real_t gw_fast_channel_time(uint32_t j);
+/* Time constant of a low-pass of the bank that is used now, s; j < GW_BANK_COUNT. Pointer not NULL. */
+gw_real_t gw_fast_channel_time(const gw_fast_channel_t *channel, uint32_t j);
 /* The configuration was checked. Pointers not NULL here and below. */
 void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_channels_noise_t *noise);
@@ -69,6 +79,8 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel);
 bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel);
 /* A tick of the baseline's first mean: share is 1/(n + 1) in the n-th. */
 void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
+/* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
+void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
 /* What the model may be wrong by from now on; every second tick is enough. lever_nm2: variance of the moment by the
  * rows of rollers. */
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,

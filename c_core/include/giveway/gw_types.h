@@ -27,17 +27,19 @@
 #define GW_REAL_DOUBLE 0
 #endif
 
-/* -DGW_WITH_CHANNELS=0 leaves the two-channel detector and what only it needs out of the program: detector.kind 2 and
- * estimator.aligned are refused then. */
+/* -DGW_WITH_CHANNELS=0 leaves the two-channel detector and what only it needs out of the program: detector.kind 2,
+ * estimator.aligned and an IMU are refused then. */
 #ifndef GW_WITH_CHANNELS
 #define GW_WITH_CHANNELS 1
 #endif
 #if (GW_WITH_CHANNELS == 0)
 #define GW_DETECTOR_KIND_MAX 1U
 #define GW_ALIGNED_MAX 0U
+#define GW_ACCELERATION_SOURCE_MAX 2U
 #else
 #define GW_DETECTOR_KIND_MAX 2U
 #define GW_ALIGNED_MAX 1U
+#define GW_ACCELERATION_SOURCE_MAX 3U
 #endif
 
 /* Before a loop over the wheels in which a tick spends its time: gcc writes out its passes, as other compilers do by

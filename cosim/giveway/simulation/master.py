@@ -56,9 +56,9 @@ def _indexed(name: str) -> tuple[str, ...]:
 
 # Variables that pass from one FMU to the other under the same name; per type, in the order of exchange.
 SENSORS = {
-    "real": _indexed("sensor.torque"),
-    "integer": (*_indexed("sensor.encoder"), "sensor.counter"),
-    "boolean": ("sensor.present",),
+    "real": (*_indexed("sensor.torque"), "sensor.acceleration[0]", "sensor.acceleration[1]", "sensor.yaw_rate"),
+    "integer": (*_indexed("sensor.encoder"), "sensor.counter", "sensor.imu_counter"),
+    "boolean": ("sensor.present", "sensor.imu_present"),
 }
 COMMANDS = {
     "real": (*_indexed("command.wheel_angle"), *_indexed("command.wheel_speed")),

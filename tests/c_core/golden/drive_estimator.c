@@ -68,11 +68,11 @@ digest_t drive_estimator(void)
     digest_t digest = digest_begin();
     generator_t generator = generator_begin(20U);
     for (uint32_t velocity = 0U; velocity <= 1U; velocity++) {
-        for (uint32_t acceleration = 0U; acceleration <= 3U; acceleration++) { /* 3 is refused */
+        for (uint32_t acceleration = 0U; acceleration <= 3U; acceleration++) {
             gw_controller_config_t config;
             gw_controller_config_trikey(&config);
             config.estimator.velocity_source = velocity;
-            config.estimator.acceleration_source = acceleration;
+            config.estimator.acceleration_source = (acceleration <= GW_SOURCE_ZERO) ? acceleration : 4U; /* refused */
             config.estimator.rest_ticks = 60U;
             config.estimator.retare_ticks = 40U;
             drive(&digest, &generator, &config);

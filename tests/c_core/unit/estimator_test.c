@@ -42,7 +42,8 @@ static void start(void)
 
 static gw_estimator_input_t input_of(gw_wheels_t torque, gw_twist_t twist)
 {
-    const gw_estimator_input_t input = {torque, {0, 0, 0}, twist, steady};
+    static const gw_imu_output_t no_imu = {0};
+    const gw_estimator_input_t input = {torque, {0, 0, 0}, twist, steady, no_imu};
     return input;
 }
 

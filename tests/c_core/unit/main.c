@@ -21,6 +21,7 @@ int main(void)
     suite_tare();
     suite_moving_average();
     suite_sensor_check();
+    suite_imu();
     suite_contact();
     suite_detector();
     suite_estimator();
@@ -31,5 +32,6 @@ int main(void)
     suite_servo();
     suite_controller();
     suite_controller_faults();
+    suite_imu_use();
     return unit_close() ? 0 : 1;
 }

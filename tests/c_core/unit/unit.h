@@ -60,6 +60,8 @@ void suite_detector(void);
 void suite_estimator(void);
 void suite_follower(void);
 void suite_friction(void);
+void suite_imu(void);
+void suite_imu_use(void);
 void suite_init(void);
 void suite_joint(void);
 void suite_kinematics(void);
