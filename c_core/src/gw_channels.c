@@ -154,8 +154,18 @@ static gw_regime_t judged_regime(const gw_channels_t *channels, const gw_channel
  * motion: the thresholds of rest are too small for them. */
 static void take_zero_step(gw_channels_t *channels, const gw_channels_input_t *input)
 {
-    gw_fast_channel_take_zero(&channels->fast, *input->zero_step, !channels->active);
-    gw_slow_channel_take_zero(&channels->slow, *input->zero_step, input->regime);
+    const bool other_sensor = (channels->fast.sensor == GW_BY_IMU) != input->felt;
+    const bool resting = (input->regime == GW_REGIME_REST) && (channels->warm_up_ticks >= WARM_UP_TICKS);
+    if (other_sensor && (!channels->active)) {
+        /* One tick of the encoders is too noisy to be a step: the baseline needs another mean. */
+        gw_fast_channel_restart(&channels->fast);
+        channels->warm_up_ticks = 0U;
+    } else {
+        gw_fast_channel_take_zero(&channels->fast, *input->zero_step, !channels->active);
+    }
+    if (resting || (!other_sensor)) {
+        gw_slow_channel_take_zero(&channels->slow, *input->zero_step, input->regime);
+    }
 }
 
 /* Wheels touch the floor with one row of rollers or the other: the moment that all forces make about the centre is
@@ -322,10 +332,10 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     const gw_balance_t balance = gw_balance_limited(input->wrench, input->forces);
     gw_real_t largest = GW_ZERO;
     output->tripped = false;
-    gw_fast_channel_feel(&channels->fast, input->felt, input->shaking_mps2_2);
     if (input->zero_changed) {
         take_zero_step(channels, input);
     }
+    gw_fast_channel_feel(&channels->fast, input->felt, input->shaking_mps2_2);
     count_ticks(channels, input);
     if (channels->warm_up_ticks < WARM_UP_TICKS) {
         warm_up(channels, &balance);

@@ -6,7 +6,8 @@
  *
  * From a trip to the end of the contact the baseline stands still: the contact force is the difference from it. The
  * contact is over when that has stayed within its uncertainty for 40 ticks; after rearm_ticks the detector is armed in
- * any case. The mean wrench of the hit is refined for GW_REFINE_TICKS after the trip.
+ * any case. The mean wrench of the hit is refined for GW_REFINE_TICKS after the trip. When the acceleration has another
+ * sensor the baseline begins anew, unless a contact lasts.
  *
  * Life cycle: gw_channels_init, gw_channels_step per tick, gw_channels_restart after a gap. All members are private.
  */
