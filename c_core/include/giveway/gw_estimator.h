@@ -77,7 +77,7 @@ typedef struct {
     uint32_t friction_model;
     /* 1: torques and friction pass the low-pass of the measured acceleration, so that no term of the balance comes
      * earlier than another; only with acceleration_source GW_SOURCE_MEASURED or GW_SOURCE_IMU, then the IMU's low-pass.
-     * 0: as the paper, each as it comes. */
+     * 0: as the paper, each as it comes. [0, 1]. */
     uint32_t aligned;
     /* Read by GW_FRICTION_BRISTLE only, checked always. */
     gw_presliding_config_t presliding;

@@ -45,7 +45,7 @@ typedef struct {
 } gw_imu_sample_t;
 
 typedef struct {
-    /* 0: there is none, samples are not looked at; 1: there is one. */
+    /* 0: there is none, samples are not looked at; 1: there is one; [0, 1]. */
     uint32_t use;
     /* Where it sits, base frame, m, [-2, 2]. */
     gw_real_t position_x_m;
@@ -61,8 +61,7 @@ typedef struct {
     /* Standard deviations of one sample, m/s2, [0, 100], and rad/s, [0, 10]. */
     gw_real_t acceleration_noise_mps2;
     gw_real_t gyro_noise_radps;
-    /* Vibration of the structure in motion, standard deviation on each axis, until it has been measured, m/s2, [0,
-     * 100]. */
+    /* Vibration in motion, standard deviation on each axis, until it has been measured, m/s2, [0, 100]. */
     gw_real_t vibration_mps2;
     /* Ticks without a new sample after which it is stale, [1, 1000]. */
     uint32_t stale_ticks_max;
