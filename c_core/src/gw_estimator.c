@@ -572,7 +572,8 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
         const gw_acceleration_t acceleration =
-            chosen_acceleration(estimator, output->acceleration_source, planned_acceleration, input->imu.acceleration, &rates, &derivatives);
+            chosen_acceleration(estimator, output->acceleration_source, planned_acceleration, input->imu.acceleration,
+                                &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
             nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
