@@ -5,6 +5,9 @@
 #include "giveway/gw_wrench.h"
 
 #define SPEED_MAX ((gw_real_t)100.0)
+#define UNIT_MAX ((gw_real_t)1.01)    /* a component of a unit vector, rounded */
+#define LEAST_AGREEMENT GW_HALF       /* 60 degrees */
+#define STILL_MPS ((gw_real_t)1.0e-5) /* what nobody sees of a low-pass */
 /* Of one tick, and of an escape: the longest period and the largest impulse over the smallest damping, with room. */
 #define DISPLACEMENT_MAX ((gw_real_t)100.0)
 #define ESCAPE_MAX ((gw_real_t)1.1e5)
@@ -24,6 +27,10 @@ void gw_admittance_config_trikey(gw_admittance_config_t *config)
     config->speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
     config->acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
     config->finish_speed_mps = (gw_real_t)0.01;
+    config->smoothing_s = GW_ZERO;
+    config->brake_limit_mps2 = GW_ZERO;
+    config->lead_s = GW_ZERO;
+    gw_tip_config_trikey(&config->tip);
 }
 
 void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
@@ -35,6 +42,18 @@ void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, config->speed_limit_mps);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, config->acceleration_limit_mps2);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, config->finish_speed_mps);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_SMOOTHING, config->smoothing_s);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_BRAKE_LIMIT, config->brake_limit_mps2);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_LEAD, config->lead_s);
+    gw_tip_config_check(&config->tip, error);
+}
+
+static void set_velocity(gw_admittance_t *admittance, gw_vector_t velocity_mps)
+{
+    admittance->velocity_mps = velocity_mps;
+    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+        admittance->smooth_mps[i] = velocity_mps;
+    }
 }
 
 gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
@@ -58,7 +77,13 @@ gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_
             admittance->goal_m = zero;
             admittance->moved_x_m = gw_sum_of(GW_ZERO);
             admittance->moved_y_m = gw_sum_of(GW_ZERO);
-            admittance->velocity_mps = zero;
+            admittance->away = zero;
+            admittance->first = zero;
+            set_velocity(admittance, zero);
+            admittance->smooth_share =
+                (config->smoothing_s > GW_ZERO) ? -gw_expm1(-period_s / config->smoothing_s) : GW_ONE;
+            gw_tip_none(&admittance->tip);
+            admittance->yaw = gw_sincos(GW_ZERO);
         } else {
             status = GW_STATUS_CONFIG_INVALID;
         }
@@ -81,41 +106,93 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
                 gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
                 gw_within(admittance->goal_m.x, ESCAPE_MAX) && gw_within(admittance->goal_m.y, ESCAPE_MAX) &&
                 gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
-                gw_within(admittance->velocity_mps.x, SPEED_MAX) && gw_within(admittance->velocity_mps.y, SPEED_MAX);
+                gw_within(admittance->velocity_mps.x, SPEED_MAX) && gw_within(admittance->velocity_mps.y, SPEED_MAX) &&
+                gw_tip_invariant_holds(&admittance->tip) && gw_within(admittance->yaw.cosine, GW_ONE) &&
+                gw_within(admittance->yaw.sine, GW_ONE) && gw_within(admittance->away.x, GW_TWO) &&
+                gw_within(admittance->away.y, GW_TWO) && gw_within(admittance->first.x, GW_TWO) &&
+                gw_within(admittance->first.y, GW_TWO) && gw_in_range(admittance->smooth_share, GW_ZERO, GW_ONE);
+        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+            holds = holds && gw_within(admittance->smooth_mps[i].x, SPEED_MAX) &&
+                    gw_within(admittance->smooth_mps[i].y, SPEED_MAX);
+        }
     }
     return holds;
+}
+
+static gw_real_t along_away(const gw_admittance_t *admittance, gw_vector_t vector)
+{
+    return (admittance->away.x * vector.x) + (admittance->away.y * vector.y);
+}
+
+static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t direction, gw_real_t change_mps)
+{
+    velocity_mps->x = gw_limited(velocity_mps->x + (change_mps * direction.x), SPEED_MAX);
+    velocity_mps->y = gw_limited(velocity_mps->y + (change_mps * direction.y), SPEED_MAX);
+}
+
+/* The velocity is not led further against the push than it is. */
+static void follow_direction(gw_admittance_t *admittance)
+{
+    const gw_real_t least_mps = gw_min(along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]), GW_ZERO);
+    add_velocity(&admittance->velocity_mps, admittance->away,
+                 gw_max(least_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
+    for (uint32_t i = 0U; i < (GW_SMOOTH_COUNT - 1U); i++) {
+        add_velocity(&admittance->smooth_mps[i], admittance->away,
+                     gw_max(least_mps - along_away(admittance, admittance->smooth_mps[i]), GW_ZERO));
+    }
+}
+
+static void aim(gw_admittance_t *admittance, gw_vector_t direction)
+{
+    const gw_real_t distance_m = admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
+    const gw_vector_t limited = limit_components(direction, UNIT_MAX);
+    admittance->away = limited;
+    admittance->goal_m.x = distance_m * limited.x;
+    admittance->goal_m.y = distance_m * limited.y;
 }
 
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction)
 {
     gw_status_t status = GW_STATUS_OK;
-    const gw_real_t one = (gw_real_t)1.01; /* a unit vector, rounded */
     if (admittance == NULL) {
         status = GW_STATUS_NULL_POINTER;
     } else if (!admittance->initialised) {
         status = GW_STATUS_NOT_INITIALISED;
-    } else if (!(gw_within(direction.x, one) && gw_within(direction.y, one) &&
-                 (gw_length(limit_components(direction, one)) <= one) && gw_within(velocity_mps.x, SPEED_MAX) &&
-                 gw_within(velocity_mps.y, SPEED_MAX))) {
+    } else if (!(gw_within(direction.x, UNIT_MAX) && gw_within(direction.y, UNIT_MAX) &&
+                 (gw_length(limit_components(direction, UNIT_MAX)) <= UNIT_MAX) &&
+                 gw_within(velocity_mps.x, SPEED_MAX) && gw_within(velocity_mps.y, SPEED_MAX))) {
         status = GW_STATUS_INPUT_INVALID;
     } else {
-        const gw_real_t distance_m =
-            admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
-        admittance->goal_m.x = distance_m * gw_limited(direction.x, one);
-        admittance->goal_m.y = distance_m * gw_limited(direction.y, one);
+        aim(admittance, direction);
+        admittance->first = admittance->away;
         admittance->moved_x_m = gw_sum_of(GW_ZERO);
         admittance->moved_y_m = gw_sum_of(GW_ZERO);
-        admittance->velocity_mps = limit_components(velocity_mps, SPEED_MAX);
+        set_velocity(admittance, limit_components(velocity_mps, SPEED_MAX));
     }
     return status;
 }
 
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction)
 {
-    const gw_real_t distance_m = admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
-    const gw_vector_t limited = limit_components(direction, (gw_real_t)1.01); /* a unit vector, rounded */
-    admittance->goal_m.x = distance_m * limited.x;
-    admittance->goal_m.y = distance_m * limited.y;
+    const gw_real_t agreement = (admittance->first.x * direction.x) + (admittance->first.y * direction.y);
+    if (admittance->config.kind != GW_ADMITTANCE_ESCAPE) {
+        aim(admittance, direction);
+    } else if (agreement >= LEAST_AGREEMENT) {
+        aim(admittance, direction);
+        follow_direction(admittance);
+    } else {
+        /* what is felt of its own braking may point anywhere */
+    }
+}
+
+void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip)
+{
+    admittance->tip = *tip;
+}
+
+void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw)
+{
+    admittance->yaw = yaw;
 }
 
 /* Changes the velocity towards the wanted one within the acceleration limit. */
@@ -126,9 +203,11 @@ static gw_admittance_output_t approach_velocity(const gw_admittance_t *admittanc
     const gw_vector_t change = {wanted_mps.x - before.x, wanted_mps.y - before.y};
     const gw_vector_t allowed =
         gw_limit_length(change, admittance->config.acceleration_limit_mps2 * admittance->period_s);
+    const gw_real_t share =
+        gw_tip_share(&admittance->tip, gw_rotate_back(admittance->yaw, allowed), admittance->period_s);
     const gw_real_t half_s = GW_HALF * admittance->period_s;
-    next.velocity_mps.x = before.x + allowed.x;
-    next.velocity_mps.y = before.y + allowed.y;
+    next.velocity_mps.x = before.x + (share * allowed.x);
+    next.velocity_mps.y = before.y + (share * allowed.y);
     next.displacement_m.x = half_s * (before.x + next.velocity_mps.x);
     next.displacement_m.y = half_s * (before.y + next.velocity_mps.y);
     return next;
@@ -140,7 +219,15 @@ static bool within_limits(const gw_admittance_t *admittance, gw_vector_t velocit
     const gw_vector_t before = admittance->velocity_mps;
     const gw_vector_t change = {velocity_mps.x - before.x, velocity_mps.y - before.y};
     return (gw_length(velocity_mps) <= admittance->config.speed_limit_mps) &&
-           (gw_length(change) <= (admittance->config.acceleration_limit_mps2 * admittance->period_s));
+           (gw_length(change) <= (admittance->config.acceleration_limit_mps2 * admittance->period_s)) &&
+           (gw_tip_share(&admittance->tip, gw_rotate_back(admittance->yaw, change), admittance->period_s) >= GW_ONE);
+}
+
+static gw_vector_t ahead_of(const gw_admittance_t *admittance)
+{
+    const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
+                               gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
+    return ahead;
 }
 
 /* One tick of (2), or as near to it as limits and finish speed allow. */
@@ -149,8 +236,7 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
     gw_admittance_output_t next;
     const gw_admittance_config_t *const config = &admittance->config;
     const gw_real_t period_s = admittance->period_s;
-    const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
-                               gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
+    const gw_vector_t ahead = ahead_of(admittance);
     const gw_real_t distance_m = gw_length(ahead);
     if (distance_m > GW_ZERO) {
         const gw_vector_t unit = gw_unit(ahead.x, ahead.y, distance_m);
@@ -161,8 +247,11 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
         const gw_real_t mean = gw_length(mean_mps);
         const gw_real_t along_mps = (admittance->velocity_mps.x * unit.x) + (admittance->velocity_mps.y * unit.y);
         /* Braking is planned with half of the acceleration; the other half corrects errors. */
-        const gw_real_t brake_mps = gw_braking_speed(GW_HALF * config->acceleration_limit_mps2, period_s,
-                                                     distance_m - ((GW_HALF * period_s) * along_mps));
+        const gw_vector_t back = {-unit.x, -unit.y};
+        const gw_real_t deceleration_mps2 =
+            gw_tip_along(&admittance->tip, gw_rotate_back(admittance->yaw, back), config->acceleration_limit_mps2);
+        const gw_real_t brake_mps =
+            gw_braking_speed(GW_HALF * deceleration_mps2, period_s, distance_m - ((GW_HALF * period_s) * along_mps));
         const gw_real_t wanted =
             gw_min(gw_min(gw_max(mean, config->finish_speed_mps), brake_mps), config->speed_limit_mps);
         const gw_vector_t wanted_mps = {wanted * unit.x, wanted * unit.y};
@@ -204,6 +293,49 @@ static gw_admittance_output_t step_live(const gw_admittance_t *admittance, gw_ve
     return next;
 }
 
+/* Before a tick of the escape: a goal that was passed is moved on, there is no way back to it. */
+static void move_goal(gw_admittance_t *admittance)
+{
+    const gw_real_t past_m = gw_min(along_away(admittance, ahead_of(admittance)), GW_ZERO);
+    admittance->goal_m.x = gw_limited(admittance->goal_m.x - (past_m * admittance->away.x), ESCAPE_MAX);
+    admittance->goal_m.y = gw_limited(admittance->goal_m.y - (past_m * admittance->away.y), ESCAPE_MAX);
+}
+
+/* After a tick of the escape: what the low-passes leave of its velocity. */
+static gw_admittance_output_t smoothed(gw_admittance_t *admittance)
+{
+    gw_admittance_output_t next;
+    gw_vector_t behind = admittance->velocity_mps;
+    const gw_vector_t before = admittance->smooth_mps[GW_SMOOTH_COUNT - 1U];
+    const gw_real_t half_s = GW_HALF * admittance->period_s;
+    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+        gw_vector_t *const smooth_mps = &admittance->smooth_mps[i];
+        smooth_mps->x = gw_limited(smooth_mps->x + (admittance->smooth_share * (behind.x - smooth_mps->x)), SPEED_MAX);
+        smooth_mps->y = gw_limited(smooth_mps->y + (admittance->smooth_share * (behind.y - smooth_mps->y)), SPEED_MAX);
+        behind = *smooth_mps;
+    }
+    if ((gw_length(admittance->velocity_mps) <= GW_ZERO) && (gw_length(behind) < STILL_MPS)) {
+        set_velocity(admittance, admittance->velocity_mps);
+        behind = admittance->velocity_mps;
+    }
+    next.velocity_mps = behind;
+    next.displacement_m.x = half_s * (before.x + behind.x);
+    next.displacement_m.y = half_s * (before.y + behind.y);
+    return next;
+}
+
+void gw_admittance_brake(gw_admittance_t *admittance)
+{
+    const gw_real_t towards_mps = -along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]);
+    if ((admittance->config.kind == GW_ADMITTANCE_ESCAPE) && (towards_mps > GW_ZERO)) {
+        const gw_real_t change_mps = gw_min(admittance->config.brake_limit_mps2 * admittance->period_s, towards_mps);
+        add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
+        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+            add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
+        }
+    }
+}
+
 gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output)
 {
     static const gw_admittance_output_t still = {0};
@@ -219,20 +351,27 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
         } else if (!(gw_within(force_n.x, GW_WRENCH_MAX) && gw_within(force_n.y, GW_WRENCH_MAX))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
-            if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
+            const bool to_a_goal = (admittance->config.kind != GW_ADMITTANCE_LIVE_FORCE);
+            if (admittance->config.kind == GW_ADMITTANCE_ESCAPE) {
+                move_goal(admittance);
+            }
+            if (to_a_goal) {
                 *output = step_frozen(admittance);
             } else {
                 *output = step_live(admittance, limit_components(force_n, GW_WRENCH_MAX));
             }
             output->velocity_mps = limit_components(output->velocity_mps, SPEED_MAX);
             output->displacement_m = limit_components(output->displacement_m, DISPLACEMENT_MAX);
-            if (admittance->config.kind == GW_ADMITTANCE_FROZEN_IMPULSE) {
+            if (to_a_goal) {
                 admittance->moved_x_m =
                     gw_sum_limit(gw_sum_add(admittance->moved_x_m, output->displacement_m.x), ESCAPE_MAX);
                 admittance->moved_y_m =
                     gw_sum_limit(gw_sum_add(admittance->moved_y_m, output->displacement_m.y), ESCAPE_MAX);
             }
             admittance->velocity_mps = output->velocity_mps;
+            if (admittance->config.kind == GW_ADMITTANCE_ESCAPE) {
+                *output = smoothed(admittance);
+            }
         }
     }
     return status;

@@ -315,12 +315,17 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
             (void)gw_admittance_init(&controller->admittance, &config->admittance, config->period_s);
             (void)gw_reference_init(&controller->reference, &config->reference, config->period_s);
             (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
+            gw_tip_t tip;
+            gw_tip_init(&tip, &config->admittance.tip, &controller->estimator.kinematics);
+            gw_admittance_set_tip(&controller->admittance, &tip);
+            gw_reference_set_tip(&controller->reference, &tip);
             gw_joint_init(&controller->joint);
             forget_detection(controller);
             blank_tick(controller);
             controller->tick = 0U;
             controller->tare_request_before = false;
             controller->on_plan = false;
+            controller->may_press = false;
         }
     }
     if (error != NULL) {
@@ -458,7 +463,12 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
-        (void)gw_admittance_start(&controller->admittance, velocity, hit_direction(controller));
+        const gw_vector_t direction = hit_direction(controller);
+        const gw_real_t towards_mps = -((velocity.x * direction.x) + (velocity.y * direction.y));
+        /* Not in a reaction: there the robot rocks, and what it feels of that would make it rock more. */
+        controller->may_press =
+            (before != GW_MODE_REACTING) && (towards_mps > controller->supervisor.config.settled_speed_mps);
+        (void)gw_admittance_start(&controller->admittance, velocity, direction);
     } else if ((mode == GW_MODE_REACTING) && is_refined(controller)) {
         gw_admittance_redirect(&controller->admittance, hit_direction(controller));
     } else if (mode != before) {
@@ -512,6 +522,10 @@ static gw_vector_t live_force(const gw_controller_t *controller)
 static void give_way(gw_controller_t *controller)
 {
     gw_admittance_output_t motion;
+    gw_admittance_face(&controller->admittance, controller->reference.yaw);
+    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->may_press && controller->detection.active) {
+        gw_admittance_brake(&controller->admittance);
+    }
     gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse does not read it */
     if (controller->admittance.config.kind == GW_ADMITTANCE_LIVE_FORCE) {
         force_n = live_force(controller);
@@ -557,6 +571,20 @@ static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, b
     }
 }
 
+/* The reference's twist; in a reaction ahead of it, as the servo needs an error of the speed to accelerate the robot.
+ */
+static gw_twist_t commanded_twist(const gw_controller_t *controller)
+{
+    gw_twist_t twist = controller->reference.twist;
+    const gw_admittance_config_t *const config = &controller->admittance.config;
+    if ((controller->supervisor.mode == GW_MODE_REACTING) && (config->lead_s > GW_ZERO)) {
+        const gw_acceleration_t *const acceleration = &controller->reference.acceleration;
+        twist.vx_mps += gw_limited(config->lead_s * acceleration->ax_mps2, config->speed_limit_mps);
+        twist.vy_mps += gw_limited(config->lead_s * acceleration->ay_mps2, config->speed_limit_mps);
+    }
+    return twist;
+}
+
 static void command_wheels(gw_controller_t *controller, const gw_controller_input_t *input, bool sensors_good,
                            gw_controller_output_t *output)
 {
@@ -571,7 +599,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
     if (gw_joint_is_placed(&controller->joint) && (controller->supervisor.mode != GW_MODE_FAULT)) {
         gw_joint_step(&controller->joint, kinematics, controller->reference.displacement,
                       gw_reference_pose(&controller->reference).theta_rad, controller->reference.yaw,
-                      controller->reference.twist, &output->command);
+                      commanded_twist(controller), &output->command);
     } else {
         gw_joint_hold(&controller->joint, &output->command);
     }

@@ -53,6 +53,7 @@ gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_conf
         if (reference->initialised) {
             reference->config = *config;
             reference->period_s = period_s;
+            gw_tip_none(&reference->tip);
             gw_reference_place(reference, &origin, false);
         } else {
             status = GW_STATUS_CONFIG_INVALID;
@@ -78,9 +79,14 @@ bool gw_reference_invariant_holds(const gw_reference_t *reference)
                 gw_within(reference->twist.omega_radps, YAW_RATE_MAX) &&
                 gw_is_finite(reference->acceleration.ax_mps2) && gw_is_finite(reference->acceleration.ay_mps2) &&
                 gw_is_finite(reference->acceleration.alpha_radps2) && gw_within(reference->yaw.cosine, GW_ONE) &&
-                gw_within(reference->yaw.sine, GW_ONE);
+                gw_within(reference->yaw.sine, GW_ONE) && gw_tip_invariant_holds(&reference->tip);
     }
     return holds;
+}
+
+void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip)
+{
+    reference->tip = *tip;
 }
 
 static void stand(gw_reference_t *reference)
@@ -114,11 +120,20 @@ void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool m
     }
 }
 
+/* The largest acceleration along a vector in the world frame, while a path is rejoined. */
+static gw_real_t rejoining_limit(const gw_reference_t *reference, gw_vector_t vector)
+{
+    const gw_vector_t unit = gw_unit(vector.x, vector.y, gw_length(vector));
+    return gw_tip_along(&reference->tip, gw_rotate_back(reference->yaw, unit),
+                        reference->config.acceleration_limit_mps2);
+}
+
 /* One tick towards these planar and yaw speeds, within the limits. The acceleration is that of the plan where the
  * plan is being followed freely (planned not NULL), else that of the step. */
-static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, const gw_acceleration_t *planned)
+static void move_planar(gw_reference_t *reference, gw_vector_t wanted_mps, gw_real_t limit_mps2,
+                        const gw_acceleration_t *planned)
 {
-    const gw_real_t most = reference->config.acceleration_limit_mps2 * reference->period_s;
+    const gw_real_t most = limit_mps2 * reference->period_s;
     const gw_vector_t change = {wanted_mps.x - reference->twist.vx_mps, wanted_mps.y - reference->twist.vy_mps};
     const gw_vector_t allowed = gw_limit_length(change, most);
     const gw_real_t half_s = GW_HALF * reference->period_s;
@@ -185,10 +200,12 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
     gw_vector_t wanted = {planned.x + (config->follow_gain_per_s * error.x),
                           planned.y + (config->follow_gain_per_s * error.y)};
     gw_real_t wanted_omega = planned_omega + (config->follow_gain_per_s * yaw_error);
+    gw_real_t limit_mps2 = config->acceleration_limit_mps2;
     if (rejoining) {
         const gw_real_t distance_m = gw_length(error);
+        const gw_vector_t back = {-error.x, -error.y};
         const gw_real_t speed =
-            rejoining_speed(reference, distance_m, config->finish_speed_mps, config->acceleration_limit_mps2);
+            rejoining_speed(reference, distance_m, config->finish_speed_mps, rejoining_limit(reference, back));
         const gw_real_t finish_rate =
             config->finish_speed_mps * (config->yaw_rate_limit_radps / config->speed_limit_mps);
         const gw_real_t rate =
@@ -198,11 +215,13 @@ void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool 
             wanted.y = gw_fraction(error.y, distance_m) * speed;
         }
         wanted_omega = (yaw_error < GW_ZERO) ? -rate : rate;
+        const gw_vector_t change = {wanted.x - reference->twist.vx_mps, wanted.y - reference->twist.vy_mps};
+        limit_mps2 = rejoining_limit(reference, change);
     }
     /* A correction that matters is not part of the planned acceleration. */
     const bool on_plan = (!rejoining) && ((config->follow_gain_per_s * gw_length(error)) <= CORRECTION_FREE);
     const bool on_yaw = (!rejoining) && ((config->follow_gain_per_s * gw_abs(yaw_error)) <= YAW_CORRECTION_FREE);
-    move_planar(reference, gw_limit_length(wanted, speed_limit), on_plan ? &plan->acceleration : NULL);
+    move_planar(reference, gw_limit_length(wanted, speed_limit), limit_mps2, on_plan ? &plan->acceleration : NULL);
     move_yaw(reference, gw_clamp(wanted_omega, -config->yaw_rate_limit_radps, config->yaw_rate_limit_radps),
              on_yaw ? &plan->acceleration : NULL);
     add_displacement(reference);
@@ -223,7 +242,7 @@ void gw_reference_escape(gw_reference_t *reference, gw_vector_t displacement_m, 
 void gw_reference_brake(gw_reference_t *reference)
 {
     const gw_vector_t zero = {GW_ZERO, GW_ZERO};
-    move_planar(reference, zero, NULL);
+    move_planar(reference, zero, reference->config.acceleration_limit_mps2, NULL);
     move_yaw(reference, GW_ZERO, NULL);
     add_displacement(reference);
 }

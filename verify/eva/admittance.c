@@ -21,8 +21,15 @@ static void part_step(void)
 {
     gw_admittance_output_t output;
     draw_admittance(&admittance);
-    if (any_flag()) {
+    const uint32_t kind = draw_count(0U, 3U);
+    if (kind == 0U) {
         (void)gw_admittance_start(&admittance, any_vector(), any_vector());
+    } else if (kind == 1U) {
+        gw_vector_t direction;
+        draw_vector(&direction, (gw_real_t)1.01);
+        gw_admittance_redirect(&admittance, direction);
+    } else if (kind == 2U) {
+        gw_admittance_brake(&admittance);
     } else {
         (void)gw_admittance_step(&admittance, any_vector(), &output);
         hold_vector(&output.velocity_mps, (gw_real_t)100.0);

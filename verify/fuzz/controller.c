@@ -26,6 +26,7 @@ static gw_controller_config_t take_config(bytes_t *from)
     }
     if ((replaced & 16U) != 0U) {
         GW_ADMITTANCE_FIELDS(TAKE, config.admittance.)
+        GW_TIP_FIELDS(TAKE, config.admittance.tip.)
     }
     if ((replaced & 32U) != 0U) {
         GW_CONTACT_FIELDS(TAKE, config.contact.)
@@ -45,7 +46,7 @@ static gw_controller_config_t take_config(bytes_t *from)
     config.supervisor.settled_ticks = 1U + ((replaced >> 14U) & 15U);
     config.detector.blanking_ticks = (replaced >> 12U) & 3U;
     config.estimator.friction_model = (replaced >> 11U) & 1U;
-    config.admittance.kind = (replaced >> 10U) & 1U;
+    config.admittance.kind = (replaced >> 16U) % 3U;
     config.detector.kind = (replaced >> 9U) & 1U;
     config.drives_enabled = (replaced & 64U) == 0U;
     *from = bytes;

@@ -32,6 +32,7 @@
 #include "giveway/gw_sum.h"
 #include "giveway/gw_supervisor.h"
 #include "giveway/gw_tare.h"
+#include "giveway/gw_tip.h"
 #include "giveway/gw_trikey.h"
 #include "giveway/gw_types.h"
 #include "giveway/gw_wrench.h"

@@ -4,7 +4,11 @@
  * limits exactly (2) with p as the impulse; with limits it still ends at exactly p/B. The last part is covered at the
  * finish speed, because the exponential tail of (2) would keep the robot creeping for seconds.
  * Live force: (1), M v' + B v = F, with the force of each tick.
- * Both steps are exact for an input held over the tick; speed and acceleration vectors are limited in length.
+ * Escape: the frozen impulse for a robot that must neither rock nor press. Its velocity never turns against the push:
+ * one that it had is braked, and a goal that it has passed moves on. Two low-passes keep the acceleration from exciting
+ * the robot on its wheels. As long as it moves towards what it hit it brakes at once and harder: what is clamped is in
+ * more danger than the wheels, and the push holds those down that braking lifts. The first two are exact for an input
+ * held over the tick. Speed and acceleration vectors are limited in length, and the acceleration by gw_tip.
  *
  * Life cycle: gw_admittance_init; gw_admittance_start at a hit; gw_admittance_step per tick. All members are private.
  */
@@ -13,6 +17,7 @@
 
 #include "giveway/gw_config.h"
 #include "giveway/gw_sum.h"
+#include "giveway/gw_tip.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -21,9 +26,10 @@ extern "C" {
 
 #define GW_ADMITTANCE_FROZEN_IMPULSE 0U
 #define GW_ADMITTANCE_LIVE_FORCE 1U
+#define GW_ADMITTANCE_ESCAPE 2U
 
 typedef struct {
-    /* GW_ADMITTANCE_FROZEN_IMPULSE (0) or GW_ADMITTANCE_LIVE_FORCE (1). */
+    /* GW_ADMITTANCE_FROZEN_IMPULSE (0), GW_ADMITTANCE_LIVE_FORCE (1) or GW_ADMITTANCE_ESCAPE (2). */
     uint32_t kind;
     /* M_des, kg, [0.01, 10000]. */
     gw_real_t mass_kg;
@@ -35,9 +41,21 @@ typedef struct {
     gw_real_t speed_limit_mps;
     /* Longest acceleration, m/s^2, [0.001, 1000]. */
     gw_real_t acceleration_limit_mps2;
-    /* Frozen impulse: slowest speed towards the goal, m/s, [0, 1]; 0: the endless tail of (2). */
+    /* Frozen impulse and escape: slowest speed towards the goal, m/s, [0, 1]; 0: the endless tail of (2). */
     gw_real_t finish_speed_mps;
+    /* Escape: time constant of each of the two low-passes of the velocity, s, [0, 1]. */
+    gw_real_t smoothing_s;
+    /* Escape: deceleration of a velocity towards a push as long as it is felt, past the low-passes, m/s^2, [0, 1000].
+     */
+    gw_real_t brake_limit_mps2;
+    /* Reaction of any kind: this time, s, [0, 0.2], times the acceleration is added to the commanded speeds, at most
+     * the speed limit in each component. The inertia that a wheel moves over the servo's kd lets the robot follow
+     * without lag. */
+    gw_real_t lead_s;
+    gw_tip_config_t tip;
 } gw_admittance_config_t;
+
+#define GW_SMOOTH_COUNT 2U
 
 typedef struct {
     gw_admittance_config_t config;
@@ -49,6 +67,12 @@ typedef struct {
     gw_sum_t moved_x_m;   /* displacement made since the start */
     gw_sum_t moved_y_m;
     gw_vector_t velocity_mps;
+    gw_tip_t tip;
+    gw_rotation_t yaw;      /* of the base */
+    gw_vector_t away;       /* direction of the hit, */
+    gw_vector_t first;      /* and as it was at its start */
+    gw_real_t smooth_share; /* of each low-pass in a tick */
+    gw_vector_t smooth_mps[GW_SMOOTH_COUNT];
     bool initialised;
 } gw_admittance_t;
 
@@ -67,8 +91,15 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
 /* A hit: from the present velocity along the unit vector direction; (0, 0) means: come to rest here.
  * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction);
-/* A better estimate of the direction of the hit, a unit vector: what was moved so far counts. Pointer not NULL. */
+/* The limit of the acceleration that tipping sets; and where the base faces now. Pointers not NULL. */
+void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip);
+void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw);
+/* A better estimate of the direction of the hit, a unit vector: what was moved so far counts. An escape takes none that
+ * is more than 60 degrees from that of its start. Pointer not NULL. */
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction);
+/* Before a step of the escape, as long as the contact lasts: brakes a velocity towards the push. No effect on other
+ * kinds. Pointer not NULL. */
+void gw_admittance_brake(gw_admittance_t *admittance);
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */
 gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output);

@@ -112,7 +112,8 @@ typedef struct {
     gw_detector_output_t detection;
     bool drives_enabled;
     bool tare_request_before;
-    bool on_plan; /* the reference was placed on the plan */
+    bool on_plan;   /* the reference was placed on the plan */
+    bool may_press; /* the reaction began with a hit on the way: the robot may still move towards what it hit */
     bool initialised;
     gw_estimator_t estimator;
 } gw_controller_t;

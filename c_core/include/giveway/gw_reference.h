@@ -12,6 +12,7 @@
 #include "giveway/gw_config.h"
 #include "giveway/gw_math.h"
 #include "giveway/gw_sum.h"
+#include "giveway/gw_tip.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -58,6 +59,7 @@ typedef struct {
     /* What the last tick moved. */
     gw_pose_t displacement;
     gw_rotation_t yaw; /* sine and cosine of theta */
+    gw_tip_t tip;
     bool initialised;
 } gw_reference_t;
 
@@ -66,6 +68,8 @@ void gw_reference_config_trikey(gw_reference_config_t *config);
 void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. The reference starts at the origin, at rest. */
 gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s);
+/* The limit of the acceleration that tipping sets while a path is rejoined; without it there is none. */
+void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip);
 bool gw_reference_invariant_holds(const gw_reference_t *reference);
 /* True if every number is finite, positions within 1e4 m, angles within 1e4 rad, speeds within 100 m/s and 1000 rad/s,
  * accelerations within 1e4. */

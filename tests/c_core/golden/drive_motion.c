@@ -12,11 +12,12 @@ digest_t drive_admittance(void)
 {
     digest_t digest = digest_begin();
     generator_t generator = generator_begin(16U);
-    for (uint32_t kind = 0U; kind < 3U; kind++) { /* the third is refused */
+    static const uint32_t kinds[] = {GW_ADMITTANCE_FROZEN_IMPULSE, GW_ADMITTANCE_LIVE_FORCE, 3U /* refused */};
+    for (uint32_t k = 0U; k < 3U; k++) {
         gw_controller_config_t trikey;
         gw_admittance_t admittance;
         gw_controller_config_trikey(&trikey);
-        trikey.admittance.kind = kind;
+        trikey.admittance.kind = kinds[k];
         digest_u32(&digest, (uint32_t)gw_admittance_init(&admittance, &trikey.admittance, period_s));
         for (uint32_t hit = 0U; hit < 5U; hit++) {
             const gw_rotation_t towards = gw_sincos(generator_between(&generator, -GW_PI, GW_PI));
@@ -31,6 +32,47 @@ digest_t drive_admittance(void)
                 digest_vector(&digest, output.velocity_mps);
                 digest_vector(&digest, output.displacement_m);
             }
+        }
+    }
+    return digest;
+}
+
+/* The escape, with everything on, turned and redirected. */
+digest_t drive_escape(void)
+{
+    digest_t digest = digest_begin();
+    generator_t generator = generator_begin(29U);
+    gw_controller_config_t trikey;
+    gw_kinematics_t kinematics;
+    gw_admittance_t admittance;
+    gw_tip_t tip;
+    gw_controller_config_trikey(&trikey);
+    trikey.admittance.kind = GW_ADMITTANCE_ESCAPE;
+    trikey.admittance.smoothing_s = (gw_real_t)0.03;
+    trikey.admittance.brake_limit_mps2 = (gw_real_t)4.0;
+    trikey.admittance.tip.height_m = (gw_real_t)0.414;
+    digest_u32(&digest, (uint32_t)gw_kinematics_init(&kinematics, &trikey.geometry));
+    gw_tip_init(&tip, &trikey.admittance.tip, &kinematics);
+    digest_u32(&digest, (uint32_t)gw_admittance_init(&admittance, &trikey.admittance, period_s));
+    gw_admittance_set_tip(&admittance, &tip);
+    for (uint32_t hit = 0U; hit < 8U; hit++) {
+        const gw_rotation_t towards = gw_sincos(generator_between(&generator, -GW_PI, GW_PI));
+        const gw_vector_t direction = {towards.cosine, towards.sine};
+        const gw_vector_t velocity_mps = generator_vector(&generator, GW_HALF);
+        digest_u32(&digest, (uint32_t)gw_admittance_start(&admittance, velocity_mps, direction));
+        for (uint32_t i = 0U; i < 600U; i++) {
+            static const gw_vector_t no_force = {0};
+            gw_admittance_output_t output;
+            gw_admittance_face(&admittance, gw_sincos(generator_between(&generator, -GW_PI, GW_PI)));
+            if (i < 60U) {
+                gw_admittance_redirect(&admittance, direction);
+            }
+            if (i < 100U) {
+                gw_admittance_brake(&admittance);
+            }
+            digest_u32(&digest, (uint32_t)gw_admittance_step(&admittance, no_force, &output));
+            digest_vector(&digest, output.velocity_mps);
+            digest_vector(&digest, output.displacement_m);
         }
     }
     return digest;

@@ -28,6 +28,7 @@ static const module_t modules[] = {
     {"supervisor", drive_supervisor},
     {"estimator", drive_estimator},
     {"admittance", drive_admittance},
+    {"escape", drive_escape},
     {"reference", drive_reference},
     {"joint", drive_joint},
     {"servo", drive_servo},

@@ -22,6 +22,7 @@ digest_t drive_detector(void);
 digest_t drive_supervisor(void);
 digest_t drive_estimator(void);
 digest_t drive_admittance(void);
+digest_t drive_escape(void);
 digest_t drive_reference(void);
 digest_t drive_joint(void);
 digest_t drive_servo(void);

@@ -2,13 +2,24 @@
 
 #define PERIOD R(0.001)
 
+/* A speed that counts as none, m/s. */
+#define STILL R(0.000001)
+
 static const gw_vector_t nothing = {R(0.0), R(0.0)};
 static const gw_vector_t along_x = {R(1.0), R(0.0)};
 
 /* M = 2 kg, B = 1.6 N s/m, p = 0.8 N s: the escape is p/B = 0.5 m. */
 static gw_admittance_config_t config(uint32_t kind)
 {
-    const gw_admittance_config_t made = {kind, R(2.0), R(1.6), R(0.8), R(0.5), R(2.8), R(0.01)};
+    gw_admittance_config_t made;
+    gw_admittance_config_trikey(&made);
+    made.kind = kind;
+    made.mass_kg = R(2.0);
+    made.damping_newton_s_per_m = R(1.6);
+    made.escape_impulse_newton_s = R(0.8);
+    made.speed_limit_mps = R(0.5);
+    made.acceleration_limit_mps2 = R(2.8);
+    made.finish_speed_mps = R(0.01);
     return made;
 }
 
@@ -29,7 +40,9 @@ static gw_admittance_t made(uint32_t kind)
 /* One step; the limits of speed and acceleration hold to a few roundings. */
 static gw_admittance_output_t step(gw_admittance_t *admittance, gw_vector_t force)
 {
-    const gw_vector_t before = admittance->velocity_mps;
+    const gw_vector_t before = (admittance->config.kind == GW_ADMITTANCE_ESCAPE)
+                                   ? admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]
+                                   : admittance->velocity_mps;
     gw_admittance_output_t output;
     CHECK_STATUS(gw_admittance_step(admittance, force, &output), GW_STATUS_OK);
     CHECK(gw_admittance_invariant_holds(admittance));
@@ -228,10 +241,239 @@ static void rare_states_keep_the_limits(void)
     }
 }
 
+/* Numbers from -1 to 1, the same everywhere. */
+static gw_real_t draw(uint32_t *seed)
+{
+    *seed = (*seed * 1664525U) + 1013904223U;
+    return ((gw_real_t)(*seed >> 8U) / R(8388608.0)) - GW_ONE;
+}
+
+static gw_vector_t draw_unit(uint32_t *seed)
+{
+    const gw_rotation_t rotation = gw_sincos(GW_PI * draw(seed));
+    const gw_vector_t unit = {rotation.cosine, rotation.sine};
+    return unit;
+}
+
+static gw_real_t dot(gw_vector_t a, gw_vector_t b)
+{
+    return (a.x * b.x) + (a.y * b.y);
+}
+
+static gw_tip_t tip_of(gw_real_t share)
+{
+    gw_geometry_config_t geometry;
+    gw_kinematics_t kinematics;
+    gw_tip_config_t from;
+    gw_tip_t tip;
+    gw_geometry_config_trikey(&geometry);
+    CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
+    gw_tip_config_trikey(&from);
+    from.height_m = R(0.414);
+    from.share = share;
+    gw_tip_init(&tip, &from, &kinematics);
+    return tip;
+}
+
+/* An escape from any velocity, in any direction, with any yaw and margin. */
+static gw_admittance_t drawn_escape(uint32_t *seed)
+{
+    gw_admittance_config_t from = config(GW_ADMITTANCE_ESCAPE);
+    from.smoothing_s = gw_max(R(0.04) * draw(seed), GW_ZERO); /* half of them have none */
+    gw_admittance_t admittance = of_config(&from);
+    const gw_tip_t tip = tip_of(R(0.55) + (R(0.45) * draw(seed)));
+    gw_admittance_set_tip(&admittance, &tip);
+    gw_admittance_face(&admittance, gw_sincos(GW_PI * draw(seed)));
+    const gw_vector_t heading = draw_unit(seed);
+    const gw_real_t speed_mps = R(0.25) + (R(0.25) * draw(seed));
+    const gw_vector_t velocity = {speed_mps * heading.x, speed_mps * heading.y};
+    CHECK_STATUS(gw_admittance_start(&admittance, velocity, draw_unit(seed)), GW_STATUS_OK);
+    return admittance;
+}
+
+/* One step. The velocity away from the push is not negative, or does not fall while it is: it is being braked. No wheel
+ * loses more than the margin. */
+static gw_admittance_output_t escape_step(gw_admittance_t *admittance)
+{
+    const gw_vector_t before = admittance->smooth_mps[GW_SMOOTH_COUNT - 1U];
+    const gw_admittance_output_t output = step(admittance, nothing);
+    const gw_vector_t change = {output.velocity_mps.x - before.x, output.velocity_mps.y - before.y};
+    const gw_vector_t in_base = gw_rotate_back(admittance->yaw, change);
+    CHECK(dot(output.velocity_mps, admittance->away) >= (gw_min(dot(before, admittance->away), GW_ZERO) - ULP));
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        CHECK(dot(in_base, admittance->tip.radial[i]) <= ((admittance->tip.margin_mps2 * PERIOD) + ROUNDING));
+    }
+    return output;
+}
+
+static void an_escape_never_goes_against_the_push(void)
+{
+    uint32_t seed = 1U;
+    for (uint32_t i = 0U; i < 300U; i++) {
+        gw_admittance_t admittance = drawn_escape(&seed);
+        unit_row(i);
+        /* A sharper direction at every tick of the first 60, anywhere around the first; once more in the middle. */
+        const gw_vector_t first = admittance.away;
+        for (uint32_t tick = 0U; tick < 4000U; tick++) {
+            if ((tick < 60U) || (tick == 300U)) {
+                const gw_vector_t other = draw_unit(&seed);
+                const gw_vector_t sum = {first.x + (R(0.9) * other.x), first.y + (R(0.9) * other.y)};
+                const gw_vector_t before = admittance.smooth_mps[GW_SMOOTH_COUNT - 1U];
+                gw_admittance_redirect(&admittance, gw_unit(sum.x, sum.y, gw_length(sum)));
+                CHECK(dot(admittance.velocity_mps, admittance.away) >=
+                      (gw_min(dot(before, admittance.away), GW_ZERO) - ROUNDING));
+            }
+            (void)escape_step(&admittance);
+        }
+    }
+}
+
+/* 59 degrees are taken, 61 are not: a robot that feels its own braking does not turn round. Other kinds take all. */
+static void an_escape_does_not_follow_a_contradiction(void)
+{
+    for (uint32_t kind = GW_ADMITTANCE_FROZEN_IMPULSE; kind <= GW_ADMITTANCE_ESCAPE; kind++) {
+        for (uint32_t degree = 59U; degree <= 61U; degree += 2U) {
+            const gw_rotation_t rotation = gw_sincos((gw_real_t)degree * (GW_PI / R(180.0)));
+            const gw_vector_t other = {rotation.cosine, -rotation.sine};
+            const bool taken = (kind != GW_ADMITTANCE_ESCAPE) || (degree < 60U);
+            gw_admittance_t admittance = made(kind);
+            unit_row((100U * kind) + degree);
+            CHECK_STATUS(gw_admittance_start(&admittance, nothing, along_x), GW_STATUS_OK);
+            gw_admittance_redirect(&admittance, other);
+            CHECK_NEAR(admittance.goal_m.y, taken ? (GW_HALF * other.y) : GW_ZERO, ULP);
+            CHECK_NEAR(admittance.away.x, taken ? other.x : GW_ONE, ULP);
+        }
+    }
+}
+
+/* It comes to rest, after p/B or where it could stop, and stays there. */
+static void an_escape_comes_to_rest_and_holds(void)
+{
+    uint32_t seed = 2U;
+    for (uint32_t i = 0U; i < 50U; i++) {
+        gw_admittance_t admittance = drawn_escape(&seed);
+        const gw_vector_t velocity = admittance.velocity_mps;
+        const gw_real_t lag_s = GW_TWO * admittance.config.smoothing_s;
+        gw_vector_t moved = nothing;
+        unit_row(i);
+        for (uint32_t tick = 0U; tick < 12000U; tick++) {
+            const gw_admittance_output_t output = escape_step(&admittance);
+            moved.x += output.displacement_m.x;
+            moved.y += output.displacement_m.y;
+        }
+        /* Low-passes that start with a velocity are behind by their time: the goal is moved by as much. */
+        const gw_vector_t left = {moved.x - (lag_s * velocity.x), moved.y - (lag_s * velocity.y)};
+        CHECK(dot(left, admittance.away) >= R(0.499));
+        CHECK_NEAR(dot(left, admittance.away), GW_HALF, R(0.1)); /* some could not stop before: at most 0.5 m/s */
+        for (uint32_t tick = 0U; tick < 1000U; tick++) {
+            const gw_admittance_output_t output = escape_step(&admittance);
+            CHECK((output.velocity_mps.x == GW_ZERO) && (output.velocity_mps.y == GW_ZERO));
+            CHECK((output.displacement_m.x == GW_ZERO) && (output.displacement_m.y == GW_ZERO));
+        }
+    }
+}
+
+/* Too fast to stop at the goal: it stops behind it, where a frozen impulse comes back. */
+static void a_goal_that_was_passed_is_given_up(void)
+{
+    for (uint32_t kind = GW_ADMITTANCE_FROZEN_IMPULSE; kind <= GW_ADMITTANCE_ESCAPE; kind += GW_ADMITTANCE_ESCAPE) {
+        gw_admittance_config_t from = config(kind);
+        gw_real_t moved = GW_ZERO;
+        gw_real_t least_mps = GW_ONE;
+        const gw_vector_t fast = {R(0.4), R(0.0)};
+        from.acceleration_limit_mps2 = R(0.1);
+        gw_admittance_t admittance = of_config(&from);
+        CHECK_STATUS(gw_admittance_start(&admittance, fast, along_x), GW_STATUS_OK);
+        for (uint32_t tick = 0U; tick < 30000U; tick++) {
+            const gw_admittance_output_t output = step(&admittance, nothing);
+            moved += output.displacement_m.x;
+            least_mps = gw_min(least_mps, output.velocity_mps.x);
+        }
+        if (kind == GW_ADMITTANCE_ESCAPE) {
+            CHECK_NEAR(moved, R(0.8), R(0.002)); /* v^2/2a */
+            CHECK(least_mps >= -STILL);
+        } else {
+            CHECK_NEAR(moved, R(0.5), R(0.001));
+            CHECK(least_mps < R(-0.01));
+        }
+    }
+}
+
+/* At rest, hit along y: the low-passes delay the start by their time, and nothing else. */
+static void low_passes_delay_by_their_time(void)
+{
+    gw_admittance_config_t from = config(GW_ADMITTANCE_ESCAPE);
+    gw_admittance_t sharp = of_config(&from);
+    from.smoothing_s = R(0.03);
+    gw_admittance_t smooth = of_config(&from);
+    const gw_vector_t along_y = {R(0.0), R(1.0)};
+    gw_real_t first = GW_ZERO;
+    gw_real_t second = GW_ZERO;
+    CHECK_STATUS(gw_admittance_start(&sharp, nothing, along_y), GW_STATUS_OK);
+    CHECK_STATUS(gw_admittance_start(&smooth, nothing, along_y), GW_STATUS_OK);
+    for (uint32_t tick = 0U; tick < 130U; tick++) {
+        const gw_admittance_output_t output = step(&smooth, nothing);
+        first += step(&sharp, nothing).displacement_m.y;
+        second += output.displacement_m.y;
+        if (tick == 0U) {
+            CHECK(output.velocity_mps.y < (R(0.01) * sharp.velocity_mps.y));
+        }
+    }
+    /* 2.8 m/s^2 all the time: 60 ms behind, and what the start of the low-passes leaves: at^2/2 - 2 tau at + 3 tau^2 a,
+     * but for a tail of e^-4.3. */
+    CHECK_NEAR(first - second, R(2.8) * ((R(0.06) * R(0.13)) - (R(3.0) * R(0.0009))), R(0.001));
+}
+
+/* Towards what pushes, brakes at once; not beyond standing, and no other kind. */
+static void a_velocity_towards_a_push_is_braked_harder(void)
+{
+    const struct {
+        uint32_t kind;
+        gw_real_t speed;
+        gw_real_t expected;
+    } rows[] = {
+        {GW_ADMITTANCE_ESCAPE, R(-0.3), R(-0.296)},
+        {GW_ADMITTANCE_ESCAPE, R(-0.003), R(0.0)}, /* stands, does not jump */
+        {GW_ADMITTANCE_ESCAPE, R(0.1), R(0.1)},    /* gives way already */
+        {GW_ADMITTANCE_FROZEN_IMPULSE, R(-0.3), R(-0.3)},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        const gw_vector_t velocity = {rows[i].speed, R(0.0)};
+        gw_admittance_config_t from = config(rows[i].kind);
+        from.brake_limit_mps2 = R(4.0);
+        gw_admittance_t admittance = of_config(&from);
+        unit_row(i);
+        CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
+        gw_admittance_brake(&admittance);
+        CHECK_NEAR(admittance.velocity_mps.x, rows[i].expected, ULP);
+        CHECK(admittance.velocity_mps.y == GW_ZERO);
+        for (uint32_t k = 0U; k < GW_SMOOTH_COUNT; k++) {
+            CHECK_NEAR(admittance.smooth_mps[k].x, rows[i].expected, ULP);
+        }
+    }
+}
+
+/* The margin limits every kind of reaction. */
+static void no_kind_lifts_a_wheel(void)
+{
+    const gw_tip_t tip = tip_of(GW_HALF);
+    for (uint32_t kind = GW_ADMITTANCE_FROZEN_IMPULSE; kind <= GW_ADMITTANCE_ESCAPE; kind++) {
+        gw_admittance_t admittance = made(kind);
+        const gw_vector_t force = {R(100.0), R(0.0)};
+        gw_admittance_set_tip(&admittance, &tip);
+        CHECK_STATUS(gw_admittance_start(&admittance, nothing, along_x), GW_STATUS_OK);
+        unit_row(kind);
+        CHECK_NEAR(step(&admittance, force).velocity_mps.x, tip.margin_mps2 * PERIOD, ROUNDING);
+        /* Half a turn, and the robot accelerates away from the wheel. */
+        gw_admittance_face(&admittance, gw_sincos(GW_PI));
+        CHECK_NEAR(step(&admittance, force).velocity_mps.x, R(3.0) * tip.margin_mps2 * PERIOD, ROUNDING);
+    }
+}
+
 static void the_invariant_sees_every_member(void)
 {
     const gw_admittance_t good = made(GW_ADMITTANCE_FROZEN_IMPULSE);
-    gw_admittance_t bad[13];
+    gw_admittance_t bad[23];
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         bad[i] = good;
     }
@@ -248,6 +490,16 @@ static void the_invariant_sees_every_member(void)
     bad[10].velocity_mps.y = unit_nan();
     bad[11].config.mass_kg = GW_ZERO;
     bad[12].decay = unit_above(GW_ONE);
+    bad[13].tip.margin_mps2 = unit_nan();
+    bad[14].yaw.cosine = unit_above(GW_ONE);
+    bad[15].yaw.sine = unit_nan();
+    bad[16].away.x = unit_above(GW_TWO);
+    bad[17].away.y = unit_nan();
+    bad[18].smooth_share = unit_above(GW_ONE);
+    bad[19].smooth_mps[0].x = unit_nan();
+    bad[21].first.x = unit_nan();
+    bad[22].first.y = unit_above(GW_TWO);
+    bad[20].smooth_mps[1].y = unit_above(R(100.0));
     CHECK(!gw_admittance_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);
@@ -266,5 +518,12 @@ void suite_admittance(void)
     unit_run("a_better_direction_leads_to_another_goal", a_better_direction_leads_to_another_goal);
     unit_run("a_direction_that_is_none_keeps_the_invariant", a_direction_that_is_none_keeps_the_invariant);
     unit_run("rare_states_keep_the_limits", rare_states_keep_the_limits);
+    unit_run("an_escape_never_goes_against_the_push", an_escape_never_goes_against_the_push);
+    unit_run("an_escape_does_not_follow_a_contradiction", an_escape_does_not_follow_a_contradiction);
+    unit_run("an_escape_comes_to_rest_and_holds", an_escape_comes_to_rest_and_holds);
+    unit_run("a_goal_that_was_passed_is_given_up", a_goal_that_was_passed_is_given_up);
+    unit_run("low_passes_delay_by_their_time", low_passes_delay_by_their_time);
+    unit_run("a_velocity_towards_a_push_is_braked_harder", a_velocity_towards_a_push_is_braked_harder);
+    unit_run("no_kind_lifts_a_wheel", no_kind_lifts_a_wheel);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

@@ -88,6 +88,81 @@ static void it_gives_way_to_a_push_and_comes_back(void)
     CHECK(rig_output.detection_count == 1U);
 }
 
+/* In motion, pushed from the front while it drives: with each detector it brakes as soon as it feels the push, harder
+ * than the margin of tipping allows without one; then gives way within the margin. */
+static void an_escape_brakes_as_long_as_it_is_pushed(void)
+{
+    for (uint32_t kind = 0U; kind <= GW_DETECTOR_CHANNELS; kind++) {
+        rig_set_up();
+        rig_config.estimator.tare_ticks = 0U;
+        rig_config.detector.kind = kind;
+        if (kind == GW_DETECTOR_CHANNELS) {
+            rig_config.estimator.acceleration_source = GW_SOURCE_MEASURED;
+            rig_config.estimator.aligned = 1U;
+        }
+        rig_config.detector.force_threshold_n = R(10.0);
+        rig_config.admittance.kind = GW_ADMITTANCE_ESCAPE;
+        rig_config.admittance.brake_limit_mps2 = R(3.0);
+        rig_config.supervisor.settled_ticks = 50U; /* turning round is not the end */
+        rig_config.admittance.tip.height_m = R(0.414);
+        rig_input.plan.twist.vx_mps = R(-0.2);
+        rig_begin();
+        unit_row(kind);
+        rig_tick(GW_STATUS_OK);
+        for (uint32_t i = 1U; i <= 1000U; i++) {
+            rig_input.plan.pose.x_m = R(-0.0002) * (gw_real_t)i;
+            rig_push(GW_ZERO);
+            rig_tick(GW_STATUS_OK);
+        }
+        CHECK(rig_output.mode == GW_MODE_TRACKING);
+        rig_push(R(40.0));
+        rig_until(GW_MODE_REACTING, 300U);
+        const gw_real_t margin = rig_controller.admittance.tip.margin_mps2;
+        const gw_real_t before = rig_output.reference_twist.vx_mps;
+        rig_ticks(20U);
+        CHECK_NEAR((rig_output.reference_twist.vx_mps - before) / R(0.020), R(3.0) + margin, R(0.05));
+        rig_push(GW_ZERO);
+        rig_ticks(200U);
+        CHECK(rig_output.reference_twist.vx_mps > GW_ZERO);
+        CHECK(rig_controller.reference.acceleration.ax_mps2 <= (margin + ROUNDING));
+        /* Hit from behind while it gives way: within the margin again, twice as much away from a wheel. */
+        rig_push(R(-80.0));
+        const uint32_t count = rig_output.detection_count;
+        for (uint32_t i = 0U; (i < 2000U) && (rig_output.detection_count == count); i++) {
+            rig_tick(GW_STATUS_OK);
+        }
+        CHECK(rig_output.detection_count == (count + 1U));
+        const gw_real_t second = rig_output.reference_twist.vx_mps;
+        rig_ticks(20U);
+        CHECK(rig_output.reference_twist.vx_mps >= (second - (R(0.0201) * GW_TWO * margin)));
+    }
+}
+
+/* In a reaction the commanded speeds are ahead of the reference by the configured time; on the path they are not. */
+static void a_reaction_leads_the_servos(void)
+{
+    const gw_real_t lead_s = R(0.04);
+    rig_set_up();
+    rig_config.admittance.lead_s = lead_s;
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 60U);
+    rig_ticks(3U);
+    const gw_real_t ahead =
+        rig_output.reference_twist.vx_mps + (lead_s * rig_controller.reference.acceleration.ax_mps2);
+    const gw_real_t rolling = gw_along_rolling(rig_controller.estimator.kinematics.radial[1], ahead, GW_ZERO);
+    CHECK(rig_controller.reference.acceleration.ax_mps2 > GW_ONE);
+    CHECK_NEAR(rig_output.command.speed_radps[1], rolling / rig_config.geometry.wheel_radius_m, ROUNDING);
+    rig_push(GW_ZERO);
+    rig_until(GW_MODE_REJOINING, 20000U);
+    rig_tick(GW_STATUS_OK);
+    const gw_real_t back =
+        gw_along_rolling(rig_controller.estimator.kinematics.radial[1], rig_output.reference_twist.vx_mps, GW_ZERO);
+    CHECK(rig_controller.reference.acceleration.ax_mps2 < -GW_ONE);
+    CHECK_NEAR(rig_output.command.speed_radps[1], back / rig_config.geometry.wheel_radius_m, ROUNDING);
+}
+
 static void a_second_push_on_the_way_is_a_hit_too(void)
 {
     rig_set_up();
@@ -403,6 +478,8 @@ void suite_controller(void)
     unit_run("it_tares_and_then_follows_its_plan", it_tares_and_then_follows_its_plan);
     unit_run("without_a_tare_it_starts_at_the_plan_s_speed", without_a_tare_it_starts_at_the_plan_s_speed);
     unit_run("it_gives_way_to_a_push_and_comes_back", it_gives_way_to_a_push_and_comes_back);
+    unit_run("an_escape_brakes_as_long_as_it_is_pushed", an_escape_brakes_as_long_as_it_is_pushed);
+    unit_run("a_reaction_leads_the_servos", a_reaction_leads_the_servos);
     unit_run("a_second_push_on_the_way_is_a_hit_too", a_second_push_on_the_way_is_a_hit_too);
     unit_run("settled_can_mean_to_stay", settled_can_mean_to_stay);
     unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);

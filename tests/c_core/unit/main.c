@@ -25,6 +25,7 @@ int main(void)
     suite_contact();
     suite_detector();
     suite_estimator();
+    suite_tip();
     suite_admittance();
     suite_reference();
     suite_joint();

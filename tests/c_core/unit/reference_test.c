@@ -138,6 +138,48 @@ static void the_reference_comes_to_a_plan_that_is_elsewhere(void)
     }
 }
 
+/* A path is rejoined within the margin of tipping, whatever the yaw, and plans are followed without it. */
+static void a_path_is_rejoined_without_lifting_a_wheel(void)
+{
+    const gw_tip_config_t tall = {R(0.414), GW_HALF, R(0.03), R(0.0175)};
+    gw_geometry_config_t geometry;
+    gw_kinematics_t kinematics;
+    gw_tip_t tip;
+    gw_geometry_config_trikey(&geometry);
+    CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
+    gw_tip_init(&tip, &tall, &kinematics);
+    for (uint32_t i = 0U; i < 12U; i++) {
+        const gw_rotation_t rotation = gw_sincos((gw_real_t)i * R(0.5));
+        gw_reference_t reference = made();
+        gw_plan_t plan = origin;
+        gw_real_t largest = GW_ZERO;
+        unit_row(i);
+        gw_reference_set_tip(&reference, &tip);
+        CHECK(gw_reference_invariant_holds(&reference));
+        plan.pose.x_m = R(0.3) * rotation.cosine;
+        plan.pose.y_m = R(0.3) * rotation.sine;
+        for (uint32_t tick = 0U; tick < 6000U; tick++) {
+            gw_reference_follow(&reference, &plan, true);
+            for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+                largest = gw_max(largest, gw_along_radial(tip.radial[k], reference.acceleration.ax_mps2,
+                                                          reference.acceleration.ay_mps2));
+            }
+        }
+        CHECK(gw_reference_distance(&reference, &plan) < R(0.0002));
+        /* A tick's change of a speed of 0.1 m/s, over the period. Between two wheels the other limit is the smaller. */
+        CHECK(largest <= (tip.margin_mps2 + (R(0.1) * ULP / PERIOD)));
+        CHECK(largest > (R(0.8) * tip.margin_mps2));
+    }
+    gw_reference_t tracking = made();
+    gw_plan_t far = origin;
+    far.pose.x_m = R(1.0);
+    gw_reference_set_tip(&tracking, &tip);
+    gw_reference_follow(&tracking, &far, false);
+    CHECK_NEAR(tracking.acceleration.ax_mps2, config.acceleration_limit_mps2, ROUNDING);
+    tracking.tip.margin_mps2 = unit_nan();
+    CHECK(!gw_reference_invariant_holds(&tracking));
+}
+
 static void a_reference_on_its_plan_stays_there_when_rejoining(void)
 {
     gw_reference_t reference = made();
@@ -244,6 +286,7 @@ void suite_reference(void)
     unit_run("a_smooth_plan_is_followed_exactly", a_smooth_plan_is_followed_exactly);
     unit_run("a_jump_of_the_plan_s_velocity_is_limited", a_jump_of_the_plan_s_velocity_is_limited);
     unit_run("the_reference_comes_to_a_plan_that_is_elsewhere", the_reference_comes_to_a_plan_that_is_elsewhere);
+    unit_run("a_path_is_rejoined_without_lifting_a_wheel", a_path_is_rejoined_without_lifting_a_wheel);
     unit_run("a_reference_on_its_plan_stays_there_when_rejoining", a_reference_on_its_plan_stays_there_when_rejoining);
     unit_run("placing_takes_the_plan_within_the_limits", placing_takes_the_plan_within_the_limits);
     unit_run("an_escape_moves_as_it_is_told_and_stops_turning", an_escape_moves_as_it_is_told_and_stops_turning);

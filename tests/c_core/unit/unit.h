@@ -79,6 +79,7 @@ void suite_servo(void);
 void suite_sum(void);
 void suite_supervisor(void);
 void suite_tare(void);
+void suite_tip(void);
 void suite_wrench(void);
 
 #endif
