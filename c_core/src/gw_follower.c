@@ -12,6 +12,8 @@
 /* Largest variance of a difference before anything was learned, and largest drift between two calls. */
 #define COVARIANCE_MAX GW_TWO
 #define DRIFT_MAX GW_TWO
+/* A slope turns with the robot: the variance of o drifts so much faster. */
+#define OFFSET_DRIFT ((gw_real_t)100.0)
 
 void gw_follower_config_trikey(gw_follower_config_t *config)
 {
@@ -19,6 +21,7 @@ void gw_follower_config_trikey(gw_follower_config_t *config)
     config->friction_wheel = (gw_real_t)0.1;  /* +-15 % */
     config->mass = (gw_real_t)0.15;           /* -5 to +25 % */
     config->drift_per_root_s = (gw_real_t)0.01;
+    config->offset_n = (gw_real_t)8.0;
     config->residual_n = (gw_real_t)5.0;
 }
 
@@ -28,6 +31,7 @@ void gw_follower_config_check(const gw_follower_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_FOLLOWER_FRICTION_WHEEL, config->friction_wheel);
     gw_config_check_real(error, GW_FIELD_FOLLOWER_MASS, config->mass);
     gw_config_check_real(error, GW_FIELD_FOLLOWER_DRIFT, config->drift_per_root_s);
+    gw_config_check_real(error, GW_FIELD_FOLLOWER_OFFSET, config->offset_n);
     gw_config_check_real(error, GW_FIELD_FOLLOWER_RESIDUAL, config->residual_n);
 }
 
@@ -35,18 +39,26 @@ void gw_follower_config_check(const gw_follower_config_t *config, gw_config_erro
 static gw_real_t first_variance(const gw_follower_t *follower, uint32_t index)
 {
     const gw_follower_config_t *const config = &follower->config;
-    return (index == MASS) ? (config->mass * config->mass)
-                           : ((config->friction_common * config->friction_common) +
-                              (config->friction_wheel * config->friction_wheel));
+    const gw_real_t offset = config->offset_n / GW_FOLLOWER_OFFSET_N;
+    gw_real_t variance = offset * offset;
+    if (index < MASS) {
+        variance =
+            (config->friction_common * config->friction_common) + (config->friction_wheel * config->friction_wheel);
+    } else if (index == MASS) {
+        variance = config->mass * config->mass;
+    } else {
+        /* the offset's */
+    }
+    return variance;
 }
 
 void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *config, gw_real_t interval_s)
 {
     follower->config = *config;
     follower->drift_per_call = gw_min((config->drift_per_root_s * config->drift_per_root_s) * interval_s, DRIFT_MAX);
-    for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
+    for (uint32_t i = 0U; i < GW_FOLLOWER_STATE_COUNT; i++) {
         follower->difference[i] = GW_ZERO;
-        for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
+        for (uint32_t k = 0U; k < GW_FOLLOWER_STATE_COUNT; k++) {
             const bool both_wheels = (i < MASS) && (k < MASS);
             follower->covariance[i][k] = both_wheels ? (config->friction_common * config->friction_common) : GW_ZERO;
         }
@@ -62,10 +74,10 @@ bool gw_follower_invariant_holds(const gw_follower_t *follower)
         gw_config_check_begin(&error);
         gw_follower_config_check(&follower->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_in_range(follower->drift_per_call, GW_ZERO, DRIFT_MAX);
-        for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
+        for (uint32_t i = 0U; i < GW_FOLLOWER_STATE_COUNT; i++) {
             holds = holds && gw_within(follower->difference[i], DIFFERENCE_MAX);
             holds = holds && (follower->covariance[i][i] >= GW_ZERO);
-            for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
+            for (uint32_t k = 0U; k < GW_FOLLOWER_STATE_COUNT; k++) {
                 holds = holds && gw_within(follower->covariance[i][k], COVARIANCE_MAX);
             }
         }
@@ -124,26 +136,26 @@ gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, co
 }
 
 /* A scalar measurement, h d = residual. */
-static void learn_component(gw_follower_t *follower, const gw_real_t h[GW_FOLLOWED_COUNT], gw_real_t residual_n)
+static void learn_component(gw_follower_t *follower, const gw_real_t h[GW_FOLLOWER_STATE_COUNT], gw_real_t residual_n)
 {
-    gw_real_t gain[GW_FOLLOWED_COUNT];
+    gw_real_t gain[GW_FOLLOWER_STATE_COUNT];
     const gw_real_t least_n2 = follower->config.residual_n * follower->config.residual_n;
     gw_real_t variance_n2 = least_n2;
     gw_real_t surprise_n = residual_n;
-    for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
+    for (uint32_t i = 0U; i < GW_FOLLOWER_STATE_COUNT; i++) {
         gain[i] = GW_ZERO;
-        for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
+        for (uint32_t k = 0U; k < GW_FOLLOWER_STATE_COUNT; k++) {
             gain[i] += follower->covariance[i][k] * h[k];
         }
         variance_n2 += gain[i] * h[i];
         surprise_n -= h[i] * follower->difference[i];
     }
     variance_n2 = gw_max(variance_n2, least_n2); /* as a covariance demands; rounding does not know */
-    for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
+    for (uint32_t i = 0U; i < GW_FOLLOWER_STATE_COUNT; i++) {
         const gw_real_t share = gain[i] / variance_n2;
         follower->difference[i] =
             gw_clamp(follower->difference[i] + (share * surprise_n), -DIFFERENCE_MAX, DIFFERENCE_MAX);
-        for (uint32_t k = 0U; k < GW_FOLLOWED_COUNT; k++) {
+        for (uint32_t k = 0U; k < GW_FOLLOWER_STATE_COUNT; k++) {
             follower->covariance[i][k] =
                 gw_clamp(follower->covariance[i][k] - (share * gain[k]), -COVARIANCE_MAX, COVARIANCE_MAX);
         }
@@ -154,12 +166,17 @@ static void learn_component(gw_follower_t *follower, const gw_real_t h[GW_FOLLOW
 void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressors, gw_vector_t residual_n, bool along_y)
 {
     const bool tells_mass = gw_length(regressors->of[MASS]) >= INERTIA_MIN_N;
-    gw_real_t h[GW_FOLLOWED_COUNT];
+    gw_real_t h[GW_FOLLOWER_STATE_COUNT];
     for (uint32_t i = 0U; i < GW_FOLLOWED_COUNT; i++) {
         h[i] = -(along_y ? regressors->of[i].y : regressors->of[i].x);
+    }
+    h[GW_FOLLOWED_COUNT] = along_y ? GW_ZERO : -GW_FOLLOWER_OFFSET_N;
+    h[GW_FOLLOWED_COUNT + 1U] = along_y ? -GW_FOLLOWER_OFFSET_N : GW_ZERO;
+    for (uint32_t i = 0U; i < GW_FOLLOWER_STATE_COUNT; i++) {
         /* Drift, of a payload as of friction; no more is forgotten than was ever learned. */
         if (follower->covariance[i][i] < first_variance(follower, i)) {
-            follower->covariance[i][i] += follower->drift_per_call;
+            follower->covariance[i][i] +=
+                (i < GW_FOLLOWED_COUNT) ? follower->drift_per_call : (OFFSET_DRIFT * follower->drift_per_call);
         }
     }
     if (!tells_mass) {

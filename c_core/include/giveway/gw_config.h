@@ -123,6 +123,7 @@ extern "C" {
     ROW(REAL, GW_FIELD_FOLLOWER_FRICTION_WHEEL, "follower.friction_wheel", OF friction_wheel, 0, 1) \
     ROW(REAL, GW_FIELD_FOLLOWER_MASS, "follower.mass", OF mass, 0, 1) \
     ROW(REAL, GW_FIELD_FOLLOWER_DRIFT, "follower.drift", OF drift_per_root_s, 0, 1) \
+    ROW(REAL, GW_FIELD_FOLLOWER_OFFSET, "follower.offset", OF offset_n, 0, 30) \
     ROW(REAL, GW_FIELD_FOLLOWER_RESIDUAL, "follower.residual", OF residual_n, 0.1, 1000)
 
 #define GW_IMU_FIELDS(ROW, OF) \

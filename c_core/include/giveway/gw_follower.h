@@ -1,11 +1,12 @@
 /* How far roller friction and mass differ from the configuration: followed while nothing touches the robot, with the
  * uncertainty that remains.
  *
- * Without contact the residual of the force balance is  e = -(sum_i d_i n_i f_i + d_m M a) + noise,  where n_i f_i is
- * the configured friction force of the rollers of wheel i, M a the configured inertial force, and d the unknown
- * relative differences. A Kalman filter with slowly drifting d follows them: friction of each wheel on its own, but
- * with a common part expected, and the mass. What it does not know yet is the covariance P of d. With it the detector
- * knows how much force the model may be wrong by, for the motion at hand.
+ * Without contact the residual of the force balance is  e = -(sum_i d_i n_i f_i + d_m M a + o) + noise,  where n_i f_i
+ * is the configured friction force of the rollers of wheel i, M a the configured inertial force, d the unknown relative
+ * differences, and o a force that does not depend on the motion: a slope, a zero that is wrong. A Kalman filter with
+ * slowly drifting d and o follows them: friction of each wheel on its own, but with a common part expected, the mass,
+ * and o. What it does not know yet is their covariance P. With it the detector knows how much force the model may be
+ * wrong by, for the motion at hand.
  *
  * Life cycle: gw_follower_init, then gw_follower_learn as often as nothing touches. All members are private.
  */
@@ -22,7 +23,9 @@
 extern "C" {
 #endif
 
-#define GW_FOLLOWED_COUNT (GW_WHEEL_COUNT + 1U) /* friction of each wheel, mass */
+#define GW_FOLLOWED_COUNT (GW_WHEEL_COUNT + 1U)          /* friction of each wheel, mass */
+#define GW_FOLLOWER_STATE_COUNT (GW_FOLLOWED_COUNT + 2U) /* and o, in parts of GW_FOLLOWER_OFFSET_N */
+#define GW_FOLLOWER_OFFSET_N ((gw_real_t)30.0)
 
 typedef struct {
     /* Standard deviations of what the configuration may be wrong by, relative: friction of all wheels in common, of
@@ -32,14 +35,16 @@ typedef struct {
     gw_real_t mass;
     /* Drift of the friction, relative per root of a second, [0, 1]. */
     gw_real_t drift_per_root_s;
+    /* Standard deviation of the force that does not depend on the motion, N, [0, 30]. */
+    gw_real_t offset_n;
     /* Error of the balance that neither friction nor mass explains, N, [0.1, 1000]. */
     gw_real_t residual_n;
 } gw_follower_config_t;
 
 typedef struct {
     gw_follower_config_t config;
-    gw_real_t difference[GW_FOLLOWED_COUNT];
-    gw_real_t covariance[GW_FOLLOWED_COUNT][GW_FOLLOWED_COUNT];
+    gw_real_t difference[GW_FOLLOWER_STATE_COUNT];
+    gw_real_t covariance[GW_FOLLOWER_STATE_COUNT][GW_FOLLOWER_STATE_COUNT];
     gw_real_t drift_per_call;
 } gw_follower_t;
 
