@@ -5,9 +5,12 @@
 namespace
 {
 
-using State = Eigen::Vector4d;
-using Covariance = Eigen::Matrix4d;
-using Regressor = Eigen::Matrix<double, 2, 4>;
+// Friction of three wheels, mass, and a force along x and y in parts of `offset_n`.
+constexpr int states = 6;
+constexpr double offset_n = 30.0;
+using State = Eigen::Vector<double, states>;
+using Covariance = Eigen::Matrix<double, states, states>;
+using Regressor = Eigen::Matrix<double, 2, states>;
 
 constexpr double interval = 0.008;
 
@@ -33,21 +36,23 @@ public:
         const double common = config.friction_common;
         const double wheel = config.friction_wheel;
         const double mass = config.mass;
+        const double offset = config.offset_n / offset_n;
         covariance.setZero();
         covariance.topLeftCorner<3, 3>().setConstant(common * common);
-        covariance.diagonal() += Eigen::Vector4d(wheel * wheel, wheel * wheel, wheel * wheel, mass * mass);
+        covariance.diagonal() += State(wheel * wheel, wheel * wheel, wheel * wheel, mass * mass, offset * offset,
+                                       offset * offset);
         first_ = covariance.diagonal();
     }
 
     void learn(const Regressor &columns, const Eigen::Vector2d &residual, int component)
     {
-        Eigen::RowVector4d h = -columns.row(component);
+        Eigen::RowVector<double, states> h = -columns.row(component);
         if (columns.col(3).norm() < 8.0) {
             h(3) = 0.0;
         }
-        for (int i = 0; i < 4; ++i) {
+        for (int i = 0; i < states; ++i) {
             if (covariance(i, i) < first_(i)) {
-                covariance(i, i) += std::pow(config_.drift_per_root_s, 2) * interval;
+                covariance(i, i) += (i < 4 ? 1.0 : 100.0) * std::pow(config_.drift_per_root_s, 2) * interval;
             }
         }
         const double noise = config_.residual_n * config_.residual_n;
@@ -78,6 +83,7 @@ Regressor columns_of(const gw_kinematics_t &kinematics, const gw_model_forces_t 
         columns.col(i) = planar(kinematics.radial[i]) * static_cast<double>(forces.friction_n.wheel[i]);
     }
     columns.col(3) = planar(forces.inertia_n);
+    columns.rightCols<2>() = offset_n * Eigen::Matrix2d::Identity();
     return columns;
 }
 
@@ -99,14 +105,16 @@ Moment random_moment(Random &random, const gw_kinematics_t &kinematics, const St
 
 State state_of(const gw_follower_t &follower)
 {
-    return State(follower.difference[0], follower.difference[1], follower.difference[2], follower.difference[3]);
+    State state;
+    std::copy_n(follower.difference, states, state.data());
+    return state;
 }
 
 Covariance covariance_of(const gw_follower_t &follower)
 {
     Covariance covariance;
-    for (int i = 0; i < 4; ++i) {
-        for (int k = 0; k < 4; ++k) {
+    for (int i = 0; i < states; ++i) {
+        for (int k = 0; k < states; ++k) {
             covariance(i, k) = follower.covariance[i][k];
         }
     }
@@ -121,6 +129,9 @@ State random_truth(Random &random, const gw_follower_config_t &config)
         truth(i) = std::clamp(common + random.normal(config.friction_wheel), -0.5, 0.5);
     }
     truth(3) = std::clamp(random.normal(config.mass), -0.5, 0.5);
+    for (int i = 4; i < states; ++i) {
+        truth(i) = std::clamp(random.normal(config.offset_n / offset_n), -0.5, 0.5);
+    }
     return truth;
 }
 
@@ -157,7 +168,7 @@ TEST(Follower, LearnsAsATextbooksFilterInJosephsForm)
         }
         ASSERT_TRUE(gw_follower_invariant_holds(&follower));
         // Drift keeps some 3 % unknown of each wheel; the estimate is within four of its own standard deviations.
-        for (int i = 0; i < 4; ++i) {
+        for (int i = 0; i < states; ++i) {
             EXPECT_NEAR(state_of(follower)(i), truth(i), 4.0 * std::sqrt(covariance_of(follower)(i, i)) + 1e-3);
         }
         // What the detector asks for, against the textbook's.
@@ -165,9 +176,10 @@ TEST(Follower, LearnsAsATextbooksFilterInJosephsForm)
         const Regressor columns = columns_of(kinematics, moment.forces);
         const gw_regressors_t regressors = gw_follower_regressors(&kinematics, &moment.forces);
         const gw_vector_t correction = gw_follower_correction(&follower, &kinematics, &moment.forces);
-        EXPECT_LE((planar(correction) - columns * textbook.state).norm(), is_double ? 1e-10 : 1e-3);
+        EXPECT_LE((planar(correction) - columns.leftCols<4>() * textbook.state.head<4>()).norm(), is_double ? 1e-10 : 1e-3);
         const gw_planar_covariance_t s = gw_follower_uncertainty(&follower, &regressors);
-        const Eigen::Matrix2d expected = columns * textbook.covariance * columns.transpose();
+        const Eigen::Matrix2d expected = columns.leftCols<4>() * textbook.covariance.topLeftCorner<4, 4>() *
+                                         columns.leftCols<4>().transpose();
         EXPECT_NEAR(s.xx, expected(0, 0), (is_double ? 1e-12 : 1e-5) * expected.trace());
         EXPECT_NEAR(s.xy, expected(0, 1), (is_double ? 1e-12 : 1e-5) * expected.trace());
         EXPECT_NEAR(s.yy, expected(1, 1), (is_double ? 1e-12 : 1e-5) * expected.trace());

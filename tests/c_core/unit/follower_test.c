@@ -32,7 +32,7 @@ static gw_follower_t of_config(const gw_follower_config_t *config)
 /* Standard deviations that are easy to follow; no drift. */
 static gw_follower_t made(gw_real_t common, gw_real_t wheel, gw_real_t mass)
 {
-    const gw_follower_config_t config = {common, wheel, mass, GW_ZERO, R(5.0)};
+    const gw_follower_config_t config = {common, wheel, mass, GW_ZERO, GW_ZERO, R(5.0)};
     return of_config(&config);
 }
 
@@ -208,7 +208,7 @@ static void a_small_acceleration_tells_nothing_of_the_mass(void)
  * interval, up to what was expected at first. */
 static void what_was_learned_ages(void)
 {
-    const gw_follower_config_t config = {R(0.3), R(0.2), R(0.3), R(0.5), R(5.0)};
+    const gw_follower_config_t config = {R(0.3), R(0.2), R(0.3), R(0.5), GW_ZERO, R(5.0)};
     const gw_model_forces_t at = forces(R(100.0), R(100.0), R(0.0), R(100.0), R(30.0));
     gw_follower_t follower = of_config(&config);
     CHECK_NEAR(follower.drift_per_call, R(0.004), R(0.004) * ROUNDING);
@@ -246,7 +246,7 @@ static void a_difference_is_limited(void)
 /* Forces and residuals as large as the library takes, the smallest noise, and everything unknown. */
 static void the_largest_forces_keep_the_invariant(void)
 {
-    const gw_follower_config_t config = {GW_ONE, GW_ONE, GW_ONE, GW_ONE, R(0.1)};
+    const gw_follower_config_t config = {GW_ONE, GW_ONE, GW_ONE, GW_ONE, R(30.0), R(0.1)};
     const gw_real_t sizes[] = {R(1.0e9), R(-1.0e9), R(1.0e5), R(-3.0), GW_ZERO};
     gw_follower_t follower;
     gw_follower_init(&follower, &config, R(100.0)); /* even at such intervals the drift is limited */
