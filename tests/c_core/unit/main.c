@@ -16,6 +16,8 @@ int main(void)
     suite_planar_covariance();
     suite_follower();
     suite_model_covariance();
+    suite_fast_channel();
+    suite_slow_channel();
     suite_presliding();
     suite_wrench();
     suite_tare();

@@ -1,0 +1,631 @@
+#include "unit.h"
+
+#define PERIOD R(0.001)
+#define MULTIPLE R(8.0)
+
+static gw_fast_channel_t channel;
+static gw_channels_config_t config;
+static gw_follower_t follower;
+static gw_kinematics_t kinematics;
+static gw_balance_t balance;
+static gw_fast_found_t found;
+
+static const gw_balance_t no_balance;
+static const gw_channels_noise_t usual = {
+    PERIOD,  R(200.0), R(0.0001), R(0.00001), R(0.3),
+    R(20.0), R(35.0),  R(1.5),    R(0.25),    {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
+
+static void begin_with(const gw_channels_noise_t *noise)
+{
+    gw_geometry_config_t geometry;
+    gw_geometry_config_trikey(&geometry);
+    CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
+    gw_follower_init(&follower, &config.follower, R(0.008));
+    gw_fast_channel_init(&channel, &config, noise);
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+    balance = no_balance;
+}
+
+static void begin(void)
+{
+    gw_channels_config_trikey(&config);
+    begin_with(&usual);
+}
+
+static void step(gw_regime_t regime, bool quiet)
+{
+    gw_fast_channel_step(&channel, &config, &kinematics, &follower, &balance, regime, quiet, &found);
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+    CHECK(gw_in_range(found.statistic, GW_ZERO, GW_TWO * GW_DISTANCE_MAX));
+    CHECK(gw_in_range(found.release, GW_ZERO, GW_DISTANCE_MAX));
+}
+
+static void steps(uint32_t count)
+{
+    for (uint32_t i = 0U; i < count; i++) {
+        step(GW_REGIME_REST, false);
+    }
+}
+
+/* The variance of a low-pass, and what the model does not know: none. */
+static gw_real_t threshold_n2(gw_regime_t regime, uint32_t j)
+{
+    const gw_real_t floor_n = gw_force_floor(config.fast, regime);
+    return ((MULTIPLE * MULTIPLE) * channel.noise_n2[channel.sensor][regime][j]) + (floor_n * floor_n);
+}
+
+/* F (1 - e^(-t/tau)) */
+static void a_step_of_force_passes_the_bank_as_a_low_pass_says(void)
+{
+    for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
+        begin();
+        gw_fast_channel_feel(&channel, sensor == GW_BY_IMU, GW_ZERO);
+        balance.residual.force_x_n = R(40.0);
+        balance.residual.force_y_n = R(-30.0);
+        balance.residual.torque_nm = R(2.0);
+        for (uint32_t tick = 1U; tick <= 200U; tick++) {
+            steps(1U);
+            for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+                const gw_real_t time_s = PERIOD * (gw_real_t)tick;
+                const gw_real_t passed = -gw_expm1(-time_s / gw_fast_channel_time(&channel, j));
+                unit_row((sensor * 1000U) + tick);
+                /* Every tick rounds once. */
+                CHECK_NEAR(channel.bank[j].force_x_n, R(40.0) * passed, R(100.0) * ROUNDING);
+                CHECK_NEAR(channel.bank[j].force_y_n, R(-30.0) * passed, R(100.0) * ROUNDING);
+                CHECK_NEAR(channel.bank[j].torque_nm, R(2.0) * passed, R(10.0) * ROUNDING);
+            }
+        }
+        CHECK(gw_fast_channel_time(&channel, 0U) == ((sensor == GW_BY_IMU) ? R(0.0015) : R(0.002)));
+    }
+}
+
+/* x^2/(k^2 n^2 + floor^2) of the low-pass that has the largest, in each regime. */
+static void the_statistic_is_the_force_over_its_threshold(void)
+{
+    const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(regimes); i++) {
+        uint32_t seen = 0U;
+        begin();
+        balance.residual.force_x_n = R(24.0);
+        balance.residual.force_y_n = R(18.0);
+        for (uint32_t tick = 1U; tick <= 300U; tick++) {
+            gw_real_t largest = GW_ZERO;
+            uint32_t widest = 0U;
+            step(regimes[i], false);
+            for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+                const gw_real_t x = channel.bank[j].force_x_n;
+                const gw_real_t y = channel.bank[j].force_y_n;
+                const gw_real_t statistic = ((x * x) + (y * y)) / threshold_n2(regimes[i], j);
+                widest = (statistic > largest) ? j : widest;
+                largest = gw_max(statistic, largest);
+            }
+            unit_row((i * 1000U) + tick);
+            CHECK_NEAR(found.statistic, largest, largest * ROUNDING);
+            CHECK(channel.bank[found.widest].force_x_n >= (channel.bank[widest].force_x_n * (GW_ONE - R(0.01))));
+            seen |= (uint32_t)1U << found.widest;
+        }
+        CHECK(((seen & 1U) != 0U) && ((seen & 8U) != 0U)); /* first the shortest, in the end the longest */
+    }
+}
+
+/* What lasts is judged by the longest low-pass: 1 % below its threshold never trips, 1 % above it does. */
+static void a_lasting_force_trips_at_the_smallest_threshold(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        begin();
+        balance.residual.force_x_n = gw_sqrt(threshold_n2(GW_REGIME_REST, 3U)) * ((i == 0U) ? R(0.99) : R(1.01));
+        gw_real_t largest = GW_ZERO;
+        for (uint32_t tick = 0U; tick < 400U; tick++) {
+            steps(1U);
+            largest = gw_max(largest, found.statistic);
+        }
+        unit_row(i);
+        CHECK((largest > GW_ONE) == (i == 1U));
+    }
+}
+
+/* M^2/(n^2 g^4/(2 R^2)), g the radius of gyration. */
+static void a_moment_alone_trips(void)
+{
+    const gw_real_t gyration_m2 = R(1.5) / R(35.0);
+    const gw_real_t per_force_m2 = (gyration_m2 * gyration_m2) / (GW_TWO * (R(0.25) * R(0.25)));
+    begin();
+    balance.residual.torque_nm = R(1.0);
+    steps(600U);
+    CHECK_NEAR(channel.moment_per_force_m2, per_force_m2, per_force_m2 * ROUNDING);
+    CHECK_NEAR(found.statistic, GW_ONE / (threshold_n2(GW_REGIME_REST, 3U) * per_force_m2),
+               found.statistic * R(10.0) * ROUNDING);
+    CHECK(found.widest == 3U);
+    channel.moment_nm2 = R(1000.0);
+    steps(1U);
+    CHECK(found.statistic < R(0.001));
+}
+
+/* Variances behind the alignment and a low-pass of the bank, of a force of white noise and of the acceleration that the
+ * rate filter makes of the differences of a position: the sums of the squared answers to one sample. */
+static void answers(uint32_t j, gw_real_t *of_force, gw_real_t *of_position)
+{
+    gw_rate_filter_constants_t constants;
+    gw_lowpass_t aligned;
+    gw_lowpass_t rate;
+    gw_real_t force = GW_ZERO;
+    gw_real_t acceleration = GW_ZERO;
+    CHECK_STATUS(gw_rate_filter_constants(&constants, PERIOD, usual.cutoff_radps, 4U, GW_ZERO), GW_STATUS_OK);
+    gw_lowpass_restart(&aligned);
+    gw_lowpass_restart(&rate);
+    (void)gw_lowpass_step(&aligned, &constants, GW_ZERO, R(1.0e6));
+    (void)gw_lowpass_step(&rate, &constants, GW_ZERO, R(1.0e6));
+    *of_force = GW_ZERO;
+    *of_position = GW_ZERO;
+    for (uint32_t i = 0U; i < 2000U; i++) {
+        const gw_real_t sample = (i == 0U) ? GW_ONE : GW_ZERO;
+        const gw_real_t before = (i == 1U) ? GW_ONE : GW_ZERO;
+        const gw_real_t value = gw_lowpass_step(&aligned, &constants, sample, R(1.0e6));
+        (void)gw_lowpass_step(&rate, &constants, (sample - before) / PERIOD, R(1.0e6));
+        force += channel.bank_share[GW_BY_ENCODERS][j] * (value - force);
+        acceleration += channel.bank_share[GW_BY_ENCODERS][j] * (rate.derivative - acceleration);
+        *of_force += force * force;
+        *of_position += acceleration * acceleration;
+    }
+}
+
+/* Against the same filters in discrete time; the prediction is that of continuous ones. The period is half of the
+ * shortest time constant, so that the differences are largest there. */
+static void the_noise_behind_the_bank_is_predicted(void)
+{
+    gw_channels_config_trikey(&config);
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        gw_channels_noise_t noise = usual;
+        gw_real_t of_force;
+        gw_real_t of_position;
+        begin();
+        answers(j, &of_force, &of_position);
+        noise.encoder_step_m = GW_ZERO;
+        noise.twist_noise_m = GW_ZERO;
+        begin_with(&noise);
+        unit_row(j);
+        const gw_real_t *const n2 = channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_REST];
+        const gw_real_t *const least = channel.least_noise_n2[GW_BY_ENCODERS][GW_REGIME_REST];
+        const gw_real_t force_n2 = (R(0.3) * R(0.3)) * of_force;
+        CHECK_NEAR(n2[j], force_n2, R(0.02) * force_n2);
+        CHECK_NEAR(least[j], R(0.4) * n2[j], n2[j] * ROUNDING);
+        noise.force_noise_n = GW_ZERO;
+        noise.twist_noise_m = R(0.00001);
+        begin_with(&noise);
+        /* Two thirds of a wheel's variance, times M^2. */
+        const gw_real_t twist_n2 = ((R(35.0) * R(35.0)) * (R(1.0e-10) * of_position)) * (GW_TWO / GW_WHEELS);
+        CHECK_NEAR(n2[j] / twist_n2, GW_ONE, R(0.06));
+        /* Counting is uniform noise of a step's width: besides, once the wheels turn. */
+        noise.encoder_step_m = R(0.0001);
+        begin_with(&noise);
+        const gw_real_t ratio = channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j] / n2[j];
+        CHECK_NEAR(ratio, GW_ONE + (R(100.0) / R(12.0)), R(100.0) * ROUNDING);
+        CHECK_NEAR(channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_CREEPING][j] / n2[j], GW_TWO * ratio,
+                   R(200.0) * ROUNDING);
+    }
+}
+
+/* Sum of twelve uniform numbers: nearly Gaussian, variance 1. */
+static gw_real_t gaussian(uint32_t *seed)
+{
+    gw_real_t sum = R(-6.0);
+    for (uint32_t i = 0U; i < 12U; i++) {
+        *seed = (*seed * 1664525U) + 1013904223U;
+        sum += (gw_real_t)(*seed >> 8U) / R(16777216.0);
+    }
+    return sum;
+}
+
+/* White noise of variance 225 behind a low-pass with the share a: 225 a/(2 - a). */
+static void noise_is_followed(void)
+{
+    uint32_t seed = 1U;
+    begin();
+    for (uint32_t tick = 0U; tick < 20000U; tick++) {
+        balance.residual.force_x_n = R(15.0) * gaussian(&seed);
+        balance.residual.force_y_n = R(15.0) * gaussian(&seed);
+        step(GW_REGIME_REST, true);
+    }
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        const gw_real_t a = channel.bank_share[GW_BY_ENCODERS][j];
+        const gw_real_t n2 = (R(225.0) * a) / (GW_TWO - a);
+        /* Two squares each 4 ms, alike for half a time constant, averaged over 3 s with weights: four standard
+         * deviations, and the clipping takes a quarter of a percent. */
+        const gw_real_t deviation = gw_sqrt((R(0.002) + (GW_HALF * gw_fast_channel_time(&channel, j))) / R(3.0));
+        unit_row(j);
+        CHECK_NEAR(channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_REST][j], n2, (R(4.0) * deviation) * n2);
+        CHECK(channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j] >=
+              channel.least_noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j]);
+    }
+}
+
+static void noise_is_followed_but_not_below_its_least(void)
+{
+    begin();
+    const gw_fast_channel_t before = channel;
+    for (uint32_t tick = 0U; tick < 20000U; tick++) {
+        step(GW_REGIME_CREEPING, true);
+    }
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        unit_row(j);
+        CHECK(channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_CREEPING][j] ==
+              before.least_noise_n2[GW_BY_ENCODERS][GW_REGIME_CREEPING][j]);
+        /* The others' turn is not now. */
+        CHECK(channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_REST][j] ==
+              before.noise_n2[GW_BY_ENCODERS][GW_REGIME_REST][j]);
+        CHECK(channel.noise_n2[GW_BY_IMU][GW_REGIME_CREEPING][j] ==
+              before.noise_n2[GW_BY_IMU][GW_REGIME_CREEPING][j]);
+    }
+}
+
+/* One low-pass in a tick; an outlier counts as six variances; nothing is learned of a contact, nor of what is as large
+ * as half a hit. */
+static void an_outlier_counts_little(void)
+{
+    const struct {
+        gw_real_t force_n;
+        bool quiet;
+        gw_real_t grown; /* variances */
+    } rows[] = {{R(0.0), true, R(-1.0)}, {R(3.6), true, R(5.0)}, {R(3.6), false, R(0.0)}, {R(1000.0), true, R(0.0)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+            begin();
+            gw_real_t *const n2 = channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION];
+            gw_real_t others = GW_ZERO;
+            for (uint32_t k = 0U; k < GW_BANK_COUNT; k++) {
+                n2[k] = GW_ONE;
+                channel.least_noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][k] = R(0.001);
+                channel.bank[k].force_x_n = rows[i].force_n;
+                channel.bank[k].force_y_n = rows[i].force_n;
+            }
+            balance.residual.force_x_n = rows[i].force_n;
+            balance.residual.force_y_n = rows[i].force_n;
+            channel.followed = j;
+            step(GW_REGIME_MOTION, rows[i].quiet);
+            unit_row((10U * i) + j);
+            for (uint32_t k = 0U; k < GW_BANK_COUNT; k++) {
+                others += (k == j) ? GW_ZERO : gw_abs(n2[k] - GW_ONE);
+            }
+            CHECK(others == GW_ZERO);
+            CHECK_NEAR(n2[j], GW_ONE + (channel.noise_share * rows[i].grown), ROUNDING);
+            CHECK(channel.followed == ((j + 1U) % GW_BANK_COUNT));
+        }
+    }
+    CHECK_NEAR(channel.noise_share, R(0.004) / R(3.0), R(0.000001));
+}
+
+/* A contact of 100 N along x has been the baseline since it was given up. */
+static void hold_100_n(void)
+{
+    const gw_vector_t along_x = {GW_ONE, GW_ZERO};
+    begin();
+    balance.residual.force_x_n = R(100.0);
+    steps(500U);
+    CHECK(found.statistic > GW_ONE);
+    gw_fast_channel_release(&channel, &balance, &found, along_x);
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+    steps(1U);
+    CHECK(found.statistic < R(0.001));
+}
+
+static void the_end_of_a_contact_is_no_hit(void)
+{
+    const struct {
+        gw_real_t x_n;
+        gw_real_t y_n;
+        uint32_t pause; /* ticks */
+        bool hit;
+    } rows[] = {
+        {R(0.0), R(0.0), 0U, false},    {R(50.0), R(0.0), 0U, false},      {R(-100.0), R(0.0), 0U, true},
+        {R(200.0), R(0.0), 0U, true},   {R(100.0), R(50.0), 0U, true},     {R(90.0), R(-50.0), 0U, true},
+        {R(0.0), R(0.0), 3000U, true}, /* forgiven for a second or so */
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_real_t largest = GW_ZERO;
+        hold_100_n();
+        steps(rows[i].pause);
+        balance.residual.force_x_n = rows[i].x_n;
+        balance.residual.force_y_n = rows[i].y_n;
+        for (uint32_t tick = 0U; tick < 300U; tick++) {
+            steps(1U);
+            gw_fast_channel_follow(&channel, &balance);
+            largest = gw_max(largest, found.statistic);
+        }
+        unit_row(i);
+        CHECK((largest > GW_ONE) == rows[i].hit);
+    }
+}
+
+/* What the third low-pass holds, and the root of its variance with a floor of 4 N besides; for a second. */
+static void what_may_be_left_of_a_contact_fades(void)
+{
+    begin();
+    const gw_real_t variance = threshold_n2(GW_REGIME_REST, 2U) + R(16.0);
+    hold_100_n();
+    const gw_real_t held = (R(100.0) + gw_sqrt(variance)) * channel.held_keep;
+    CHECK_NEAR(channel.held_n.x, held, R(200.0) * ROUNDING);
+    CHECK_NEAR(channel.held_keep, R(0.999), ROUNDING);
+    CHECK(channel.held_n.y == GW_ZERO);
+    steps(1000U);
+    CHECK_NEAR(channel.held_n.x, held * gw_exp(R(-1.0005)), R(0.01));
+}
+
+/* With a covariance of the model, along (3, 4)/5: d^T M d = (9 * 25 + 24 * 10 + 16 * 50)/25 = 50.6. A force against
+ * the direction leaves nothing. */
+static void what_the_model_does_not_know_may_be_left_of_a_contact(void)
+{
+    const gw_vector_t direction = {R(0.6), R(0.8)};
+    for (uint32_t i = 0U; i < 2U; i++) {
+        const gw_real_t sign = (i == 0U) ? GW_ONE : -GW_ONE;
+        begin();
+        channel.model_n2.xx = R(25.0);
+        channel.model_n2.xy = R(10.0);
+        channel.model_n2.yy = R(50.0);
+        channel.bank[2].force_x_n = sign * R(30.0);
+        channel.bank[2].force_y_n = sign * R(40.0);
+        channel.bank[2].torque_nm = R(5.0);
+        found.change.force_x_n = R(33.0);
+        found.change.force_y_n = R(44.0);
+        found.change.torque_nm = R(6.0);
+        found.release_n2 = R(49.4);
+        balance.residual.force_x_n = R(7.0);
+        balance.residual.torque_nm = R(8.0);
+        balance.model.friction_n.wheel[1] = R(9.0);
+        gw_fast_channel_release(&channel, &balance, &found, direction);
+        unit_row(i);
+        const gw_real_t held = ((i == 0U) ? R(50.0) : GW_ZERO) + R(10.0);
+        CHECK_NEAR(channel.held_n.x, R(0.6) * held, R(100.0) * ROUNDING);
+        CHECK_NEAR(channel.held_n.y, R(0.8) * held, R(100.0) * ROUNDING);
+        /* The balance, but for the change beyond what the low-pass holds. */
+        CHECK(channel.baseline.model.friction_n.wheel[1] == R(9.0));
+        CHECK_NEAR(channel.baseline.residual.force_x_n, R(7.0) + ((sign * R(30.0)) - R(33.0)), R(100.0) * ROUNDING);
+        CHECK_NEAR(channel.baseline.residual.force_y_n, (sign * R(40.0)) - R(44.0), R(100.0) * ROUNDING);
+        CHECK_NEAR(channel.baseline.residual.torque_nm, R(7.0), R(10.0) * ROUNDING);
+        CHECK((channel.bank[0].force_x_n == GW_ZERO) && (channel.bank[2].torque_nm == GW_ZERO));
+    }
+}
+
+/* Vibration of (0.4 m/s2)^2 at 35 kg is 196 N^2: 3, 1, 0.08 and 0.01 of it pass. */
+static void vibration_that_an_imu_sees_counts_at_once(void)
+{
+    const gw_real_t passed[GW_BANK_COUNT] = {R(3.0), R(1.0), R(0.08), R(0.01)};
+    begin();
+    gw_fast_channel_feel(&channel, true, R(0.16));
+    CHECK_NEAR(channel.shaking_n2, R(196.0), R(200.0) * ROUNDING);
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        const gw_real_t n2 = gw_max(channel.noise_n2[GW_BY_IMU][GW_REGIME_REST][j], passed[j] * R(196.0));
+        const gw_real_t threshold = (config.imu_noise_multiple * config.imu_noise_multiple * n2) + R(9.0);
+        for (uint32_t k = 0U; k < GW_BANK_COUNT; k++) {
+            channel.bank[k].force_x_n = (k == j) ? R(50.0) : GW_ZERO;
+        }
+        balance.residual.force_x_n = GW_ZERO;
+        const gw_real_t left = R(50.0) * (GW_ONE - channel.bank_share[GW_BY_IMU][j]);
+        steps(1U);
+        unit_row(j);
+        CHECK(found.widest == j);
+        CHECK_NEAR(found.statistic, (left * left) / threshold, found.statistic * R(10.0) * ROUNDING);
+    }
+    gw_fast_channel_feel(&channel, true, GW_REAL_MAX);
+    CHECK(gw_fast_channel_invariant_holds(&channel) && (channel.shaking_n2 == R(1.0e10)));
+    gw_fast_channel_feel(&channel, true, unit_nan());
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+    gw_fast_channel_feel(&channel, false, R(0.16));
+    CHECK((channel.shaking_n2 == GW_ZERO) && (channel.sensor == GW_BY_ENCODERS));
+}
+
+/* The baseline jumps with the residual, so nothing changes; or what the longest low-pass holds becomes part of it. */
+static void another_zero_moves_the_baseline_along(void)
+{
+    const gw_wrench_t jump = {R(30.0), R(-20.0), R(4.0)};
+    for (uint32_t adopt = 0U; adopt < 2U; adopt++) {
+        begin();
+        balance.residual.force_x_n = R(2.0);
+        balance.residual.force_y_n = R(1.0);
+        steps(1000U);
+        const gw_real_t before = found.statistic;
+        gw_fast_channel_take_zero(&channel, jump, adopt == 1U);
+        CHECK(gw_fast_channel_invariant_holds(&channel));
+        balance.residual.force_x_n += jump.force_x_n;
+        balance.residual.force_y_n += jump.force_y_n;
+        balance.residual.torque_nm += jump.torque_nm;
+        steps(1U);
+        unit_row(adopt);
+        CHECK_NEAR(found.change.torque_nm, GW_ZERO, R(10.0) * ROUNDING);
+        CHECK_NEAR(found.change.force_x_n, (adopt == 1U) ? GW_ZERO : R(2.0), R(100.0) * ROUNDING);
+        CHECK_NEAR(found.change.force_y_n, (adopt == 1U) ? GW_ZERO : R(1.0), R(100.0) * ROUNDING);
+        CHECK_NEAR(found.statistic, (adopt == 1U) ? GW_ZERO : before, R(10.0) * ROUNDING);
+    }
+}
+
+/* F e^(-t/0.3 s) is left of a force that stays: the baseline's first mean, then its low-pass. */
+static void the_baseline_follows(void)
+{
+    begin();
+    balance.residual.force_x_n = R(10.0);
+    gw_fast_channel_begin(&channel, &balance, GW_HALF);
+    CHECK(channel.baseline.residual.force_x_n == R(5.0));
+    for (uint32_t tick = 0U; tick < 300U; tick++) {
+        gw_fast_channel_follow(&channel, &balance);
+    }
+    CHECK_NEAR(channel.baseline.residual.force_x_n, R(10.0) - (R(5.0) * gw_exp(R(-1.0))), R(300.0) * ROUNDING);
+}
+
+/* What the follower knows is added before anything is compared. */
+static void known_friction_is_no_force(void)
+{
+    begin();
+    follower.difference[0] = R(0.5);
+    balance.model.friction_n.wheel[0] = R(20.0);
+    const gw_vector_t correction = gw_follower_correction(&follower, &kinematics, &balance.model);
+    balance.residual.force_x_n = -correction.x;
+    balance.residual.force_y_n = -correction.y;
+    steps(100U);
+    CHECK(gw_length(correction) > R(9.0));
+    CHECK_NEAR(found.change.force_x_n, GW_ZERO, R(10.0) * ROUNDING);
+    CHECK_NEAR(found.change.force_y_n, GW_ZERO, R(10.0) * ROUNDING);
+    CHECK(found.statistic < ROUNDING);
+    balance.residual.force_x_n = correction.x; /* the same force with the other sign is one */
+    steps(100U);
+    CHECK(gw_abs(found.change.force_x_n - (GW_TWO * correction.x)) < (R(100.0) * ROUNDING));
+}
+
+/* k_m^2 M of the smoothed change; at rest no roller is between its limits. The moment: 2.5^2 (0.2^2 10^2 +
+ * 0.03^2 (30^2 + 40^2) + 3). */
+static void a_model_that_is_doubted_widens_the_threshold(void)
+{
+    const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(regimes); i++) {
+        begin();
+        balance.model.friction_n.wheel[1] = R(5.0);
+        channel.model.inertia_n.x = R(30.0);
+        channel.model.inertia_n.y = R(40.0);
+        channel.model.inertia_moment_nm = R(10.0);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(3.0));
+        const gw_planar_covariance_t m = gw_model_covariance(&config, &kinematics, &follower, &channel.model,
+                                                             &balance.model, (i == 0U) ? GW_ZERO : R(20.0));
+        unit_row(i);
+        CHECK((channel.model_n2.xx == m.xx) && (channel.model_n2.xy == m.xy) && (channel.model_n2.yy == m.yy));
+        CHECK_NEAR(channel.moment_nm2, R(6.25) * (R(4.0) + R(2.25) + R(3.0)), R(60.0) * ROUNDING);
+        balance.model = no_balance.model;
+        balance.residual.force_x_n = R(20.0);
+        steps(1U);
+        const gw_real_t doubted = found.statistic;
+        channel.model_n2.xx = GW_ZERO;
+        channel.model_n2.xy = GW_ZERO;
+        channel.model_n2.yy = GW_ZERO;
+        channel.bank[0].force_x_n = GW_ZERO;
+        steps(1U);
+        CHECK(doubted < found.statistic);
+    }
+}
+
+static void a_restart_keeps_what_was_learned_of_the_noise(void)
+{
+    hold_100_n();
+    gw_fast_channel_feel(&channel, true, R(1.0));
+    channel.noise_n2[GW_BY_IMU][GW_REGIME_MOTION][1] = R(123.0);
+    gw_fast_channel_restart(&channel);
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+    CHECK(channel.noise_n2[GW_BY_IMU][GW_REGIME_MOTION][1] == R(123.0));
+    CHECK((channel.held_n.x == GW_ZERO) && (channel.baseline.residual.force_x_n == GW_ZERO));
+    CHECK((channel.sensor == GW_BY_ENCODERS) && (channel.shaking_n2 == GW_ZERO));
+}
+
+/* The largest robot with the worst sensors, and the smallest with perfect ones; any forces. */
+static void any_robot_keeps_the_invariant(void)
+{
+    const gw_channels_noise_t rows[] = {
+        {R(0.1), R(5000.0), R(1.0e6), R(1.0e6), R(1.0e6), R(1.0e9), R(1000.0), R(1.0e3), R(0.01),
+         {R(100.0), R(100.0), R(100.0), R(10.0), R(5000.0)}},
+        {R(0.0001), R(1.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.1), R(0.0001), R(10.0),
+         {R(0.0001), R(0.0), R(0.00001), R(0.0), R(10.0)}},
+    };
+    const gw_real_t sizes[] = {GW_BALANCE_MAX, -GW_BALANCE_MAX, R(1.0), GW_ZERO, R(-100.0)};
+    const gw_vector_t direction = {R(-0.6), R(0.8)};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_channels_config_trikey(&config);
+        begin_with(&rows[i]);
+        unit_row(i);
+        for (uint32_t k = 0U; k < 500U; k++) {
+            balance.residual.force_x_n = sizes[k % 5U];
+            balance.residual.force_y_n = sizes[(k / 5U) % 5U];
+            balance.residual.torque_nm = sizes[(k / 7U) % 5U];
+            balance.model.friction_n.wheel[k % 3U] = sizes[(k / 2U) % 5U];
+            balance.model.inertia_n.x = sizes[(k / 3U) % 5U];
+            gw_fast_channel_feel(&channel, (k % 2U) == 0U, sizes[k % 5U]);
+            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(1.0e10));
+            step((gw_regime_t)(k % 3U), true);
+            if ((k % 11U) == 0U) {
+                gw_fast_channel_release(&channel, &balance, &found, direction);
+                CHECK(gw_fast_channel_invariant_holds(&channel));
+                gw_fast_channel_take_zero(&channel, balance.residual, true);
+            }
+            CHECK(gw_fast_channel_invariant_holds(&channel));
+        }
+    }
+}
+
+static void the_invariant_sees_every_member(void)
+{
+    gw_fast_channel_t good;
+    begin();
+    good = channel;
+    gw_real_t *const members[] = {&channel.baseline_share,
+                                  &channel.model_share,
+                                  &channel.noise_share,
+                                  &channel.held_keep,
+                                  &channel.sliding_n,
+                                  &channel.moment_per_force_m2,
+                                  &channel.shaking_n2,
+                                  &channel.baseline.residual.force_x_n,
+                                  &channel.baseline.model.inertia_n.y,
+                                  &channel.model.friction_n.wheel[2],
+                                  &channel.model_n2.xx,
+                                  &channel.model_n2.xy,
+                                  &channel.model_n2.yy,
+                                  &channel.moment_nm2,
+                                  &channel.held_n.x,
+                                  &channel.held_n.y};
+    CHECK(!gw_fast_channel_invariant_holds(NULL));
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
+        unit_row(i);
+        *members[i] = unit_nan();
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        *members[i] = R(-1.0e30);
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        channel = good;
+    }
+    channel.followed = GW_BANK_COUNT;
+    CHECK(!gw_fast_channel_invariant_holds(&channel));
+    channel = good;
+    channel.sensor = GW_SENSOR_COUNT;
+    CHECK(!gw_fast_channel_invariant_holds(&channel));
+    channel = good;
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        unit_row(100U + j);
+        channel.bank[j].torque_nm = unit_above(GW_CHANGE_MAX);
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        channel = good;
+        for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
+            channel.bank_share[sensor][j] = unit_above(GW_HALF);
+            CHECK(!gw_fast_channel_invariant_holds(&channel));
+            channel = good;
+            channel.gyro_noise_nm2[sensor][j] = R(-1.0);
+            CHECK(!gw_fast_channel_invariant_holds(&channel));
+            channel = good;
+            for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
+                channel.least_noise_n2[sensor][set][j] = unit_above(R(1.0e10));
+                CHECK(!gw_fast_channel_invariant_holds(&channel));
+                channel = good;
+                channel.noise_n2[sensor][set][j] = unit_nan();
+                CHECK(!gw_fast_channel_invariant_holds(&channel));
+                channel = good;
+            }
+        }
+    }
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+}
+
+void suite_fast_channel(void)
+{
+    unit_run("a_step_of_force_passes_the_bank_as_a_low_pass_says", a_step_of_force_passes_the_bank_as_a_low_pass_says);
+    unit_run("the_statistic_is_the_force_over_its_threshold", the_statistic_is_the_force_over_its_threshold);
+    unit_run("a_lasting_force_trips_at_the_smallest_threshold", a_lasting_force_trips_at_the_smallest_threshold);
+    unit_run("a_moment_alone_trips", a_moment_alone_trips);
+    unit_run("the_noise_behind_the_bank_is_predicted", the_noise_behind_the_bank_is_predicted);
+    unit_run("noise_is_followed", noise_is_followed);
+    unit_run("noise_is_followed_but_not_below_its_least", noise_is_followed_but_not_below_its_least);
+    unit_run("an_outlier_counts_little", an_outlier_counts_little);
+    unit_run("the_end_of_a_contact_is_no_hit", the_end_of_a_contact_is_no_hit);
+    unit_run("what_may_be_left_of_a_contact_fades", what_may_be_left_of_a_contact_fades);
+    unit_run("what_the_model_does_not_know_may_be_left_of_a_contact",
+             what_the_model_does_not_know_may_be_left_of_a_contact);
+    unit_run("vibration_that_an_imu_sees_counts_at_once", vibration_that_an_imu_sees_counts_at_once);
+    unit_run("another_zero_moves_the_baseline_along", another_zero_moves_the_baseline_along);
+    unit_run("the_baseline_follows", the_baseline_follows);
+    unit_run("known_friction_is_no_force", known_friction_is_no_force);
+    unit_run("a_model_that_is_doubted_widens_the_threshold", a_model_that_is_doubted_widens_the_threshold);
+    unit_run("a_restart_keeps_what_was_learned_of_the_noise", a_restart_keeps_what_was_learned_of_the_noise);
+    unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
+    unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
+}
