@@ -18,6 +18,7 @@ int main(void)
     suite_model_covariance();
     suite_fast_channel();
     suite_slow_channel();
+    suite_channels();
     suite_presliding();
     suite_wrench();
     suite_tare();
@@ -36,5 +37,6 @@ int main(void)
     suite_controller();
     suite_controller_faults();
     suite_imu_use();
+    suite_channels_use();
     return unit_close() ? 0 : 1;
 }

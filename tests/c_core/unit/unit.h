@@ -52,6 +52,8 @@ gw_real_t unit_below(gw_real_t x);
 /* The suites, one per module. */
 void suite_admittance(void);
 void suite_balance(void);
+void suite_channels(void);
+void suite_channels_use(void);
 void suite_config(void);
 void suite_contact(void);
 void suite_controller(void);

@@ -1,0 +1,679 @@
+/* Both channels together, on balances of forces that are given; the channels themselves are in fast_channel_test.c and
+ * slow_channel_test.c. */
+#include "unit.h"
+
+#define PERIOD R(0.001)
+#define WARM_UP 60U
+#define SLIDING R(20.0)
+
+static gw_channels_t channels;
+static gw_channels_config_t config;
+static gw_kinematics_t kinematics;
+static gw_channels_input_t input;
+static gw_channels_output_t output;
+static gw_wrench_t wrench;
+static gw_model_forces_t forces;
+static gw_wrench_t zero_step;
+static uint32_t trips;
+
+static const gw_channels_noise_t usual = {
+    PERIOD,  R(200.0), R(0.0001), R(0.000001), R(0.3),
+    SLIDING, R(35.0),  R(1.5),    R(0.25),     {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
+
+/* At rest, with nothing that touches. The configuration may be changed before. */
+static void begin_with_config(void)
+{
+    static const gw_wrench_t nothing;
+    static const gw_model_forces_t no_forces;
+    static const gw_channels_input_t no_input;
+    static const gw_channels_output_t no_output;
+    gw_geometry_config_t geometry;
+    gw_geometry_config_trikey(&geometry);
+    CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
+    gw_channels_init(&channels, &config, &usual);
+    CHECK(gw_channels_invariant_holds(&channels));
+    wrench = nothing;
+    forces = no_forces;
+    zero_step = nothing;
+    input = no_input;
+    output = no_output;
+    input.wrench = &wrench;
+    input.forces = &forces;
+    input.zero_step = &zero_step;
+    input.regime = GW_REGIME_REST;
+    input.enabled = true;
+    trips = 0U;
+}
+
+static void tick(void)
+{
+    gw_channels_step(&channels, &kinematics, &input, &output);
+    CHECK(gw_channels_invariant_holds(&channels));
+    CHECK(gw_in_range(output.statistic, GW_ZERO, R(1500.0)));
+    CHECK((!output.tripped) || (output.active && output.refining && output.refined && (output.statistic > GW_ONE)));
+    trips += output.tripped ? 1U : 0U;
+}
+
+static void ticks(uint32_t count)
+{
+    for (uint32_t i = 0U; i < count; i++) {
+        tick();
+    }
+}
+
+/* Warm, at rest. */
+static void begin(void)
+{
+    gw_channels_config_trikey(&config);
+    begin_with_config();
+    ticks(WARM_UP);
+}
+
+/* Warm, and long enough in motion to have settled; the rollers slide. */
+static void begin_in_motion(void)
+{
+    gw_channels_config_trikey(&config);
+    begin_with_config();
+    input.regime = GW_REGIME_MOTION;
+    input.turned = true;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        forces.friction_n.wheel[i] = SLIDING;
+    }
+    ticks(WARM_UP + 600U);
+    CHECK((trips == 0U) && (!output.active));
+}
+
+/* Ticks until a trip, at most so many. */
+static uint32_t ticks_to_trip(uint32_t most)
+{
+    const uint32_t before = trips;
+    uint32_t count = 0U;
+    while ((trips == before) && (count < most)) {
+        tick();
+        count++;
+    }
+    return count;
+}
+
+/* Ticks until the contact is over, at most so many. */
+static uint32_t ticks_to_release(uint32_t most)
+{
+    uint32_t count = 0U;
+    while (output.active && (count < most)) {
+        tick();
+        count++;
+    }
+    return count;
+}
+
+static void warm_up_detects_nothing(void)
+{
+    gw_channels_config_trikey(&config);
+    begin_with_config();
+    wrench.force_x_n = R(1000.0);
+    for (uint32_t i = 0U; i < WARM_UP; i++) {
+        tick();
+        CHECK((!output.tripped) && (!output.active) && (output.statistic == GW_ZERO));
+    }
+    /* The mean of 60 samples and of the zero before. */
+    CHECK_NEAR(channels.fast.baseline.residual.force_x_n, R(60000.0) / R(61.0), R(1.0e4) * ROUNDING);
+    CHECK(channels.fast.baseline.residual.force_x_n == channels.slow.mean.residual.force_x_n);
+    wrench.force_x_n += R(50.0);
+    CHECK(ticks_to_trip(20U) < 20U);
+}
+
+static void a_step_of_force_trips_the_fast_channel(void)
+{
+    for (uint32_t i = 0U; i < 8U; i++) {
+        const gw_rotation_t along = gw_sincos((GW_PI / R(4.0)) * (gw_real_t)i);
+        begin();
+        wrench.force_x_n = R(50.0) * along.cosine;
+        wrench.force_y_n = R(50.0) * along.sine;
+        unit_row(i);
+        CHECK(ticks_to_trip(20U) < 20U);
+        CHECK((output.channel == GW_CHANNEL_FAST) && output.active && (output.statistic > GW_ONE));
+        CHECK(channels.slow.statistic < GW_ONE);
+    }
+}
+
+/* 5 N/s: the change from a baseline of 0.3 s is 1.5 N, half of the floor. The slow channel trips beyond its floor of
+ * 4 N, at 0.8 s and the 0.05 s of its low-pass, and what it gives is what it felt. */
+static void a_slow_push_trips_the_slow_channel_only(void)
+{
+    gw_real_t fast = GW_ZERO;
+    uint32_t count = 0U;
+    begin();
+    while ((trips == 0U) && (count < 2000U)) {
+        wrench.force_y_n = R(-0.005) * (gw_real_t)count;
+        fast = gw_max(fast, gw_length((gw_vector_t){channels.fast.bank[3].force_x_n, channels.fast.bank[3].force_y_n}));
+        tick();
+        count++;
+    }
+    CHECK((count > 848U) && (count < 860U));
+    CHECK((output.channel == GW_CHANNEL_SLOW) && output.active);
+    CHECK_NEAR(fast, R(1.5), R(0.15));
+    CHECK_NEAR(output.mean_wrench.force_y_n, R(-4.0), R(0.03));
+    CHECK(output.mean_wrench.force_x_n == GW_ZERO);
+}
+
+/* In motion: 10 N that come and go within ten seconds (the slow channel's floor is 14 N), 20 N within forty (its
+ * baseline follows in 3 s). */
+static void friction_that_is_wrong_slowly_does_not_trip(void)
+{
+    const gw_real_t amplitudes[] = {R(10.0), R(20.0)};
+    const gw_real_t periods_s[] = {R(10.0), R(40.0)};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(amplitudes); i++) {
+        begin_in_motion();
+        for (uint32_t k = 0U; k < 20000U; k++) {
+            const gw_rotation_t phase = gw_sincos(((GW_TWO * GW_PI) * (PERIOD / periods_s[i])) * (gw_real_t)k);
+            wrench.force_x_n = amplitudes[i] * phase.sine;
+            tick();
+        }
+        unit_row(i);
+        CHECK(trips == 0U);
+    }
+    /* The same 20 N at once are a hit, or a push. */
+    begin_in_motion();
+    wrench.force_x_n = R(40.0);
+    CHECK(ticks_to_trip(200U) < 200U);
+}
+
+/* After a push that lasted and stopped, the balance falls back: no hit. The reaction goes on until the slow channel,
+ * too, has forgotten it. */
+static void the_end_of_a_contact_is_no_hit(void)
+{
+    const uint32_t lasting[] = {30U, 120U, 300U, 560U, 650U};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(lasting); i++) {
+        begin();
+        wrench.force_x_n = R(30.0);
+        input.reacting = true;
+        ticks(lasting[i]);
+        unit_row(i);
+        CHECK(trips == 1U);
+        wrench.force_x_n = GW_ZERO;
+        for (uint32_t k = 0U; k < 1000U; k++) {
+            input.reacting = (k < 500U);
+            tick();
+        }
+        CHECK((trips == 1U) && (!output.active));
+    }
+}
+
+/* A force that has been the baseline for seconds is what is usual, and its end a change like any other. */
+static void the_end_of_an_old_contact_is_a_hit(void)
+{
+    begin();
+    wrench.force_x_n = R(30.0);
+    input.reacting = true;
+    ticks(3000U);
+    CHECK((trips == 1U) && (!output.active));
+    wrench.force_x_n = GW_ZERO;
+    CHECK(ticks_to_trip(50U) < 50U);
+    CHECK(output.mean_wrench.force_x_n < GW_ZERO);
+}
+
+/* After rearm_ticks the fast channel has got used to it; the slow one has not. */
+static void a_push_that_outlasts_the_reaction_is_a_push_again(void)
+{
+    begin();
+    wrench.force_x_n = R(30.0);
+    input.reacting = true;
+    ticks(900U);
+    CHECK((trips == 1U) && (!output.active) && (output.channel == GW_CHANNEL_FAST));
+    input.reacting = false;
+    tick();
+    CHECK((trips == 2U) && output.active && (output.channel == GW_CHANNEL_SLOW));
+    CHECK_NEAR(output.mean_wrench.force_x_n, R(30.0), R(0.01));
+}
+
+/* Not within the lock of 100 ticks; afterwards, once 40 ticks were quiet, yes. */
+static void a_second_hit_after_the_lock_trips_again(void)
+{
+    begin();
+    wrench.force_x_n = R(50.0);
+    ticks(20U);
+    wrench.force_x_n = GW_ZERO;
+    ticks(20U);
+    wrench.force_y_n = R(80.0);
+    ticks(10U);
+    wrench.force_y_n = GW_ZERO;
+    CHECK((trips == 1U) && output.active);
+    CHECK(ticks_to_release(400U) < 400U);
+    CHECK(channels.ticks_since_trip >= config.lock_ticks);
+    wrench.force_y_n = R(80.0);
+    CHECK(ticks_to_trip(20U) < 20U);
+    CHECK((trips == 2U) && (output.channel == GW_CHANNEL_FAST));
+}
+
+/* A short hit is over at the lock's end, not before, and in a tick that has time for it. */
+static void a_short_contact_is_over_when_the_lock_is(void)
+{
+    for (uint32_t phase = 0U; phase < 4U; phase++) {
+        begin();
+        ticks(phase);
+        wrench.force_x_n = R(60.0);
+        (void)ticks_to_trip(20U);
+        wrench.force_x_n = GW_ZERO;
+        const uint32_t count = ticks_to_release(200U);
+        unit_row(phase);
+        CHECK(gw_in_range((gw_real_t)count, R(100.0), R(103.0)));
+        CHECK((channels.tick % 4U) == 2U);
+        CHECK(channels.ticks_since_release == 0U);
+    }
+}
+
+/* A force that stays: the detector is armed again after 600 ticks, and the force is what is usual. */
+static void an_armed_detector_after_rearm_ticks(void)
+{
+    begin();
+    wrench.force_x_n = R(50.0);
+    input.reacting = true;
+    CHECK(ticks_to_trip(20U) < 20U);
+    const uint32_t count = ticks_to_release(2000U);
+    CHECK(gw_in_range((gw_real_t)count, R(600.0), R(603.0)));
+    CHECK((!output.active) && (trips == 1U));
+    ticks(100U);
+    CHECK(trips == 1U);
+    wrench.force_x_n = R(150.0);
+    CHECK(ticks_to_trip(20U) < 20U);
+}
+
+/* In a reaction impacts alone count; a detector that is not enabled shows its statistic only. */
+static void some_modes_do_not_look_for_pushes(void)
+{
+    const struct {
+        bool enabled;
+        bool reacting;
+        uint32_t slow;
+        uint32_t fast;
+    } rows[] = {{true, false, 1U, 1U}, {true, true, 0U, 1U}, {false, false, 0U, 0U}, {false, true, 0U, 0U}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        input.enabled = rows[i].enabled;
+        input.reacting = rows[i].reacting;
+        for (uint32_t k = 0U; k < 2000U; k++) {
+            wrench.force_x_n = R(0.004) * (gw_real_t)k;
+            (void)ticks_to_trip(1U);
+        }
+        unit_row(i);
+        CHECK(gw_min((gw_real_t)trips, GW_ONE) == (gw_real_t)rows[i].slow);
+        CHECK((output.statistic > GW_ONE) == (!rows[i].reacting));
+        begin();
+        input.enabled = rows[i].enabled;
+        input.reacting = rows[i].reacting;
+        wrench.force_x_n = R(50.0);
+        ticks(20U);
+        CHECK((trips == rows[i].fast) && (output.statistic > GW_ONE));
+    }
+}
+
+/* At rest the floors of 3 and 4 N hold, unless an encoder has moved within 60 ticks; in motion those of creeping until
+ * it has lasted for 500 ticks, and 500 ticks since a contact. */
+static void the_threshold_is_that_of_what_the_robot_does(void)
+{
+    const struct {
+        gw_regime_t regime;
+        uint32_t motion;
+        uint32_t release;
+        uint32_t turn; /* ticks since */
+        gw_regime_t judged;
+    } rows[] = {
+        {GW_REGIME_REST, 0U, 1000U, 59U, GW_REGIME_REST},       {GW_REGIME_REST, 0U, 1000U, 58U, GW_REGIME_MOTION},
+        {GW_REGIME_REST, 0U, 0U, 1000U, GW_REGIME_REST},        {GW_REGIME_CREEPING, 0U, 1000U, 0U, GW_REGIME_CREEPING},
+        {GW_REGIME_MOTION, 499U, 499U, 0U, GW_REGIME_MOTION},   {GW_REGIME_MOTION, 498U, 499U, 0U, GW_REGIME_CREEPING},
+        {GW_REGIME_MOTION, 499U, 498U, 0U, GW_REGIME_CREEPING},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        channels.ticks_of_motion = rows[i].motion;
+        channels.ticks_since_release = rows[i].release;
+        channels.ticks_without_turn = rows[i].turn;
+        channels.fast.bank[3].force_x_n = R(10.0);
+        input.regime = rows[i].regime;
+        tick();
+        const gw_real_t x = channels.fast.bank[3].force_x_n;
+        const gw_real_t floor_n = gw_force_floor(config.fast, rows[i].judged);
+        const gw_real_t n2 =
+            (floor_n * floor_n) + ((R(8.0) * R(8.0)) * channels.fast.noise_n2[GW_BY_ENCODERS][rows[i].judged][3]);
+        unit_row(i);
+        CHECK_NEAR(output.statistic * output.statistic, (x * x) / n2, ((x * x) / n2) * R(0.01));
+    }
+}
+
+static void counters_stop_at_their_largest(void)
+{
+    begin();
+    channels.tick = GW_TICK_MASK;
+    channels.ticks_since_release = GW_TICK_MASK;
+    channels.ticks_without_turn = GW_TICK_MASK - 1U;
+    ticks(2U);
+    CHECK((channels.tick == 1U) && (channels.ticks_since_release == GW_TICK_MASK));
+    CHECK(channels.ticks_without_turn == GW_TICK_MASK);
+    begin_in_motion();
+    channels.ticks_of_motion = GW_TICK_MASK;
+    tick();
+    CHECK((channels.ticks_of_motion == GW_TICK_MASK) && (channels.ticks_without_turn == 0U));
+    input.regime = GW_REGIME_CREEPING;
+    tick();
+    CHECK(channels.ticks_of_motion == 0U);
+}
+
+/* 1 N at the zero before, 30 N after it: nothing happened. At rest both baselines are what is there now. */
+static void another_zero_moves_baselines_along(void)
+{
+    const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(regimes); i++) {
+        begin();
+        input.regime = regimes[i];
+        wrench.force_x_n = R(1.0);
+        ticks(300U);
+        zero_step.force_x_n = R(30.0);
+        zero_step.torque_nm = R(-5.0);
+        wrench.force_x_n += zero_step.force_x_n;
+        wrench.torque_nm += zero_step.torque_nm;
+        input.zero_changed = true;
+        tick();
+        input.zero_changed = false;
+        ticks(200U);
+        unit_row(i);
+        CHECK((trips == 0U) && (output.statistic < GW_HALF));
+        if (regimes[i] == GW_REGIME_REST) {
+            CHECK_NEAR(channels.slow.baseline.residual.force_x_n, R(31.0), R(0.01));
+        }
+    }
+    /* The same jump without another zero is a hit. */
+    begin();
+    wrench.force_x_n = R(30.0);
+    CHECK(ticks_to_trip(20U) < 20U);
+}
+
+/* A contact lasts over another zero: its force is not taken for the baseline. */
+static void another_zero_in_a_contact_keeps_its_force(void)
+{
+    begin();
+    wrench.force_x_n = R(50.0);
+    ticks(30U);
+    CHECK(output.active);
+    zero_step.force_x_n = R(-20.0);
+    wrench.force_x_n += zero_step.force_x_n;
+    input.zero_changed = true;
+    tick();
+    input.zero_changed = false;
+    CHECK_NEAR(channels.fast.baseline.residual.force_x_n, R(-20.0), R(1.0));
+    CHECK(output.active && (channels.fast.bank[0].force_x_n > R(45.0)));
+}
+
+/* Another sensor of the acceleration: another mean, in which nothing is detected; unless a contact lasts. At rest the
+ * slow channel takes over what is there, in motion it waits for what follows. */
+static void another_sensor_begins_the_baseline_anew(void)
+{
+    for (uint32_t i = 0U; i < 8U; i++) {
+        const bool contact = (i & 1U) != 0U;
+        const bool warm = (i & 2U) == 0U;
+        const bool rest = (i & 4U) == 0U;
+        begin();
+        wrench.force_x_n = contact ? R(50.0) : GW_ZERO;
+        ticks(30U);
+        channels.warm_up_ticks = warm ? WARM_UP : 30U;
+        input.regime = rest ? GW_REGIME_REST : GW_REGIME_MOTION;
+        input.felt = true;
+        input.shaking_mps2_2 = R(0.0001);
+        input.zero_changed = true;
+        zero_step.force_y_n = R(3.0);
+        wrench.force_y_n = R(3.0);
+        const uint32_t before = channels.warm_up_ticks;
+        const gw_real_t slow_y_n = channels.slow.mean.residual.force_y_n;
+        tick();
+        input.zero_changed = false;
+        unit_row(i);
+        CHECK(channels.fast.sensor == GW_BY_IMU);
+        CHECK(channels.warm_up_ticks == ((!contact) ? 1U : (warm ? before : (before + 1U))));
+        const bool taken_over = rest && warm;
+        CHECK((gw_abs(channels.slow.mean.residual.force_y_n - slow_y_n) > R(2.0)) == taken_over);
+        if ((!contact) && warm) {
+            CHECK_NEAR(channels.slow.baseline.residual.force_y_n, rest ? R(3.0) : GW_ZERO, R(0.001));
+        }
+        CHECK(output.active == contact);
+        CHECK(trips == (contact ? 1U : 0U));
+    }
+}
+
+/* 30 % of the friction of all wheels, in motion to all sides. Nothing is learned from a wheel that does not slide, at
+ * rest, while the robot is unsettled, or while something touches. */
+static bool learns_from(gw_real_t friction_n)
+{
+    for (uint32_t k = 0U; k < 400U; k++) {
+        forces.friction_n.wheel[1] = friction_n;
+        tick();
+    }
+    return channels.follower.difference[0] != GW_ZERO;
+}
+
+static void nothing_is_learned_while_a_wheel_does_not_slide(void)
+{
+    for (uint32_t i = 0U; i < 8U; i++) {
+        begin_in_motion();
+        gw_follower_init(&channels.follower, &config.follower, R(0.008));
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            forces.friction_n.wheel[k] = SLIDING;
+            channels.slow.mean.model.friction_n.wheel[k] = SLIDING;
+        }
+        channels.slow.mean.residual.force_x_n = R(5.0);
+        channels.slow.baseline.residual.force_x_n = R(5.0);
+        channels.fast.baseline.residual.force_x_n = R(5.0);
+        wrench.force_x_n = R(5.0);
+        unit_row(i);
+        if (i == 0U) {
+            CHECK(learns_from(SLIDING));
+        } else if (i == 1U) {
+            channels.slow.mean.model.friction_n.wheel[1] = R(0.89) * SLIDING;
+            CHECK(!learns_from(R(0.89) * SLIDING));
+        } else if (i == 2U) {
+            CHECK(learns_from(R(0.91) * SLIDING));
+        } else if (i == 3U) {
+            input.regime = GW_REGIME_REST; /* the wheels have just turned */
+            CHECK(!learns_from(SLIDING));
+        } else if (i == 4U) {
+            input.regime = GW_REGIME_CREEPING;
+            CHECK(!learns_from(SLIDING));
+        } else if (i == 5U) {
+            channels.active = true; /* a contact that lasts */
+            channels.config.rearm_ticks = 100000U;
+            channels.config.lock_ticks = 100000U;
+            CHECK(!learns_from(SLIDING));
+        } else if (i == 6U) {
+            input.enabled = false;
+            channels.slow.baseline.residual.force_x_n = R(1000.0); /* a difference of more than half a push */
+            channels.config.slow_baseline_s = R(100.0);
+            channels.slow.settled_share = GW_ZERO;
+            CHECK(!learns_from(SLIDING));
+        } else {
+            forces.friction_n.wheel[2] = R(0.5) * SLIDING;
+            channels.slow.mean.model.friction_n.wheel[2] = R(0.5) * SLIDING;
+            CHECK(!learns_from(SLIDING));
+        }
+    }
+}
+
+/* A robot whose friction is 25 % larger than configured, on a circle: the follower finds it, and no hit is found. */
+static void the_friction_of_a_robot_is_followed(void)
+{
+    begin_in_motion();
+    const gw_real_t more = R(0.25);
+    for (uint32_t k = 0U; k < 20000U; k++) {
+        const gw_rotation_t phase = gw_sincos(((GW_TWO * GW_PI) * (PERIOD / R(8.0))) * (gw_real_t)k);
+        /* From all rollers sliding inwards to one wheel outwards: smooth, and never between the limits for long. */
+        forces.friction_n.wheel[0] = SLIDING * gw_limited(R(20.0) * phase.sine, GW_ONE);
+        forces.friction_n.wheel[1] = SLIDING * gw_limited(R(20.0) * phase.cosine, GW_ONE);
+        const gw_model_forces_t lacking = forces;
+        const gw_regressors_t regressors = gw_follower_regressors(&kinematics, &lacking);
+        wrench.force_x_n = GW_ZERO;
+        wrench.force_y_n = GW_ZERO;
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            wrench.force_x_n -= more * regressors.of[i].x;
+            wrench.force_y_n -= more * regressors.of[i].y;
+        }
+        tick();
+    }
+    CHECK(trips == 0U);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        unit_row(i);
+        CHECK_NEAR(channels.follower.difference[i], more, R(0.05));
+    }
+}
+
+/* Rollers that hardly turn may have any friction between their limits: the same force trips if they slide. */
+static void rollers_that_hardly_turn_widen_the_threshold(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        begin_in_motion();
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            forces.friction_n.wheel[k] = (i == 0U) ? SLIDING : GW_ZERO;
+            channels.fast.baseline.model.friction_n.wheel[k] = forces.friction_n.wheel[k];
+            channels.slow.baseline.model.friction_n.wheel[k] = forces.friction_n.wheel[k];
+            channels.slow.mean.model.friction_n.wheel[k] = forces.friction_n.wheel[k];
+        }
+        ticks(100U);
+        CHECK(trips == 0U);
+        wrench.force_x_n = R(17.0);
+        unit_row(i);
+        ticks(150U);
+        CHECK(trips == ((i == 0U) ? 1U : 0U));
+    }
+}
+
+/* 40 N and 3 N m from one tick to the next, along four directions: the bank's answer at the trip, then the mean over
+ * 60 ticks more. Of the time before the trip the low-pass has seen a share, so the mean is too small by less than
+ * tau/(tau + 60 ms), below 8 % for 5 ms; the baseline stands still. */
+static void the_mean_wrench_of_a_push_is_found(void)
+{
+    const gw_vector_t directions[] = {{R(1.0), R(0.0)}, {R(0.0), R(-1.0)}, {R(-0.6), R(0.8)}, {R(0.8), R(0.6)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(directions); i++) {
+        uint32_t refined = 0U;
+        begin();
+        wrench.force_x_n = R(60.0) * directions[i].x;
+        wrench.force_y_n = R(60.0) * directions[i].y;
+        wrench.torque_nm = R(3.0);
+        (void)ticks_to_trip(20U);
+        unit_row(i);
+        CHECK(output.tripped && output.refined && output.refining);
+        for (uint32_t k = 1U; k <= 60U; k++) {
+            const gw_wrench_t before = output.mean_wrench;
+            tick();
+            CHECK(output.refining == (k < 60U));
+            refined += output.refined ? 1U : 0U;
+            CHECK(output.refined || (output.mean_wrench.force_x_n == before.force_x_n));
+        }
+        CHECK(refined == 15U); /* every fourth tick */
+        const gw_vector_t force = {output.mean_wrench.force_x_n, output.mean_wrench.force_y_n};
+        CHECK_NEAR(gw_length(force), R(60.0), R(0.08) * R(60.0));
+        CHECK_NEAR(force.x, gw_length(force) * directions[i].x, R(60.0) * R(10.0) * ROUNDING);
+        CHECK_NEAR(force.y, gw_length(force) * directions[i].y, R(60.0) * R(10.0) * ROUNDING);
+        CHECK_NEAR(output.mean_wrench.torque_nm, R(3.0) * (gw_length(force) / R(60.0)), R(0.01));
+        ticks(40U);
+        CHECK((!output.refining) && (!output.refined));
+    }
+}
+
+/* However large forces are and however long a contact lasts. */
+static void the_impulse_is_bounded(void)
+{
+    gw_channels_noise_t slow = usual;
+    slow.period_s = R(0.1);
+    gw_channels_config_trikey(&config);
+    config.slow_s = R(10.0);
+    config.rearm_ticks = 100000U;
+    begin_with_config();
+    gw_channels_init(&channels, &config, &slow);
+    ticks(WARM_UP);
+    wrench.force_x_n = R(1.0e9);
+    wrench.force_y_n = R(-1.0e9);
+    wrench.torque_nm = R(1.0e9);
+    ticks(5000U);
+    CHECK((trips == 1U) && output.active);
+    CHECK(gw_within(channels.impulse.force_x_n, R(1.0e9)) && (channels.impulse_s <= R(100.0)));
+    CHECK(gw_in_range(output.mean_wrench.force_x_n, R(1.0e4), R(1.0e6)));
+}
+
+static void a_restart_keeps_what_was_learned(void)
+{
+    begin_in_motion();
+    channels.follower.difference[1] = R(0.25);
+    channels.fast.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][0] *= R(3.0);
+    wrench.force_x_n = R(80.0);
+    (void)ticks_to_trip(20U);
+    CHECK(output.active);
+    const gw_real_t noise_n2 = channels.fast.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][0];
+    gw_channels_restart(&channels);
+    CHECK(gw_channels_invariant_holds(&channels));
+    CHECK((!channels.active) && (channels.channel == GW_CHANNEL_NONE) && (channels.warm_up_ticks == 0U));
+    CHECK(channels.follower.difference[1] == R(0.25));
+    CHECK(channels.fast.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][0] == noise_n2);
+    tick();
+    CHECK((!output.active) && (!output.refined));
+}
+
+static void the_invariant_sees_every_member(void)
+{
+    begin();
+    const gw_channels_t good = channels;
+    gw_real_t *const members[] = {&channels.config.noise_multiple,
+                                  &channels.follower.difference[0],
+                                  &channels.fast.held_n.x,
+                                  &channels.slow.force_n.y,
+                                  &channels.lever_nm2,
+                                  &channels.impulse.torque_nm,
+                                  &channels.impulse_s};
+    CHECK(!gw_channels_invariant_holds(NULL));
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
+        unit_row(i);
+        *members[i] = unit_nan();
+        CHECK(!gw_channels_invariant_holds(&channels));
+        *members[i] = R(-1.0e30);
+        CHECK(!gw_channels_invariant_holds(&channels));
+        channels = good;
+    }
+    channels.warm_up_ticks = WARM_UP + 1U;
+    CHECK(!gw_channels_invariant_holds(&channels));
+    channels = good;
+    channels.channel = GW_CHANNEL_SLOW + 1U;
+    CHECK(!gw_channels_invariant_holds(&channels));
+    channels = good;
+    CHECK(gw_channels_invariant_holds(&channels));
+}
+
+/* 1 - e^(-x), at most a half. */
+static void a_low_pass_takes_over_a_share(void)
+{
+    CHECK_NEAR(gw_share_of(R(0.001), R(0.1)), R(0.0099501662508319464), ROUNDING);
+    CHECK_NEAR(gw_share_of(R(0.001), R(0.0015)), R(0.48658288096740794), ROUNDING);
+    CHECK(gw_share_of(R(0.1), R(0.001)) == GW_HALF);
+}
+
+void suite_channels(void)
+{
+    unit_run("warm_up_detects_nothing", warm_up_detects_nothing);
+    unit_run("a_step_of_force_trips_the_fast_channel", a_step_of_force_trips_the_fast_channel);
+    unit_run("a_slow_push_trips_the_slow_channel_only", a_slow_push_trips_the_slow_channel_only);
+    unit_run("friction_that_is_wrong_slowly_does_not_trip", friction_that_is_wrong_slowly_does_not_trip);
+    unit_run("the_end_of_a_contact_is_no_hit", the_end_of_a_contact_is_no_hit);
+    unit_run("the_end_of_an_old_contact_is_a_hit", the_end_of_an_old_contact_is_a_hit);
+    unit_run("a_push_that_outlasts_the_reaction_is_a_push_again", a_push_that_outlasts_the_reaction_is_a_push_again);
+    unit_run("a_second_hit_after_the_lock_trips_again", a_second_hit_after_the_lock_trips_again);
+    unit_run("a_short_contact_is_over_when_the_lock_is", a_short_contact_is_over_when_the_lock_is);
+    unit_run("an_armed_detector_after_rearm_ticks", an_armed_detector_after_rearm_ticks);
+    unit_run("some_modes_do_not_look_for_pushes", some_modes_do_not_look_for_pushes);
+    unit_run("the_threshold_is_that_of_what_the_robot_does", the_threshold_is_that_of_what_the_robot_does);
+    unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
+    unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
+    unit_run("another_zero_in_a_contact_keeps_its_force", another_zero_in_a_contact_keeps_its_force);
+    unit_run("another_sensor_begins_the_baseline_anew", another_sensor_begins_the_baseline_anew);
+    unit_run("nothing_is_learned_while_a_wheel_does_not_slide", nothing_is_learned_while_a_wheel_does_not_slide);
+    unit_run("the_friction_of_a_robot_is_followed", the_friction_of_a_robot_is_followed);
+    unit_run("rollers_that_hardly_turn_widen_the_threshold", rollers_that_hardly_turn_widen_the_threshold);
+    unit_run("the_mean_wrench_of_a_push_is_found", the_mean_wrench_of_a_push_is_found);
+    unit_run("the_impulse_is_bounded", the_impulse_is_bounded);
+    unit_run("a_restart_keeps_what_was_learned", a_restart_keeps_what_was_learned);
+    unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
+    unit_run("a_low_pass_takes_over_a_share", a_low_pass_takes_over_a_share);
+}

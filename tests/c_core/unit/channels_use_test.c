@@ -1,0 +1,125 @@
+/* What the controller does with the two channels; the channels themselves are in channels_test.c. */
+#include "rig.h"
+
+static void rig_with_channels(void)
+{
+    rig_set_up();
+    rig_config.detector.kind = GW_DETECTOR_CHANNELS;
+    rig_config.estimator.velocity_source = GW_SOURCE_MEASURED;
+    rig_config.estimator.acceleration_source = GW_SOURCE_MEASURED;
+    rig_config.estimator.aligned = 1U;
+}
+
+/* Tracking, and the channels are warm. */
+static void begin_tracking(void)
+{
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_ticks(100U);
+    CHECK((rig_output.mode == GW_MODE_TRACKING) && (rig_output.detection_count == 0U));
+    CHECK((rig_output.detection_channel == GW_CHANNEL_NONE) && (!rig_output.contact.valid));
+}
+
+/* 60 N from rest: hit, located and refined while it lasts, gives way along it, settles, goes back and tracks again. */
+static void it_gives_way_to_a_hit_and_comes_back(void)
+{
+    rig_with_channels();
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    CHECK((rig_output.detection_count == 1U) && rig_output.detection_active);
+    CHECK((rig_output.detection_channel == GW_CHANNEL_FAST) && (rig_output.detection_statistic > GW_ONE));
+    CHECK(rig_output.detection_tick == (int32_t)rig_output.tick);
+    const gw_real_t first_n = rig_output.detection_wrench.force_x_n;
+    rig_ticks(59U);
+    CHECK(rig_output.detection_wrench.force_x_n > first_n);
+    /* A mean over 60 ms and more, too small by no more than what the alignment delays by: 2/w. */
+    const gw_real_t late = GW_TWO / (R(0.060) * rig_config.estimator.rate_cutoff_radps);
+    CHECK(gw_in_range(rig_output.detection_wrench.force_x_n, R(60.0) * (GW_ONE - late), R(60.0)));
+    CHECK_NEAR(rig_output.detection_wrench.force_y_n, GW_ZERO, R(60.0) * R(10.0) * ROUNDING);
+    CHECK(rig_output.contact.valid && (rig_output.contact.force_n == rig_output.detection_contact.force_n));
+    CHECK_NEAR(rig_output.detection_contact.direction_rad, GW_ZERO, R(100.0) * ROUNDING);
+    rig_ticks(3U); /* refined no longer: the contact is that of the estimate */
+    CHECK(rig_output.detection_active && rig_output.contact.valid);
+    CHECK_NEAR(rig_output.contact.force_n, R(60.0), R(0.01));
+    while ((rig_output.mode == GW_MODE_REACTING) && (rig_output.tick < 20000U)) {
+        rig_push(GW_ZERO);
+        rig_tick(GW_STATUS_OK);
+        CHECK(rig_output.reference_twist.vx_mps >= -ROUNDING); /* never towards the push */
+    }
+    CHECK(rig_output.reference_pose.x_m > R(0.05));
+    rig_until(GW_MODE_TRACKING, 20000U);
+    CHECK(gw_abs(rig_output.reference_pose.x_m) < R(0.0003));
+    CHECK((rig_output.detection_count == 1U) && (!rig_output.detection_active) && (!rig_output.contact.valid));
+}
+
+/* Growing by 10 N/s: too slow for the one channel, the other one notices it. */
+static void a_slow_push_is_noticed_at_rest(void)
+{
+    rig_with_channels();
+    rig_config.estimator.rest_ticks = 10000U; /* no new zero, which would include the push */
+    begin_tracking();
+    for (uint32_t i = 0U; (i < 2000U) && (rig_output.mode == GW_MODE_TRACKING); i++) {
+        rig_push(R(0.01) * (gw_real_t)i);
+        rig_tick(GW_STATUS_OK);
+    }
+    CHECK((rig_output.mode == GW_MODE_REACTING) && (rig_output.detection_channel == GW_CHANNEL_SLOW));
+    CHECK((rig_output.detection_count == 1U) && (rig_output.detection_wrench.force_x_n > R(3.0)));
+}
+
+/* The reaction follows the force above the slow channel's floor. */
+static void live_force_yields_while_it_is_pushed(void)
+{
+    rig_with_channels();
+    rig_config.admittance.kind = GW_ADMITTANCE_LIVE_FORCE;
+    begin_tracking();
+    rig_push(R(100.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    rig_ticks(100U);
+    const gw_real_t early = rig_output.reference_twist.vx_mps;
+    CHECK(early > R(0.01));
+    rig_push(R(150.0));
+    rig_ticks(200U);
+    CHECK(rig_output.reference_twist.vx_mps > early);
+    rig_push(GW_ZERO);
+    rig_until(GW_MODE_REJOINING, 20000U);
+}
+
+/* In a fault, and while taring, nothing is looked for; what comes after begins anew. */
+static void an_interruption_forgets_the_contact(void)
+{
+    rig_with_channels();
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    rig_input.sensor.present = false;
+    rig_tick(GW_STATUS_SENSOR_MISSING);
+    CHECK((rig_output.mode == GW_MODE_FAULT) && (!rig_output.detection_active) && (!rig_output.contact.valid));
+    rig_input.sensor.present = true;
+    rig_push(GW_ZERO);
+    for (uint32_t i = 0U; i < rig_config.sensor_check.recover_ticks; i++) {
+        rig_tick(GW_STATUS_SENSOR_RECOVERING);
+    }
+    rig_ticks(2U);
+    CHECK((rig_controller.channels.warm_up_ticks > 0U) && (rig_controller.channels.warm_up_ticks < 5U));
+    CHECK((!rig_output.detection_active) && (rig_output.detection_count == 1U));
+}
+
+static void the_invariant_sees_the_channels(void)
+{
+    rig_with_channels();
+    begin_tracking();
+    rig_controller.channels.channel = GW_CHANNEL_SLOW + 1U;
+    CHECK(!gw_controller_invariant_holds(&rig_controller));
+    rig_controller.channels.channel = GW_CHANNEL_NONE;
+    CHECK(gw_controller_invariant_holds(&rig_controller));
+}
+
+void suite_channels_use(void)
+{
+    unit_run("it_gives_way_to_a_hit_and_comes_back", it_gives_way_to_a_hit_and_comes_back);
+    unit_run("a_slow_push_is_noticed_at_rest", a_slow_push_is_noticed_at_rest);
+    unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
+    unit_run("an_interruption_forgets_the_contact", an_interruption_forgets_the_contact);
+    unit_run("the_invariant_sees_the_channels", the_invariant_sees_the_channels);
+}
