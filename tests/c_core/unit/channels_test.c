@@ -156,6 +156,7 @@ static void a_slow_push_trips_the_slow_channel_only(void)
     CHECK_NEAR(output.mean_wrench.force_y_n, R(-4.0), R(0.03));
     CHECK(output.mean_wrench.force_x_n == GW_ZERO);
     CHECK_NEAR(output.mean_wrench.torque_nm, R(0.08), R(0.001));
+    CHECK_NEAR(channels.impulse_s, config.slow_s, ROUNDING); /* for which the low-pass has felt it */
 }
 
 /* In motion: 10 N that come and go within ten seconds (the slow channel's floor is 14 N), 20 N within forty (its
@@ -507,6 +508,21 @@ static void another_zero_moves_baselines_along(void)
     CHECK(ticks_to_trip(20U) < 20U);
 }
 
+/* Nothing else is done in that tick. */
+static void another_zero_takes_its_time(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        begin();
+        channels.tick = 3U;
+        channels.slow.mean.residual.force_x_n = R(2.0);
+        input.regime = GW_REGIME_MOTION;
+        input.zero_changed = (i == 1U);
+        tick();
+        unit_row(i);
+        CHECK((channels.slow.statistic > GW_ZERO) == (i == 0U));
+    }
+}
+
 /* A contact lasts over another zero: its force is not taken for the baseline. */
 static void another_zero_in_a_contact_keeps_its_force(void)
 {
@@ -589,6 +605,7 @@ static void nothing_is_learned_while_a_wheel_does_not_slide(void)
             channels.slow.mean.model.friction_n.wheel[1] = R(0.899) * SLIDING;
             CHECK(!learns_from(R(0.899) * SLIDING));
         } else if (i == 2U) {
+            channels.slow.mean.model.friction_n.wheel[1] = R(0.901) * SLIDING;
             CHECK(learns_from(R(0.901) * SLIDING));
         } else if (i == 3U) {
             input.regime = GW_REGIME_REST; /* the wheels have just turned */
@@ -603,8 +620,7 @@ static void nothing_is_learned_while_a_wheel_does_not_slide(void)
             CHECK(!learns_from(SLIDING));
         } else if (i == 6U) {
             input.enabled = false;
-            channels.slow.baseline.residual.force_x_n = R(1000.0); /* a difference of more than half a push */
-            channels.config.slow_baseline_s = R(100.0);
+            channels.slow.baseline.residual.force_x_n = R(17.0); /* 12 of 14 N: 0.73 of a push */
             channels.slow.settled_share = GW_ZERO;
             CHECK(!learns_from(SLIDING));
         } else {
@@ -677,6 +693,8 @@ static void the_mean_wrench_of_a_push_is_found(void)
         (void)ticks_to_trip(20U);
         unit_row(i);
         CHECK(output.tripped && output.refined && output.refining);
+        const gw_real_t felt_s = channels.impulse_s;
+        CHECK((felt_s == R(0.002)) || (felt_s == R(0.006)));
         for (uint32_t k = 1U; k <= 60U; k++) {
             const gw_wrench_t before = output.mean_wrench;
             tick();
@@ -791,6 +809,7 @@ void suite_channels(void)
     unit_run("the_threshold_is_that_of_what_the_robot_does", the_threshold_is_that_of_what_the_robot_does);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
     unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
+    unit_run("another_zero_takes_its_time", another_zero_takes_its_time);
     unit_run("another_zero_in_a_contact_keeps_its_force", another_zero_in_a_contact_keeps_its_force);
     unit_run("another_sensor_begins_the_baseline_anew", another_sensor_begins_the_baseline_anew);
     unit_run("nothing_is_learned_while_a_wheel_does_not_slide", nothing_is_learned_while_a_wheel_does_not_slide);

@@ -139,6 +139,18 @@ static void a_moment_alone_trips(void)
     channel.moment_nm2 = R(1000.0);
     steps(1U);
     CHECK(found.statistic < R(0.001));
+    /* With an IMU the gyro's noise besides. */
+    const gw_real_t floor_n = config.fast.rest_n;
+    const gw_real_t square = config.imu_noise_multiple * config.imu_noise_multiple;
+    channel.moment_nm2 = GW_ZERO;
+    gw_fast_channel_feel(&channel, true, GW_ZERO);
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        channel.gyro_noise_nm2[GW_BY_IMU][j] = R(0.1);
+    }
+    steps(1U);
+    const gw_real_t n2 = (square * channel.noise_n2[GW_BY_IMU][GW_REGIME_REST][3]) + (floor_n * floor_n);
+    CHECK_NEAR(found.statistic, GW_ONE / ((n2 * per_force_m2) + (square * R(0.1))),
+               found.statistic * R(10.0) * ROUNDING);
 }
 
 /* Variances behind the alignment and a low-pass of the bank, of a force of white noise and of the acceleration that the
