@@ -324,7 +324,7 @@ static void levers_make_the_moment_uncertain(void)
     begin_in_motion();
     forces.inertia_n.x = R(30.0);
     forces.inertia_n.y = R(-40.0);
-    ticks(1000U);
+    ticks(3000U);
     CHECK_NEAR(channels.lever_nm2, R(0.0001) * R(3700.0), R(100.0) * ROUNDING);
     CHECK(channels.fast.moment_nm2 >= (R(6.25) * R(0.37) * (GW_ONE - R(0.001))));
 }

@@ -105,6 +105,50 @@ static void an_interruption_forgets_the_contact(void)
     CHECK((!rig_output.detection_active) && (rig_output.detection_count == 1U));
 }
 
+/* Stopped in a reaction, which goes on afterwards: what touched before is asked anew. */
+static void a_stop_in_a_contact_forgets_it(void)
+{
+    rig_with_channels();
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    rig_input.stop_request = true;
+    rig_ticks(5U);
+    CHECK((rig_output.mode == GW_MODE_STOPPED) && (!rig_output.detection_active));
+    CHECK(rig_controller.channels.active); /* they have stood still since */
+    rig_input.stop_request = false;
+    rig_tick(GW_STATUS_OK);
+    CHECK((rig_output.mode == GW_MODE_REACTING) && (!rig_output.detection_active));
+    CHECK(rig_controller.channels.warm_up_ticks == 0U);
+}
+
+/* A force below the thresholds is estimated, but it is no contact. */
+static void a_force_that_is_no_contact_is_not_located(void)
+{
+    rig_with_channels();
+    rig_config.channels.fast.rest_n = R(1000.0);
+    rig_config.channels.slow.rest_n = R(1000.0);
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_ticks(100U);
+    CHECK_NEAR(rig_output.estimate.force_x_n, R(60.0), R(0.01));
+    CHECK((!rig_output.detection_active) && (!rig_output.contact.valid) && (rig_output.contact.force_n == GW_ZERO));
+}
+
+/* A push that lasts longer than rearm_ticks: while the robot gives way it is one hit. */
+static void a_push_that_lasts_is_one_hit_of_a_reaction(void)
+{
+    rig_with_channels();
+    rig_config.estimator.rest_ticks = 10000U;
+    rig_config.supervisor.settled_ticks = 1000U;
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    rig_ticks(700U);
+    CHECK((rig_output.mode == GW_MODE_REACTING) && (rig_output.detection_count == 1U));
+    CHECK((!rig_output.detection_active) && (rig_controller.channels.slow.statistic > GW_ONE));
+}
+
 static void the_invariant_sees_the_channels(void)
 {
     rig_with_channels();
@@ -121,5 +165,8 @@ void suite_channels_use(void)
     unit_run("a_slow_push_is_noticed_at_rest", a_slow_push_is_noticed_at_rest);
     unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
     unit_run("an_interruption_forgets_the_contact", an_interruption_forgets_the_contact);
+    unit_run("a_stop_in_a_contact_forgets_it", a_stop_in_a_contact_forgets_it);
+    unit_run("a_force_that_is_no_contact_is_not_located", a_force_that_is_no_contact_is_not_located);
+    unit_run("a_push_that_lasts_is_one_hit_of_a_reaction", a_push_that_lasts_is_one_hit_of_a_reaction);
     unit_run("the_invariant_sees_the_channels", the_invariant_sees_the_channels);
 }

@@ -416,6 +416,15 @@ static void vibration_that_an_imu_sees_counts_at_once(void)
         CHECK(found.widest == j);
         CHECK_NEAR(found.statistic, (left * left) / threshold, found.statistic * R(10.0) * ROUNDING);
     }
+    /* And it is what the noise is followed from. */
+    channel.followed = 1U;
+    channel.bank[3].force_x_n = GW_ZERO;
+    channel.bank[2].force_x_n = GW_ZERO;
+    channel.bank[1].force_x_n = GW_ZERO;
+    channel.bank[0].force_x_n = GW_ZERO;
+    step(GW_REGIME_REST, true);
+    CHECK_NEAR(channel.noise_n2[GW_BY_IMU][GW_REGIME_REST][1], R(196.0) * (GW_ONE - channel.noise_share),
+               R(200.0) * ROUNDING);
     gw_fast_channel_feel(&channel, true, GW_REAL_MAX);
     CHECK(gw_fast_channel_invariant_holds(&channel) && (channel.shaking_n2 == R(1.0e10)));
     gw_fast_channel_feel(&channel, true, unit_nan());
