@@ -53,6 +53,27 @@ static void it_gives_way_to_a_hit_and_comes_back(void)
     CHECK((rig_output.detection_count == 1U) && (!rig_output.detection_active) && (!rig_output.contact.valid));
 }
 
+/* What was felt first was only a part of it: the escape turns with the mean wrench while that becomes better. */
+static void the_escape_turns_with_what_is_felt(void)
+{
+    rig_with_channels();
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    const gw_wrench_t first = rig_output.detection_wrench;
+    CHECK(gw_abs(first.force_y_n) < (R(0.01) * first.force_x_n));
+    rig_input.sensor.torque_nm[0] = R(3.0); /* and from the side */
+    rig_ticks(60U);
+    CHECK(gw_abs(rig_output.detection_wrench.force_y_n) > (R(0.3) * rig_output.detection_wrench.force_x_n));
+    rig_ticks(200U);
+    const gw_twist_t twist = rig_output.reference_twist;
+    CHECK_STATUS(rig_output.mode, GW_MODE_REACTING);
+    CHECK_NEAR(twist.vy_mps * rig_output.detection_wrench.force_x_n,
+               twist.vx_mps * rig_output.detection_wrench.force_y_n,
+               R(0.05) * gw_abs(twist.vx_mps * rig_output.detection_wrench.force_y_n));
+    CHECK(gw_abs(twist.vx_mps) > R(0.01));
+}
+
 /* Growing by 10 N/s: too slow for the one channel, the other one notices it. */
 static void a_slow_push_is_noticed_at_rest(void)
 {
@@ -162,6 +183,7 @@ static void the_invariant_sees_the_channels(void)
 void suite_channels_use(void)
 {
     unit_run("it_gives_way_to_a_hit_and_comes_back", it_gives_way_to_a_hit_and_comes_back);
+    unit_run("the_escape_turns_with_what_is_felt", the_escape_turns_with_what_is_felt);
     unit_run("a_slow_push_is_noticed_at_rest", a_slow_push_is_noticed_at_rest);
     unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
     unit_run("an_interruption_forgets_the_contact", an_interruption_forgets_the_contact);
