@@ -5,9 +5,8 @@
 
 #if (GW_WITH_CHANNELS == 1)
 
-#define DOUBT_TICKS 2U   /* between two looks at what the model may be wrong by */
-#define GW_SLOW_TICKS 4U /* between two judgements of the slow channel */
-#define LEARN_TICKS 8U   /* between two calls of the follower, whose input is slower: x and y in turn */
+#define DOUBT_TICKS 2U /* between two looks at what the model may be wrong by */
+#define LEARN_TICKS 8U /* between two calls of the follower, whose input is slower: x and y in turn */
 #define LEARN_PHASE 2U
 #define FREE_PHASE 2U     /* among GW_SLOW_TICKS: while a contact lasts nothing is due then */
 #define WARM_UP_TICKS 60U /* the baseline's first mean */
@@ -268,7 +267,7 @@ static void end_contact(gw_channels_t *channels, const gw_balance_t *balance, co
 static void continue_contact(gw_channels_t *channels, const gw_balance_t *balance, const gw_fast_found_t *found)
 {
     channels->ticks_since_trip = one_more(channels->ticks_since_trip);
-    if (channels->ticks_since_trip <= GW_REFINE_TICKS) {
+    if (channels->ticks_since_trip < GW_REFINE_TICKS) {
         add_impulse(channels, found->change, channels->period_s);
     }
     const bool quiet = (found->release < CALM) && (channels->slow.statistic < GW_ONE);

@@ -106,13 +106,15 @@ static void init_channels(gw_controller_t *controller, const gw_controller_confi
 static void restart_channels(gw_controller_t *controller)
 {
     gw_channels_restart(&controller->channels);
-    controller->contact_found.active = false;
 }
 
-/* The force below which a push is not felt. */
-static gw_real_t channels_leak(const gw_controller_t *controller, gw_regime_t regime)
+/* The force below which a push is not felt. While a contact lasts it is that of motion: what started the reaction is
+ * real, and must be able to bring the robot out of creeping. */
+static gw_real_t channels_leak(const gw_controller_t *controller)
 {
-    return gw_force_floor(controller->channels.config.slow, regime);
+    const gw_regime_t regime = controller->estimate.regime;
+    const bool pushed = controller->channels.active && (regime == GW_REGIME_CREEPING);
+    return gw_force_floor(controller->channels.config.slow, pushed ? GW_REGIME_MOTION : regime);
 }
 
 static bool channels_hold(const gw_controller_t *controller)
@@ -208,10 +210,9 @@ static void restart_channels(const gw_controller_t *controller)
     (void)controller;
 }
 
-static gw_real_t channels_leak(const gw_controller_t *controller, gw_regime_t regime)
+static gw_real_t channels_leak(const gw_controller_t *controller)
 {
     (void)controller;
-    (void)regime;
     return GW_ZERO;
 }
 
@@ -493,21 +494,24 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     }
 }
 
-/* Input of the live admittance, world frame: the mean force above the detector's leak. */
-static gw_vector_t live_force(const gw_controller_t *controller)
+/* Likewise of the paper's detectors. */
+static gw_real_t threshold_leak(const gw_controller_t *controller)
 {
-    const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
-    const gw_real_t length = gw_length(base);
-    /* The push that started the reaction is real: it must be able to bring the robot out of creeping, in which more is
-     * forgiven than in motion. */
     const bool just_hit = controller->detector.active &&
                           (controller->detector.ticks_since_trip < controller->detector.config.blanking_ticks);
     gw_regime_t regime = controller->estimate.regime;
     if (just_hit && (regime == GW_REGIME_CREEPING)) {
         regime = GW_REGIME_MOTION;
     }
-    const gw_real_t leak_n =
-        uses_channels(controller) ? channels_leak(controller, regime) : gw_detector_leak(&controller->detector, regime);
+    return gw_detector_leak(&controller->detector, regime);
+}
+
+/* Input of the live admittance, world frame: the mean force above the detector's leak. */
+static gw_vector_t live_force(const gw_controller_t *controller)
+{
+    const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
+    const gw_real_t length = gw_length(base);
+    const gw_real_t leak_n = uses_channels(controller) ? channels_leak(controller) : threshold_leak(controller);
     const gw_real_t left = length - leak_n;
     gw_vector_t felt = {GW_ZERO, GW_ZERO};
     if ((left > GW_ZERO) && (controller->supervisor.mode == GW_MODE_REACTING)) {

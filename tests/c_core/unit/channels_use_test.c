@@ -94,14 +94,11 @@ static void live_force_yields_while_it_is_pushed(void)
     rig_with_channels();
     rig_config.admittance.kind = GW_ADMITTANCE_LIVE_FORCE;
     begin_tracking();
-    rig_push(R(100.0));
-    rig_until(GW_MODE_REACTING, 30U);
-    rig_ticks(100U);
+    rig_push(R(20.0));
+    rig_until(GW_MODE_REACTING, 200U);
+    rig_ticks(250U);
     const gw_real_t early = rig_output.reference_twist.vx_mps;
-    CHECK(early > R(0.01));
-    rig_push(R(150.0));
-    rig_ticks(200U);
-    CHECK(rig_output.reference_twist.vx_mps > early);
+    CHECK(early > R(0.1));
     rig_push(GW_ZERO);
     rig_until(GW_MODE_REJOINING, 20000U);
 }
