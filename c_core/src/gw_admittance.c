@@ -18,30 +18,24 @@ static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
     return result;
 }
 
-void gw_admittance_config_trikey(gw_admittance_config_t *config)
+static gw_vector_t ahead_of(const gw_admittance_t *admittance)
 {
-    config->kind = GW_ADMITTANCE_FROZEN_IMPULSE;
-    config->mass_kg = GW_TRIKEY_ADMITTANCE_MASS_KG;
-    config->damping_newton_s_per_m = GW_TRIKEY_ADMITTANCE_DAMPING_NEWTON_S_PER_M;
-    config->escape_impulse_newton_s = GW_TRIKEY_ADMITTANCE_ESCAPE_IMPULSE_NEWTON_S;
-    config->speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
-    config->acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
-    config->finish_speed_mps = (gw_real_t)0.01;
+    const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
+                               gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
+    return ahead;
+}
+
+#if (GW_WITH_ESCAPE == 1)
+static void set_no_escape(gw_admittance_config_t *config)
+{
     config->smoothing_s = GW_ZERO;
     config->brake_limit_mps2 = GW_ZERO;
     config->lead_s = GW_ZERO;
     gw_tip_config_trikey(&config->tip);
 }
 
-void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
+static void check_escape(const gw_admittance_config_t *config, gw_config_error_t *error)
 {
-    gw_config_check_count(error, GW_FIELD_ADMITTANCE_KIND, config->kind);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_MASS, config->mass_kg);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_DAMPING, config->damping_newton_s_per_m);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, config->escape_impulse_newton_s);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, config->speed_limit_mps);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, config->acceleration_limit_mps2);
-    gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, config->finish_speed_mps);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_SMOOTHING, config->smoothing_s);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_BRAKE_LIMIT, config->brake_limit_mps2);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_LEAD, config->lead_s);
@@ -56,67 +50,72 @@ static void set_velocity(gw_admittance_t *admittance, gw_vector_t velocity_mps)
     }
 }
 
-gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
+static void init_escape(gw_admittance_t *admittance)
 {
     const gw_vector_t zero = {GW_ZERO, GW_ZERO};
-    gw_status_t status = GW_STATUS_OK;
-    if ((admittance == NULL) || (config == NULL)) {
-        status = GW_STATUS_NULL_POINTER;
-    } else {
-        gw_config_error_t error;
-        gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, period_s);
-        gw_admittance_config_check(config, &error);
-        admittance->initialised = (error.field == GW_FIELD_NONE);
-        if (admittance->initialised) {
-            admittance->config = *config;
-            admittance->period_s = period_s;
-            admittance->rate_per_s = config->damping_newton_s_per_m / config->mass_kg;
-            admittance->decay = gw_exp(-admittance->rate_per_s * period_s);
-            admittance->approach = -gw_expm1(-admittance->rate_per_s * period_s);
-            admittance->goal_m = zero;
-            admittance->moved_x_m = gw_sum_of(GW_ZERO);
-            admittance->moved_y_m = gw_sum_of(GW_ZERO);
-            admittance->away = zero;
-            admittance->first = zero;
-            set_velocity(admittance, zero);
-            admittance->smooth_share =
-                (config->smoothing_s > GW_ZERO) ? -gw_expm1(-period_s / config->smoothing_s) : GW_ONE;
-            gw_tip_none(&admittance->tip);
-            admittance->yaw = gw_sincos(GW_ZERO);
-        } else {
-            status = GW_STATUS_CONFIG_INVALID;
-        }
-    }
-    return status;
+    const gw_real_t smoothing_s = admittance->config.smoothing_s;
+    admittance->away = zero;
+    admittance->first = zero;
+    admittance->smooth_share = (smoothing_s > GW_ZERO) ? -gw_expm1(-admittance->period_s / smoothing_s) : GW_ONE;
+    gw_tip_none(&admittance->tip);
+    admittance->yaw = gw_sincos(GW_ZERO);
 }
 
-bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
+static bool escape_holds(const gw_admittance_t *admittance)
 {
-    bool holds = (admittance != NULL);
-    if (holds) {
-        holds = admittance->initialised;
-    }
-    if (holds) {
-        gw_config_error_t error;
-        gw_config_check_begin(&error);
-        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, admittance->period_s);
-        gw_admittance_config_check(&admittance->config, &error);
-        holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
-                gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
-                gw_within(admittance->goal_m.x, ESCAPE_MAX) && gw_within(admittance->goal_m.y, ESCAPE_MAX) &&
-                gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
-                gw_within(admittance->velocity_mps.x, SPEED_MAX) && gw_within(admittance->velocity_mps.y, SPEED_MAX) &&
-                gw_tip_invariant_holds(&admittance->tip) && gw_within(admittance->yaw.cosine, GW_ONE) &&
-                gw_within(admittance->yaw.sine, GW_ONE) && gw_within(admittance->away.x, GW_TWO) &&
-                gw_within(admittance->away.y, GW_TWO) && gw_within(admittance->first.x, GW_TWO) &&
-                gw_within(admittance->first.y, GW_TWO) && gw_in_range(admittance->smooth_share, GW_ZERO, GW_ONE);
-        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
-            holds = holds && gw_within(admittance->smooth_mps[i].x, SPEED_MAX) &&
-                    gw_within(admittance->smooth_mps[i].y, SPEED_MAX);
-        }
+    bool holds = gw_tip_invariant_holds(&admittance->tip) && gw_within(admittance->yaw.cosine, GW_ONE) &&
+                 gw_within(admittance->yaw.sine, GW_ONE) && gw_within(admittance->away.x, GW_TWO) &&
+                 gw_within(admittance->away.y, GW_TWO) && gw_within(admittance->first.x, GW_TWO) &&
+                 gw_within(admittance->first.y, GW_TWO) && gw_in_range(admittance->smooth_share, GW_ZERO, GW_ONE);
+    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+        holds = holds && gw_within(admittance->smooth_mps[i].x, SPEED_MAX) &&
+                gw_within(admittance->smooth_mps[i].y, SPEED_MAX);
     }
     return holds;
+}
+
+void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip)
+{
+    admittance->tip = *tip;
+}
+
+void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw)
+{
+    admittance->yaw = yaw;
+}
+
+static bool is_escape(const gw_admittance_t *admittance)
+{
+    return admittance->config.kind == GW_ADMITTANCE_ESCAPE;
+}
+
+static void point_away(gw_admittance_t *admittance, gw_vector_t direction)
+{
+    admittance->away = direction;
+}
+
+static void remember_start(gw_admittance_t *admittance)
+{
+    admittance->first = admittance->away;
+}
+
+/* Does a direction agree with that of the start? */
+static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
+{
+    return ((admittance->first.x * direction.x) + (admittance->first.y * direction.y)) >= LEAST_AGREEMENT;
+}
+
+/* The share of a change of velocity that lifts no wheel. */
+static gw_real_t share_without_tipping(const gw_admittance_t *admittance, gw_vector_t change_mps)
+{
+    return gw_tip_share(&admittance->tip, gw_rotate_back(admittance->yaw, change_mps), admittance->period_s);
+}
+
+/* The largest acceleration along a unit vector. */
+static gw_real_t limit_without_tipping(const gw_admittance_t *admittance, gw_vector_t unit)
+{
+    return gw_tip_along(&admittance->tip, gw_rotate_back(admittance->yaw, unit),
+                        admittance->config.acceleration_limit_mps2);
 }
 
 static gw_real_t along_away(const gw_admittance_t *admittance, gw_vector_t vector)
@@ -142,13 +141,213 @@ static void follow_direction(gw_admittance_t *admittance)
     }
 }
 
+/* Before a tick of the escape: a goal that was passed is moved on, there is no way back to it. */
+static void move_goal(gw_admittance_t *admittance)
+{
+    const gw_real_t past_m = gw_min(along_away(admittance, ahead_of(admittance)), GW_ZERO);
+    admittance->goal_m.x = gw_limited(admittance->goal_m.x - (past_m * admittance->away.x), ESCAPE_MAX);
+    admittance->goal_m.y = gw_limited(admittance->goal_m.y - (past_m * admittance->away.y), ESCAPE_MAX);
+}
+
+/* After a tick of the escape: what the low-passes leave of its velocity. */
+static gw_admittance_output_t smoothed(gw_admittance_t *admittance)
+{
+    gw_admittance_output_t next;
+    gw_vector_t behind = admittance->velocity_mps;
+    const gw_vector_t before = admittance->smooth_mps[GW_SMOOTH_COUNT - 1U];
+    const gw_real_t half_s = GW_HALF * admittance->period_s;
+    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+        gw_vector_t *const smooth_mps = &admittance->smooth_mps[i];
+        smooth_mps->x = gw_limited(smooth_mps->x + (admittance->smooth_share * (behind.x - smooth_mps->x)), SPEED_MAX);
+        smooth_mps->y = gw_limited(smooth_mps->y + (admittance->smooth_share * (behind.y - smooth_mps->y)), SPEED_MAX);
+        behind = *smooth_mps;
+    }
+    if ((gw_length(admittance->velocity_mps) <= GW_ZERO) && (gw_length(behind) < STILL_MPS)) {
+        set_velocity(admittance, admittance->velocity_mps);
+        behind = admittance->velocity_mps;
+    }
+    next.velocity_mps = behind;
+    next.displacement_m.x = half_s * (before.x + behind.x);
+    next.displacement_m.y = half_s * (before.y + behind.y);
+    return next;
+}
+
+void gw_admittance_brake(gw_admittance_t *admittance)
+{
+    const gw_real_t towards_mps = -along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]);
+    if (is_escape(admittance) && (towards_mps > GW_ZERO)) {
+        const gw_real_t change_mps = gw_min(admittance->config.brake_limit_mps2 * admittance->period_s, towards_mps);
+        add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
+        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+            add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
+        }
+    }
+}
+#else
+static void set_no_escape(const gw_admittance_config_t *config)
+{
+    (void)config;
+}
+
+static void check_escape(const gw_admittance_config_t *config, const gw_config_error_t *error)
+{
+    (void)config;
+    (void)error;
+}
+
+static void set_velocity(gw_admittance_t *admittance, gw_vector_t velocity_mps)
+{
+    admittance->velocity_mps = velocity_mps;
+}
+
+static void init_escape(const gw_admittance_t *admittance)
+{
+    (void)admittance;
+}
+
+static bool escape_holds(const gw_admittance_t *admittance)
+{
+    (void)admittance;
+    return true;
+}
+
+static bool is_escape(const gw_admittance_t *admittance)
+{
+    (void)admittance;
+    return false;
+}
+
+static void point_away(const gw_admittance_t *admittance, gw_vector_t direction)
+{
+    (void)admittance;
+    (void)direction;
+}
+
+static void remember_start(const gw_admittance_t *admittance)
+{
+    (void)admittance;
+}
+
+static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
+{
+    (void)admittance;
+    (void)direction;
+    return false;
+}
+
+static gw_real_t share_without_tipping(const gw_admittance_t *admittance, gw_vector_t change_mps)
+{
+    (void)admittance;
+    (void)change_mps;
+    return GW_ONE;
+}
+
+static gw_real_t limit_without_tipping(const gw_admittance_t *admittance, gw_vector_t unit)
+{
+    (void)unit;
+    return admittance->config.acceleration_limit_mps2;
+}
+
+static void follow_direction(const gw_admittance_t *admittance)
+{
+    (void)admittance;
+}
+
+static void move_goal(const gw_admittance_t *admittance)
+{
+    (void)admittance;
+}
+
+static gw_admittance_output_t smoothed(const gw_admittance_t *admittance)
+{
+    static const gw_admittance_output_t still = {0};
+    (void)admittance;
+    return still;
+}
+#endif
+
+void gw_admittance_config_trikey(gw_admittance_config_t *config)
+{
+    config->kind = GW_ADMITTANCE_FROZEN_IMPULSE;
+    config->mass_kg = GW_TRIKEY_ADMITTANCE_MASS_KG;
+    config->damping_newton_s_per_m = GW_TRIKEY_ADMITTANCE_DAMPING_NEWTON_S_PER_M;
+    config->escape_impulse_newton_s = GW_TRIKEY_ADMITTANCE_ESCAPE_IMPULSE_NEWTON_S;
+    config->speed_limit_mps = GW_TRIKEY_ADMITTANCE_SPEED_LIMIT_MPS;
+    config->acceleration_limit_mps2 = GW_TRIKEY_ADMITTANCE_ACCELERATION_LIMIT_MPS2;
+    config->finish_speed_mps = (gw_real_t)0.01;
+    set_no_escape(config);
+}
+
+void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error)
+{
+    gw_config_check_count(error, GW_FIELD_ADMITTANCE_KIND, config->kind);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_MASS, config->mass_kg);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_DAMPING, config->damping_newton_s_per_m);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, config->escape_impulse_newton_s);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_SPEED_LIMIT, config->speed_limit_mps);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, config->acceleration_limit_mps2);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_FINISH_SPEED, config->finish_speed_mps);
+    check_escape(config, error);
+}
+
+gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s)
+{
+    const gw_vector_t zero = {GW_ZERO, GW_ZERO};
+    gw_status_t status = GW_STATUS_OK;
+    if ((admittance == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, period_s);
+        gw_admittance_config_check(config, &error);
+        admittance->initialised = (error.field == GW_FIELD_NONE);
+        if (admittance->initialised) {
+            admittance->config = *config;
+            admittance->period_s = period_s;
+            admittance->rate_per_s = config->damping_newton_s_per_m / config->mass_kg;
+            admittance->decay = gw_exp(-admittance->rate_per_s * period_s);
+            admittance->approach = -gw_expm1(-admittance->rate_per_s * period_s);
+            admittance->goal_m = zero;
+            admittance->moved_x_m = gw_sum_of(GW_ZERO);
+            admittance->moved_y_m = gw_sum_of(GW_ZERO);
+            set_velocity(admittance, zero);
+            init_escape(admittance);
+        } else {
+            status = GW_STATUS_CONFIG_INVALID;
+        }
+    }
+    return status;
+}
+
+bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
+{
+    bool holds = (admittance != NULL);
+    if (holds) {
+        holds = admittance->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_config_check_real(&error, GW_FIELD_CONTROLLER_PERIOD, admittance->period_s);
+        gw_admittance_config_check(&admittance->config, &error);
+        holds = (error.field == GW_FIELD_NONE) && gw_in_range(admittance->decay, GW_ZERO, GW_ONE) &&
+                gw_in_range(admittance->approach, GW_ZERO, GW_ONE) && gw_is_finite(admittance->rate_per_s) &&
+                gw_within(admittance->goal_m.x, ESCAPE_MAX) && gw_within(admittance->goal_m.y, ESCAPE_MAX) &&
+                gw_sum_invariant_holds(admittance->moved_x_m) && gw_sum_invariant_holds(admittance->moved_y_m) &&
+                gw_within(admittance->velocity_mps.x, SPEED_MAX) && gw_within(admittance->velocity_mps.y, SPEED_MAX) &&
+                escape_holds(admittance);
+    }
+    return holds;
+}
+
 static void aim(gw_admittance_t *admittance, gw_vector_t direction)
 {
     const gw_real_t distance_m = admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
     const gw_vector_t limited = limit_components(direction, UNIT_MAX);
-    admittance->away = limited;
     admittance->goal_m.x = distance_m * limited.x;
     admittance->goal_m.y = distance_m * limited.y;
+    point_away(admittance, limited);
 }
 
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction)
@@ -164,7 +363,7 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
         status = GW_STATUS_INPUT_INVALID;
     } else {
         aim(admittance, direction);
-        admittance->first = admittance->away;
+        remember_start(admittance);
         admittance->moved_x_m = gw_sum_of(GW_ZERO);
         admittance->moved_y_m = gw_sum_of(GW_ZERO);
         set_velocity(admittance, limit_components(velocity_mps, SPEED_MAX));
@@ -174,25 +373,14 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
 
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction)
 {
-    const gw_real_t agreement = (admittance->first.x * direction.x) + (admittance->first.y * direction.y);
-    if (admittance->config.kind != GW_ADMITTANCE_ESCAPE) {
+    if (!is_escape(admittance)) {
         aim(admittance, direction);
-    } else if (agreement >= LEAST_AGREEMENT) {
+    } else if (agrees(admittance, direction)) {
         aim(admittance, direction);
         follow_direction(admittance);
     } else {
         /* what is felt of its own braking may point anywhere */
     }
-}
-
-void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip)
-{
-    admittance->tip = *tip;
-}
-
-void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw)
-{
-    admittance->yaw = yaw;
 }
 
 /* Changes the velocity towards the wanted one within the acceleration limit. */
@@ -203,8 +391,7 @@ static gw_admittance_output_t approach_velocity(const gw_admittance_t *admittanc
     const gw_vector_t change = {wanted_mps.x - before.x, wanted_mps.y - before.y};
     const gw_vector_t allowed =
         gw_limit_length(change, admittance->config.acceleration_limit_mps2 * admittance->period_s);
-    const gw_real_t share =
-        gw_tip_share(&admittance->tip, gw_rotate_back(admittance->yaw, allowed), admittance->period_s);
+    const gw_real_t share = share_without_tipping(admittance, allowed);
     const gw_real_t half_s = GW_HALF * admittance->period_s;
     next.velocity_mps.x = before.x + (share * allowed.x);
     next.velocity_mps.y = before.y + (share * allowed.y);
@@ -220,14 +407,7 @@ static bool within_limits(const gw_admittance_t *admittance, gw_vector_t velocit
     const gw_vector_t change = {velocity_mps.x - before.x, velocity_mps.y - before.y};
     return (gw_length(velocity_mps) <= admittance->config.speed_limit_mps) &&
            (gw_length(change) <= (admittance->config.acceleration_limit_mps2 * admittance->period_s)) &&
-           (gw_tip_share(&admittance->tip, gw_rotate_back(admittance->yaw, change), admittance->period_s) >= GW_ONE);
-}
-
-static gw_vector_t ahead_of(const gw_admittance_t *admittance)
-{
-    const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
-                               gw_sum_subtract_from(admittance->goal_m.y, admittance->moved_y_m)};
-    return ahead;
+           (share_without_tipping(admittance, change) >= GW_ONE);
 }
 
 /* One tick of (2), or as near to it as limits and finish speed allow. */
@@ -248,10 +428,8 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
         const gw_real_t along_mps = (admittance->velocity_mps.x * unit.x) + (admittance->velocity_mps.y * unit.y);
         /* Braking is planned with half of the acceleration; the other half corrects errors. */
         const gw_vector_t back = {-unit.x, -unit.y};
-        const gw_real_t deceleration_mps2 =
-            gw_tip_along(&admittance->tip, gw_rotate_back(admittance->yaw, back), config->acceleration_limit_mps2);
         const gw_real_t brake_mps =
-            gw_braking_speed(GW_HALF * deceleration_mps2, period_s, distance_m - ((GW_HALF * period_s) * along_mps));
+            gw_braking_speed(GW_HALF * limit_without_tipping(admittance, back), period_s, distance_m - ((GW_HALF * period_s) * along_mps));
         const gw_real_t wanted =
             gw_min(gw_min(gw_max(mean, config->finish_speed_mps), brake_mps), config->speed_limit_mps);
         const gw_vector_t wanted_mps = {wanted * unit.x, wanted * unit.y};
@@ -293,49 +471,6 @@ static gw_admittance_output_t step_live(const gw_admittance_t *admittance, gw_ve
     return next;
 }
 
-/* Before a tick of the escape: a goal that was passed is moved on, there is no way back to it. */
-static void move_goal(gw_admittance_t *admittance)
-{
-    const gw_real_t past_m = gw_min(along_away(admittance, ahead_of(admittance)), GW_ZERO);
-    admittance->goal_m.x = gw_limited(admittance->goal_m.x - (past_m * admittance->away.x), ESCAPE_MAX);
-    admittance->goal_m.y = gw_limited(admittance->goal_m.y - (past_m * admittance->away.y), ESCAPE_MAX);
-}
-
-/* After a tick of the escape: what the low-passes leave of its velocity. */
-static gw_admittance_output_t smoothed(gw_admittance_t *admittance)
-{
-    gw_admittance_output_t next;
-    gw_vector_t behind = admittance->velocity_mps;
-    const gw_vector_t before = admittance->smooth_mps[GW_SMOOTH_COUNT - 1U];
-    const gw_real_t half_s = GW_HALF * admittance->period_s;
-    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
-        gw_vector_t *const smooth_mps = &admittance->smooth_mps[i];
-        smooth_mps->x = gw_limited(smooth_mps->x + (admittance->smooth_share * (behind.x - smooth_mps->x)), SPEED_MAX);
-        smooth_mps->y = gw_limited(smooth_mps->y + (admittance->smooth_share * (behind.y - smooth_mps->y)), SPEED_MAX);
-        behind = *smooth_mps;
-    }
-    if ((gw_length(admittance->velocity_mps) <= GW_ZERO) && (gw_length(behind) < STILL_MPS)) {
-        set_velocity(admittance, admittance->velocity_mps);
-        behind = admittance->velocity_mps;
-    }
-    next.velocity_mps = behind;
-    next.displacement_m.x = half_s * (before.x + behind.x);
-    next.displacement_m.y = half_s * (before.y + behind.y);
-    return next;
-}
-
-void gw_admittance_brake(gw_admittance_t *admittance)
-{
-    const gw_real_t towards_mps = -along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]);
-    if ((admittance->config.kind == GW_ADMITTANCE_ESCAPE) && (towards_mps > GW_ZERO)) {
-        const gw_real_t change_mps = gw_min(admittance->config.brake_limit_mps2 * admittance->period_s, towards_mps);
-        add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
-        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
-            add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
-        }
-    }
-}
-
 gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output)
 {
     static const gw_admittance_output_t still = {0};
@@ -352,7 +487,7 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
             status = GW_STATUS_INPUT_INVALID;
         } else {
             const bool to_a_goal = (admittance->config.kind != GW_ADMITTANCE_LIVE_FORCE);
-            if (admittance->config.kind == GW_ADMITTANCE_ESCAPE) {
+            if (is_escape(admittance)) {
                 move_goal(admittance);
             }
             if (to_a_goal) {
@@ -369,7 +504,7 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
                     gw_sum_limit(gw_sum_add(admittance->moved_y_m, output->displacement_m.y), ESCAPE_MAX);
             }
             admittance->velocity_mps = output->velocity_mps;
-            if (admittance->config.kind == GW_ADMITTANCE_ESCAPE) {
+            if (is_escape(admittance)) {
                 *output = smoothed(admittance);
             }
         }

@@ -276,6 +276,73 @@ static void detect_by_channels(const gw_controller_t *controller)
 }
 #endif
 
+#if (GW_WITH_ESCAPE == 1)
+static void init_escape(gw_controller_t *controller, const gw_controller_config_t *config)
+{
+    gw_tip_t tip;
+    gw_tip_init(&tip, &config->admittance.tip, &controller->estimator.kinematics);
+    gw_admittance_set_tip(&controller->admittance, &tip);
+    gw_reference_set_tip(&controller->reference, &tip);
+    controller->may_press = false;
+}
+
+/* A reaction begins: does the robot move towards what it hit? */
+static void note_press(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+{
+    const gw_real_t towards_mps = -((velocity.x * direction.x) + (velocity.y * direction.y));
+    /* Not in a reaction: there the robot rocks, and what it feels of that would make it rock more. */
+    controller->may_press =
+        (before != GW_MODE_REACTING) && (towards_mps > controller->supervisor.config.settled_speed_mps);
+}
+
+/* Before a step of the admittance. */
+static void prepare_escape(gw_controller_t *controller)
+{
+    gw_admittance_face(&controller->admittance, controller->reference.yaw);
+    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->may_press && controller->detection.active) {
+        gw_admittance_brake(&controller->admittance);
+    }
+}
+
+/* The reference's twist; in a reaction ahead of it, as the servo needs an error of the speed to accelerate the robot.
+ */
+static gw_twist_t commanded_twist(const gw_controller_t *controller)
+{
+    gw_twist_t twist = controller->reference.twist;
+    const gw_admittance_config_t *const config = &controller->admittance.config;
+    if ((controller->supervisor.mode == GW_MODE_REACTING) && (config->lead_s > GW_ZERO)) {
+        const gw_acceleration_t *const acceleration = &controller->reference.acceleration;
+        twist.vx_mps += gw_limited(config->lead_s * acceleration->ax_mps2, config->speed_limit_mps);
+        twist.vy_mps += gw_limited(config->lead_s * acceleration->ay_mps2, config->speed_limit_mps);
+    }
+    return twist;
+}
+#else
+static void init_escape(const gw_controller_t *controller, const gw_controller_config_t *config)
+{
+    (void)controller;
+    (void)config;
+}
+
+static void note_press(const gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+{
+    (void)controller;
+    (void)before;
+    (void)velocity;
+    (void)direction;
+}
+
+static void prepare_escape(const gw_controller_t *controller)
+{
+    (void)controller;
+}
+
+static gw_twist_t commanded_twist(const gw_controller_t *controller)
+{
+    return controller->reference.twist;
+}
+#endif
+
 static void find_nothing(gw_controller_t *controller)
 {
     static const gw_detector_output_t no_detection = {0};
@@ -316,17 +383,13 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
             (void)gw_admittance_init(&controller->admittance, &config->admittance, config->period_s);
             (void)gw_reference_init(&controller->reference, &config->reference, config->period_s);
             (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
-            gw_tip_t tip;
-            gw_tip_init(&tip, &config->admittance.tip, &controller->estimator.kinematics);
-            gw_admittance_set_tip(&controller->admittance, &tip);
-            gw_reference_set_tip(&controller->reference, &tip);
+            init_escape(controller, config);
             gw_joint_init(&controller->joint);
             forget_detection(controller);
             blank_tick(controller);
             controller->tick = 0U;
             controller->tare_request_before = false;
             controller->on_plan = false;
-            controller->may_press = false;
         }
     }
     if (error != NULL) {
@@ -465,10 +528,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
         const gw_vector_t direction = hit_direction(controller);
-        const gw_real_t towards_mps = -((velocity.x * direction.x) + (velocity.y * direction.y));
-        /* Not in a reaction: there the robot rocks, and what it feels of that would make it rock more. */
-        controller->may_press =
-            (before != GW_MODE_REACTING) && (towards_mps > controller->supervisor.config.settled_speed_mps);
+        note_press(controller, before, velocity, direction);
         (void)gw_admittance_start(&controller->admittance, velocity, direction);
     } else if ((mode == GW_MODE_REACTING) && is_refined(controller)) {
         gw_admittance_redirect(&controller->admittance, hit_direction(controller));
@@ -526,10 +586,7 @@ static gw_vector_t live_force(const gw_controller_t *controller)
 static void give_way(gw_controller_t *controller)
 {
     gw_admittance_output_t motion;
-    gw_admittance_face(&controller->admittance, controller->reference.yaw);
-    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->may_press && controller->detection.active) {
-        gw_admittance_brake(&controller->admittance);
-    }
+    prepare_escape(controller);
     gw_vector_t force_n = {GW_ZERO, GW_ZERO}; /* a frozen impulse does not read it */
     if (controller->admittance.config.kind == GW_ADMITTANCE_LIVE_FORCE) {
         force_n = live_force(controller);
@@ -573,20 +630,6 @@ static void move_reference(gw_controller_t *controller, const gw_plan_t *plan, b
     } else {
         gw_reference_brake(&controller->reference);
     }
-}
-
-/* The reference's twist; in a reaction ahead of it, as the servo needs an error of the speed to accelerate the robot.
- */
-static gw_twist_t commanded_twist(const gw_controller_t *controller)
-{
-    gw_twist_t twist = controller->reference.twist;
-    const gw_admittance_config_t *const config = &controller->admittance.config;
-    if ((controller->supervisor.mode == GW_MODE_REACTING) && (config->lead_s > GW_ZERO)) {
-        const gw_acceleration_t *const acceleration = &controller->reference.acceleration;
-        twist.vx_mps += gw_limited(config->lead_s * acceleration->ax_mps2, config->speed_limit_mps);
-        twist.vy_mps += gw_limited(config->lead_s * acceleration->ay_mps2, config->speed_limit_mps);
-    }
-    return twist;
 }
 
 static void command_wheels(gw_controller_t *controller, const gw_controller_input_t *input, bool sensors_good,

@@ -39,6 +39,48 @@ void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t pe
     }
 }
 
+#if (GW_WITH_ESCAPE == 1)
+static void init_tip(gw_reference_t *reference)
+{
+    gw_tip_none(&reference->tip);
+}
+
+static bool tip_holds(const gw_reference_t *reference)
+{
+    return gw_tip_invariant_holds(&reference->tip);
+}
+
+void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip)
+{
+    reference->tip = *tip;
+}
+
+/* The largest acceleration along a vector in the world frame, while a path is rejoined. */
+static gw_real_t rejoining_limit(const gw_reference_t *reference, gw_vector_t vector)
+{
+    const gw_vector_t unit = gw_unit(vector.x, vector.y, gw_length(vector));
+    return gw_tip_along(&reference->tip, gw_rotate_back(reference->yaw, unit),
+                        reference->config.acceleration_limit_mps2);
+}
+#else
+static void init_tip(const gw_reference_t *reference)
+{
+    (void)reference;
+}
+
+static bool tip_holds(const gw_reference_t *reference)
+{
+    (void)reference;
+    return true;
+}
+
+static gw_real_t rejoining_limit(const gw_reference_t *reference, gw_vector_t vector)
+{
+    (void)vector;
+    return reference->config.acceleration_limit_mps2;
+}
+#endif
+
 gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s)
 {
     static const gw_plan_t origin = {0};
@@ -53,7 +95,7 @@ gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_conf
         if (reference->initialised) {
             reference->config = *config;
             reference->period_s = period_s;
-            gw_tip_none(&reference->tip);
+            init_tip(reference);
             gw_reference_place(reference, &origin, false);
         } else {
             status = GW_STATUS_CONFIG_INVALID;
@@ -79,14 +121,9 @@ bool gw_reference_invariant_holds(const gw_reference_t *reference)
                 gw_within(reference->twist.omega_radps, YAW_RATE_MAX) &&
                 gw_is_finite(reference->acceleration.ax_mps2) && gw_is_finite(reference->acceleration.ay_mps2) &&
                 gw_is_finite(reference->acceleration.alpha_radps2) && gw_within(reference->yaw.cosine, GW_ONE) &&
-                gw_within(reference->yaw.sine, GW_ONE) && gw_tip_invariant_holds(&reference->tip);
+                gw_within(reference->yaw.sine, GW_ONE) && tip_holds(reference);
     }
     return holds;
-}
-
-void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip)
-{
-    reference->tip = *tip;
 }
 
 static void stand(gw_reference_t *reference)
@@ -118,14 +155,6 @@ void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool m
                                                 reference->config.yaw_rate_limit_radps);
         reference->acceleration = plan->acceleration;
     }
-}
-
-/* The largest acceleration along a vector in the world frame, while a path is rejoined. */
-static gw_real_t rejoining_limit(const gw_reference_t *reference, gw_vector_t vector)
-{
-    const gw_vector_t unit = gw_unit(vector.x, vector.y, gw_length(vector));
-    return gw_tip_along(&reference->tip, gw_rotate_back(reference->yaw, unit),
-                        reference->config.acceleration_limit_mps2);
 }
 
 /* One tick towards these planar and yaw speeds, within the limits. The acceleration is that of the plan where the

@@ -2,6 +2,8 @@
 
 #include "giveway/gw_math.h"
 
+#if (GW_WITH_ESCAPE == 1)
+
 #define GRAVITY_MPS2 ((gw_real_t)9.80665)
 #define LEAST_MPS2 ((gw_real_t)0.05)
 #define MARGIN_MAX ((gw_real_t)1.0e6)
@@ -83,3 +85,5 @@ gw_real_t gw_tip_along(const gw_tip_t *tip, gw_vector_t unit, gw_real_t limit_mp
     }
     return along_mps2;
 }
+
+#endif

@@ -26,6 +26,7 @@ static gw_controller_config_t take_config(bytes_t *from)
     }
     if ((replaced & 16U) != 0U) {
         GW_ADMITTANCE_FIELDS(TAKE, config.admittance.)
+        GW_ESCAPE_FIELDS(TAKE, config.admittance.)
         GW_TIP_FIELDS(TAKE, config.admittance.tip.)
     }
     if ((replaced & 32U) != 0U) {

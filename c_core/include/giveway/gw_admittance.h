@@ -43,6 +43,7 @@ typedef struct {
     gw_real_t acceleration_limit_mps2;
     /* Frozen impulse and escape: slowest speed towards the goal, m/s, [0, 1]; 0: the endless tail of (2). */
     gw_real_t finish_speed_mps;
+#if (GW_WITH_ESCAPE == 1)
     /* Escape: time constant of each of the two low-passes of the velocity, s, [0, 1]. */
     gw_real_t smoothing_s;
     /* Escape: deceleration of a velocity towards a push as long as it is felt, past the low-passes, m/s^2, [0, 1000].
@@ -53,6 +54,7 @@ typedef struct {
      * without lag. */
     gw_real_t lead_s;
     gw_tip_config_t tip;
+#endif
 } gw_admittance_config_t;
 
 #define GW_SMOOTH_COUNT 2U
@@ -67,12 +69,14 @@ typedef struct {
     gw_sum_t moved_x_m;   /* displacement made since the start */
     gw_sum_t moved_y_m;
     gw_vector_t velocity_mps;
+#if (GW_WITH_ESCAPE == 1)
     gw_tip_t tip;
     gw_rotation_t yaw;      /* of the base */
     gw_vector_t away;       /* direction of the hit, */
     gw_vector_t first;      /* and as it was at its start */
     gw_real_t smooth_share; /* of each low-pass in a tick */
     gw_vector_t smooth_mps[GW_SMOOTH_COUNT];
+#endif
     bool initialised;
 } gw_admittance_t;
 
@@ -91,15 +95,17 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
 /* A hit: from the present velocity along the unit vector direction; (0, 0) means: come to rest here.
  * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction);
-/* The limit of the acceleration that tipping sets; and where the base faces now. Pointers not NULL. */
-void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip);
-void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw);
 /* A better estimate of the direction of the hit, a unit vector: what was moved so far counts. An escape takes none that
  * is more than 60 degrees from that of its start. Pointer not NULL. */
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction);
+#if (GW_WITH_ESCAPE == 1)
+/* The limit of the acceleration that tipping sets; and where the base faces now. Pointers not NULL. */
+void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip);
+void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw);
 /* Before a step of the escape, as long as the contact lasts: brakes a velocity towards the push. No effect on other
  * kinds. Pointer not NULL. */
 void gw_admittance_brake(gw_admittance_t *admittance);
+#endif
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */
 gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n, gw_admittance_output_t *output);

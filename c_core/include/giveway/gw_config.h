@@ -148,14 +148,17 @@ extern "C" {
 #endif
 
 #define GW_ADMITTANCE_FIELDS(ROW, OF) \
-    ROW(COUNT, GW_FIELD_ADMITTANCE_KIND, "admittance.kind", OF kind, 0, 2) \
+    ROW(COUNT, GW_FIELD_ADMITTANCE_KIND, "admittance.kind", OF kind, 0, GW_ADMITTANCE_KIND_MAX) \
     ROW(REAL, GW_FIELD_ADMITTANCE_MASS, "admittance.mass", OF mass_kg, 0.01, 10000) \
     ROW(REAL, GW_FIELD_ADMITTANCE_DAMPING, "admittance.damping", OF damping_newton_s_per_m, 0.01, 10000) \
     ROW(REAL, GW_FIELD_ADMITTANCE_ESCAPE_IMPULSE, "admittance.escape_impulse", OF escape_impulse_newton_s, 0, 1000) \
     ROW(REAL, GW_FIELD_ADMITTANCE_SPEED_LIMIT, "admittance.speed_limit", OF speed_limit_mps, 0.001, 10) \
     ROW(REAL, GW_FIELD_ADMITTANCE_ACCELERATION_LIMIT, "admittance.acceleration_limit", OF acceleration_limit_mps2, \
         0.001, 1000) \
-    ROW(REAL, GW_FIELD_ADMITTANCE_FINISH_SPEED, "admittance.finish_speed", OF finish_speed_mps, 0, 1) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_FINISH_SPEED, "admittance.finish_speed", OF finish_speed_mps, 0, 1)
+
+#if (GW_WITH_ESCAPE == 1)
+#define GW_ESCAPE_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_ADMITTANCE_SMOOTHING, "admittance.smoothing", OF smoothing_s, 0, 1) \
     ROW(REAL, GW_FIELD_ADMITTANCE_BRAKE_LIMIT, "admittance.brake_limit", OF brake_limit_mps2, 0, 1000) \
     ROW(REAL, GW_FIELD_ADMITTANCE_LEAD, "admittance.lead", OF lead_s, 0, 0.2)
@@ -165,6 +168,10 @@ extern "C" {
     ROW(REAL, GW_FIELD_ADMITTANCE_TIP_SHARE, "admittance.tip_share", OF share, 0.01, 1) \
     ROW(REAL, GW_FIELD_ADMITTANCE_TIP_OFFSET, "admittance.tip_offset", OF offset_m, 0, 1) \
     ROW(REAL, GW_FIELD_ADMITTANCE_TIP_SLOPE, "admittance.tip_slope", OF slope_rad, 0, 0.5)
+#else
+#define GW_ESCAPE_FIELDS(ROW, OF)
+#define GW_TIP_FIELDS(ROW, OF)
+#endif
 
 #define GW_REFERENCE_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_REFERENCE_FOLLOW_GAIN, "reference.follow_gain", OF follow_gain_per_s, 0, 100) \
@@ -208,6 +215,7 @@ extern "C" {
     GW_CHANNELS_FIELDS(ROW, OF channels.) \
     GW_FOLLOWER_FIELDS(ROW, OF channels.follower.) \
     GW_ADMITTANCE_FIELDS(ROW, OF admittance.) \
+    GW_ESCAPE_FIELDS(ROW, OF admittance.) \
     GW_TIP_FIELDS(ROW, OF admittance.tip.) \
     GW_REFERENCE_FIELDS(ROW, OF reference.) \
     GW_SUPERVISOR_FIELDS(ROW, OF supervisor.) \

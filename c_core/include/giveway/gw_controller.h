@@ -113,7 +113,9 @@ typedef struct {
     bool drives_enabled;
     bool tare_request_before;
     bool on_plan;   /* the reference was placed on the plan */
+#if (GW_WITH_ESCAPE == 1)
     bool may_press; /* the reaction began with a hit on the way: the robot may still move towards what it hit */
+#endif
     bool initialised;
     gw_estimator_t estimator;
 } gw_controller_t;

@@ -59,7 +59,9 @@ typedef struct {
     /* What the last tick moved. */
     gw_pose_t displacement;
     gw_rotation_t yaw; /* sine and cosine of theta */
+#if (GW_WITH_ESCAPE == 1)
     gw_tip_t tip;
+#endif
     bool initialised;
 } gw_reference_t;
 
@@ -68,8 +70,10 @@ void gw_reference_config_trikey(gw_reference_config_t *config);
 void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. The reference starts at the origin, at rest. */
 gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s);
+#if (GW_WITH_ESCAPE == 1)
 /* The limit of the acceleration that tipping sets while a path is rejoined; without it there is none. */
 void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip);
+#endif
 bool gw_reference_invariant_holds(const gw_reference_t *reference);
 /* True if every number is finite, positions within 1e4 m, angles within 1e4 rad, speeds within 100 m/s and 1000 rad/s,
  * accelerations within 1e4. */

@@ -42,6 +42,17 @@
 #define GW_ACCELERATION_SOURCE_MAX 3U
 #endif
 
+/* -DGW_WITH_ESCAPE=0 leaves the reaction that neither tips nor rocks the robot out of the program: admittance.kind 2 is
+ * refused then, and there is no low-pass, brake, lead or tip limit. */
+#ifndef GW_WITH_ESCAPE
+#define GW_WITH_ESCAPE 1
+#endif
+#if (GW_WITH_ESCAPE == 0)
+#define GW_ADMITTANCE_KIND_MAX 1U
+#else
+#define GW_ADMITTANCE_KIND_MAX 2U
+#endif
+
 /* Before a loop over the wheels in which a tick spends its time: gcc writes out its passes, as other compilers do by
  * themselves. Without it the longest step takes a tenth more instructions. */
 #if defined(__GNUC__) && (__GNUC__ >= 8) && !defined(__clang__) && !defined(__FRAMAC__)

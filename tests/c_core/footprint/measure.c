@@ -93,9 +93,20 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     config->estimator.friction_model = friction_model;
 #if (GW_WITH_CHANNELS == 1)
     config->estimator.velocity_source = GW_SOURCE_MEASURED;
-    config->estimator.acceleration_source = GW_SOURCE_MEASURED;
+    config->estimator.acceleration_source = ((variant & 1U) != 0U) ? GW_SOURCE_MEASURED : GW_SOURCE_IMU;
     config->estimator.aligned = 1U;
     config->detector.kind = GW_DETECTOR_CHANNELS;
+    config->imu.use = 1U;
+    config->imu.position_x_m = (gw_real_t)0.1;
+    config->imu.position_y_m = (gw_real_t)-0.05;
+    config->imu.angle_rad = (gw_real_t)0.3;
+#endif
+#if (GW_WITH_ESCAPE == 1)
+    config->admittance.kind = ((variant & 4U) != 0U) ? GW_ADMITTANCE_LIVE_FORCE : GW_ADMITTANCE_ESCAPE;
+    config->admittance.smoothing_s = (gw_real_t)0.03;
+    config->admittance.brake_limit_mps2 = (gw_real_t)3.0;
+    config->admittance.lead_s = (gw_real_t)0.02;
+    config->admittance.tip.height_m = (gw_real_t)0.5;
 #endif
     config->estimator.rest_ticks = 100U;
     config->detector.blanking_ticks = 50U;
@@ -108,6 +119,18 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     }
 }
 
+/* An IMU on a robot that turns as its reference does and is shaken. */
+static void shake(gw_imu_sample_t *imu, generator_t *generator, uint32_t tick)
+{
+    imu->present = true;
+    imu->counter = tick;
+    for (uint32_t i = 0U; i < GW_IMU_AXES; i++) {
+        imu->specific_force_mps2[i] = generator_between(generator, (gw_real_t)-0.1, (gw_real_t)0.1);
+    }
+    imu->yaw_rate_radps =
+        output.reference_twist.omega_radps + generator_between(generator, (gw_real_t)-0.003, (gw_real_t)0.003);
+}
+
 static uint32_t worst_found_by_search(uint32_t friction_model)
 {
     static script_t script;
@@ -118,8 +141,11 @@ static uint32_t worst_found_by_search(uint32_t friction_model)
         (void)gw_controller_init(&controller, &config, NULL);
         gw_controller_safe_output(&output);
         script_begin(&script, &config, 100U + variant, false);
+        generator_t generator = generator_begin(300U + variant);
         for (uint32_t tick = 0U; tick < SEARCH_TICKS; tick++) {
-            most = measured_step(script_next(&script, &output), most);
+            gw_controller_input_t input = *script_next(&script, &output);
+            shake(&input.imu, &generator, tick);
+            most = measured_step(&input, most);
         }
     }
     return most;

@@ -37,6 +37,7 @@ digest_t drive_admittance(void)
     return digest;
 }
 
+#if (GW_WITH_ESCAPE == 1)
 /* The escape, with everything on, turned and redirected. */
 digest_t drive_escape(void)
 {
@@ -77,6 +78,7 @@ digest_t drive_escape(void)
     }
     return digest;
 }
+#endif
 
 static void add_reference(digest_t *digest, const gw_reference_t *reference, const gw_plan_t *plan)
 {

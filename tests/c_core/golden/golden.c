@@ -28,7 +28,9 @@ static const module_t modules[] = {
     {"supervisor", drive_supervisor},
     {"estimator", drive_estimator},
     {"admittance", drive_admittance},
+#if (GW_WITH_ESCAPE == 1)
     {"escape", drive_escape},
+#endif
     {"reference", drive_reference},
     {"joint", drive_joint},
     {"servo", drive_servo},
