@@ -161,9 +161,9 @@ static void feel(gw_controller_t *controller, const gw_controller_input_t *input
     }
 }
 
-static gw_imu_output_t felt_by_imu(const gw_controller_t *controller)
+static void tell_what_is_felt(const gw_controller_t *controller, gw_estimator_input_t *input)
 {
-    return controller->felt;
+    input->imu = controller->felt;
 }
 
 static bool is_imu_trusted(const gw_controller_t *controller)
@@ -257,11 +257,10 @@ static void feel(const gw_controller_t *controller, const gw_controller_input_t 
     (void)input;
 }
 
-static gw_imu_output_t felt_by_imu(const gw_controller_t *controller)
+static void tell_what_is_felt(const gw_controller_t *controller, const gw_estimator_input_t *input)
 {
-    static const gw_imu_output_t nothing = {0};
     (void)controller;
-    return nothing;
+    (void)input;
 }
 
 static bool is_imu_trusted(const gw_controller_t *controller)
@@ -446,7 +445,7 @@ static gw_status_t estimate(gw_controller_t *controller, const gw_controller_inp
     estimator_input.planned_acceleration.ax_mps2 = change.x;
     estimator_input.planned_acceleration.ay_mps2 = change.y;
     estimator_input.planned_acceleration.alpha_radps2 = acceleration.alpha_radps2;
-    estimator_input.imu = felt_by_imu(controller);
+    tell_what_is_felt(controller, &estimator_input);
     return gw_estimator_step(&controller->estimator, &estimator_input, &controller->estimate);
 }
 

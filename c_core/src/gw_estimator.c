@@ -53,77 +53,6 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     gw_presliding_config_check(&config->presliding, error);
 }
 
-gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
-                              const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
-                              const gw_friction_config_t *friction, gw_real_t period_s)
-{
-    gw_status_t status = GW_STATUS_OK;
-    if ((estimator == NULL) || (config == NULL)) {
-        status = GW_STATUS_NULL_POINTER;
-    } else {
-        gw_config_error_t error;
-        estimator->initialised = false;
-        gw_config_check_begin(&error);
-        gw_estimator_config_check(config, &error);
-        if (error.field != GW_FIELD_NONE) {
-            status = GW_STATUS_CONFIG_INVALID;
-        } else {
-            status = gw_kinematics_init(&estimator->kinematics, geometry);
-        }
-        if (status == GW_STATUS_OK) {
-            status = gw_nominal_init(&estimator->nominal, inertia, friction, &estimator->kinematics);
-        }
-        if (status == GW_STATUS_OK) {
-            status = gw_rate_filter_constants(&estimator->rate_constants, period_s, config->rate_cutoff_radps,
-                                              config->encoder_counts, config->drivetrain_stiffness_nm_per_rad);
-        }
-        if (status == GW_STATUS_OK) {
-            status = gw_presliding_init(&estimator->presliding, &config->presliding, friction, &estimator->kinematics);
-        }
-        if (status == GW_STATUS_OK) {
-            estimator->initialised = true;
-            estimator->config = *config;
-            (void)gw_moving_average_init(&estimator->average, config->average_window); /* window was checked */
-            estimator->run_zero_nm = no_torque;
-            estimator->rest_zero_nm = no_torque;
-            estimator->sigma = gw_wrench_noise(&estimator->kinematics, config->torque_noise_nm);
-            estimator->imu_constants = estimator->rate_constants;
-            estimator->slow_ticks = 0U;
-            estimator->rest = true;
-            gw_tare_start(&estimator->run_tare);
-            gw_tare_start(&estimator->stop_tare);
-            gw_estimator_restart(estimator);
-        }
-    }
-    return status;
-}
-
-bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
-{
-    bool holds = (estimator != NULL);
-    if (holds) {
-        holds = estimator->initialised;
-    }
-    if (holds) {
-        gw_config_error_t error;
-        gw_config_check_begin(&error);
-        gw_estimator_config_check(&estimator->config, &error);
-        holds = (error.field == GW_FIELD_NONE) && gw_kinematics_invariant_holds(&estimator->kinematics) &&
-                gw_nominal_invariant_holds(&estimator->nominal) && gw_tare_invariant_holds(&estimator->run_tare) &&
-                gw_tare_invariant_holds(&estimator->stop_tare) &&
-                gw_presliding_invariant_holds(&estimator->presliding) &&
-                gw_moving_average_invariant_holds(&estimator->average) &&
-                (estimator->average.window == estimator->config.average_window);
-        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            holds = holds && gw_rate_filter_invariant_holds(&estimator->rate[i]) &&
-                    gw_lowpass_invariant_holds(&estimator->aligned_torque[i], GW_TORQUE_MAX) &&
-                    gw_lowpass_invariant_holds(&estimator->aligned_friction[i], GW_TORQUE_MAX) &&
-                    gw_is_finite(estimator->run_zero_nm.wheel[i]) && gw_is_finite(estimator->rest_zero_nm.wheel[i]);
-        }
-    }
-    return holds;
-}
-
 static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
 {
     return estimator->rest ? &estimator->rest_zero_nm : &estimator->run_zero_nm;
@@ -212,6 +141,16 @@ static void align(const gw_estimator_t *estimator, uint32_t source, gw_lowpass_t
     }
 }
 
+static void align_friction(gw_estimator_t *estimator, uint32_t source, gw_wheels_t *friction_nm)
+{
+    align(estimator, source, estimator->aligned_friction, friction_nm);
+}
+
+static void align_torque(gw_estimator_t *estimator, uint32_t source, gw_wheels_t *torque_nm)
+{
+    align(estimator, source, estimator->aligned_torque, torque_nm);
+}
+
 /* The model's forces, for whoever wants to know how uncertain they are. */
 static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
                         gw_estimator_output_t *output)
@@ -240,6 +179,31 @@ static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *z
                            gw_estimator_output_t *output)
 {
     output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), zero_before_nm);
+}
+
+static void init_alignment(gw_estimator_t *estimator)
+{
+    estimator->imu_constants = estimator->rate_constants;
+}
+
+static bool alignment_holds(const gw_estimator_t *estimator)
+{
+    bool holds = true;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        holds = holds && gw_lowpass_invariant_holds(&estimator->aligned_torque[i], GW_TORQUE_MAX) &&
+                gw_lowpass_invariant_holds(&estimator->aligned_friction[i], GW_TORQUE_MAX);
+    }
+    return holds;
+}
+
+/* The acceleration that the IMU shows, if that is the source. */
+static bool take_felt(const gw_estimator_input_t *input, uint32_t source, gw_acceleration_t *acceleration)
+{
+    const bool takes = (source == GW_SOURCE_IMU);
+    if (takes) {
+        *acceleration = limited_acceleration(input->imu.acceleration);
+    }
+    return takes;
 }
 
 static void restart_alignment(gw_estimator_t *estimator)
@@ -283,13 +247,18 @@ static void forget_source(const gw_estimator_t *estimator)
     (void)estimator;
 }
 
-static void align(const gw_estimator_t *estimator, uint32_t source, const gw_lowpass_t *filter,
-                  const gw_wheels_t *values)
+static void align_friction(const gw_estimator_t *estimator, uint32_t source, const gw_wheels_t *friction_nm)
 {
     (void)estimator;
     (void)source;
-    (void)filter;
-    (void)values;
+    (void)friction_nm;
+}
+
+static void align_torque(const gw_estimator_t *estimator, uint32_t source, const gw_wheels_t *torque_nm)
+{
+    (void)estimator;
+    (void)source;
+    (void)torque_nm;
 }
 
 static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *friction_nm, gw_acceleration_t acceleration,
@@ -317,11 +286,100 @@ static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *z
     (void)output;
 }
 
+static void init_alignment(const gw_estimator_t *estimator)
+{
+    (void)estimator;
+}
+
+static bool alignment_holds(const gw_estimator_t *estimator)
+{
+    (void)estimator;
+    return true;
+}
+
+static bool take_felt(const gw_estimator_input_t *input, uint32_t source, const gw_acceleration_t *acceleration)
+{
+    (void)input;
+    (void)source;
+    (void)acceleration;
+    return false;
+}
+
 static void restart_alignment(const gw_estimator_t *estimator)
 {
     (void)estimator;
 }
 #endif
+
+gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
+                              const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
+                              const gw_friction_config_t *friction, gw_real_t period_s)
+{
+    gw_status_t status = GW_STATUS_OK;
+    if ((estimator == NULL) || (config == NULL)) {
+        status = GW_STATUS_NULL_POINTER;
+    } else {
+        gw_config_error_t error;
+        estimator->initialised = false;
+        gw_config_check_begin(&error);
+        gw_estimator_config_check(config, &error);
+        if (error.field != GW_FIELD_NONE) {
+            status = GW_STATUS_CONFIG_INVALID;
+        } else {
+            status = gw_kinematics_init(&estimator->kinematics, geometry);
+        }
+        if (status == GW_STATUS_OK) {
+            status = gw_nominal_init(&estimator->nominal, inertia, friction, &estimator->kinematics);
+        }
+        if (status == GW_STATUS_OK) {
+            status = gw_rate_filter_constants(&estimator->rate_constants, period_s, config->rate_cutoff_radps,
+                                              config->encoder_counts, config->drivetrain_stiffness_nm_per_rad);
+        }
+        if (status == GW_STATUS_OK) {
+            status = gw_presliding_init(&estimator->presliding, &config->presliding, friction, &estimator->kinematics);
+        }
+        if (status == GW_STATUS_OK) {
+            estimator->initialised = true;
+            estimator->config = *config;
+            (void)gw_moving_average_init(&estimator->average, config->average_window); /* window was checked */
+            estimator->run_zero_nm = no_torque;
+            estimator->rest_zero_nm = no_torque;
+            estimator->sigma = gw_wrench_noise(&estimator->kinematics, config->torque_noise_nm);
+            init_alignment(estimator);
+            estimator->slow_ticks = 0U;
+            estimator->rest = true;
+            gw_tare_start(&estimator->run_tare);
+            gw_tare_start(&estimator->stop_tare);
+            gw_estimator_restart(estimator);
+        }
+    }
+    return status;
+}
+
+bool gw_estimator_invariant_holds(const gw_estimator_t *estimator)
+{
+    bool holds = (estimator != NULL);
+    if (holds) {
+        holds = estimator->initialised;
+    }
+    if (holds) {
+        gw_config_error_t error;
+        gw_config_check_begin(&error);
+        gw_estimator_config_check(&estimator->config, &error);
+        holds = (error.field == GW_FIELD_NONE) && alignment_holds(estimator) &&
+                gw_kinematics_invariant_holds(&estimator->kinematics) &&
+                gw_nominal_invariant_holds(&estimator->nominal) && gw_tare_invariant_holds(&estimator->run_tare) &&
+                gw_tare_invariant_holds(&estimator->stop_tare) &&
+                gw_presliding_invariant_holds(&estimator->presliding) &&
+                gw_moving_average_invariant_holds(&estimator->average) &&
+                (estimator->average.window == estimator->config.average_window);
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            holds = holds && gw_rate_filter_invariant_holds(&estimator->rate[i]) &&
+                    gw_is_finite(estimator->run_zero_nm.wheel[i]) && gw_is_finite(estimator->rest_zero_nm.wheel[i]);
+        }
+    }
+    return holds;
+}
 
 static void restart_filters(gw_estimator_t *estimator)
 {
@@ -444,15 +502,15 @@ static bool judge_rest(gw_estimator_t *estimator, const gw_wheels_t *torque_nm, 
 }
 
 /* The acceleration that the model is given. At rest no acceleration is planned: the tare says all. */
-static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, uint32_t source,
-                                             gw_acceleration_t planned, gw_acceleration_t felt,
-                                             const gw_wheels_t *rates, const gw_wheels_t *derivatives)
+static gw_acceleration_t chosen_acceleration(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                                             uint32_t source, gw_acceleration_t planned, const gw_wheels_t *rates,
+                                             const gw_wheels_t *derivatives)
 {
     gw_acceleration_t acceleration = {GW_ZERO, GW_ZERO, GW_ZERO};
     if (source == GW_SOURCE_MEASURED) {
         acceleration = gw_kinematics_acceleration(&estimator->kinematics, rates, derivatives);
-    } else if (source == GW_SOURCE_IMU) {
-        acceleration = limited_acceleration(felt);
+    } else if (take_felt(input, source, &acceleration)) {
+        /* as the IMU shows it */
     } else if ((source == GW_SOURCE_PLANNED) && (!estimator->rest)) {
         acceleration = planned;
     } else {
@@ -484,7 +542,7 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
         const gw_wheels_t roller_rates = gw_kinematics_roller_rates(&estimator->kinematics, twist);
         friction_nm = gw_friction_torques(&estimator->nominal.friction, &roller_rates);
     }
-    align(estimator, output->acceleration_source, estimator->aligned_friction, &friction_nm);
+    align_friction(estimator, output->acceleration_source, &friction_nm);
     tell_forces(estimator, &friction_nm, acceleration, output);
     /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     gw_wheels_t nominal =
@@ -571,14 +629,13 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         gw_wheels_t derivatives;
         filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
-        const gw_acceleration_t acceleration =
-            chosen_acceleration(estimator, output->acceleration_source, planned_acceleration, input->imu.acceleration,
-                                &rates, &derivatives);
+        const gw_acceleration_t acceleration = chosen_acceleration(
+            estimator, input, output->acceleration_source, planned_acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
             nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
         gw_wheels_t sensed_nm = torque_nm;
-        align(estimator, output->acceleration_source, estimator->aligned_torque, &sensed_nm);
+        align_torque(estimator, output->acceleration_source, &sensed_nm);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &sensed_nm);
         output->sigma = estimator->sigma;
         tell_source_step(estimator, input, output);

@@ -88,19 +88,21 @@ typedef struct {
     gw_kinematics_t kinematics;
     gw_nominal_t nominal;
     gw_rate_filter_constants_t rate_constants;
-    gw_rate_filter_constants_t imu_constants; /* of the low-pass that the IMU's acceleration has passed */
     gw_rate_filter_t rate[GW_WHEEL_COUNT];
     gw_presliding_t presliding;
-    gw_lowpass_t aligned_torque[GW_WHEEL_COUNT];
-    gw_lowpass_t aligned_friction[GW_WHEEL_COUNT];
     gw_tare_t run_tare;
     gw_tare_t stop_tare;
     gw_wheels_t run_zero_nm;
     gw_wheels_t rest_zero_nm;
     gw_wrench_sigma_t sigma; /* of one sample */
+    uint32_t slow_ticks;     /* ticks of standing, saturating */
+#if (GW_WITH_CHANNELS == 1)
+    gw_rate_filter_constants_t imu_constants; /* of the low-pass that the IMU's acceleration has passed */
+    gw_lowpass_t aligned_torque[GW_WHEEL_COUNT];
+    gw_lowpass_t aligned_friction[GW_WHEEL_COUNT];
     gw_wrench_t last_wrench; /* what a change of the acceleration's source is compared with */
     uint32_t last_source;    /* of the acceleration */
-    uint32_t slow_ticks;     /* ticks of standing, saturating */
+#endif
     bool rest;
     bool initialised;
     gw_moving_average_t average;
@@ -112,7 +114,9 @@ typedef struct {
     /* Planned motion at the time of the sample, along the base's axes. */
     gw_twist_t planned_twist;
     gw_acceleration_t planned_acceleration;
+#if (GW_WITH_CHANNELS == 1)
     gw_imu_output_t imu; /* all zero: none */
+#endif
 } gw_estimator_input_t;
 
 typedef struct {
@@ -125,11 +129,13 @@ typedef struct {
     gw_twist_t measured_twist;
     gw_regime_t regime;
     bool zero_changed;     /* the robot came to rest or left it, or the acceleration has another source or zero */
-    gw_wrench_t zero_step; /* by how much the wrench jumped then; kept until the next change */
+    uint32_t acceleration_source; /* the one that was used: GW_SOURCE_... */
+#if (GW_WITH_CHANNELS == 1)
+    gw_wrench_t zero_step; /* by how much the wrench jumped when the zero changed; kept until the next change */
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
-    bool turned;                  /* an encoder has moved since the last sample */
-    uint32_t acceleration_source; /* the one that was used: GW_SOURCE_... */
+    bool turned; /* an encoder has moved since the last sample */
+#endif
 } gw_estimator_output_t;
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
