@@ -18,6 +18,13 @@ static gw_vector_t limit_components(gw_vector_t vector, gw_real_t limit)
     return result;
 }
 
+/* Likewise for one that is known to be within the limit. */
+static gw_vector_t known_within(gw_vector_t vector, gw_real_t limit)
+{
+    const gw_vector_t result = {gw_known_within(vector.x, limit), gw_known_within(vector.y, limit)};
+    return result;
+}
+
 static gw_vector_t ahead_of(const gw_admittance_t *admittance)
 {
     const gw_vector_t ahead = {gw_sum_subtract_from(admittance->goal_m.x, admittance->moved_x_m),
@@ -358,15 +365,15 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
     } else if (!admittance->initialised) {
         status = GW_STATUS_NOT_INITIALISED;
     } else if (!(gw_within(direction.x, UNIT_MAX) && gw_within(direction.y, UNIT_MAX) &&
-                 (gw_length(limit_components(direction, UNIT_MAX)) <= UNIT_MAX) &&
-                 gw_within(velocity_mps.x, SPEED_MAX) && gw_within(velocity_mps.y, SPEED_MAX))) {
+                 (gw_length(known_within(direction, UNIT_MAX)) <= UNIT_MAX) && gw_within(velocity_mps.x, SPEED_MAX) &&
+                 gw_within(velocity_mps.y, SPEED_MAX))) {
         status = GW_STATUS_INPUT_INVALID;
     } else {
         aim(admittance, direction);
         remember_start(admittance);
         admittance->moved_x_m = gw_sum_of(GW_ZERO);
         admittance->moved_y_m = gw_sum_of(GW_ZERO);
-        set_velocity(admittance, limit_components(velocity_mps, SPEED_MAX));
+        set_velocity(admittance, known_within(velocity_mps, SPEED_MAX));
     }
     return status;
 }
@@ -428,8 +435,8 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
         const gw_real_t along_mps = (admittance->velocity_mps.x * unit.x) + (admittance->velocity_mps.y * unit.y);
         /* Braking is planned with half of the acceleration; the other half corrects errors. */
         const gw_vector_t back = {-unit.x, -unit.y};
-        const gw_real_t brake_mps =
-            gw_braking_speed(GW_HALF * limit_without_tipping(admittance, back), period_s, distance_m - ((GW_HALF * period_s) * along_mps));
+        const gw_real_t brake_mps = gw_braking_speed(GW_HALF * limit_without_tipping(admittance, back), period_s,
+                                                     distance_m - ((GW_HALF * period_s) * along_mps));
         const gw_real_t wanted =
             gw_min(gw_min(gw_max(mean, config->finish_speed_mps), brake_mps), config->speed_limit_mps);
         const gw_vector_t wanted_mps = {wanted * unit.x, wanted * unit.y};
@@ -493,7 +500,7 @@ gw_status_t gw_admittance_step(gw_admittance_t *admittance, gw_vector_t force_n,
             if (to_a_goal) {
                 *output = step_frozen(admittance);
             } else {
-                *output = step_live(admittance, limit_components(force_n, GW_WRENCH_MAX));
+                *output = step_live(admittance, known_within(force_n, GW_WRENCH_MAX));
             }
             output->velocity_mps = limit_components(output->velocity_mps, SPEED_MAX);
             output->displacement_m = limit_components(output->displacement_m, DISPLACEMENT_MAX);

@@ -192,8 +192,8 @@ static void locate(const gw_contact_config_t *config, gw_wrench_t wrench, gw_wre
     if (force_n >= config->minimum_force_n) {
         const gw_real_t arm_m = gw_limited(wrench.torque_nm / force_n, LEVER_ARM_MAX);
         /* sigma_d^2 = (sigma_M^2 + d^2 sigma_F^2)/|F|^2 */
-        const gw_vector_t spread = {gw_limited(sigma.torque_nm, GW_WRENCH_MAX) / force_n,
-                                    (arm_m * gw_limited(sigma.force_n, GW_WRENCH_MAX)) / force_n};
+        const gw_vector_t spread = {gw_known_within(sigma.torque_nm, GW_WRENCH_MAX) / force_n,
+                                    (arm_m * gw_known_within(sigma.force_n, GW_WRENCH_MAX)) / force_n};
         estimate->valid = true;
         estimate->force_n = force_n;
         estimate->lever_arm_m = arm_m;
@@ -219,7 +219,7 @@ gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, g
         } else if (!(gw_wrench_is_valid(wrench) && sigma_is_valid(sigma))) {
             status = GW_STATUS_INPUT_INVALID;
         } else {
-            locate(&contact->config, gw_wrench_limited(wrench), sigma, estimate);
+            locate(&contact->config, gw_wrench_known_valid(wrench), sigma, estimate);
         }
     }
     return status;

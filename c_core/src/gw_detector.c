@@ -103,14 +103,14 @@ static bool may_release(const gw_detector_t *detector, const gw_detector_input_t
         release_n = gw_min(release_n, detector->config.force_threshold_n);
     }
     return (detector->ticks_since_trip >= detector->config.blanking_ticks) &&
-           (input->reaction_over || (force_length(gw_wrench_limited(input->mean)) < release_n));
+           (input->reaction_over || (force_length(gw_wrench_known_valid(input->mean)) < release_n));
 }
 
 /* One step of the leaky vector integral; true if it trips. */
 static bool integrate(gw_detector_t *detector, const gw_detector_input_t *input, gw_detector_output_t *output)
 {
     const gw_real_t leak_n = gw_detector_leak(detector, input->regime);
-    const gw_wrench_t wrench = gw_wrench_limited(input->wrench);
+    const gw_wrench_t wrench = gw_wrench_known_valid(input->wrench);
     const gw_vector_t sum = {detector->impulse_x_newton_s + (wrench.force_x_n * detector->period_s),
                              detector->impulse_y_newton_s + (wrench.force_y_n * detector->period_s)};
     const gw_real_t moment =
@@ -174,8 +174,8 @@ gw_status_t gw_detector_step(gw_detector_t *detector, const gw_detector_input_t 
                 if (input->regime == GW_REGIME_CREEPING) {
                     threshold_n = gw_max(threshold_n, detector->config.leak_creep_n);
                 }
-                output->statistic = force_length(gw_wrench_limited(input->window_mean));
-                output->mean_wrench = gw_wrench_limited(input->mean);
+                output->statistic = force_length(gw_wrench_known_valid(input->window_mean));
+                output->mean_wrench = gw_wrench_known_valid(input->mean);
                 output->samples = input->mean_samples;
                 output->tripped = (output->statistic > threshold_n);
             }

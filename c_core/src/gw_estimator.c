@@ -62,6 +62,16 @@ static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
 #define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
 #define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
 
+/* The same acceleration for a valid one, as provers need to be told. */
+static gw_acceleration_t known_acceleration(gw_acceleration_t acceleration)
+{
+    const gw_acceleration_t known = {gw_known_within(acceleration.ax_mps2, PLANNED_ACCELERATION_MAX),
+                                     gw_known_within(acceleration.ay_mps2, PLANNED_ACCELERATION_MAX),
+                                     gw_known_within(acceleration.alpha_radps2, PLANNED_ACCELERATION_MAX)};
+    return known;
+}
+
+#if (GW_WITH_CHANNELS == 1)
 static gw_acceleration_t limited_acceleration(gw_acceleration_t acceleration)
 {
     const gw_acceleration_t limited = {gw_limited(acceleration.ax_mps2, PLANNED_ACCELERATION_MAX),
@@ -70,7 +80,6 @@ static gw_acceleration_t limited_acceleration(gw_acceleration_t acceleration)
     return limited;
 }
 
-#if (GW_WITH_CHANNELS == 1)
 /* Where the acceleration comes from in this tick. */
 static uint32_t source_of(const gw_estimator_t *estimator, const gw_estimator_input_t *input)
 {
@@ -201,7 +210,7 @@ static bool take_felt(const gw_estimator_input_t *input, uint32_t source, gw_acc
 {
     const bool takes = (source == GW_SOURCE_IMU);
     if (takes) {
-        *acceleration = limited_acceleration(input->imu.acceleration);
+        *acceleration = known_acceleration(input->imu.acceleration);
     }
     return takes;
 }
@@ -457,12 +466,12 @@ static bool input_is_valid(const gw_estimator_input_t *input)
 }
 
 /* The same twist for a valid input. It gives the provers the bounds of all that follows. */
-static gw_twist_t limited_twist(gw_twist_t twist)
+static gw_twist_t known_twist(gw_twist_t twist)
 {
-    const gw_twist_t limited = {gw_limited(twist.vx_mps, PLANNED_SPEED_MAX),
-                                gw_limited(twist.vy_mps, PLANNED_SPEED_MAX),
-                                gw_limited(twist.omega_radps, PLANNED_SPEED_MAX)};
-    return limited;
+    const gw_twist_t known = {gw_known_within(twist.vx_mps, PLANNED_SPEED_MAX),
+                              gw_known_within(twist.vy_mps, PLANNED_SPEED_MAX),
+                              gw_known_within(twist.omega_radps, PLANNED_SPEED_MAX)};
+    return known;
 }
 
 /* The faster of the base and of the wheels' circle. */
@@ -609,8 +618,8 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
     } else {
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
         const gw_wheels_t torque_nm = gw_torques_limited(&input->torque_nm);
-        const gw_twist_t planned_twist = limited_twist(input->planned_twist);
-        const gw_acceleration_t planned_acceleration = limited_acceleration(input->planned_acceleration);
+        const gw_twist_t planned_twist = known_twist(input->planned_twist);
+        const gw_acceleration_t planned_acceleration = known_acceleration(input->planned_acceleration);
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
         const gw_wheels_t zero_before = *present_zero(estimator);
         output->acceleration_source = source_of(estimator, input);
@@ -629,8 +638,8 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         gw_wheels_t derivatives;
         filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
-        const gw_acceleration_t acceleration = chosen_acceleration(
-            estimator, input, output->acceleration_source, planned_acceleration, &rates, &derivatives);
+        const gw_acceleration_t acceleration = chosen_acceleration(estimator, input, output->acceleration_source,
+                                                                   planned_acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
             nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);

@@ -271,9 +271,9 @@ static void follow_shaking(gw_imu_t *imu)
 /* A good sample: the filters take it, and the tare while the robot stands. */
 static void take(gw_imu_t *imu, const gw_imu_sample_t *sample, bool is_new, bool at_rest, gw_acceleration_t *zero_step)
 {
-    const gw_real_t shown[GW_IMU_SIGNALS] = {gw_limited(sample->specific_force_mps2[0], GW_IMU_SHOWN_MAX),
-                                             gw_limited(sample->specific_force_mps2[1], GW_IMU_SHOWN_MAX),
-                                             gw_limited(sample->yaw_rate_radps, GW_IMU_SHOWN_MAX)};
+    const gw_real_t shown[GW_IMU_SIGNALS] = {gw_known_within(sample->specific_force_mps2[0], GW_IMU_SHOWN_MAX),
+                                             gw_known_within(sample->specific_force_mps2[1], GW_IMU_SHOWN_MAX),
+                                             gw_known_within(sample->yaw_rate_radps, GW_IMU_SHOWN_MAX)};
     const gw_real_t before = imu->filter[YAW_RATE].value;
     for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
         (void)gw_lowpass_step(&imu->filter[i], &imu->constants, shown[i], GW_IMU_SHOWN_MAX);

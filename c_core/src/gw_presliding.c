@@ -195,7 +195,7 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
             (speed_deflects || displacement_deflects) ? deflecting_share(presliding, i, bearable_n) : GW_ONE;
         const gw_real_t rate_mps = speed_deflects ? (speed_mps * share) : speed_mps;
         if (gw_within(displacement_m, DISPLACEMENT_MAX_M)) {
-            deflect(presliding, i, bearable_n, gw_limited(displacement_m, DISPLACEMENT_MAX_M),
+            deflect(presliding, i, bearable_n, gw_known_within(displacement_m, DISPLACEMENT_MAX_M),
                     displacement_deflects ? share : GW_ONE);
         }
         const gw_real_t force_n = (presliding->config.stiffness_n_per_m[i] * presliding->deflection_m[i].value) +

@@ -112,7 +112,7 @@ typedef struct {
     gw_detector_output_t detection;
     bool drives_enabled;
     bool tare_request_before;
-    bool on_plan;   /* the reference was placed on the plan */
+    bool on_plan; /* the reference was placed on the plan */
 #if (GW_WITH_ESCAPE == 1)
     bool may_press; /* the reaction began with a hit on the way: the robot may still move towards what it hit */
 #endif

@@ -128,7 +128,7 @@ typedef struct {
     gw_wheels_t nominal_nm;  /* T|0 */
     gw_twist_t measured_twist;
     gw_regime_t regime;
-    bool zero_changed;     /* the robot came to rest or left it, or the acceleration has another source or zero */
+    bool zero_changed; /* the robot came to rest or left it, or the acceleration has another source or zero */
     uint32_t acceleration_source; /* the one that was used: GW_SOURCE_... */
 #if (GW_WITH_CHANNELS == 1)
     gw_wrench_t zero_step; /* by how much the wrench jumped when the zero changed; kept until the next change */

@@ -69,7 +69,7 @@ static inline gw_status_t gw_moving_average_add(gw_moving_average_t *average, gw
         } else {
             sum = gw_wrench_difference(sum, *place);
         }
-        const gw_wrench_t valid = gw_wrench_limited(sample);
+        const gw_wrench_t valid = gw_wrench_known_valid(sample);
         *place = valid;
         average->window_sum = gw_wrench_sum(sum, valid);
         average->fresh_sum = gw_wrench_sum(average->fresh_sum, valid);

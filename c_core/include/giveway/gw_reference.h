@@ -88,17 +88,17 @@ static inline bool gw_plan_is_valid(const gw_plan_t *plan)
            gw_within(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX);
 }
 
-/* The plan with every value kept within those ranges: the same for a valid one. Pointer not NULL. */
+/* A plan that gw_plan_is_valid, as provers need to be told. Pointer not NULL. */
 static inline gw_plan_t gw_plan_limited(const gw_plan_t *plan)
 {
     const gw_plan_t result = {
-        {gw_limited(plan->pose.x_m, GW_PLAN_POSITION_MAX), gw_limited(plan->pose.y_m, GW_PLAN_POSITION_MAX),
-         gw_limited(plan->pose.theta_rad, GW_ANGLE_MAX)},
-        {gw_limited(plan->twist.vx_mps, GW_PLAN_SPEED_MAX), gw_limited(plan->twist.vy_mps, GW_PLAN_SPEED_MAX),
-         gw_limited(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX)},
-        {gw_limited(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX),
-         gw_limited(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX),
-         gw_limited(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX)}};
+        {gw_known_within(plan->pose.x_m, GW_PLAN_POSITION_MAX), gw_known_within(plan->pose.y_m, GW_PLAN_POSITION_MAX),
+         gw_known_within(plan->pose.theta_rad, GW_ANGLE_MAX)},
+        {gw_known_within(plan->twist.vx_mps, GW_PLAN_SPEED_MAX), gw_known_within(plan->twist.vy_mps, GW_PLAN_SPEED_MAX),
+         gw_known_within(plan->twist.omega_radps, GW_PLAN_YAW_RATE_MAX)},
+        {gw_known_within(plan->acceleration.ax_mps2, GW_PLAN_ACCELERATION_MAX),
+         gw_known_within(plan->acceleration.ay_mps2, GW_PLAN_ACCELERATION_MAX),
+         gw_known_within(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX)}};
     return result;
 }
 

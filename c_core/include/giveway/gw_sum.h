@@ -47,10 +47,10 @@ static inline gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
     const gw_real_t almost_pi = (gw_real_t)3.0;
     /* The usual increment, that of a tick, is small. */
     const gw_real_t small =
-        gw_within(increment_rad, GW_ONE) ? gw_limited(increment_rad, GW_ONE) : gw_wrap_angle(increment_rad);
+        gw_within(increment_rad, GW_ONE) ? gw_known_within(increment_rad, GW_ONE) : gw_wrap_angle(increment_rad);
     gw_sum_t result = gw_sum_add(sum, small);
     if (gw_within(result.value, almost_pi)) {
-        result.value = gw_limited(result.value, almost_pi);
+        result.value = gw_known_within(result.value, almost_pi);
     } else {
         result = gw_sum_within_turn(result);
     }

@@ -38,6 +38,15 @@ static inline gw_wrench_t gw_wrench_limited(gw_wrench_t wrench)
     return limited;
 }
 
+/* A wrench that gw_wrench_is_valid, as provers need to be told. */
+static inline gw_wrench_t gw_wrench_known_valid(gw_wrench_t wrench)
+{
+    const gw_wrench_t known = {gw_known_within(wrench.force_x_n, GW_WRENCH_MAX),
+                               gw_known_within(wrench.force_y_n, GW_WRENCH_MAX),
+                               gw_known_within(wrench.torque_nm, GW_WRENCH_MAX)};
+    return known;
+}
+
 /* Likewise for torques and GW_TORQUE_MAX. */
 static inline bool gw_torques_are_valid(const gw_wheels_t *torque_nm)
 {
@@ -51,12 +60,12 @@ static inline bool gw_torques_are_valid(const gw_wheels_t *torque_nm)
 
 static inline gw_wheels_t gw_torques_limited(const gw_wheels_t *torque_nm)
 {
-    gw_wheels_t limited;
+    gw_wheels_t known;
     GW_UNROLLED
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        limited.wheel[i] = gw_limited(torque_nm->wheel[i], GW_TORQUE_MAX);
+        known.wheel[i] = gw_known_within(torque_nm->wheel[i], GW_TORQUE_MAX);
     }
-    return limited;
+    return known;
 }
 
 /* The wrench of the environment ON the robot, from torques without contact and sensed torques. Pointers not NULL. */
