@@ -37,3 +37,11 @@ gw_balance_t gw_balance_limited(const gw_wrench_t *residual, const gw_model_forc
     balance.model.inertia_moment_nm = gw_limited(model->inertia_moment_nm, GW_BALANCE_MAX);
     return balance;
 }
+
+gw_wrench_t gw_balance_sum(gw_wrench_t a, gw_wrench_t b)
+{
+    const gw_wrench_t sum = {gw_limited(a.force_x_n + b.force_x_n, GW_BALANCE_MAX),
+                             gw_limited(a.force_y_n + b.force_y_n, GW_BALANCE_MAX),
+                             gw_limited(a.torque_nm + b.torque_nm, GW_BALANCE_MAX)};
+    return sum;
+}

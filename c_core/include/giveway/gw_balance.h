@@ -52,15 +52,8 @@ void gw_balance_approach(gw_balance_t *balance, const gw_balance_t *target, gw_r
 gw_balance_t gw_balance_difference(const gw_balance_t *from, const gw_balance_t *what);
 /* Every value kept within GW_BALANCE_MAX. */
 gw_balance_t gw_balance_limited(const gw_wrench_t *residual, const gw_model_forces_t *model);
-
 /* a + b, kept within GW_BALANCE_MAX. */
-static inline gw_wrench_t gw_balance_sum(gw_wrench_t a, gw_wrench_t b)
-{
-    const gw_wrench_t sum = {gw_limited(a.force_x_n + b.force_x_n, GW_BALANCE_MAX),
-                             gw_limited(a.force_y_n + b.force_y_n, GW_BALANCE_MAX),
-                             gw_limited(a.torque_nm + b.torque_nm, GW_BALANCE_MAX)};
-    return sum;
-}
+gw_wrench_t gw_balance_sum(gw_wrench_t a, gw_wrench_t b);
 
 /* True if every value is within the limit. */
 static inline bool gw_wrench_is_within(const gw_wrench_t *wrench, gw_real_t limit)
