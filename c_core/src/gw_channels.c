@@ -190,14 +190,6 @@ static bool all_wheels_slide(const gw_channels_t *channels)
     return slide;
 }
 
-static void learn(gw_channels_t *channels, const gw_kinematics_t *kinematics)
-{
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-    const gw_regressors_t regressors = gw_follower_regressors(kinematics, &channels->slow.mean.model);
-    const gw_vector_t residual_n = {channels->slow.mean.residual.force_x_n, channels->slow.mean.residual.force_y_n};
-    gw_follower_learn(&channels->follower, &regressors, residual_n, (channels->tick & LEARN_TICKS) != 0U);
-}
-
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */
 static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                            const gw_balance_t *balance, gw_regime_t regime, gw_real_t fast)
@@ -216,7 +208,8 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
         if (((channels->tick % LEARN_TICKS) == LEARN_PHASE) && (regime == GW_REGIME_MOTION) &&
             (input->regime == GW_REGIME_MOTION) && (!channels->active) &&
             (gw_max(fast, channels->slow.statistic) < CALM) && all_wheels_slide(channels)) {
-            learn(channels, kinematics);
+            gw_slow_channel_teach(&channels->slow, kinematics, &channels->follower,
+                                  (channels->tick & LEARN_TICKS) != 0U);
         }
     }
 }

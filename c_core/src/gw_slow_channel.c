@@ -87,4 +87,13 @@ void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_
     channel->statistic = gw_planar_distance(&spread, floor_n * floor_n, channel->force_n);
 }
 
+void gw_slow_channel_teach(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics, gw_follower_t *follower,
+                           bool along_y)
+{
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+    const gw_regressors_t regressors = gw_follower_regressors(kinematics, &channel->mean.model);
+    const gw_vector_t residual_n = {channel->mean.residual.force_x_n, channel->mean.residual.force_y_n};
+    gw_follower_learn(follower, &regressors, residual_n, along_y);
+}
+
 #endif

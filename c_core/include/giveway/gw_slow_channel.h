@@ -49,6 +49,10 @@ void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled);
 /* Compares; every few ticks is enough. floor: of which regime the floor is. */
 void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor);
+/* The follower learns from the mean balance, in motion without contact, when all rollers slide: from its component
+ * along y or along x. */
+void gw_slow_channel_teach(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics, gw_follower_t *follower,
+                           bool along_y);
 
 #ifdef __cplusplus
 }
