@@ -144,8 +144,9 @@ void gw_controller_safe_output(gw_controller_output_t *output);
  *     GW_STATUS_PLAN_INVALID                              the plan is not used, the reference slows to a stop
  *     GW_STATUS_TARE_REFUSED                              otherwise as usual; the previous zero is kept
  *
- * Costs: at most 3,000 instructions on a Cortex-M4F, 4,000 with GW_FRICTION_BRISTLE, and 512 bytes of stack; measured,
- * see README.md. Loops run over the wheels and the outline's vertices only: a step takes no longer after a day. */
+ * Costs without channels and escape: at most 3,000 instructions on a Cortex-M4F, 4,000 with GW_FRICTION_BRISTLE, and
+ * 512 bytes of stack; measured, and with everything on, see README.md. Loops run over the wheels and the outline's
+ * vertices only: a step takes no longer after a day. */
 gw_status_t gw_controller_step(gw_controller_t *controller, const gw_controller_input_t *input,
                                gw_controller_output_t *output);
 /* True for every controller that init accepted, after any number of steps with any input. */
