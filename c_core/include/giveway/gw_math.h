@@ -109,8 +109,7 @@ static inline gw_real_t gw_limited(gw_real_t x, gw_real_t limit)
 }
 
 /* x, which gw_within has found within the limit: only provers that look at ranges need to be told. On Cortex-M4F the
- * longest steps are 60 to 90 instructions shorter than with gw_limited in these places, and the program 1 kB smaller.
- */
+ * longest steps are 23 to 43 instructions shorter than with gw_limited, and the program is 0.6 to 0.8 kB smaller. */
 static inline gw_real_t gw_known_within(gw_real_t x, gw_real_t limit)
 {
 #if defined(__FRAMAC__)
