@@ -240,6 +240,7 @@ def in_world(hit: Collision, row: int, points: NDArray[np.float64]) -> NDArray[n
 
 HERE = "test_figure_units.py"
 HELD = {  # module and function that make a figure: the file that holds its labels against what it draws
+    "crowd/curves/figure.py draw": "test_crowd_curves.py",
     "drivetrain/pictures.py write_picture": "test_drivetrain_margins.py",
     "experiments/clamping.py _figure": "test_experiment_clamping.py",
     "experiments/figures/circle.py alarm": HERE,

@@ -299,3 +299,66 @@ def _one_drive(draw: str, group: str, number: int, controller: Mapping[str, Valu
     record = compute(draw, group, controller, [number], 1, lambda _done: None)[0]
     _report(scenario, f"Free motion of robot {number} ({group}): {record['detections']} false alarms.", record, folder)
     typer.echo(f"Written: {folder / 'report.html'}")
+
+
+@crowd_app.command("curves")
+def curves(
+    draw: DrawOption = "tuning",
+    robots: Annotated[int, typer.Option("--robots", help="Number of robots; each is hit nine times.")] = 80,
+    hours: Annotated[float, typer.Option("--hours", help="Of free motion, for the false alarms.")] = 2.0,
+    group: Annotated[
+        str, typer.Option("--group", help="Only the planar, tipping or single rollers robots.")
+    ] = "planar",
+    assignments: SetOption = None,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for figure, tables and runs.")] = Path(
+        "out/curves"
+    ),
+    threads: ThreadsOption = None,
+) -> None:
+    """Detectors compared: delay of hits against false alarms per hour. Goes on where it stopped."""
+    from giveway.base.checks import finite, whole
+    from giveway.base.errors import UnknownNameError
+    from giveway.crowd.crowd import ROBOTS_MAX
+    from giveway.crowd.population import DRAWS, GROUPS
+
+    controller = _controller(assignments)
+    if draw not in DRAWS:
+        raise UnknownNameError("--draw", draw, DRAWS)
+    if group not in GROUPS:
+        raise UnknownNameError("--group", group, GROUPS)
+    whole("--robots", robots, 1, ROBOTS_MAX)
+    finite("--hours", hours, 1e-3, 1e5, "h")
+    _curves(draw, group, robots, hours, controller, out, _threads(threads))
+
+
+def _curves(
+    draw: str, group: str, robots: int, hours: float, controller: Mapping[str, Value], out: Path, threads: int
+) -> None:
+    from giveway.crowd.curves.result import write
+    from giveway.crowd.curves.work import hits_work, quiet_work
+    from giveway.crowd.parts import go_on
+    from giveway.study.messages import duration, showing
+
+    found = []
+    for work, name in (
+        (quiet_work(draw, group, hours, controller), "free-motion"),
+        (hits_work(draw, group, robots, controller), "hits"),
+    ):
+        with showing(work.name) as progress:
+            done = go_on(work, out / name, threads, progress)
+        if done.ran:
+            typer.echo(f"{work.name}: {done.ran} of {work.count} runs in {duration(done.wall_s)}")
+        for record in [record for record in done.records if record["message"]][:3]:
+            typer.echo(f"{work.name}: run {record['number']}: {record['message']}", err=True)
+        found.append(done)
+        if done.interrupted:
+            break
+    if found[-1].interrupted:
+        typer.echo("Interrupted; all parts but the one under way are kept. The same command goes on.", err=True)
+        raise typer.Exit(INTERRUPTED)
+    quiet, hits = found
+    about = f"{group} robots of draw `{draw}`" + "".join(f", {name} = {value}" for name, value in controller.items())
+    tables, paths = write(out, about, hits.records, quiet.records)
+    for title, header, rows in tables:
+        print_columns(title, header, rows)
+    typer.echo(f"Written: {', '.join(str(path) for path in paths)}")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-__all__ = ["CONFIDENCE", "Estimate", "count_interval", "mean", "percentile", "rate_upper_bound"]
+__all__ = ["CONFIDENCE", "Estimate", "count_interval", "mean", "percentile", "rate_interval", "rate_upper_bound"]
 
 CONFIDENCE = 0.95
 
@@ -30,6 +30,17 @@ def rate_upper_bound(count: int, duration: float) -> float:
     from scipy.special import gammaincinv
 
     return float(gammaincinv(count + 1, CONFIDENCE)) / duration
+
+
+def rate_interval(count: int, duration: float) -> Estimate:
+    """A Poisson rate per unit of ``duration`` with its exact interval (Garwood); of none: 0 and its upper bound."""
+    from scipy.special import gammaincinv
+
+    if not count:
+        return 0.0, 0.0, rate_upper_bound(0, duration)
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low, high = float(gammaincinv(count, tail)), float(gammaincinv(count + 1, 1.0 - tail))
+    return count / duration, low / duration, high / duration
 
 
 def percentile(values: Sequence[float], share: float) -> Estimate | None:
