@@ -40,9 +40,9 @@ SIZE_IN = (11.0, 7.4)
 
 
 def write_figure(path: Path, title: str, curves: Sequence[Curve]) -> None:
-    """Write ``path`` (.png or .svg)."""
+    """Write the PNG ``path``."""
     with context(STYLE):
-        draw(title, curves).savefig(path, dpi=130, metadata={"Date": None} if path.suffix == ".svg" else None)
+        draw(title, curves).savefig(path, dpi=130, metadata={"Software": None})
 
 
 def draw(title: str, curves: Sequence[Curve]) -> Figure:

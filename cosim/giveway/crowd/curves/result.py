@@ -19,16 +19,14 @@ OF_ALL, OF_STATED = "all", "free, 0.5 m/s"
 
 
 def write(folder: Path, about: str, hits: Sequence[Record], quiet: Sequence[Record]) -> tuple[list[Table], list[Path]]:
-    """Write curves.png, curves.svg and curves.csv into ``folder``, all or none; the tables, and the paths."""
+    """Write curves.png and curves.csv into ``folder``, both or none; the tables, and the paths."""
     found: dict[str, Sequence[Curve]] = {
         OF_ALL: list(curves(hits, quiet)),
         OF_STATED: list(curves(hits, quiet, stated=True)),
     }
-    paths = [folder / f"curves.{ending}" for ending in ("png", "svg", "csv")]
-    with replace_files(*paths) as (png, svg, table):
-        title = f"Delay of hits against false alarms: {about}"
-        for picture in (png, svg):
-            write_figure(picture, title, found[OF_ALL])
+    paths = [folder / f"curves.{ending}" for ending in ("png", "csv")]
+    with replace_files(*paths) as (picture, table):
+        write_figure(picture, f"Delay of hits against false alarms: {about}", found[OF_ALL])
         write_csv(table, found)
     return [table for of, mine in found.items() for table in _tables(of, mine)], paths
 
