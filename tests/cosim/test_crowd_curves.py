@@ -231,7 +231,7 @@ def test_points_count_and_the_table_takes_the_smallest_threshold() -> None:
     assert len(stated.points) == len(CANDIDATES[0].thresholds)
     assert stated.points[0].hits == 20
     rows = curve_module.table_rows([ours])
-    assert rows[0][1].endswith("at 0.35")
+    assert rows[0][1].endswith("at 0.6")
     assert rows[0][2:] == ("-", "-", "-", "-")
 
 
@@ -280,7 +280,8 @@ def quiet_scenario() -> Any:
 def test_the_residual_s_average_is_what_the_controller_compares(quiet_scenario: Any) -> None:
     (candidate,) = [one for one in CANDIDATES if one.name == "force average"]
     assert candidate.settings is not None
-    ours = record([quiet_scenario(RESIDUAL)], RESIDUAL_TRACES, "fixed-step", 1, lambda _done: None)
+    speeds = [f"controller.reference.{name}" for name in ("vx", "vy", "omega")]
+    ours = record([quiet_scenario(RESIDUAL)], [*RESIDUAL_TRACES, *speeds], "fixed-step", 1, lambda _done: None)
     name = "controller.detection.statistic"
     theirs = record([quiet_scenario(candidate.settings)], (name,), "fixed-step", 1, lambda _done: None)
     wrench = ours.residual().wrench[0]
@@ -291,6 +292,11 @@ def test_the_residual_s_average_is_what_the_controller_compares(quiet_scenario: 
     # The outputs are floats of 32 bits, in sums of 20.
     assert theirs.traces[name][0][moving] == pytest.approx(np.hypot(*mean)[moving], abs=2e-5)
     assert not ours.failed
+    # What is found in a tick belongs to the reference of the tick before.
+    vx, vy, omega = (ours.traces[one][0] for one in speeds)
+    of_row = situations(np.hypot(vx, vy), start_value("wheel.distance") * omega, STEP_S)
+    assert (ours.situations[0][1:] == of_row[:-1]).all()
+    assert (ours.situations[0] != of_row).any()
 
 
 def test_all_thresholds_of_the_two_channels_are_scaled(quiet_scenario: Any) -> None:

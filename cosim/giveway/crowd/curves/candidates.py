@@ -90,7 +90,7 @@ class Candidate:
 OURS = Candidate(
     "two channels",
     "of the default",
-    (0.35, 0.5, 0.7, 1.0, 1.4),
+    (0.6, 0.8, 1.0, 1.4, 2.0),
     MappingProxyType({**FULL, "detector.kind": 2}),
     (
         *("channels.noise_multiple", "channels.model_multiple"),
@@ -101,7 +101,7 @@ OURS = Candidate(
 IMPULSE = Candidate(
     "leaky impulse, paper's estimator",
     "of the default",
-    (0.5, 1.0, 2.0, 4.0),
+    (1.0, 3.0, 10.0),
     MappingProxyType({**PAPER, "detector.kind": 1}),
     ("detector.impulse_threshold", *(f"detector.leak_{regime}" for regime in ("rest", "creep", "motion"))),
 )

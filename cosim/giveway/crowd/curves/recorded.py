@@ -76,12 +76,16 @@ def record(
     if table.attrs["interrupted"]:
         raise Interrupted
     step_s = scenarios[0].step_s
-    vx, vy, omega = (table[name].values for name in REFERENCE[:3])
+    # What the controller finds in a tick belongs to the reference and the mode of the tick before.
+    vx, vy, omega, mode = (_before(table[name].values) for name in REFERENCE)
     rim = omega * start_value("wheel.distance")
-    # The controller's estimate of a tick goes with the reference of the tick before.
-    before = np.concatenate([table[REFERENCE[3]].values[:, :1], table[REFERENCE[3]].values[:, :-1]], axis=1)
     status, message = table["status"].values, table["message"].values
     failed = {index: str(message[index]) for index in range(len(scenarios)) if str(status[index]) != "ok"}
     rows = tuple(round(float(simulated) / step_s) + 1 for simulated in table["simulated"].values)
     kept = {name: np.asarray(table[name].values) for name in traces}
-    return Recording(kept, situations(np.hypot(vx, vy), rim, step_s), before == TRACKING, step_s, failed, rows)
+    return Recording(kept, situations(np.hypot(vx, vy), rim, step_s), mode == TRACKING, step_s, failed, rows)
+
+
+def _before(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of the row before."""
+    return np.concatenate([values[:, :1], values[:, :-1]], axis=1)
