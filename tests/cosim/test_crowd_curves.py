@@ -253,7 +253,7 @@ def wanted(found: list[curve_module.Curve], situation: str, what: str) -> list[D
         pairs = [(p.per_hour[0], e) for p, e in zip(some, at, strict=True) if e is not None and math.isfinite(e[0])]
         rate = np.array([rate for rate, _ in pairs])
         low, mid, high = (np.array([e[i] for _, e in pairs]) for i in (1, 0, 2))
-        high = np.where(np.isfinite(high), high, figure.LONGEST_MS)
+        high = np.minimum(high, figure.LONGEST_MS[what])
         panel += [curve(rate, "1/h", 1e-3 * mid, "s"), band(rate, "1/h", 1e-3 * low, 1e-3 * high, "s")]
         for point in usable(one):
             if not point.alarms:

@@ -357,7 +357,11 @@ def _curves(
         typer.echo("Interrupted; all parts but the one under way are kept. The same command goes on.", err=True)
         raise typer.Exit(INTERRUPTED)
     quiet, hits = found
-    about = f"{group} robots of draw `{draw}`" + "".join(f", {name} = {value}" for name, value in controller.items())
+    sizes = (
+        f"{len(hits.records)} hits, {sum(one['simulated_s'] for one in quiet.records) / 3600.0:.3g} h without contact"
+    )
+    settings = "".join(f", {name} = {value}" for name, value in controller.items())
+    about = f"{group} robots of draw `{draw}`, {sizes}{settings}"
     tables, paths = write(out, about, hits.records, quiet.records)
     for title, header, rows in tables:
         print_columns(title, header, rows)

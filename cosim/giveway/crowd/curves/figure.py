@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
+from matplotlib.ticker import NullLocator
 
 from giveway.crowd.curves.curve import Curve, Point, usable
 from giveway.crowd.curves.situations import SITUATIONS
@@ -34,7 +35,9 @@ COLOURS = {
 }
 INK = "#555b65"
 ROWS = (("median", "delay, median (ms)"), ("p95", "delay, 95th percentile (ms)"))
-SHORTEST_MS, LONGEST_MS = 5.0, 1000.0
+SHORTEST_MS = 5.0
+LONGEST_MS = {"median": 300.0, "p95": 1000.0}
+TICKS_MS = (5, 10, 20, 50, 100, 200, 500, 1000)
 MOST_PER_HOUR = 3600.0
 SIZE_IN = (11.0, 7.4)
 
@@ -54,7 +57,10 @@ def draw(title: str, curves: Sequence[Curve]) -> Figure:
             for curve in curves:
                 if curve.situation == situation:
                     _curve(axes, curve, what)
-            axes.set(xscale="log", yscale="log", ylim=(SHORTEST_MS, LONGEST_MS))
+            axes.set(xscale="log", yscale="log", ylim=(SHORTEST_MS, LONGEST_MS[what]))
+            axes.set_yticks([at for at in TICKS_MS if at <= LONGEST_MS[what]], minor=False)
+            axes.yaxis.set_major_formatter("{x:g}")
+            axes.yaxis.set_minor_locator(NullLocator())
             axes.set_xlim(right=MOST_PER_HOUR)
         row[0].set_ylabel(label)
     for situation, above, below in zip(SITUATIONS, panels[0], panels[-1], strict=True):
@@ -72,7 +78,7 @@ def draw(title: str, curves: Sequence[Curve]) -> Figure:
 def drawn(curve: Curve, what: str) -> tuple[list[tuple[float, Estimate]], tuple[float, float] | None]:
     """Rate and delay (ms) of the points with alarms, in the order of thresholds; bound and delay without an alarm."""
     points = [(point, estimate) for point in usable(curve) if (estimate := _delay(point, what)) is not None]
-    shown = [(point, estimate) for point, estimate in points if estimate[0] <= LONGEST_MS]
+    shown = [(point, estimate) for point, estimate in points if estimate[0] <= LONGEST_MS[what]]
     some = [(point.per_hour[0], estimate) for point, estimate in shown if 0 < point.per_hour[0] <= MOST_PER_HOUR]
     none = [(point.per_hour[2], estimate[0]) for point, estimate in shown if not point.alarms]
     return some, none[0] if none and none[0][0] <= MOST_PER_HOUR else None
@@ -89,8 +95,8 @@ def _curve(axes: Axes, curve: Curve, what: str) -> None:
     if some:
         rate = np.array([one for one, _ in some])
         at, low, high = (np.array([estimate[index] for _, estimate in some]) for index in range(3))
-        high = np.where(np.isfinite(high), high, LONGEST_MS)
-        axes.fill_between(rate, low, high, color=colour, alpha=0.13, linewidth=0)
+        high = np.minimum(high, LONGEST_MS[what])
+        axes.fill_between(rate, low, high, color=colour, alpha=0.1, linewidth=0)
         axes.plot(rate, at, color=colour, marker="o" if ours else "", markersize=4.0, linewidth=2.2 if ours else 1.5)
         ends = {point.per_hour[0]: point.per_hour for point in curve.points}
         for one, delay in ((rate[-1], at[-1]), (rate[0], at[0])) if len(rate) > 1 else ((rate[-1], at[-1]),):
