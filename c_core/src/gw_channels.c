@@ -153,7 +153,8 @@ static gw_regime_t judged_regime(const gw_channels_t *channels, const gw_channel
  * motion: the thresholds of rest are too small for them. */
 static void take_zero_step(gw_channels_t *channels, const gw_channels_input_t *input)
 {
-    const bool other_sensor = (channels->fast.sensor == GW_BY_IMU) != input->felt;
+    const bool by_imu = (channels->fast.sensor == GW_BY_IMU);
+    const bool other_sensor = (by_imu != input->felt);
     const bool resting = (input->regime == GW_REGIME_REST) && (channels->warm_up_ticks >= WARM_UP_TICKS);
     if (other_sensor && (!channels->active)) {
         /* One tick of the encoders is too noisy to be a step: the baseline needs another mean. */

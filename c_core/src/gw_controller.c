@@ -75,8 +75,8 @@ static bool uses_channels(const gw_controller_t *controller)
 }
 
 /* What the sensors add to the balance of forces. */
-static gw_channels_noise_t noise_of(const gw_controller_config_t *config, const gw_estimator_t *estimator,
-                                    const gw_imu_t *imu)
+static gw_channels_noise_t sensor_noise(const gw_controller_config_t *config, const gw_estimator_t *estimator,
+                                        const gw_imu_t *imu)
 {
     gw_channels_noise_t noise;
     const gw_real_t twist_rad = config->estimator.torque_noise_nm * estimator->rate_constants.compliance_rad_per_nm;
@@ -99,7 +99,7 @@ static void init_channels(gw_controller_t *controller, const gw_controller_confi
     (void)gw_imu_init(&controller->imu, &config->imu, config->period_s);
     gw_estimator_set_imu_cutoff(&controller->estimator, config->imu.cutoff_radps);
     controller->felt = nothing_felt;
-    const gw_channels_noise_t noise = noise_of(config, &controller->estimator, &controller->imu);
+    const gw_channels_noise_t noise = sensor_noise(config, &controller->estimator, &controller->imu);
     gw_channels_init(&controller->channels, &config->channels, &noise);
 }
 
@@ -152,7 +152,7 @@ static bool contact_is_known(const gw_controller_t *controller)
 }
 
 /* The acceleration that the IMU shows; its bias is taken where the robot stands, as the last tick saw it. */
-static void feel(gw_controller_t *controller, const gw_controller_input_t *input)
+static void feel_imu(gw_controller_t *controller, const gw_controller_input_t *input)
 {
     if (controller->estimator.config.acceleration_source == GW_SOURCE_IMU) {
         /* Without it, or with a bad one, the encoders take its place: its status changes nothing else. */
@@ -251,7 +251,7 @@ static bool contact_is_known(const gw_controller_t *controller)
     return false;
 }
 
-static void feel(const gw_controller_t *controller, const gw_controller_input_t *input)
+static void feel_imu(const gw_controller_t *controller, const gw_controller_input_t *input)
 {
     (void)controller;
     (void)input;
@@ -276,7 +276,7 @@ static void detect_by_channels(const gw_controller_t *controller)
 #endif
 
 #if (GW_WITH_ESCAPE == 1)
-static void init_escape(gw_controller_t *controller, const gw_controller_config_t *config)
+static void set_up_escape(gw_controller_t *controller, const gw_controller_config_t *config)
 {
     gw_tip_t tip;
     gw_tip_init(&tip, &config->admittance.tip, &controller->estimator.kinematics);
@@ -317,7 +317,7 @@ static gw_twist_t commanded_twist(const gw_controller_t *controller)
     return twist;
 }
 #else
-static void init_escape(const gw_controller_t *controller, const gw_controller_config_t *config)
+static void set_up_escape(const gw_controller_t *controller, const gw_controller_config_t *config)
 {
     (void)controller;
     (void)config;
@@ -382,7 +382,7 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
             (void)gw_admittance_init(&controller->admittance, &config->admittance, config->period_s);
             (void)gw_reference_init(&controller->reference, &config->reference, config->period_s);
             (void)gw_supervisor_init(&controller->supervisor, &config->supervisor);
-            init_escape(controller, config);
+            set_up_escape(controller, config);
             gw_joint_init(&controller->joint);
             forget_detection(controller);
             blank_tick(controller);
@@ -701,7 +701,7 @@ static bool is_quiet(const gw_controller_t *controller)
 static gw_status_t sense(gw_controller_t *controller, const gw_controller_input_t *input, bool slow)
 {
     gw_status_t status = gw_sensor_check_step(&controller->sensor_check, &input->sensor);
-    feel(controller, input);
+    feel_imu(controller, input);
     if (status == GW_STATUS_OK) {
         status = estimate(controller, input);
     }

@@ -621,6 +621,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_twist_t planned_twist = known_twist(input->planned_twist);
         const gw_acceleration_t planned_acceleration = known_acceleration(input->planned_acceleration);
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct behind a pointer */
         const gw_wheels_t zero_before = *present_zero(estimator);
         output->acceleration_source = source_of(estimator, input);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);

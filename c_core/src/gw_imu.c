@@ -15,8 +15,6 @@
 #define SHAKING_CLIP ((gw_real_t)6.0) /* an outlier counts as this many mean squares */
 #define SHAKING_MAX (GW_IMU_SHOWN_MAX * GW_IMU_SHOWN_MAX)
 
-static const gw_acceleration_t no_acceleration = {GW_ZERO, GW_ZERO, GW_ZERO};
-
 void gw_imu_config_trikey(gw_imu_config_t *config)
 {
     config->use = 0U;
@@ -61,7 +59,7 @@ static void restart_tare(gw_imu_t *imu)
     imu->tare_count = 0U;
 }
 
-static void restart_filters(gw_imu_t *imu)
+static void restart_signals(gw_imu_t *imu)
 {
     for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
         gw_lowpass_restart(&imu->filter[i]);
@@ -110,7 +108,7 @@ gw_status_t gw_imu_init(gw_imu_t *imu, const gw_imu_config_t *config, gw_real_t 
             imu->tared = false;
             imu->zero_known = false;
             restart_tare(imu);
-            restart_filters(imu);
+            restart_signals(imu);
         }
     }
     return status;
@@ -156,7 +154,7 @@ gw_imu_noise_t gw_imu_noise(const gw_imu_t *imu)
 }
 
 /* Notes whether the counter advanced. */
-static bool note_counter(gw_imu_t *imu, uint32_t counter)
+static bool note_imu_counter(gw_imu_t *imu, uint32_t counter)
 {
     const bool is_new = (!imu->counter_known) || (counter != imu->last_counter);
     if (is_new) {
@@ -191,7 +189,7 @@ static gw_status_t judge(gw_imu_t *imu, const gw_imu_sample_t *sample, bool *is_
     gw_status_t status = GW_STATUS_SENSOR_MISSING;
     *is_new = false;
     if ((imu->config.use != 0U) && sample->present) {
-        *is_new = note_counter(imu, sample->counter);
+        *is_new = note_imu_counter(imu, sample->counter);
         status = status_of(sample->yaw_rate_radps, imu->config.yaw_rate_limit_radps);
         for (uint32_t i = 0U; i < GW_IMU_AXES; i++) {
             const gw_status_t found = status_of(sample->specific_force_mps2[i], imu->config.acceleration_limit_mps2);
@@ -313,7 +311,7 @@ gw_status_t gw_imu_step(gw_imu_t *imu, const gw_imu_sample_t *sample, bool at_re
                 status = GW_STATUS_SENSOR_RECOVERING;
             }
         } else {
-            restart_filters(imu);
+            restart_signals(imu);
             restart_tare(imu);
         }
         result.trusted = (status == GW_STATUS_OK);
@@ -322,7 +320,7 @@ gw_status_t gw_imu_step(gw_imu_t *imu, const gw_imu_sample_t *sample, bool at_re
             result.shaking_mps2_2 = imu->shaking_mps2_2;
         }
         if (!(result.trusted && knew)) {
-            result.zero_step = no_acceleration;
+            result.zero_step = nothing.zero_step;
         }
     }
     if (output != NULL) {

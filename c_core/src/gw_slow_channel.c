@@ -72,7 +72,6 @@ void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled)
 void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor)
 {
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     const gw_balance_t change = gw_balance_difference(&channel->mean, &channel->baseline);
     const gw_vector_t correction = gw_follower_correction(follower, kinematics, &change.model);
     const gw_real_t floor_n = gw_force_floor(config->slow, floor);

@@ -21,7 +21,7 @@ CHECK = re.compile(
     r"gw_config_check_(?:real|count|element)\(\s*&?error, (GW_FIELD_\w+),(?: \w+,)?\s*(?:\(gw_real_t\))?config->(\w+)"
 )
 # A comment and the members below it.
-DESCRIBED = re.compile(r"/\*((?:[^*]|\*(?!/))*)\*/\n((?:    (?:gw_real_t|uint32_t) \w+(?:\[\w+\])?;\n)+)")
+DESCRIBED = re.compile(r"/\*((?:[^*]|\*(?!/))*)\*/\n((?:    (?:gw_real_t|uint32_t|gw_force_floors_t) \w+(?:\[\w+\])?;\n)+)")
 RANGE = re.compile(r"\[(-?[\d.]+), (-?[\d.]+)\]")
 CHOICE = re.compile(r"GW_\w+ \((\d)\)")  # a value that has a name
 # Parameters of the FMU that are not numbers of the configuration.
@@ -70,7 +70,8 @@ def described() -> dict[tuple[str, str], tuple[float, float]]:
                 if len(found) == 1:
                     found *= len(names)
                 assert not found or len(found) == len(names), f"{header.name}: {comment}"
-                ranges |= {(header.stem, name): bounds for name, bounds in zip(names, found, strict=False)}
+                module = header.stem.removesuffix("_config")  # whose configuration has a header of its own
+                ranges |= {(module, name): bounds for name, bounds in zip(names, found, strict=False)}
     return ranges
 
 
