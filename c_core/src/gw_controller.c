@@ -1,8 +1,9 @@
 #include "giveway/gw_controller.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 
-void gw_controller_config_trikey(gw_controller_config_t *config)
+void gw_controller_config_paper(gw_controller_config_t *config)
 {
     config->period_s = (gw_real_t)0.001;
     gw_geometry_config_trikey(&config->geometry);
@@ -22,6 +23,46 @@ void gw_controller_config_trikey(gw_controller_config_t *config)
     gw_imu_config_trikey(&config->imu);
 #endif
     config->drives_enabled = true;
+}
+
+#if (GW_WITH_CHANNELS == 1)
+static void choose_channels(gw_controller_config_t *config)
+{
+    config->estimator.velocity_source = GW_SOURCE_MEASURED;
+    config->estimator.acceleration_source = GW_SOURCE_MEASURED;
+    config->estimator.friction_model = GW_FRICTION_BRISTLE;
+    config->estimator.aligned = 1U;
+    config->estimator.creep_speed_mps = (gw_real_t)0.06;
+    config->detector.kind = GW_DETECTOR_CHANNELS;
+}
+#else
+static void choose_channels(const gw_controller_config_t *config)
+{
+    (void)config;
+}
+#endif
+
+#if (GW_WITH_ESCAPE == 1)
+static void choose_escape(gw_controller_config_t *config)
+{
+    config->admittance.kind = GW_ADMITTANCE_ESCAPE;
+    config->admittance.tip.height_m = GW_TRIKEY_BASE_COM_HEIGHT_M;
+    config->admittance.smoothing_s = (gw_real_t)0.035;
+    config->admittance.lead_s = (gw_real_t)0.04;
+    config->admittance.brake_limit_mps2 = (gw_real_t)4.5;
+}
+#else
+static void choose_escape(const gw_controller_config_t *config)
+{
+    (void)config;
+}
+#endif
+
+void gw_controller_config_trikey(gw_controller_config_t *config)
+{
+    gw_controller_config_paper(config);
+    choose_channels(config);
+    choose_escape(config);
 }
 
 gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error)

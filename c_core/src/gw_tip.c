@@ -11,7 +11,7 @@
 void gw_tip_config_trikey(gw_tip_config_t *config)
 {
     config->height_m = GW_ZERO;
-    config->share = GW_HALF;
+    config->share = (gw_real_t)0.45;
     config->offset_m = (gw_real_t)0.03;
     config->slope_rad = (gw_real_t)0.0175;
 }

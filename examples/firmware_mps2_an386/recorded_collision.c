@@ -8,7 +8,7 @@ static const int16_t recorded[RECORDED_TICKS][2U * GW_WHEEL_COUNT] = {
 
 void recorded_collision_config(gw_controller_config_t *config)
 {
-    gw_controller_config_trikey(config);
+    gw_controller_config_paper(config);
     config->supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
 }
 

@@ -116,7 +116,7 @@ private:
 inline gw_controller_config_t trikey_config()
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     return config;
 }
 

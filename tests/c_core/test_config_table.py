@@ -1,15 +1,21 @@
-"""One table of configuration fields: what headers, checks and the controller's FMU say of them is what it says.
+"""One table of configuration fields: what headers, checks and the controller's FMU say of them is what it says; and
+both presets of the library are those of the FMU's table.
 
 That each member is checked as the row's kind and field say, at both ends of the range, unit/config_test.c tests.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from pathlib import Path
 
 import pytest
+from giveway.robot.variables import Variable, table
+
+from verify.context import Context
+from verify.targets import HOST, core_sources
 
 ROOT = Path(__file__).parents[2]
 CORE = ROOT / "c_core"
@@ -112,3 +118,65 @@ def test_parameters_of_the_fmu_are_the_fields() -> None:
     for name in own:
         assert [parameters[name]["minimum"], parameters[name]["maximum"]] == fields[name], name
         assert parameters[name]["c_core"] == members()[name]
+
+
+# What a build without the channels, or without the escape, does not have.
+CHANNELS = ("channels.", "follower.", "imu.")
+ESCAPE = ("admittance.smoothing", "admittance.brake_limit", "admittance.lead", "admittance.tip_")
+
+
+def printed(folder: Path, *flags: str) -> dict[str, dict[str, tuple[float, ...]]]:
+    """Values of every field in both presets, by preset and name, as the library built with ``flags`` sets them."""
+    context = Context(ROOT, folder, os.environ["PATH"])
+    sources = [*core_sources(CORE), Path(__file__).parent / "presets" / "print_presets.c"]
+    program = HOST.build(context, sources, folder / "print_presets", "-O1", *flags)
+    presets: dict[str, dict[str, tuple[float, ...]]] = {"default": {}, "paper": {}}
+    for line in HOST.run(context, program).stdout.splitlines():
+        preset, name, *values = line.split()
+        presets[preset][name] = tuple(map(float.fromhex, values))
+    return presets
+
+
+def stated(preset: str) -> dict[str, tuple[float, ...]]:
+    """The same of the FMU's table."""
+    values: dict[str, tuple[float, ...]] = {}
+    for variable in table("controller").select("parameter"):
+        if variable.name not in OTHER_PARAMETERS:
+            name = variable.name.partition("[")[0]
+            values[name] = (*values.get(name, ()), in_preset(variable, preset))
+    return values
+
+
+def in_preset(variable: Variable, preset: str) -> float:
+    value = variable.start if preset == "default" or variable.paper is None else variable.paper
+    assert value is not None
+    return float(value)
+
+
+@pytest.mark.parametrize(
+    ("flags", "left_out"),
+    [
+        ((), ()),
+        (("-DGW_WITH_CHANNELS=0",), CHANNELS),
+        (("-DGW_WITH_ESCAPE=0",), ESCAPE),
+        (("-DGW_WITH_CHANNELS=0", "-DGW_WITH_ESCAPE=0"), CHANNELS + ESCAPE),
+    ],
+    ids=["everything", "no channels", "no escape", "neither"],
+)
+def test_presets_of_the_library_are_those_of_the_table(
+    tmp_path: Path, flags: tuple[str, ...], left_out: tuple[str, ...]
+) -> None:
+    """What is not linked has the paper's values; the program refuses to print a configuration that is not valid."""
+    presets = printed(tmp_path, "-DGW_REAL_DOUBLE=1", *flags)
+    paper, best = stated("paper"), stated("default")
+    differ = {name for name in best if best[name] != paper[name]}
+    of_escape = {name for name in differ if name.startswith("admittance.")}
+    assert len(of_escape) > 3
+    assert len(differ - of_escape) > 3
+    for name in (of_escape if ESCAPE[0] in left_out else set()) | (
+        differ - of_escape if CHANNELS[0] in left_out else set()
+    ):
+        best[name] = paper[name]
+    for preset, values in (("default", best), ("paper", paper)):
+        linked = {name: value for name, value in values.items() if not name.startswith(left_out or ("no such",))}
+        assert presets[preset] == linked, preset

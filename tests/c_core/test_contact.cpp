@@ -130,7 +130,7 @@ TEST(Contact, UncertaintyOfPhysics5)
 {
     // 0.05 N m of torque noise: 2 cm at 10 N, 26 cm at 0.8 N, for a push through the centre of Trikey.
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     config.contact.minimum_force_n = real(0.1);
     gw_contact_t contact{};
     ASSERT_EQ(gw_contact_init(&contact, &config.contact), GW_STATUS_OK);

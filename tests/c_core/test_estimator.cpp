@@ -33,7 +33,7 @@ struct Estimated {
 gw_controller_config_t trikey()
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     return config;
 }
 

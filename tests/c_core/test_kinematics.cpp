@@ -136,7 +136,7 @@ TEST(Kinematics, ExternalJacobian)
 TEST(Kinematics, SignOfTheTorqueOfAPush)
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     gw_kinematics_t k;
     ASSERT_EQ(gw_kinematics_init(&k, &config.geometry), GW_STATUS_OK);
     const double angle = 4.0 * pi / 3.0;

@@ -109,7 +109,7 @@ TEST(Nominal, NoisePropagation)
 {
     Random random(23);
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     gw_kinematics_t k;
     ASSERT_EQ(gw_kinematics_init(&k, &config.geometry), GW_STATUS_OK);
     const gw_wrench_sigma_t sigma = gw_wrench_noise(&k, real(0.03));
@@ -139,7 +139,7 @@ TEST(Nominal, ValidWrenches)
 TEST(Nominal, RefusesNullAndBadNumbers)
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     gw_kinematics_t k;
     ASSERT_EQ(gw_kinematics_init(&k, &config.geometry), GW_STATUS_OK);
     gw_nominal_t nominal{};

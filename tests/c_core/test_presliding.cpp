@@ -22,7 +22,7 @@ struct Bristles {
     static gw_controller_config_t trikey()
     {
         gw_controller_config_t config;
-        gw_controller_config_trikey(&config);
+        gw_controller_config_paper(&config);
         return config;
     }
     // One tick in which the sensed torques change the drivetrains' twist so that the base moves by `travel` (m, m,

@@ -1,6 +1,6 @@
 /* The whole 1 kHz step: sensors, plan and requests in; wheel references, estimate, detection, mode and status out.
  *
- * Life cycle: fill gw_controller_config_t (gw_controller_config_trikey gives the paper's), gw_controller_init, then
+ * Life cycle: fill gw_controller_config_t (gw_controller_config_trikey: for the paper's robot), gw_controller_init, then
  * gw_controller_step once per period. All members of gw_controller_t are private; a copy of it is a checkpoint.
  *
  * The path clock counts the ticks in which the robot follows its plan. It stands still while the robot tares, reacts,
@@ -120,8 +120,11 @@ typedef struct {
     gw_estimator_t estimator;
 } gw_controller_t;
 
-/* The paper's robot and mode: planned acceleration, impulse detector, frozen impulse. Pointer not NULL. */
+/* The paper's robot with the reflex that is recommended: measured motion and bristles, two channels, escape. What is
+ * not linked (GW_WITH_CHANNELS, GW_WITH_ESCAPE in gw_types.h) is as in the paper. Pointer not NULL. */
 void gw_controller_config_trikey(gw_controller_config_t *config);
+/* The same robot with the paper's reflex: planned motion, impulse detector, frozen impulse. Pointer not NULL. */
+void gw_controller_config_paper(gw_controller_config_t *config);
 /* GW_STATUS_OK if every field is in range; else GW_STATUS_CONFIG_INVALID and the first bad field. Pointers not NULL. */
 gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error);
 /* error may be NULL. After a refusal the controller answers every step with zero motion. */

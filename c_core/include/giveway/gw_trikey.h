@@ -9,6 +9,7 @@
 
 #define GW_TRIKEY_BASE_MASS_KG ((gw_real_t)34.7)              /* (sourced) CAD of the lab, 2015 */
 #define GW_TRIKEY_BASE_YAW_INERTIA_KGM2 ((gw_real_t)1.31)     /* (sourced) CAD of the lab, 2015, plus wheels */
+#define GW_TRIKEY_BASE_COM_HEIGHT_M ((gw_real_t)0.414)        /* (sourced) CAD of the lab, 2015 */
 #define GW_TRIKEY_WHEEL_RADIUS_M ((gw_real_t)0.1016)          /* (sourced) code of the lab, 2011-13: 4 in */
 #define GW_TRIKEY_WHEEL_DISTANCE_M ((gw_real_t)0.24)          /* (sourced) CAD of the lab, 2015 */
 #define GW_TRIKEY_WHEEL_INERTIA_KGM2 ((gw_real_t)0.002798)    /* (sourced) CAD of the lab, 2015 */

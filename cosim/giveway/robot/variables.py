@@ -35,6 +35,7 @@ class Variable:
     robot_path: str | None
     robot_index: int
     description: str
+    paper: Value | None = None  # in the preset "paper", where that differs from the start value
 
     @property
     def allowed(self) -> str:
@@ -214,4 +215,5 @@ def _expand(entry: Mapping[str, Any], robot: Robot) -> Iterator[Variable]:
             robot_path=robot_path,
             robot_index=index,
             description=entry.get("description", ""),
+            paper=entry.get("paper"),
         )

@@ -43,7 +43,7 @@ _DISCONTINUITIES = {
 _VARIABLE_KEYS = {
     "reference", "name", "count", "causality", "type", "unit", "start", "minimum", "maximum", "nominal",
     "allow_nonfinite", "dependencies", "description", "display_unit", "plant",
-    "choices", "c_core",
+    "choices", "c_core", "paper",
 }  # fmt: skip
 # Types of plant parameters by the types of their variables; an integer may also be an enumeration.
 _PLANT_TYPES = {"real": ("number", "divisor", "wheels"), "integer": ("whole", "number"), "boolean": ("whole",)}
@@ -276,6 +276,7 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
             continue
         if (minimum is not None and start < minimum) or (maximum is not None and start > maximum):
             raise entry.fail("start", f"{start} is outside {minimum} to {maximum}")
+    _check_paper(entry, kind, causality, (minimum, maximum), [start for start, _ in starts])
     variables = tuple(
         Variable(reference + i, name if count is None else f"{name}[{i}]", start, path)
         for i, (start, path) in enumerate(starts)
@@ -285,6 +286,21 @@ def _parse_entry(entry: _Entry, robot: dict[str, Any], robot_file: Path) -> Grou
         dependencies, " ".join(description.split()), variables, display_unit=_display_unit(entry, unit),
         plant=plant, choices=choices, c_core=_c_core(entry, causality, count),
     )  # fmt: skip
+
+
+def _check_paper(
+    entry: _Entry, kind: str, causality: str, bounds: tuple[Value | None, Value | None], starts: list[Value | None]
+) -> None:
+    """The value that the preset of the paper has instead of the start value. Importers do not see it."""
+    if "paper" not in entry.raw:
+        return
+    if causality != "parameter":
+        raise entry.fail("paper", "only a parameter has another value in a preset")
+    value, (minimum, maximum) = entry.value("paper", kind, entry.raw["paper"]), bounds
+    if (minimum is not None and value < minimum) or (maximum is not None and value > maximum):
+        raise entry.fail("paper", f"{value} is outside {minimum} to {maximum}")
+    if all(start == value for start in starts):
+        raise entry.fail("paper", f"{value} is the start value; leave it out")
 
 
 def _c_core(entry: _Entry, causality: str, count: int | None) -> str | None:

@@ -40,7 +40,7 @@ int main(void)
     static script_t script;
     gw_controller_config_t config;
     gw_controller_output_t output;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     (void)gw_controller_init(&controller, &config, NULL);
     gw_controller_safe_output(&output);
     script_begin(&script, &config, SCRIPT_TRIKEY_SEED, true);

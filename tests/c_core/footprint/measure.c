@@ -84,7 +84,7 @@ static uint32_t worst_over_recorded_collision(void)
 /* Configurations that make the step long, by the bits of `variant`; all have the longest outline. */
 static void demanding_config(gw_controller_config_t *config, uint32_t variant, uint32_t friction_model)
 {
-    gw_controller_config_trikey(config);
+    gw_controller_config_paper(config);
     config->geometry.azimuth_rad = (gw_real_t)0.7;
     config->estimator.velocity_source = ((variant & 1U) != 0U) ? GW_SOURCE_MEASURED : GW_SOURCE_PLANNED;
     config->estimator.acceleration_source = ((variant & 1U) != 0U) ? GW_SOURCE_MEASURED : GW_SOURCE_PLANNED;

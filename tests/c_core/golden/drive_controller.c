@@ -38,7 +38,7 @@ static digest_t play(const gw_controller_config_t *config, uint32_t seed, bool v
 digest_t drive_controller_trikey(void)
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     return play(&config, SCRIPT_TRIKEY_SEED, true);
 }
 
@@ -48,7 +48,7 @@ digest_t drive_controller_trikey(void)
 digest_t drive_controller_measuring(void)
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     config.period_s = (gw_real_t)0.002;
     config.geometry.azimuth_rad = (gw_real_t)0.7;
     config.geometry.wheel_slot[0] = 2U;
@@ -75,7 +75,7 @@ digest_t drive_controller_measuring(void)
 digest_t drive_controller_watching(void)
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     config.drives_enabled = false;
     config.estimator.tare_ticks = 0U;
     config.estimator.acceleration_source = GW_SOURCE_ZERO;
@@ -88,7 +88,7 @@ digest_t drive_controller_watching(void)
 digest_t drive_controller_bristles(void)
 {
     gw_controller_config_t config;
-    gw_controller_config_trikey(&config);
+    gw_controller_config_paper(&config);
     config.estimator.friction_model = GW_FRICTION_BRISTLE;
     config.estimator.velocity_source = GW_SOURCE_MEASURED;
     config.estimator.acceleration_source = GW_SOURCE_MEASURED;

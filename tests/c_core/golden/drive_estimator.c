@@ -70,7 +70,7 @@ digest_t drive_estimator(void)
     for (uint32_t velocity = 0U; velocity <= 1U; velocity++) {
         for (uint32_t acceleration = 0U; acceleration <= 3U; acceleration++) {
             gw_controller_config_t config;
-            gw_controller_config_trikey(&config);
+            gw_controller_config_paper(&config);
             config.estimator.velocity_source = velocity;
             config.estimator.acceleration_source = (acceleration <= GW_SOURCE_ZERO) ? acceleration : 4U; /* refused */
             config.estimator.rest_ticks = 60U;

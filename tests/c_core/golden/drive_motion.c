@@ -16,7 +16,7 @@ digest_t drive_admittance(void)
     for (uint32_t k = 0U; k < 3U; k++) {
         gw_controller_config_t trikey;
         gw_admittance_t admittance;
-        gw_controller_config_trikey(&trikey);
+        gw_controller_config_paper(&trikey);
         trikey.admittance.kind = kinds[k];
         digest_u32(&digest, (uint32_t)gw_admittance_init(&admittance, &trikey.admittance, period_s));
         for (uint32_t hit = 0U; hit < 5U; hit++) {
@@ -47,7 +47,7 @@ digest_t drive_escape(void)
     gw_kinematics_t kinematics;
     gw_admittance_t admittance;
     gw_tip_t tip;
-    gw_controller_config_trikey(&trikey);
+    gw_controller_config_paper(&trikey);
     trikey.admittance.kind = GW_ADMITTANCE_ESCAPE;
     trikey.admittance.smoothing_s = (gw_real_t)0.03;
     trikey.admittance.brake_limit_mps2 = (gw_real_t)4.0;
@@ -109,7 +109,7 @@ digest_t drive_reference(void)
     generator_t generator = generator_begin(17U);
     gw_controller_config_t trikey;
     gw_reference_t reference;
-    gw_controller_config_trikey(&trikey);
+    gw_controller_config_paper(&trikey);
     digest_u32(&digest, (uint32_t)gw_reference_init(&reference, &trikey.reference, period_s));
     for (uint32_t phase = 0U; phase < 40U; phase++) {
         gw_plan_t plan = random_plan(&generator);

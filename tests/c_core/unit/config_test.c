@@ -29,7 +29,7 @@ static const gw_servo_config_t servo = {R(0.0005), R(100.0), R(2.0), R(10.0), R(
 static robot_t robot(void)
 {
     robot_t made;
-    gw_controller_config_trikey(&made.controller);
+    gw_controller_config_paper(&made.controller);
     /* The channels need an aligned balance, and that a measured acceleration. */
     made.controller.estimator.acceleration_source = GW_SOURCE_MEASURED;
     made.controller.estimator.aligned = 1U;
@@ -241,7 +241,7 @@ static void the_paper_s_settings_are_these(void)
         {GW_FIELD_SUPERVISOR_REJOIN_ANGLE, R(0.0005)},
     };
     robot_t made = robot();
-    gw_controller_config_trikey(&made.controller);
+    gw_controller_config_paper(&made.controller);
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         for (uint32_t k = 0U; k < UNIT_COUNT_OF(places); k++) {
             const void *const found = (const uint8_t *)&made + places[k].offset;

@@ -12,7 +12,7 @@ static gw_estimator_t estimator;
 
 static void set_robot(void)
 {
-    gw_controller_config_trikey(&robot);
+    gw_controller_config_paper(&robot);
     robot.geometry.wheel_radius_m = R(0.1);
     robot.geometry.wheel_distance_m = R(0.25);
     robot.friction.coulomb_torque_nm = R(0.2);

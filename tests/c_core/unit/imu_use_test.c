@@ -12,7 +12,7 @@ static gw_estimator_output_t output;
 static void start(uint32_t aligned)
 {
     static const gw_estimator_input_t nothing = {.imu = {.trusted = true}};
-    gw_controller_config_trikey(&robot);
+    gw_controller_config_paper(&robot);
     robot.estimator.acceleration_source = GW_SOURCE_IMU;
     robot.estimator.drivetrain_stiffness_nm_per_rad = GW_ZERO;
     robot.estimator.aligned = aligned;
@@ -160,7 +160,7 @@ static void only_a_measured_balance_can_be_aligned(void)
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_config_error_t error;
-        gw_controller_config_trikey(&robot);
+        gw_controller_config_paper(&robot);
         robot.estimator.aligned = 1U;
         robot.estimator.acceleration_source = rows[i].source;
         gw_config_check_begin(&error);

@@ -8,7 +8,7 @@ gw_controller_output_t rig_output;
 void rig_set_up(void)
 {
     static const gw_controller_input_t nothing;
-    gw_controller_config_trikey(&rig_config);
+    gw_controller_config_paper(&rig_config);
     /* So light and smooth that moving it needs no torque: the sensors show only a push. */
     rig_config.base.mass_kg = R(0.1);
     rig_config.base.yaw_inertia_kgm2 = R(0.0001);

@@ -102,6 +102,13 @@ WRONG = {
         "has 2 values for 1 variables",
     ),
     "robot reference malformed": (variable(start='{ file = "x" }'), "start: {'file': 'x'}, but must be a value or"),
+    "preset outside": (variable(paper="3.0"), "paper: 3.0 is outside 0.0 to 2.0"),
+    "preset of the wrong type": (variable(paper="true"), "paper: True, but must be a finite number"),
+    "preset that is the start": (variable(paper="1.0"), "paper: 1.0 is the start value; leave it out"),
+    "preset of an input": (
+        variable(paper="2.0", causality='"input"'),
+        "paper: only a parameter has another value in a preset",
+    ),
     "range upside down": (variable(minimum="3.0"), "minimum: 3.0 is above the maximum 2.0"),
     "fraction as integer": (
         variable(type='"integer"', unit=None, start="1.5"),
@@ -218,6 +225,14 @@ def test_a_plant_parameters_type_has_to_fit_the_variables(tmp_path: Path, plant:
     result = generate(tmp_path, table(variable(plant=plant)))
     assert "variable group.second: plant: " in result.stderr
     assert "must be number or divisor or wheels, and of a parameter" in result.stderr
+
+
+def test_another_value_in_a_preset_changes_nothing_for_importers(tmp_path: Path) -> None:
+    descriptions = []
+    for changes in ({}, {"paper": "0.5"}):
+        assert generate(tmp_path, table(variable(**changes))).returncode == 0
+        descriptions.append((tmp_path / "out" / "fmi3" / "modelDescription.xml").read_text())
+    assert descriptions[0] == descriptions[1]
 
 
 def test_choices_are_a_word_for_each_value(tmp_path: Path) -> None:
