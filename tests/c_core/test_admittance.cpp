@@ -16,6 +16,7 @@ gw_admittance_config_t free_config(std::uint32_t kind)
     c.speed_limit_mps = real(10);
     c.acceleration_limit_mps2 = real(1000);
     c.finish_speed_mps = real(0);
+    c.tip.share = real(0.5); // of no limit
     return c;
 }
 

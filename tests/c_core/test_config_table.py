@@ -27,7 +27,9 @@ CHECK = re.compile(
     r"gw_config_check_(?:real|count|element)\(\s*&?error, (GW_FIELD_\w+),(?: \w+,)?\s*(?:\(gw_real_t\))?config->(\w+)"
 )
 # A comment and the members below it.
-DESCRIBED = re.compile(r"/\*((?:[^*]|\*(?!/))*)\*/\n((?:    (?:gw_real_t|uint32_t|gw_force_floors_t) \w+(?:\[\w+\])?;\n)+)")
+DESCRIBED = re.compile(
+    r"/\*((?:[^*]|\*(?!/))*)\*/\n((?:    (?:gw_real_t|uint32_t|gw_force_floors_t) \w+(?:\[\w+\])?;\n)+)"
+)
 RANGE = re.compile(r"\[(-?[\d.]+), (-?[\d.]+)\]")
 CHOICE = re.compile(r"GW_\w+ \((\d)\)")  # a value that has a name
 # Parameters of the FMU that are not numbers of the configuration.

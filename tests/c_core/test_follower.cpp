@@ -39,8 +39,8 @@ public:
         const double offset = config.offset_n / offset_n;
         covariance.setZero();
         covariance.topLeftCorner<3, 3>().setConstant(common * common);
-        covariance.diagonal() += State(wheel * wheel, wheel * wheel, wheel * wheel, mass * mass, offset * offset,
-                                       offset * offset);
+        covariance.diagonal() +=
+            State(wheel * wheel, wheel * wheel, wheel * wheel, mass * mass, offset * offset, offset * offset);
         first_ = covariance.diagonal();
     }
 
@@ -176,10 +176,11 @@ TEST(Follower, LearnsAsATextbooksFilterInJosephsForm)
         const Regressor columns = columns_of(kinematics, moment.forces);
         const gw_regressors_t regressors = gw_follower_regressors(&kinematics, &moment.forces);
         const gw_vector_t correction = gw_follower_correction(&follower, &kinematics, &moment.forces);
-        EXPECT_LE((planar(correction) - columns.leftCols<4>() * textbook.state.head<4>()).norm(), is_double ? 1e-10 : 1e-3);
+        EXPECT_LE((planar(correction) - columns.leftCols<4>() * textbook.state.head<4>()).norm(),
+                  is_double ? 1e-10 : 1e-3);
         const gw_planar_covariance_t s = gw_follower_uncertainty(&follower, &regressors);
-        const Eigen::Matrix2d expected = columns.leftCols<4>() * textbook.covariance.topLeftCorner<4, 4>() *
-                                         columns.leftCols<4>().transpose();
+        const Eigen::Matrix2d expected =
+            columns.leftCols<4>() * textbook.covariance.topLeftCorner<4, 4>() * columns.leftCols<4>().transpose();
         EXPECT_NEAR(s.xx, expected(0, 0), (is_double ? 1e-12 : 1e-5) * expected.trace());
         EXPECT_NEAR(s.xy, expected(0, 1), (is_double ? 1e-12 : 1e-5) * expected.trace());
         EXPECT_NEAR(s.yy, expected(1, 1), (is_double ? 1e-12 : 1e-5) * expected.trace());

@@ -77,9 +77,7 @@ DRIVERS = {
     "filters": Driver(
         Mutant("../include/giveway/gw_rate_filter.h", "gw_limited(derivative, GW_RATE_DERIVATIVE_MAX)", "derivative")
     ),
-    "follower": Driver(
-        Mutant("gw_follower.c", "variance_n2 = gw_max(variance_n2, least_n2);", "")
-    ),
+    "follower": Driver(Mutant("gw_follower.c", "variance_n2 = gw_max(variance_n2, least_n2);", "")),
     "kinematics": Driver(
         Mutant("gw_kinematics.c", "GW_ONE / config->wheel_radius_m", "GW_ONE / (config->wheel_radius_m - GW_HALF)")
     ),

@@ -1,7 +1,7 @@
 /* The whole 1 kHz step: sensors, plan and requests in; wheel references, estimate, detection, mode and status out.
  *
- * Life cycle: fill gw_controller_config_t (gw_controller_config_trikey: for the paper's robot), gw_controller_init, then
- * gw_controller_step once per period. All members of gw_controller_t are private; a copy of it is a checkpoint.
+ * Life cycle: fill gw_controller_config_t (gw_controller_config_trikey: for the paper's robot), gw_controller_init,
+ * then gw_controller_step once per period. All members of gw_controller_t are private; a copy of it is a checkpoint.
  *
  * The path clock counts the ticks in which the robot follows its plan. It stands still while the robot tares, reacts,
  * rejoins its path or is stopped, so the plan waits for the robot. A plan is a function of this clock, not of time.

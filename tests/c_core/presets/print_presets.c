@@ -1,5 +1,5 @@
-/* Prints both presets, one line per field of the controller: preset, name, values as C99 hexadecimal floats. Ends with 1
- * if the check refuses one of them. */
+/* Prints both presets, one line per field of the controller: preset, name, values as C99 hexadecimal floats. Ends with
+ * 1 if the check refuses one of them. */
 #include <stdio.h>
 
 #include "giveway/giveway.h"
