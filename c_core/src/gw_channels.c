@@ -14,7 +14,7 @@
 #define TURN_TICKS 60U    /* after the last count, wheels count as standing */
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
-#define LEVER_MAX_NM2 ((gw_real_t)1.0e10)
+#define FORCES_MAX_N2 ((gw_real_t)6.0e10) /* five of GW_BALANCE_MAX, and rounding */
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
 #define SLIDING_SHARE ((gw_real_t)0.9) /* of the friction of sliding rollers */
@@ -90,7 +90,7 @@ void gw_channels_restart(gw_channels_t *channels)
     static const gw_wrench_t no_impulse = {0};
     gw_fast_channel_restart(&channels->fast);
     gw_slow_channel_restart(&channels->slow);
-    channels->lever_nm2 = GW_ZERO;
+    channels->forces_n2 = GW_ZERO;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->tick = 0U;
@@ -113,7 +113,7 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
         gw_channels_config_check(&channels->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_follower_invariant_holds(&channels->follower) &&
                 gw_fast_channel_invariant_holds(&channels->fast) && gw_slow_channel_invariant_holds(&channels->slow) &&
-                gw_within(channels->lever_nm2, LEVER_MAX_NM2) && gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
+                gw_within(channels->forces_n2, FORCES_MAX_N2) && gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
                 gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
     }
@@ -168,16 +168,16 @@ static void take_zero_step(gw_channels_t *channels, const gw_channels_input_t *i
     }
 }
 
-/* Wheels touch the floor with one row of rollers or the other: the moment that all forces make about the centre is
- * uncertain by this, N^2 m^2. */
-static gw_real_t moment_of_levers(const gw_channels_t *channels)
+/* Sum of the squares of the model's forces, N^2. The moment that they make about the centre is uncertain by their
+ * levers, as wheels touch the floor with one row of rollers or the other. */
+static gw_real_t squares_of_forces(const gw_channels_t *channels)
 {
     const gw_model_forces_t *const model = &channels->slow.mean.model;
     gw_real_t sum_n2 = (model->inertia_n.x * model->inertia_n.x) + (model->inertia_n.y * model->inertia_n.y);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         sum_n2 += model->friction_n.wheel[i] * model->friction_n.wheel[i];
     }
-    return (channels->config.lever_m * channels->config.lever_m) * sum_n2;
+    return sum_n2;
 }
 
 /* A roller that hardly turns has a friction of its own history: nothing is learned from it. */
@@ -197,12 +197,12 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
 {
     if ((channels->tick % DOUBT_TICKS) != 0U) {
         gw_fast_channel_doubt(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
-                              channels->lever_nm2);
+                              channels->forces_n2);
     } else if ((channels->tick % GW_SLOW_TICKS) == 0U) {
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
                               (input->regime == GW_REGIME_REST) ? GW_REGIME_REST : regime);
     } else {
-        channels->lever_nm2 = moment_of_levers(channels);
+        channels->forces_n2 = squares_of_forces(channels);
         if ((!channels->active) && (input->regime != GW_REGIME_REST)) {
             gw_slow_channel_follow(&channels->slow, regime == GW_REGIME_MOTION);
         }

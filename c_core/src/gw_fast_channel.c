@@ -12,6 +12,8 @@
     ((gw_real_t)0.012)               /* the measured acceleration alone is too noisy to say how wrong the model is \
                                       */
 #define HELD_TIME_S ((gw_real_t)1.0) /* for which the end of an old contact is forgiven */
+/* Variance of a sum of equal errors over that of independent ones. */
+#define COUNTING_ALIKE ((gw_real_t)GW_WHEEL_COUNT)
 #define NOISE_TIME_S ((gw_real_t)3.0)
 #define NOISE_MIN_N2 ((gw_real_t)1.0e-9)
 #define NOISE_MAX_N2 ((gw_real_t)1.0e10)
@@ -150,6 +152,7 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel)
     channel->baseline = no_balance;
     channel->model_n2 = no_doubt;
     channel->moment_nm2 = GW_ZERO;
+    channel->moment_noise_m2 = channel->moment_per_force_m2;
     channel->held_n = no_force;
     channel->sensor = GW_BY_ENCODERS;
     channel->shaking_n2 = GW_ZERO;
@@ -164,7 +167,8 @@ static bool shares_and_noise_hold(const gw_fast_channel_t *channel)
         gw_in_range(channel->baseline_share, GW_ZERO, GW_HALF) && gw_in_range(channel->model_share, GW_ZERO, GW_HALF) &&
         gw_in_range(channel->noise_share, GW_ZERO, GW_HALF) && gw_in_range(channel->held_keep, GW_ZERO, GW_ONE) &&
         gw_in_range(channel->sliding_n, GW_ZERO, GW_CHANGE_MAX) &&
-        gw_in_range(channel->moment_per_force_m2, GW_ZERO, MOMENT_PER_FORCE_MAX);
+        gw_in_range(channel->moment_per_force_m2, GW_ZERO, MOMENT_PER_FORCE_MAX) &&
+        gw_in_range(channel->moment_noise_m2, GW_ZERO, COUNTING_ALIKE * MOMENT_PER_FORCE_MAX);
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
             holds = holds && gw_in_range(channel->bank_share[sensor][j], GW_ZERO, GW_HALF) &&
@@ -207,13 +211,22 @@ void gw_fast_channel_follow(gw_fast_channel_t *channel, const gw_balance_t *bala
 
 /* What yaw inertia and centre of mass may be wrong by, and the rows of rollers: variance of the moment. */
 static gw_real_t moment_of_model(const gw_channels_config_t *config, const gw_model_forces_t *change,
-                                 gw_real_t lever_nm2)
+                                 gw_real_t forces_n2)
 {
+    const gw_real_t lever_nm2 = (config->lever_m * config->lever_m) * forces_n2;
     const gw_real_t turning_nm = config->yaw_inertia * change->inertia_moment_nm;
     const gw_real_t offset_nm2 =
         (config->centre_of_mass_m * config->centre_of_mass_m) *
         ((change->inertia_n.x * change->inertia_n.x) + (change->inertia_n.y * change->inertia_n.y));
     return (config->model_multiple * config->model_multiple) * (((turning_nm * turning_nm) + offset_nm2) + lever_nm2);
+}
+
+/* A robot that turns on the spot turns all its wheels alike and its rollers not at all: near a whole number of counts
+ * per tick the encoders' errors are no noise, they jump together. */
+static bool counts_alike(const gw_fast_channel_t *channel, gw_regime_t regime, gw_real_t forces_n2)
+{
+    return (regime != GW_REGIME_REST) && (channel->sensor == GW_BY_ENCODERS) &&
+           (forces_n2 < (channel->sliding_n * channel->sliding_n));
 }
 
 static void move_bank(gw_fast_channel_t *channel, const gw_wrench_t *change)
@@ -253,11 +266,14 @@ static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
 
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t lever_nm2)
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2)
 {
     channel->model_n2 = gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
                                             (regime == GW_REGIME_REST) ? GW_ZERO : channel->sliding_n);
-    channel->moment_nm2 = moment_of_model(config, &channel->model, lever_nm2);
+    channel->moment_nm2 = moment_of_model(config, &channel->model, forces_n2);
+    channel->moment_noise_m2 = counts_alike(channel, regime, forces_n2)
+                                   ? (COUNTING_ALIKE * channel->moment_per_force_m2)
+                                   : channel->moment_per_force_m2;
 }
 
 void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
@@ -288,7 +304,7 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
         const gw_planar_spread_t *const spread = ends ? &against : &along;
         const gw_real_t statistic = gw_planar_distance(spread, n2, force_n) +
                                     gw_planar_ratio(x->torque_nm * x->torque_nm,
-                                                    ((n2 * channel->moment_per_force_m2) + channel->moment_nm2) +
+                                                    ((n2 * channel->moment_noise_m2) + channel->moment_nm2) +
                                                         (noise_square * channel->gyro_noise_nm2[channel->sensor][j]));
         if (statistic > found->statistic) {
             found->statistic = statistic;

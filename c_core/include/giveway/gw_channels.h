@@ -70,7 +70,7 @@ typedef struct {
     gw_follower_t follower;
     gw_fast_channel_t fast;
     gw_slow_channel_t slow;
-    gw_real_t lever_nm2; /* variance of the moment by the rows of rollers */
+    gw_real_t forces_n2; /* sum of the squares of the model's forces */
     gw_wrench_t impulse; /* N s, N m s */
     gw_real_t impulse_s;
     uint32_t tick; /* counts the ticks of the tasks that not every tick has */

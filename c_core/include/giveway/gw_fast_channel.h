@@ -44,7 +44,8 @@ typedef struct {
     gw_real_t noise_share;
     gw_real_t held_keep;
     gw_real_t sliding_n;           /* friction of a wheel whose rollers slide */
-    gw_real_t moment_per_force_m2; /* variance of the moment's noise over that of the force's */
+    gw_real_t moment_per_force_m2; /* variance of the moment's noise over that of the force's, of wheels that turn
+                                      independently */
     gw_real_t gyro_noise_nm2[GW_SENSOR_COUNT][GW_BANK_COUNT]; /* what a gyro adds to that of the moment */
     gw_real_t least_noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
     gw_real_t noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
@@ -56,6 +57,7 @@ typedef struct {
     gw_wrench_t bank[GW_BANK_COUNT];
     gw_planar_covariance_t model_n2; /* k_m^2 M */
     gw_real_t moment_nm2;            /* likewise of the moment */
+    gw_real_t moment_noise_m2; /* variance of the moment's noise over that of the force's, as the wheels turn now */
     gw_vector_t held_n;
     uint32_t followed; /* the low-pass whose noise is followed in this tick */
 } gw_fast_channel_t;
@@ -81,11 +83,11 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel);
 void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
 /* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
-/* What the model may be wrong by from now on; every second tick is enough. lever_nm2: variance of the moment by the
- * rows of rollers. */
+/* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
+ * model's forces, not of their change. */
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t lever_nm2);
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2);
 /* One tick, in a regime. quiet: nothing touches, the noise may be followed. */
 void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, const gw_balance_t *balance,

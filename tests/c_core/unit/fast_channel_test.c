@@ -490,7 +490,7 @@ static void known_friction_is_no_force(void)
 }
 
 /* k_m^2 M of the smoothed change; at rest no roller is between its limits. The moment: 2.5^2 (0.2^2 10^2 +
- * 0.03^2 (30^2 + 40^2) + 3). */
+ * 0.03^2 (30^2 + 40^2) + 0.01^2 30000). */
 static void a_model_that_is_doubted_widens_the_threshold(void)
 {
     const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
@@ -500,7 +500,7 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.model.inertia_n.x = R(30.0);
         channel.model.inertia_n.y = R(40.0);
         channel.model.inertia_moment_nm = R(10.0);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(3.0));
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(30000.0));
         const gw_planar_covariance_t m = gw_model_covariance(&config, &kinematics, &follower, &channel.model,
                                                              &balance.model, (i == 0U) ? GW_ZERO : R(20.0));
         unit_row(i);
@@ -516,6 +516,39 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.bank[0].force_x_n = GW_ZERO;
         steps(1U);
         CHECK(doubted < found.statistic);
+    }
+}
+
+/* Rollers that carry less than one that slides: the robot turns on the spot, the encoders' errors are the same. */
+static void wheels_that_turn_alike_count_alike(void)
+{
+    const struct {
+        gw_regime_t regime;
+        bool felt;
+        gw_real_t forces_n2; /* one that slides: 20^2 */
+        bool alike;
+    } rows[] = {
+        {GW_REGIME_MOTION, false, R(399.0), true},  {GW_REGIME_CREEPING, false, R(0.0), true},
+        {GW_REGIME_MOTION, false, R(400.0), false}, {GW_REGIME_REST, false, R(399.0), false},
+        {GW_REGIME_MOTION, true, R(399.0), false},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        CHECK(channel.moment_noise_m2 == channel.moment_per_force_m2);
+        gw_fast_channel_feel(&channel, rows[i].felt, GW_ZERO);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, rows[i].forces_n2);
+        unit_row(i);
+        CHECK(channel.moment_noise_m2 == ((rows[i].alike ? R(3.0) : GW_ONE) * channel.moment_per_force_m2));
+        /* What the levers add does not count here. */
+        channel.moment_nm2 = GW_ZERO;
+        channel.bank[3].torque_nm = R(1.0);
+        balance.residual.torque_nm = R(1.0);
+        step(rows[i].regime, false);
+        const gw_real_t before = found.statistic;
+        channel.moment_noise_m2 = GW_TWO * channel.moment_noise_m2;
+        channel.bank[3].torque_nm = R(1.0);
+        step(rows[i].regime, false);
+        CHECK(found.statistic < before);
     }
 }
 
@@ -569,7 +602,7 @@ static void any_robot_keeps_the_invariant(void)
             balance.model.friction_n.wheel[k % 3U] = sizes[(k / 2U) % 5U];
             balance.model.inertia_n.x = sizes[(k / 3U) % 5U];
             gw_fast_channel_feel(&channel, (k % 2U) == 0U, sizes[k % 5U]);
-            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(1.0e10));
+            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(5.0e10));
             step((gw_regime_t)(k % 3U), true);
             if ((k % 11U) == 0U) {
                 gw_fast_channel_release(&channel, &balance, &found, direction);
@@ -600,6 +633,7 @@ static void the_invariant_sees_every_member(void)
                                   &channel.model_n2.xy,
                                   &channel.model_n2.yy,
                                   &channel.moment_nm2,
+                                  &channel.moment_noise_m2,
                                   &channel.held_n.x,
                                   &channel.held_n.y};
     CHECK(!gw_fast_channel_invariant_holds(NULL));
@@ -661,6 +695,7 @@ void suite_fast_channel(void)
     unit_run("the_baseline_follows", the_baseline_follows);
     unit_run("known_friction_is_no_force", known_friction_is_no_force);
     unit_run("a_model_that_is_doubted_widens_the_threshold", a_model_that_is_doubted_widens_the_threshold);
+    unit_run("wheels_that_turn_alike_count_alike", wheels_that_turn_alike_count_alike);
     unit_run("a_restart_keeps_what_was_learned_of_the_noise", a_restart_keeps_what_was_learned_of_the_noise);
     unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);

@@ -74,7 +74,31 @@ static void a_roller_that_hardly_turns_may_be_anywhere(void)
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         unit_row(i);
-        check(of(&config, &rows[i].model, &rows[i].model, rows[i].sliding_n), rows[i].s.xx, rows[i].s.xy, rows[i].s.yy);
+        check(of(&config, &no_forces, &rows[i].model, rows[i].sliding_n), rows[i].s.xx, rows[i].s.xy, rows[i].s.yy);
+    }
+}
+
+/* 4 * 0.5^2 (10^2 - f f'), f' before the change, at least 0 and at most twice 10^2: friction that has just turned round
+ * may lag behind, that which begins may have held anything before. */
+static void a_roller_that_has_just_turned_round_may_lag_behind(void)
+{
+    const gw_channels_config_t config = config_of(R(0.0), R(0.5), R(0.0), R(0.0));
+    const struct {
+        gw_real_t friction_n;
+        gw_real_t before_n;
+        gw_real_t missing_n2;
+    } rows[] = {{R(10.0), R(-10.0), R(200.0)}, {R(10.0), R(-2.0), R(120.0)}, {R(-10.0), R(-5.0), R(50.0)},
+                {R(0.0), R(10.0), R(100.0)},   {R(11.0), R(10.0), R(0.0)},   {R(12.0), R(-12.0), R(200.0)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_model_forces_t model = no_forces;
+        gw_model_forces_t change = no_forces;
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            model.friction_n.wheel[k] = rows[i].friction_n;
+            change.friction_n.wheel[k] = rows[i].friction_n - rows[i].before_n;
+        }
+        unit_row(i);
+        check(of(&config, &change, &model, R(10.0)), R(1.5) * rows[i].missing_n2, R(0.0), R(1.5) * rows[i].missing_n2);
+        check(of(&config, &change, &model, R(0.0)), R(0.0), R(0.0), R(0.0));
     }
 }
 
@@ -82,4 +106,5 @@ void suite_model_covariance(void)
 {
     unit_run("followed_and_shape_add_up", followed_and_shape_add_up);
     unit_run("a_roller_that_hardly_turns_may_be_anywhere", a_roller_that_hardly_turns_may_be_anywhere);
+    unit_run("a_roller_that_has_just_turned_round_may_lag_behind", a_roller_that_has_just_turned_round_may_lag_behind);
 }
