@@ -23,8 +23,8 @@ SOURCES = "tests/c_core/golden"
 EXAMPLE = "examples/firmware_mps2_an386"  # its recorded collision is replayed, and its digest function is used
 
 HEADING = """\
-# What every module of c_core puts out for a fixed sequence of inputs, as a digest of its bits: the same with every #
-compiler and on every machine. Made by `python -m verify.golden`; a change of this table is a change of version.
+# What every module of c_core puts out for a fixed sequence of inputs, as a digest of its bits: the same with every
+# compiler and on every machine. Made by `python -m verify.golden`; a change of this table is a change of version.
 """
 
 

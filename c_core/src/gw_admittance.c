@@ -8,6 +8,8 @@
 #define UNIT_MAX ((gw_real_t)1.01)    /* a component of a unit vector, rounded */
 #define LEAST_AGREEMENT GW_HALF       /* 60 degrees */
 #define STILL_MPS ((gw_real_t)1.0e-5) /* what nobody sees of a low-pass */
+/* A shorter time constant, s, takes over all of the velocity in a tick, too. */
+#define SMOOTHING_MIN_S ((gw_real_t)1.0e-6)
 /* Of one tick, and of an escape: the longest period and the largest impulse over the smallest damping, with room. */
 #define DISPLACEMENT_MAX ((gw_real_t)100.0)
 #define ESCAPE_MAX ((gw_real_t)1.1e5)
@@ -63,7 +65,8 @@ static void init_escape(gw_admittance_t *admittance)
     const gw_real_t smoothing_s = admittance->config.smoothing_s;
     admittance->away = zero;
     admittance->first = zero;
-    admittance->smooth_share = (smoothing_s > GW_ZERO) ? -gw_expm1(-admittance->period_s / smoothing_s) : GW_ONE;
+    admittance->smooth_share =
+        (smoothing_s > GW_ZERO) ? -gw_expm1(-admittance->period_s / gw_max(smoothing_s, SMOOTHING_MIN_S)) : GW_ONE;
     gw_tip_none(&admittance->tip);
     admittance->yaw = gw_sincos(GW_ZERO);
 }

@@ -61,6 +61,7 @@ static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
 /* No robot plans to move or accelerate beyond these; a reference that does is a fault. */
 #define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
 #define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
+#define STEP_MAX ((gw_real_t)1.0e20) /* N, of a change of zeros: beyond any that a valid wrench has */
 
 /* The same acceleration for a valid one, as provers need to be told. */
 static gw_acceleration_t known_acceleration(gw_acceleration_t acceleration)
@@ -102,26 +103,28 @@ static bool has_other_source(const gw_estimator_t *estimator, uint32_t source)
 static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
 {
     return (source == GW_SOURCE_IMU) &&
-           ((gw_magnitude(input->imu.zero_step.ax_mps2) + gw_magnitude(input->imu.zero_step.ay_mps2)) > GW_ZERO);
+           (gw_max(gw_magnitude(input->imu.zero_step.ax_mps2), gw_magnitude(input->imu.zero_step.ay_mps2)) > GW_ZERO);
 }
 
-/* Adds what another source of the acceleration, or another zero of the IMU, has changed in the wrench. */
+/* Adds what another source of the acceleration, or another zero of the IMU, has changed in the wrench, which is valid.
+ */
 static void tell_source_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                              gw_estimator_output_t *output)
 {
+    const gw_wrench_t wrench = gw_wrench_known_valid(output->wrench);
     gw_wrench_t *const step = &output->zero_step;
     if (has_other_source(estimator, output->acceleration_source)) {
-        step->force_x_n = output->wrench.force_x_n - estimator->last_wrench.force_x_n;
-        step->force_y_n = output->wrench.force_y_n - estimator->last_wrench.force_y_n;
-        step->torque_nm = output->wrench.torque_nm - estimator->last_wrench.torque_nm;
+        step->force_x_n = wrench.force_x_n - estimator->last_wrench.force_x_n;
+        step->force_y_n = wrench.force_y_n - estimator->last_wrench.force_y_n;
+        step->torque_nm = wrench.torque_nm - estimator->last_wrench.torque_nm;
     } else if (has_other_bias(input, output->acceleration_source)) {
         const gw_acceleration_t change = limited_acceleration(input->imu.zero_step);
-        step->force_x_n += estimator->nominal.total_mass_kg * change.ax_mps2;
-        step->force_y_n += estimator->nominal.total_mass_kg * change.ay_mps2;
+        step->force_x_n = gw_limited(step->force_x_n + (estimator->nominal.total_mass_kg * change.ax_mps2), STEP_MAX);
+        step->force_y_n = gw_limited(step->force_y_n + (estimator->nominal.total_mass_kg * change.ay_mps2), STEP_MAX);
     } else {
         /* as it was */
     }
-    estimator->last_wrench = output->wrench;
+    estimator->last_wrench = wrench;
     estimator->last_source = output->acceleration_source;
 }
 
@@ -648,9 +651,9 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         align_torque(estimator, output->acceleration_source, &sensed_nm);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &sensed_nm);
         output->sigma = estimator->sigma;
-        tell_source_step(estimator, input, output);
         status = gw_moving_average_add(&estimator->average, output->wrench);
         if (status == GW_STATUS_OK) {
+            tell_source_step(estimator, input, output);
             output->mean = gw_moving_average_mean(&estimator->average);
             output->window_mean = gw_moving_average_window_mean(&estimator->average);
             output->mean_samples = gw_moving_average_count(&estimator->average);

@@ -6,6 +6,7 @@
 
 #define GRAVITY_MPS2 ((gw_real_t)9.80665)
 #define LEAST_MPS2 ((gw_real_t)0.05)
+#define HEIGHT_MIN_M ((gw_real_t)1.0e-6) /* a robot so low has the largest margin */
 #define MARGIN_MAX ((gw_real_t)1.0e6)
 
 void gw_tip_config_trikey(gw_tip_config_t *config)
@@ -39,7 +40,7 @@ void gw_tip_init(gw_tip_t *tip, const gw_tip_config_t *config, const gw_kinemati
     if (config->height_m > GW_ZERO) {
         const gw_real_t edge_m = (GW_HALF * kinematics->wheel_distance_m) - config->offset_m;
         const gw_real_t whole_mps2 =
-            (GRAVITY_MPS2 * (edge_m - (config->slope_rad * config->height_m))) / config->height_m;
+            (GRAVITY_MPS2 * (edge_m - (config->slope_rad * config->height_m))) / gw_max(config->height_m, HEIGHT_MIN_M);
         tip->margin_mps2 = gw_clamp(config->share * whole_mps2, LEAST_MPS2, MARGIN_MAX);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             tip->radial[i] = kinematics->radial[i];

@@ -18,6 +18,11 @@ static gw_channels_noise_t any_noise(void)
     noise.yaw_inertia_kgm2 = draw_real((gw_real_t)0.0001, (gw_real_t)3.1e7);
     noise.sliding_n = draw_real(GW_ZERO, (gw_real_t)1.1e5);
     noise.wheel_distance_m = draw_setting(GW_FIELD_GEOMETRY_WHEEL_DISTANCE);
+    noise.imu.acceleration_mps2 = draw_real(GW_ZERO, (gw_real_t)200.0);
+    noise.imu.vibration_mps2 = draw_setting(GW_FIELD_IMU_VIBRATION);
+    noise.imu.yaw_rate_radps = draw_real(GW_ZERO, (gw_real_t)20.0);
+    noise.imu.arm_m = draw_real(GW_ZERO, (gw_real_t)1.0e4); /* what Eva sees of a root */
+    noise.imu.cutoff_radps = draw_setting(GW_FIELD_IMU_CUTOFF);
     return noise;
 }
 
@@ -37,7 +42,7 @@ static void part_step(void)
     gw_model_forces_t forces;
     gw_wrench_t zero_step;
     draw_model_forces(&forces, GW_REAL_MAX);
-    draw_wrench(&zero_step, (gw_real_t)1.0e20);
+    draw_wrench(&zero_step, ZERO_STEP_MAX);
     input.wrench = &wrench;
     input.forces = &forces;
     input.zero_step = &zero_step;
@@ -46,6 +51,8 @@ static void part_step(void)
     input.turned = any_flag();
     input.enabled = any_flag();
     input.reacting = any_flag();
+    input.felt = any_flag();
+    input.shaking_mps2_2 = draw_real(GW_ZERO, (gw_real_t)1.0e8);
     draw_wrench(&output.mean_wrench, GW_WRENCH_MAX); /* written when it is refined, else kept */
     draw_channels(&channels);
     draw_kinematics(&kinematics);

@@ -17,15 +17,27 @@ static void draw_configs(void)
     geometry.wheel_slot[2] = 0U;
 }
 
+static gw_estimator_input_t any_input(void)
+{
+    gw_estimator_input_t input = {
+        {{any_real(), any_real(), any_real()}},
+        {any_int, any_int, any_int},
+        {any_real(), any_real(), any_real()},
+        {any_real(), any_real(), any_real()},
+        {{any_real(), any_real(), any_real()}, {any_real(), any_real(), any_real()}, any_flag(), any_real()}};
+    return input;
+}
+
 static void part_init_succeeds(void)
 {
     demand_count((uint32_t)gw_estimator_init(&estimator, &config, &geometry, &inertia, &friction,
                                              draw_setting(GW_FIELD_CONTROLLER_PERIOD)),
                  0U, 0U);
+    gw_estimator_set_imu_cutoff(&estimator, draw_setting(GW_FIELD_IMU_CUTOFF));
     hold_estimator(&estimator);
 }
 
-/* Aligned is valid with a measured acceleration only. */
+/* Aligned is valid with a measured acceleration only, the IMU's or the encoders'. */
 static void part_init(void)
 {
     draw_configs();
@@ -33,27 +45,25 @@ static void part_init(void)
         config.aligned = 0U;
         part_init_succeeds();
     } else {
-        config.acceleration_source = GW_SOURCE_MEASURED;
+        config.acceleration_source = any_flag() ? GW_SOURCE_MEASURED : GW_SOURCE_IMU;
         part_init_succeeds();
     }
 }
 
 static void part_step(void)
 {
-    const gw_estimator_input_t input = {{{any_real(), any_real(), any_real()}},
-                                        {any_int, any_int, any_int},
-                                        {any_real(), any_real(), any_real()},
-                                        {any_real(), any_real(), any_real()}};
+    const gw_estimator_input_t input = any_input();
     gw_estimator_output_t output;
     gw_wheels_t torque_nm;
     draw_estimator(&estimator);
     draw_wheels(&torque_nm, GW_TORQUE_MAX);
+    draw_wrench(&output.zero_step, ZERO_STEP_MAX); /* kept until the next change */
     const uint32_t kind = draw_count(0U, 3U);
     if (kind == 0U) {
         (void)gw_estimator_step(&estimator, &input, &output);
         hold_wrench(&output.mean, (gw_real_t)1.1e12);
         hold_wrench(&output.window_mean, (gw_real_t)1.1e12);
-        hold_wrench(&output.zero_step, (gw_real_t)1.0e20);
+        hold_wrench(&output.zero_step, ZERO_STEP_MAX);
         hold_model_forces(&output.forces, GW_REAL_MAX);
     } else if (kind == 1U) {
         (void)gw_estimator_tare(&estimator, &torque_nm);
@@ -69,10 +79,7 @@ static void part_step(void)
 
 static void part_refusals(void)
 {
-    const gw_estimator_input_t input = {{{any_real(), any_real(), any_real()}},
-                                        {any_int, any_int, any_int},
-                                        {any_real(), any_real(), any_real()},
-                                        {any_real(), any_real(), any_real()}};
+    const gw_estimator_input_t input = any_input();
     gw_estimator_output_t output;
     draw_configs();
     if (any_flag()) {

@@ -30,7 +30,7 @@ static void part_init(void)
     gw_tare_start(&tare);
     hold_rate_constants(&constants);
     hold_rate_filter(&rate);
-    hold_lowpass(&lowpass);
+    hold_lowpass(&lowpass, GW_TORQUE_MAX);
     hold_presliding(&presliding);
     hold_moving_average(&average);
     hold_tare(&tare);
@@ -58,7 +58,7 @@ static void part_step(void)
     draw_kinematics(&kinematics);
     draw_rate_constants(&constants);
     draw_rate_filter(&rate);
-    draw_lowpass(&lowpass);
+    draw_lowpass(&lowpass, GW_TORQUE_MAX);
     draw_presliding(&presliding);
     draw_moving_average(&average);
     draw_tare(&tare);
@@ -77,7 +77,7 @@ static void part_step(void)
     hold_wheels(&mean_nm, GW_TORQUE_MAX);
     gw_presliding_settle(&presliding, &mean_nm);
     hold_rate_filter(&rate);
-    hold_lowpass(&lowpass);
+    hold_lowpass(&lowpass, GW_TORQUE_MAX);
     hold_presliding(&presliding);
     hold_moving_average(&average);
     hold_tare(&tare);
@@ -102,7 +102,7 @@ static void part_refusals(void)
     (void)gw_moving_average_init(any_flag() ? &average : NULL, any_flag() ? 0U : (GW_MOVING_AVERAGE_CAPACITY + 1U));
     (void)gw_moving_average_add(NULL, gw_moving_average_mean(&average));
     disturb_rate_filter(&rate);
-    disturb_lowpass(&lowpass);
+    disturb_lowpass(&lowpass, GW_TORQUE_MAX);
     (void)gw_lowpass_invariant_holds(&lowpass, GW_TORQUE_MAX);
     disturb_presliding(&presliding);
     disturb_tare(&tare);

@@ -18,6 +18,7 @@ static uint32_t highest_count(gw_config_field_t field)
 
 #define PI_ROUNDED ((gw_real_t)3.1415928)
 #define EXCESS ((gw_real_t)1024.0)
+#define ZERO_STEP_MAX ((gw_real_t)1.0e20) /* of a change of the tared wrench */
 
 /* The rows of the tables in gw_config.h. */
 #define SETTING_OF_ROW(kind, field, name, member, minimum, maximum) SETTING_OF_##kind(member, field)

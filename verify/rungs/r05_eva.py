@@ -78,6 +78,13 @@ DRIVERS = {
         Mutant("../include/giveway/gw_rate_filter.h", "gw_limited(derivative, GW_RATE_DERIVATIVE_MAX)", "derivative")
     ),
     "follower": Driver(Mutant("gw_follower.c", "variance_n2 = gw_max(variance_n2, least_n2);", "")),
+    "imu": Driver(
+        Mutant(
+            "gw_imu.c",
+            "gw_limited(imu->turning_radps2 / config->gyro_scale, GW_IMU_ACCELERATION_MAX)",
+            "imu->turning_radps2",
+        )
+    ),
     "kinematics": Driver(
         Mutant("gw_kinematics.c", "GW_ONE / config->wheel_radius_m", "GW_ONE / (config->wheel_radius_m - GW_HALF)")
     ),

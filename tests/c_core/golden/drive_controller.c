@@ -96,6 +96,24 @@ digest_t drive_controller_bristles(void)
     return play(&config, 24U, true);
 }
 
+#if (GW_WITH_CHANNELS == 1)
+/* The two-channel detector with an IMU, and the escape if there is one. */
+digest_t drive_controller_channels(void)
+{
+    gw_controller_config_t config;
+    gw_controller_config_trikey(&config);
+    config.detector.kind = GW_DETECTOR_CHANNELS;
+    config.estimator.friction_model = GW_FRICTION_BRISTLE;
+    config.estimator.velocity_source = GW_SOURCE_MEASURED;
+    config.estimator.acceleration_source = GW_SOURCE_IMU;
+    config.estimator.rate_cutoff_radps = (gw_real_t)500.0;
+    config.estimator.aligned = 1U;
+    config.imu.use = 1U;
+    config.admittance.kind = GW_ADMITTANCE_KIND_MAX;
+    return play(&config, 39U, true);
+}
+#endif
+
 digest_t drive_controller_recorded(void)
 {
     static gw_controller_t controller;

@@ -102,8 +102,9 @@ digest_t drive_detector(void)
 {
     digest_t digest = digest_begin();
     generator_t generator = generator_begin(14U);
-    for (uint32_t kind = 0U; kind < 3U; kind++) { /* the third is refused */
-        const gw_detector_config_t config = detector_config(kind);
+    static const uint32_t kinds[] = {GW_DETECTOR_FORCE_AVERAGE, GW_DETECTOR_IMPULSE, 3U /* refused */};
+    for (uint32_t k = 0U; k < 3U; k++) {
+        const gw_detector_config_t config = detector_config(kinds[k]);
         gw_detector_t detector;
         gw_wrench_t push = {GW_ZERO, GW_ZERO, GW_ZERO};
         uint32_t regime = 0U;

@@ -30,6 +30,7 @@ static const module_t modules[] = {
     {"admittance", drive_admittance},
 #if (GW_WITH_ESCAPE == 1)
     {"escape", drive_escape},
+    {"tip", drive_tip},
 #endif
     {"reference", drive_reference},
     {"joint", drive_joint},
@@ -40,6 +41,16 @@ static const module_t modules[] = {
     {"controller.bristles", drive_controller_bristles},
     {"controller.recorded", drive_controller_recorded},
     {"controller.reached", drive_controller_reached},
+    {"balance", drive_balance},
+#if (GW_WITH_CHANNELS == 1)
+    {"follower", drive_follower},
+    {"model_covariance", drive_model_covariance},
+    {"fast_channel", drive_fast_channel},
+    {"slow_channel", drive_slow_channel},
+    {"channels", drive_channels},
+    {"imu", drive_imu},
+    {"controller.channels", drive_controller_channels},
+#endif
 };
 
 int main(void)

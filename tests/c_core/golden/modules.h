@@ -23,6 +23,14 @@ digest_t drive_supervisor(void);
 digest_t drive_estimator(void);
 digest_t drive_admittance(void);
 digest_t drive_escape(void);
+digest_t drive_tip(void);
+digest_t drive_balance(void);
+digest_t drive_follower(void);
+digest_t drive_model_covariance(void);
+digest_t drive_fast_channel(void);
+digest_t drive_slow_channel(void);
+digest_t drive_channels(void);
+digest_t drive_imu(void);
 digest_t drive_reference(void);
 digest_t drive_joint(void);
 digest_t drive_servo(void);
@@ -33,5 +41,6 @@ digest_t drive_controller_bristles(void);
 digest_t drive_controller_recorded(void);
 /* Which modes (upper word) and statuses (lower word) the drives above met, as sets of bits. */
 digest_t drive_controller_reached(void);
+digest_t drive_controller_channels(void);
 
 #endif

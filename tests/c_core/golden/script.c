@@ -101,6 +101,20 @@ static void break_sensors(script_t *script)
     }
 }
 
+/* What an IMU might show; a robot without one gets no sample. */
+static void feel(script_t *script, const gw_controller_output_t *before)
+{
+    if (script->config.estimator.acceleration_source > GW_SOURCE_ZERO) {
+        gw_imu_sample_t *const sample = &script->input.imu;
+        const gw_vector_t noise = generator_vector(&script->generator, (gw_real_t)0.05);
+        sample->specific_force_mps2[0] = (gw_real_t)0.1 + noise.x;
+        sample->specific_force_mps2[1] = noise.y;
+        sample->yaw_rate_radps = before->reference_twist.omega_radps;
+        sample->counter++;
+        sample->present = (script->tick % 1000U) != 999U;
+    }
+}
+
 static void ask(script_t *script, const gw_controller_output_t *before)
 {
     script->input.plan = plan_at(before->path_ticks, script->config.period_s);
@@ -128,6 +142,7 @@ const gw_controller_input_t *script_next(script_t *script, const gw_controller_o
         script->input.sensor.present = true;
         script->input.sensor.counter++;
     }
+    feel(script, before);
     ask(script, before);
     script->tick++;
     return &script->input;
