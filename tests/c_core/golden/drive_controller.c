@@ -97,19 +97,13 @@ digest_t drive_controller_bristles(void)
 }
 
 #if (GW_WITH_CHANNELS == 1)
-/* The two-channel detector with an IMU, and the escape if there is one. */
+/* What is recommended, with an IMU. */
 digest_t drive_controller_channels(void)
 {
     gw_controller_config_t config;
     gw_controller_config_trikey(&config);
-    config.detector.kind = GW_DETECTOR_CHANNELS;
-    config.estimator.friction_model = GW_FRICTION_BRISTLE;
-    config.estimator.velocity_source = GW_SOURCE_MEASURED;
     config.estimator.acceleration_source = GW_SOURCE_IMU;
-    config.estimator.rate_cutoff_radps = (gw_real_t)500.0;
-    config.estimator.aligned = 1U;
     config.imu.use = 1U;
-    config.admittance.kind = GW_ADMITTANCE_KIND_MAX;
     return play(&config, 39U, true);
 }
 #endif
