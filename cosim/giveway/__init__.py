@@ -80,11 +80,11 @@ def load(folder: Path | str) -> Result:
     return result.load(folder)
 
 
-def experiment(name: str) -> Experiment:
-    """The experiment called ``name``, e.g. "motionless"."""
+def experiment(name: str, preset: str = "default") -> Experiment:
+    """The experiment called ``name``, e.g. "motionless"; ``preset`` "paper": with the reflex of the paper."""
     from giveway import experiments
 
-    return experiments.get(name)
+    return experiments.get(name, preset)
 
 
 def read_scenario(path: Path | str) -> Scenario:

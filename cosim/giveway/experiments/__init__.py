@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import importlib
 import pkgutil
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.robot.presets import DEFAULT, check_preset
 
 if TYPE_CHECKING:
     from giveway.experiments.reproduction.findings import Effort, Findings
@@ -25,11 +27,11 @@ PAPER_BUMPERS = ("none", "spring", "magnetic")
 
 
 class _MakesScenario(Protocol):
-    def __call__(self, bumper: str, *, robot: Path | None = None) -> Scenario: ...
+    def __call__(self, bumper: str, *, robot: Path | None = None, preset: str = DEFAULT) -> Scenario: ...
 
 
-def _refuse_single_run(name: str, _bumper: str, *, robot: Path | None = None) -> Scenario:
-    del robot
+def _refuse_single_run(name: str, _bumper: str, *, robot: Path | None = None, preset: str = DEFAULT) -> Scenario:
+    del robot, preset
     single = ", ".join(one.name for one in all_experiments().values() if one.is_single_run)
     allowed = f"{single}; {name} is more than one run, and `giveway reproduce --only {name}` does them all"
     raise GivewayError("experiment", name, allowed)
@@ -47,8 +49,9 @@ class Experiment:
         summary: one sentence.
         section: its section in the paper ("5.2"), or "" if the paper does not have it; orders the report.
         bumpers: the bumpers its scenario is run with.
-        scenario: makes the scenario for a bumper and, if given, the robot file ``robot``; refuses an unknown bumper, or
-            a robot with which the experiment is not possible. None for an experiment of several runs.
+        scenario: makes the scenario for a bumper and, if given, the robot file ``robot`` and the controller's
+            ``preset``; refuses an unknown bumper, or a robot with which the experiment is not possible. None for an
+            experiment of several runs.
         reproduce: computes its part of the reproduction, or None if it has none.
     """
 
@@ -66,7 +69,14 @@ class Experiment:
     @property
     def is_single_run(self) -> bool:
         """It has a scenario, which `giveway run` runs."""
-        return not isinstance(self.scenario, functools.partial)
+        return getattr(self.scenario, "func", None) is not _refuse_single_run
+
+    def with_preset(self, preset: str) -> Experiment:
+        """The same with ``preset`` where its scenario is not told another one."""
+        check_preset(preset)
+        if preset == DEFAULT or not self.is_single_run:
+            return self
+        return dataclasses.replace(self, scenario=functools.partial(self.scenario, preset=preset))
 
 
 @functools.cache
@@ -81,9 +91,9 @@ def all_experiments() -> dict[str, Experiment]:
     return found
 
 
-def get(name: str) -> Experiment:
+def get(name: str, preset: str = DEFAULT) -> Experiment:
     """The experiment called ``name``; UnknownNameError offers the nearest one."""
     experiments = all_experiments()
     if name not in experiments:
         raise UnknownNameError("experiment", name, experiments)
-    return experiments[name]
+    return experiments[name].with_preset(preset)

@@ -14,16 +14,19 @@ gentle as the start: it assumes that the real acceleration is the planned one, a
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from giveway.base.errors import UnknownNameError
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.experiments import Experiment
 from giveway.experiments.placement import for_this_robot, outline_of_robot
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.presets import DEFAULT, check_preset
+from giveway.robot.presets import PAPER as PAPER_PRESET
 from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Circle, Pushes, TimedPush, start_values
 from giveway.scenario.scenario import Scenario
@@ -82,14 +85,25 @@ LEAK_N = 9.0  # 20 % of three rollers' 2 x 21 N, and a margin
 
 
 def scenario(
-    bumper: str = "none", *, estimator: str = FULL, pushes: int = len(BY_HAND), robot: Path | None = None
+    bumper: str = "none",
+    *,
+    estimator: str | None = None,
+    pushes: int = len(BY_HAND),
+    robot: Path | None = None,
+    preset: str = DEFAULT,
 ) -> Scenario:
-    """One round with pushes by hand, one every 18 s; ``estimator`` is one of `ESTIMATORS`.
+    """One round with pushes by hand, one every 18 s; ``estimator`` is one of `ESTIMATORS`, which belong to the preset
+    "paper" (the first if left out).
 
     Another ``robot`` is pushed at its own sides 0 to 2, as far from their middles.
     """
     if bumper not in BUMPERS:
         raise UnknownNameError("bumper", bumper, BUMPERS)
+    check_preset(preset)
+    if preset == PAPER_PRESET:
+        estimator = estimator or FULL
+    elif estimator is not None:
+        raise GivewayError("estimator", estimator, f'only beside preset = "{PAPER_PRESET}", on which they build')
     plan = Circle(DIAMETER_M, SPEED_MPS, acceleration_mps2=START_MPS2)
     with for_this_robot("circle", robot):
         outline = outline_of_robot(robot)
@@ -101,13 +115,18 @@ def scenario(
     return dataclasses.replace(_around(plan, duration_s, estimator, Pushes(schedule)), robot=robot)
 
 
-def _around(plan: Circle, duration_s: float, estimator: str, push: Pushes | None) -> Scenario:
-    controller = {
-        "supervisor.after_settled": 1,
-        **ESTIMATORS[estimator],
-    }
-    overrides = {"slider.present": False, **start_values(plan)}
-    return Scenario("circle", duration_s, bumper="none", testbed=overrides, controller=controller, plan=plan, push=push)
+def _around(plan: Circle, duration_s: float, estimator: str | None, push: Pushes | None) -> Scenario:
+    """``estimator`` of the preset "paper", or None: the default preset."""
+    return Scenario(
+        "circle",
+        duration_s,
+        bumper="none",
+        testbed={"slider.present": False, **start_values(plan)},
+        controller={"supervisor.after_settled": 1, **({} if estimator is None else ESTIMATORS[estimator])},
+        plan=plan,
+        push=push,
+        preset=DEFAULT if estimator is None else PAPER_PRESET,
+    )
 
 
 def _push(
@@ -216,15 +235,16 @@ def reproduce(effort: Effort) -> Findings:
     from giveway.simulation.push_response import responses
     from giveway.simulation.runner import run
 
+    of_paper = functools.partial(scenario, preset=PAPER_PRESET)
     pushes = effort.pick(len(BY_HAND), 2)
-    runs = {name: run(scenario(estimator=name, pushes=pushes), engine="native") for name in (FULL, PAPER)}
-    schedule = scenario(pushes=pushes).push
+    runs = {name: run(of_paper(estimator=name, pushes=pushes), engine="native") for name in (FULL, PAPER)}
+    schedule = of_paper(pushes=pushes).push
     assert isinstance(schedule, Pushes)
     found = {
         name: responses(schedule.pushes, run.traces["time"].values, _trace_of(run.traces)) for name, run in runs.items()
     }
     effort.progress(0.1)
-    undisturbed = run(dataclasses.replace(scenario(pushes=1), push=None, duration_s=ROUND_S), engine="native")
+    undisturbed = run(dataclasses.replace(of_paper(pushes=1), push=None, duration_s=ROUND_S), engine="native")
     lag_m = float(_off_path(undisturbed.traces, "testbed.truth").max())
     reference_m = float(_off_path(runs[FULL].traces, "controller.reference")[-1])
     rows = _rows_of_the_round(found, lag_m, reference_m)

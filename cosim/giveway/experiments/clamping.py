@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from giveway.experiments import PAPER_BUMPERS, Experiment
 from giveway.experiments.placement import before_resting, stated_contact, tare_s, testbed_of
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.presets import DEFAULT, NO_REFLEX, PAPER
 from giveway.robot.variables import table
 from giveway.scenario.body_regions import NOTICE, Judgement, body_region, contact_peak, judge
 from giveway.scenario.scenario import Scenario
@@ -32,7 +33,6 @@ SLIDER_KG = 13.62  # the paper's, of 5.3
 GAPS_M: Mapping[str, float] = {"at the wall": 0.001, "20 mm before the wall": 0.02}
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
 AFTER_S = 1.6  # of which 1.1 s count as lasting; a robot that keeps pushing for longer lags by half a wheel turn
-NO_REFLEX = {"detector.impulse_threshold": 1000.0, "detector.force_threshold": 10000.0}
 RECORDED = (
     *(f"testbed.truth.{name}" for name in ("contact_force", "wall_force", "first_contact_time", "contact")),
     "controller.detection.count",
@@ -50,6 +50,7 @@ def scenario(
     *,
     reflex: bool = True,
     robot: Path | None = None,
+    preset: str = DEFAULT,
 ) -> Scenario:
     """The robot drives into a clamped body region with ``bumper`` on it.
 
@@ -60,6 +61,7 @@ def scenario(
         region: the body region.
         reflex: False: the detector is off and the robot keeps pushing.
         robot: another robot's file; it drives with its own side between corners 0 and 1 ahead.
+        preset: the controller's.
     """
     body = body_region(region)
     plan, slider = before_resting("clamping", robot, speed_mps, STEADY_S)
@@ -77,10 +79,11 @@ def scenario(
             "wall.distance": gap_m,
             "wall.stiffness": body.stiffness_npm,
         },
-        controller={"supervisor.after_settled": 0} | (NO_REFLEX if not reflex else {}),
+        controller={"supervisor.after_settled": 0, **({} if reflex else NO_REFLEX)},
         plan=plan,
         robot=robot,
         contact=stated_contact(robot, speed_mps, tare_s() + plan.ramp_s + STEADY_S),
+        preset=preset,
     )
 
 
@@ -92,11 +95,15 @@ def reproduce(effort: Effort) -> Findings:
 
     speeds = effort.pick(SPEEDS_MPS, (0.1, 0.5))
     cases: dict[tuple[object, ...], Scenario] = {
-        (bumper, place): scenario(bumper, gap_m=gap) for place, gap in GAPS_M.items() for bumper in PAPER_BUMPERS
+        (bumper, place): scenario(bumper, gap_m=gap, preset=PAPER)
+        for place, gap in GAPS_M.items()
+        for bumper in PAPER_BUMPERS
     }
-    cases |= {("no reflex", place): scenario("none", gap_m=gap, reflex=False) for place, gap in GAPS_M.items()}
     cases |= {
-        (bumper, place, speed): scenario(bumper, speed, gap)
+        ("no reflex", place): scenario("none", gap_m=gap, reflex=False, preset=PAPER) for place, gap in GAPS_M.items()
+    }
+    cases |= {
+        (bumper, place, speed): scenario(bumper, speed, gap, preset=PAPER)
         for place, gap in GAPS_M.items()
         for bumper in PAPER_BUMPERS
         for speed in speeds

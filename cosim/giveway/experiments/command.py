@@ -10,6 +10,7 @@ import typer
 from giveway.base.errors import UnknownNameError
 from giveway.base.options import FmiOption, RobotOption
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, progress_bars
+from giveway.robot.presets import DEFAULT, check_preset
 from giveway.scenario.scenario import BUMPERS
 
 if TYPE_CHECKING:
@@ -30,6 +31,9 @@ SetOption = Annotated[
 ]
 EngineOption = Annotated[
     str, typer.Option("--engine", help="fmu, or native: the same bits without FMUs, several times as fast.")
+]
+PresetOption = Annotated[
+    str | None, typer.Option("--preset", help="The controller's reflex: default, or paper for that of the paper.")
 ]
 SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of the sensor noise.")]
 
@@ -52,6 +56,7 @@ def run(
     seed: SeedOption = None,
     robot: RobotOption = None,
     engine: EngineOption = "fmu",
+    preset: PresetOption = None,
 ) -> None:
     """Run one experiment, or your own scenario, with one bumper; writes traces, metrics, manifest and a report."""
     from giveway.base.files import check_output, replace_folder
@@ -59,7 +64,7 @@ def run(
     from giveway.simulation import runner
 
     chosen = _engine(engine)
-    scenario, summary = _scenario(what, bumper, robot)
+    scenario, summary = _scenario(what, bumper, robot, preset)
     scenario = _changed(scenario, assignments, fmi, duration, seed)
     check_output(out)
     with progress_bars(("simulation", "report")) as progress:
@@ -87,6 +92,7 @@ def demo(
     fmi: FmiOption = 3,
     seed: SeedOption = None,
     engine: EngineOption = "fmu",
+    preset: PresetOption = None,
 ) -> None:
     """Run the paper's experiment 5.2 with all three bumpers; table, report.html, overview.png, summary.json."""
     from giveway import experiments
@@ -99,7 +105,8 @@ def demo(
     check_output(out)
     name = "motionless"
     results: dict[str, Result] = {}
-    experiment = experiments.get(name)
+    check_preset(preset or DEFAULT, "--preset")
+    experiment = experiments.get(name, preset or DEFAULT)
     titles = {bumper: f"bumper {bumper}" for bumper in experiment.bumpers}
     with progress_bars((*titles.values(), "report")) as progress:
         for bumper, title in titles.items():
@@ -175,16 +182,19 @@ def _engine(name: str) -> Engine:
     raise UnknownNameError("--engine", name, ENGINES)
 
 
-def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenario, str]:
+def _scenario(what: str, bumper: str | None, robot: Path | None, preset: str | None) -> tuple[Scenario, str]:
     """The scenario of an experiment or of a file, and a sentence about it."""
     from giveway import experiments
 
+    if preset is not None:
+        check_preset(preset, "--preset")
     if what.endswith(".toml") or "/" in what:
         from giveway.scenario.scenario_file import read_scenario
 
         if bumper is not None and bumper not in BUMPERS:
             raise UnknownNameError("--bumper", bumper, BUMPERS)
-        return read_scenario(what, bumper=bumper, robot=robot), f"A scenario from the file {Path(what).name}."
+        scenario = read_scenario(what, bumper=bumper, robot=robot, preset=preset)
+        return scenario, f"A scenario from the file {Path(what).name}."
     chosen = experiments.get(what)
     if bumper is None:
         bumper = DEFAULT_BUMPER if DEFAULT_BUMPER in chosen.bumpers or not chosen.bumpers else chosen.bumpers[0]
@@ -193,7 +203,7 @@ def _scenario(what: str, bumper: str | None, robot: Path | None) -> tuple[Scenar
         allowed = tuple(BUMPERS) if chosen.bumpers == experiments.PAPER_BUMPERS else chosen.bumpers
         if bumper not in allowed:
             raise UnknownNameError("--bumper", bumper, allowed)
-    return chosen.scenario(bumper, robot=robot), chosen.summary
+    return chosen.scenario(bumper, robot=robot, preset=preset or DEFAULT), chosen.summary
 
 
 def _changed(

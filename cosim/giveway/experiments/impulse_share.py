@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment, motionless
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.presets import PAPER
 
 if TYPE_CHECKING:
     from giveway.experiments.impulse_trials import Seen
@@ -27,8 +28,6 @@ ROWS = (*DRAWN, "soft")
 
 def hits() -> dict[str, Scenario]:
     """The collisions by name: 5.2 with its three bumpers, and 5.3."""
-    import dataclasses
-
     from giveway.experiments import moving
     from giveway.experiments.impulse_trials import SHOWN_S
 
@@ -38,10 +37,9 @@ def hits() -> dict[str, Scenario]:
         "at rest, magnetic": "magnetic",
     }
     short = {
-        name: dataclasses.replace(motionless.scenario(bumper), duration_s=CONTACT_S + SHOWN_S + 0.01)
-        for name, bumper in still.items()
+        name: motionless.scenario(bumper, CONTACT_S + SHOWN_S + 0.01, preset=PAPER) for name, bumper in still.items()
     }
-    return short | {"moving, magnetic": moving.scenario("magnetic", SHOWN_S + 0.05)}
+    return short | {"moving, magnetic": moving.scenario("magnetic", SHOWN_S + 0.05, preset=PAPER)}
 
 
 def reproduce(effort: Effort) -> Findings:

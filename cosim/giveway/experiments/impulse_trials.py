@@ -17,6 +17,7 @@ import numpy as np
 
 from giveway import batch
 from giveway.base.errors import SimulationError
+from giveway.robot.presets import NO_REFLEX
 from giveway.robot.variables import table
 from giveway.robot.wheels import WHEELS
 
@@ -34,7 +35,7 @@ TRACES = (
     *("testbed.truth.first_contact_time", "testbed.truth.contact_impulse_x", "testbed.truth.contact_impulse_y"),
     *("controller.estimate.force_x", "controller.estimate.force_y"),
 )
-WATCHING: Mapping[str, Value] = {"estimator.average_window": 1, "detector.impulse_threshold": 1000.0}
+WATCHING: Mapping[str, Value] = {"estimator.average_window": 1, **NO_REFLEX}
 FINE_COUNTS = 1_000_000  # encoder counts per turn with negligible steps: 0.6 um at the rim
 NOISELESS_TESTBED: Mapping[str, Value] = {
     "electronics.torque_noise": 0.0,

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from giveway.experiments import PAPER_BUMPERS, Experiment
 from giveway.experiments.placement import pulled_by_weight, stated_contact
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.robot.presets import DEFAULT, PAPER
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
 
@@ -36,7 +37,9 @@ CAPTION = (
 )
 
 
-def scenario(bumper: str, duration_s: float = DURATION_S, *, robot: Path | None = None) -> Scenario:
+def scenario(
+    bumper: str, duration_s: float = DURATION_S, *, robot: Path | None = None, preset: str = DEFAULT
+) -> Scenario:
     """The experiment with ``bumper`` ("none", "spring" or "magnetic") on the slider.
 
     Another ``robot`` is hit as fast, in the middle of its own side between corners 0 and 1.
@@ -49,6 +52,7 @@ def scenario(bumper: str, duration_s: float = DURATION_S, *, robot: Path | None 
         controller={"supervisor.after_settled": HOLD},
         robot=robot,
         contact=stated_contact(robot, SPEED_MPS),
+        preset=preset,
     )
 
 
@@ -63,11 +67,10 @@ def reproduce(effort: Effort) -> Findings:
     notes = []
     for number, (bumper, label) in enumerate(LABELS.items()):
         effort.progress(number / len(LABELS))
-        results[bumper] = run(scenario(bumper), engine="native")
+        results[bumper] = run(scenario(bumper, preset=PAPER), engine="native")
         seeds = effort.pick(SEEDS, FEW_SEEDS)
-        notes.append(
-            noise_note(f"Detection time, {label}", scenario(bumper, IMPACT_S), "detection time", seeds, effort)
-        )
+        short = scenario(bumper, IMPACT_S, preset=PAPER)
+        notes.append(noise_note(f"Detection time, {label}", short, "detection time", seeds, effort))
     paper = [
         *((f"detection, {LABELS[bumper]}", f"{time_ms:g} ms") for bumper, time_ms in PAPER_DETECTION_MS.items()),
         ("peak torque with bumpers", "about 20 % below that without"),

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
 from giveway.experiments.placement import before_resting, stated_contact, tare_s
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.robot.presets import DEFAULT, PAPER
 from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -31,7 +32,9 @@ PAPER_BUMPER = "magnetic"
 REVERSAL_S = 1.2  # after the contact: the reversal, and the time in which it might be mistaken for another hit
 
 
-def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | None = None) -> Scenario:
+def scenario(
+    bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | None = None, preset: str = DEFAULT
+) -> Scenario:
     """The experiment with ``bumper`` on the slider, up to ``after_contact_s`` after the planned contact.
 
     The paper has the magnetic one only. Another ``robot`` drives with its own side between corners 0 and 1 ahead.
@@ -46,6 +49,7 @@ def scenario(bumper: str, after_contact_s: float = ESCAPE_S, *, robot: Path | No
         plan=plan,
         robot=robot,
         contact=stated_contact(robot, SPEED_MPS, tare_s() + plan.ramp_s + STEADY_S),
+        preset=preset,
     )
 
 
@@ -57,12 +61,15 @@ def reproduce(effort: Effort) -> Findings:
     from giveway.simulation.runner import run
 
     bumpers = ("spring", "magnetic")
-    while_still = [run(motionless.scenario(bumper, motionless.IMPACT_S), engine="native") for bumper in bumpers]
+    while_still = [
+        run(motionless.scenario(bumper, motionless.IMPACT_S, preset=PAPER), engine="native") for bumper in bumpers
+    ]
     effort.progress(0.2)
-    result = run(scenario(PAPER_BUMPER), engine="native")
+    result = run(scenario(PAPER_BUMPER, preset=PAPER), engine="native")
     effort.progress(0.5)
     seeds = effort.pick(motionless.SEEDS, motionless.FEW_SEEDS)
-    note = noise_note("Detection time", scenario(PAPER_BUMPER, REVERSAL_S), "detection time", seeds, effort)
+    short = scenario(PAPER_BUMPER, REVERSAL_S, preset=PAPER)
+    note = noise_note("Detection time", short, "detection time", seeds, effort)
     picture = Picture(
         "fig11",
         "Hit while moving (Fig. 11)",

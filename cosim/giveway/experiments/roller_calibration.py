@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from giveway.base.checks import finite
 from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.presets import NO_REFLEX, PAPER
 from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 from giveway.scenario.plan import PLAN_INPUTS
 from giveway.scenario.scenario import Scenario
@@ -109,9 +110,10 @@ def arc_scenario(
             "roller.model": PLANTS[plant],
             **{f"electronics.torque_offset[{wheel}]": offset for wheel, offset in enumerate(offset_nm)},
         },
-        controller={"detector.impulse_threshold": 1000.0},  # a calibration drive has no reflexes
+        controller=NO_REFLEX,
         plan=WheelArc(ARCS[name], SWING_RAD, FREQUENCY_HZ, radius, distance),
         seed=seed,
+        preset=PAPER,
     )
 
 

@@ -18,6 +18,7 @@ from giveway.base.gravity import GRAVITY_MPS2
 from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.robot.footprint import controller_outline, hull, wheel_corners
+from giveway.robot.presets import DEFAULT, PAPER
 from giveway.robot.variables import Value, table
 from giveway.robot.wheels import AZIMUTHS_RAD
 from giveway.scenario.approach import outline_of
@@ -125,7 +126,7 @@ SCENES: Mapping[str, Scene] = {
 }
 
 
-def scenario(name: str) -> Scenario:
+def scenario(name: str, preset: str = DEFAULT) -> Scenario:
     """The scene ``name`` of `SCENES`; UnknownNameError offers the nearest one."""
     if name not in SCENES:
         raise UnknownNameError("scene", name, SCENES)
@@ -155,6 +156,7 @@ def scenario(name: str) -> Scenario:
         controller={**controller_outline(whole), "supervisor.after_settled": 0},
         plan=plan,
         contact=StatedContact(scene.speed_mps, time_s=tare_s + plan.ramp_s + STEADY_S),
+        preset=preset,
     )
 
 
@@ -214,8 +216,9 @@ def reproduce(effort: Effort) -> Findings:
     found: dict[str, Result] = {}
     rows: list[Row] = []
     for index, name in enumerate(SCENES):
-        found[name] = run(scenario(name), engine="native")
-        changed = {variant: run(_varied(scenario(name), variant), engine="native") for variant in VARIANTS}
+        scene = scenario(name, PAPER)
+        found[name] = run(scene, engine="native")
+        changed = {variant: run(_varied(scene, variant), engine="native") for variant in VARIANTS}
         rows += _rows(name, found[name], changed)
         effort.progress((index + 1) / len(SCENES))
     picture = Picture(

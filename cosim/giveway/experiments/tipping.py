@@ -18,6 +18,7 @@ import numpy as np
 
 from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.robot.presets import DEFAULT, PAPER
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
 from giveway.simulation.runner import run
@@ -39,17 +40,17 @@ PLATEAU_SHARE = 0.5
 FLAT: dict[str, Value] = {"base.com_height": 0.01, "contact.height": 0.01, "wheel.grip_friction": 10.0}
 
 
-def scenario(bumper: str, *, robot: Path | None = None) -> Scenario:
+def scenario(bumper: str, *, robot: Path | None = None, preset: str = DEFAULT) -> Scenario:
     """5.2 with ``bumper``, hit at `CONTACT_HEIGHT_M` by a base that can tip; ``robot``: another robot's file."""
-    return _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M}, robot)
+    return _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M}, robot, preset)
 
 
-def _planar(bumper: str, robot: Path | None = None) -> Scenario:
-    return dataclasses.replace(motionless.scenario(bumper, robot=robot), duration_s=DURATION_S)
+def _planar(bumper: str, robot: Path | None = None, preset: str = PAPER) -> Scenario:
+    return motionless.scenario(bumper, DURATION_S, robot=robot, preset=preset)
 
 
-def _tipping(bumper: str, testbed: dict[str, Value], robot: Path | None = None) -> Scenario:
-    planar = _planar(bumper, robot)
+def _tipping(bumper: str, testbed: dict[str, Value], robot: Path | None = None, preset: str = PAPER) -> Scenario:
+    planar = _planar(bumper, robot, preset)
     return dataclasses.replace(planar, name="tipping", testbed={**planar.testbed, "base.tipping": True, **testbed})
 
 
@@ -124,7 +125,7 @@ def _reproduce(effort: Effort) -> Findings:
         return runs[-1]
 
     planar = {bumper: run(_planar(bumper)) for bumper in bumpers}
-    tipping = {bumper: run(scenario(bumper)) for bumper in bumpers}
+    tipping = {bumper: run(scenario(bumper, preset=PAPER)) for bumper in bumpers}
     by_height = {height: run(_tipping("none", {"contact.height": height})) for height in heights}
     flat = run(_tipping("none", FLAT))
     rows = [

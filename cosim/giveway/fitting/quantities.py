@@ -21,6 +21,7 @@ from giveway.base.gravity import GRAVITY_MPS2
 from giveway.batch import run_many
 from giveway.experiments import PAPER_BUMPERS, motionless, moving
 from giveway.experiments.placement import has_default_outline
+from giveway.robot.presets import PAPER, preset_values
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import Value, table
 from giveway.scenario.scenario import Scenario
@@ -126,16 +127,17 @@ class Bench:
         if not has_default_outline(robot):
             raise GivewayError("robot", robot, "a robot with the outline of the paper's: its results are fitted")
         read = read_robot(native.robot() if robot is None else robot)
-        self._base = {model: table(model).robot_values(read) for model in native.MODELS}
+        self._base = {model: table(model).robot_values(read) | preset_values(PAPER, model) for model in native.MODELS}
         self._threads = threads
-        self._collisions = [motionless.scenario(bumper, motionless.IMPACT_S) for bumper in PAPER_BUMPERS]
-        self._moving = moving.scenario(moving.PAPER_BUMPER, moving.REVERSAL_S)
+        self._collisions = [motionless.scenario(bumper, motionless.IMPACT_S, preset=PAPER) for bumper in PAPER_BUMPERS]
+        self._moving = moving.scenario(moving.PAPER_BUMPER, moving.REVERSAL_S, preset=PAPER)
         self._push = Scenario(
             "push",
             PUSH_S[2],
             testbed={"slider.present": False},
             controller={"controller.drives_enabled": False},
             push=_PUSH,
+            preset=PAPER,
         )
 
     def measure(self, candidates: Sequence[Values]) -> NDArray[np.float64]:

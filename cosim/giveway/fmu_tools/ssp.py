@@ -24,6 +24,7 @@ from giveway.base.files import check_file, replace_file
 from giveway.experiments.motionless import SPEED_MPS
 from giveway.experiments.placement import pulled_by_weight
 from giveway.fmu_tools.description import Description, VariableEntry, effective, read_description
+from giveway.robot.presets import PAPER, preset_values
 from giveway.robot.variables import Value, table
 from giveway.scenario.scenario import BUMPERS
 from giveway.simulation.master import COMMANDS, KINDS, SENSORS
@@ -44,6 +45,7 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def write_ssp(out: Path, robot: Robot | None = None, *, sequential: bool = False) -> None:
     """Write ``out``: both FMI 2 FMUs, SystemStructure.ssd with the magnetic bumper, and a variant with each other one.
+    The preset "paper" of the controller is a parameter set of its own, which nothing in the package refers to.
 
     Args:
         robot: instead of the robot that the FMUs were built with.
@@ -64,6 +66,8 @@ def write_ssp(out: Path, robot: Robot | None = None, *, sequential: bool = False
             files[f"resources/{bumper}.{model}.ssv"] = _text(_parameter_values(bumper, own, descriptions, local=True))
         name = "SystemStructure.ssd" if bumper == DEFAULT_BUMPER else f"{bumper}.ssd"
         files[name] = _text(_system(bumper, values, descriptions))
+    paper = {f"controller.{name}": value for name, value in preset_values(PAPER).items()}
+    files[f"resources/{PAPER}.controller.ssv"] = _text(_parameter_values(PAPER, paper, descriptions, local=True))
     with replace_file(out) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, _EPOCH)

@@ -37,7 +37,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     from giveway.report.animation import scene
     from giveway.report.figures import figures
     from giveway.simulation.metrics import definitions
-    from giveway.simulation.summary import false_detection_line, push_rows, table_rows, warning_lines
+    from giveway.simulation.summary import false_detection_line, preset_line, push_rows, table_rows, warning_lines
 
     by_bumper = {result.manifest["scenario"]["bumper"]: result for result in results}
     hit = {
@@ -53,7 +53,7 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     scenes = [scene(BUMPER_LABELS[bumper], result) for bumper, result in by_bumper.items()]
     return environment.get_template("report.html.j2").render(
         title=title,
-        summary=summary,
+        summary=" ".join(filter(None, (summary, preset_line(by_bumper)))),
         header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
         rows=table_rows(by_bumper),
         definitions=definitions(metric.name for metric in results[0].metrics),

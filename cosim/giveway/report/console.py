@@ -17,7 +17,7 @@ __all__ = ["print_results"]
 
 def print_results(name: str, results: Mapping[str, Result]) -> None:
     """The metrics of ``results``, a column for each bumper, with pushes above and warnings below."""
-    from giveway.simulation.summary import false_detection_line, push_rows, table_rows, warning_lines
+    from giveway.simulation.summary import false_detection_line, preset_line, push_rows, table_rows, warning_lines
 
     for result in results.values():
         pushes = push_rows(result)
@@ -28,4 +28,6 @@ def print_results(name: str, results: Mapping[str, Result]) -> None:
                 typer.echo(f"{line}\n")
     header = ("", *("no bumper" if bumper == "none" else bumper for bumper in results))
     print_columns(f"{name}: estimated or measured (true)", header, table_rows(results))
+    if line := preset_line(results):
+        typer.echo(line)
     print_warnings(warning_lines(results))

@@ -14,14 +14,20 @@ __all__ = ["variables"]
 def variables(
     model: Annotated[str, typer.Argument(help="controller, testbed, drivetrain or bumper.")],
     grep: Annotated[str, typer.Option("--grep", metavar="TEXT", help="Only names or descriptions with TEXT.")] = "",
+    preset: Annotated[str, typer.Option("--preset", help="Start values of this preset: default or paper.")] = "default",
 ) -> None:
     """List the variables of an FMU: what can be set, its range and unit, and what comes out."""
     from giveway.base.words import counted
+    from giveway.robot.presets import DEFAULT, check_preset, preset_values
     from giveway.robot.variables import table
 
+    check_preset(preset, "--preset")
+    other = preset_values(preset, model)
     wanted = grep.lower()
     chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
-    rows = [(v.name, v.causality, "" if v.start is None else f"{v.start}", v.allowed, v.description) for v in chosen]
-    print_columns(
-        f"{counted(len(chosen), 'variable')} of {model}", ("name", "kind", "start", "allowed", "meaning"), rows
-    )
+    rows = [
+        (v.name, v.causality, "" if v.start is None else f"{other.get(v.name, v.start)}", v.allowed, v.description)
+        for v in chosen
+    ]
+    title = f"{counted(len(chosen), 'variable')} of {model}" + ("" if preset == DEFAULT else f", preset {preset}")
+    print_columns(title, ("name", "kind", "start", "allowed", "meaning"), rows)

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.robot.presets import DEFAULT, check_preset, preset_values
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import Choices, Value, table
 from giveway.scenario.body_regions import BodyRegion, body_region, body_regions, check_contact_area
@@ -50,6 +51,7 @@ class Scenario:
             file; None: that of ``body_region``, if any.
         contact_area_m2: area of the contact, m2, 1e-6 to 1, for the mean pressure; None: unknown.
         contact: the intended contact, or None; a different contact gives a warning.
+        preset: the controller's reflex, "default" or "paper"; ``controller`` changes it further.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Scenario:
     judge_as: str | None = None
     contact_area_m2: float | None = None
     contact: StatedContact | None = None
+    preset: str = DEFAULT
 
     def __post_init__(self) -> None:
         finite("duration_s", self.duration_s, 0.0, MAXIMUM_DURATION_S, "s")
@@ -76,6 +79,7 @@ class Scenario:
             raise GivewayError("duration_s", self.duration_s, allowed)
         if self.bumper not in BUMPERS:
             raise UnknownNameError("bumper", self.bumper, BUMPERS)
+        check_preset(self.preset)
         if self.fmi_version not in FMI_VERSIONS:
             raise GivewayError("fmi_version", self.fmi_version, "3 or 2")
         if self.seed is not None:
@@ -140,11 +144,12 @@ class Scenario:
             raise GivewayError("duration_s", self.duration_s, allowed)
 
     def parameters(self, model: str) -> dict[str, Value]:
-        """The checked parameters to set on the FMU of ``model``: robot file, then scenario, then overrides."""
+        """The checked parameters to set on the FMU of ``model``: robot file, preset, scenario, overrides."""
         variables = table(model)
         values: dict[str, Value] = {}
         if self.robot is not None:
             values |= variables.robot_values(read_robot(Path(self.robot)))
+        values |= preset_values(self.preset, model)
         overrides: Mapping[str, Value] = self.controller
         if model == "testbed":
             overrides = self.testbed

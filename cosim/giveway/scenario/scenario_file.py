@@ -14,6 +14,7 @@ from typing import Any
 from giveway.base.errors import GivewayError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.base.units import factor
+from giveway.robot.presets import DEFAULT, PRESETS
 from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
 from giveway.scenario.plan_limits import check_plan_of
@@ -29,7 +30,7 @@ MEETING_S = 0.5
 PLANS = ("rest", "straight", "circle")
 
 _TOP = (
-    "schema_version", "name", "duration", "bumper", "robot", "seed", "body_region", "judge_as",
+    "schema_version", "name", "duration", "bumper", "robot", "preset", "seed", "body_region", "judge_as",
     "contact_area",
     "plan", "collision", "push", "testbed", "controller",
 )  # fmt: skip
@@ -60,8 +61,10 @@ SET_BY = {
 }
 
 
-def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | None = None) -> Scenario:
-    """The scenario in the file ``path``, checked; ``bumper`` and ``robot`` replace the file's.
+def read_scenario(
+    path: Path | str, *, bumper: str | None = None, robot: Path | None = None, preset: str | None = None
+) -> Scenario:
+    """The scenario in the file ``path``, checked; ``bumper``, ``robot`` and ``preset`` replace the file's.
 
     Raises:
         FileError: the file cannot be read.
@@ -71,14 +74,18 @@ def read_scenario(path: Path | str, *, bumper: str | None = None, robot: Path | 
     path = Path(path)
     text, document = read_toml(path, "give the path of a scenario file (TOML)")
     with lines_named(path, text):
-        scenario = scenario_of(document, path, bumper, robot)
+        scenario = scenario_of(document, path, bumper, robot, preset)
         with renamed("plan", **PLAN_KEYS):
             check_plan_of(scenario)
         return scenario
 
 
 def scenario_of(
-    document: Mapping[str, Any], path: Path, bumper: str | None = None, robot: Path | None = None
+    document: Mapping[str, Any],
+    path: Path,
+    bumper: str | None = None,
+    robot: Path | None = None,
+    preset: str | None = None,
 ) -> Scenario:
     """The scenario of ``document``, as if read from the file ``path``; errors name its keys, without lines."""
     top = Section("", document, _TOP)
@@ -112,6 +119,7 @@ def scenario_of(
             body_region=top.text("body_region") if "body_region" in top.values else None,
             judge_as=top.text("judge_as") if "judge_as" in top.values else None,
             contact_area_m2=_area_m2(top),
+            preset=preset or top.choice("preset", PRESETS, DEFAULT),
         )
     if not 1 <= len(bare.name) <= NAME_MAX:
         raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")

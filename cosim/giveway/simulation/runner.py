@@ -106,6 +106,7 @@ def _manifest(scenario: Scenario, record: Record) -> dict[str, Any]:
         "scenario": {
             "name": scenario.name,
             "bumper": scenario.bumper,
+            "preset": scenario.preset,
             "duration_s": scenario.duration_s,
             "step_s": scenario.step_s,
             "fmi_version": record.fmi_version,

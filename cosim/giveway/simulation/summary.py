@@ -9,10 +9,20 @@ from typing import Any
 
 from giveway.base.files import write_text
 from giveway.library.recorded import windows
+from giveway.robot.presets import DEFAULT, PAPER, PRESETS
 from giveway.simulation.metrics import Metric
 from giveway.simulation.result import Result
 
-__all__ = ["cell", "false_detection_line", "push_rows", "summary", "table_rows", "warning_lines", "write_summary"]
+__all__ = [
+    "cell",
+    "false_detection_line",
+    "preset_line",
+    "push_rows",
+    "summary",
+    "table_rows",
+    "warning_lines",
+    "write_summary",
+]
 
 SCHEMA_VERSION = 1
 NOT_IN_ROWS = ("contact point x", "contact point y")  # of a push: the location error suffices, and rows are long
@@ -53,6 +63,13 @@ def false_detection_line(result: Result) -> str:
         return ""
     times = ", ".join(f"{time_s:.3f}" for time_s in false_s)
     return f"False detections, with no push in the {windows().cause_s:g} s before: at {times} s"
+
+
+def preset_line(results: Mapping[str, Result]) -> str:
+    """The controllers' preset as a sentence; empty if it is the default."""
+    found = {str(result.manifest["scenario"].get("preset", PAPER)) for result in results.values()}  # older: the paper's
+    other = sorted(found - {DEFAULT})
+    return "; ".join(f'The controller has the preset "{preset}": {PRESETS[preset]}.' for preset in other)
 
 
 def warning_lines(results: Mapping[str, Result]) -> list[str]:

@@ -54,6 +54,7 @@ class Study:
         body_region: str | None = None,
         judge_as: str | None = None,
         contact_area: Keys | None = None,
+        preset: Literal["default", "paper"] | None = None,
         testbed: Keys | None = None,
         controller: Keys | None = None,
         noise_seed: int | None = None,
@@ -74,6 +75,7 @@ class Study:
             body_region: what is hit, and its limits after ISO/TS 15066, e.g. "lower leg".
             judge_as: only its limits.
             contact_area: ``{"value": 50, "unit": "mm2"}``, for the mean pressure.
+            preset: the controller's reflex; "default" if left out, or "paper".
             testbed, controller: parameters by name, ``{"slider.friction": 2.0}`` or as nested tables.
             noise_seed: of the sensors.
             seed: of the samplers.
@@ -90,6 +92,7 @@ class Study:
             "body_region": body_region,
             "judge_as": judge_as,
             "contact_area": _table(contact_area),
+            "preset": preset,
             "testbed": _table(testbed),
             "controller": _table(controller),
             "seed": noise_seed,

@@ -34,8 +34,8 @@ _TOP = (
     "tolerances", "tolerance", "objective", "constraint", "report",
 )  # fmt: skip
 _SCENARIO = (
-    "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "plan", "push", "testbed",
-    "controller",
+    "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "preset", "plan", "push",
+    "testbed", "controller",
 )  # fmt: skip
 _COLLISION = ("name", "mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _GOAL = ("metric", "collisions", "tolerances")

@@ -16,6 +16,7 @@ import numpy as np
 from giveway import batch
 from giveway.base.errors import SimulationError
 from giveway.base.gravity import GRAVITY_MPS2
+from giveway.robot.presets import NO_REFLEX, PAPER
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
 
@@ -37,7 +38,7 @@ WEIGHT_N = 1.0 * GRAVITY_MPS2
 # estimate is averaged over the time in which it is read.
 CONTROLLER: Mapping[str, Value] = {
     "controller.drives_enabled": False,
-    "detector.impulse_threshold": 1000.0,
+    **NO_REFLEX,
     "estimator.average_window": round(READ_S / STEP_S),
 }
 TORQUES = tuple(f"testbed.sensor.torque[{wheel}]" for wheel in range(WHEELS))
@@ -98,7 +99,14 @@ class Trial:
             testbed |= {f"electronics.torque_offset[{wheel}]": drift for wheel, drift in enumerate(self.zero_drift_nm)}
         push = SteadyPush(self.placement)
         return Scenario(
-            "static push", DURATION_S, STEP_S, testbed=testbed, controller=controller, push=push, seed=self.seed
+            "static push",
+            DURATION_S,
+            STEP_S,
+            testbed=testbed,
+            controller=controller,
+            push=push,
+            seed=self.seed,
+            preset=PAPER,
         )
 
 
