@@ -12,7 +12,6 @@ import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -136,14 +135,9 @@ def _run_one(work: tuple[Any, ...]) -> dict[str, Any]:
         folder.mkdir(parents=True, exist_ok=True)
         name = case.name.translate({ord(" "): "_", ord("/"): "_per_", ord(","): None})
         np.savez_compressed(folder / f"{number:03d}_{name}.npz", **dict[str, Any](traces))
-    record: dict[str, Any] = case.record(number, judged_record(traces, testbed, controller, _acceleration_limit()))
+    record: dict[str, Any] = case.record(number, judged_record(traces, testbed, controller))
     record["peak_n"] = float(traces["testbed.truth.contact_force"].max())
     return record
-
-
-@cache
-def _acceleration_limit() -> float:
-    return float(table("controller")["admittance.acceleration_limit"].start or 0.0)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from giveway.crowd.judged import Judged, Limits, judge
+from giveway.crowd.judged import Judged, judge, limits
 from giveway.crowd.statistics import rate_upper_bound
 from giveway.crowd.table import HEADER, ROWS, cells, find, read
 
@@ -26,10 +26,9 @@ QUIET_HEADER = (
 Record = Mapping[str, Any]
 
 
-def judged_record(traces: Traces, parameters: Mapping[str, Any], controller: Mapping[str, Any], start: float) -> Any:
-    """The verdict on one run as plain data; ``start``: the acceleration limit if ``controller`` does not set it."""
-    limit = float(controller.get("admittance.acceleration_limit", start))
-    return judge(traces["time"], traces, Limits(limit, float(parameters["wheel.distance"]))).record()
+def judged_record(traces: Traces, parameters: Mapping[str, Any], controller: Mapping[str, Any]) -> Any:
+    """The verdict on one run as plain data."""
+    return judge(traces["time"], traces, limits(controller, float(parameters["wheel.distance"]))).record()
 
 
 def quiet_rows(records: Sequence[Record]) -> list[tuple[str, ...]]:

@@ -10,8 +10,9 @@ import typer
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, working
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from giveway.crowd.parts import Record
     from giveway.robot.variables import Value
     from giveway.scenario.scenario import Scenario
 
@@ -27,6 +28,7 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="controller.NAME=VALUE", help="Set a parameter of the controller."),
 ]
+ImuOption = Annotated[bool, typer.Option("--imu", help="Of robots with accelerometer and gyro.")]
 ThreadsOption = Annotated[int | None, typer.Option("--threads", help="Native threads; without it: all processors.")]
 
 
@@ -40,6 +42,10 @@ def crowd(
     ] = None,
     group: Annotated[
         str | None, typer.Option("--group", help="Only the planar, tipping or single rollers robots among them.")
+    ] = None,
+    imu: Annotated[
+        bool | None,
+        typer.Option("--imu/--no-imu", help="Only robots with accelerometer and gyro, or without; else both."),
     ] = None,
     calibrated: Annotated[
         bool, typer.Option("--calibrated", help="Controllers know what `giveway calibrate` finds for their robots.")
@@ -60,10 +66,10 @@ def crowd(
     if draw not in DRAWS:
         raise UnknownNameError("--draw", draw, DRAWS)
     if only is not None:
-        _one(draw, only, controller, calibrated, out or OUT / f"hit-{only}")
+        _one(draw, only, controller, calibrated, bool(imu), out or OUT / (f"hit-{only}-imu" if imu else f"hit-{only}"))
     else:
         folder = out or OUT / (f"{draw}-calibrated" if calibrated else draw)
-        _all(draw, robots, group, controller, calibrated, folder, threads)
+        _all(draw, robots, group, (False, True) if imu is None else (imu,), controller, calibrated, folder, threads)
 
 
 def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
@@ -89,6 +95,7 @@ def _all(
     draw: str,
     robots: int,
     group: str | None,
+    imus: Sequence[bool],
     controller: Mapping[str, Value],
     calibrated: bool,
     folder: Path,
@@ -107,33 +114,45 @@ def _all(
     if group is not None and group not in GROUPS:
         raise UnknownNameError("--group", group, GROUPS)
     threads = _threads(threads)
+    records: list[Record] = []
     found, notes = (
         _calibrate(draw, robots, folder.with_name(f"{folder.name}-of-robots"), threads) if calibrated else (None, [])
     )
-    work = work_of(draw, robots, controller, found, group)
-    with showing(work.name) as progress:
-        done = go_on(work, folder, threads, progress)
-    for group, rows in tables(done.records):
-        print_columns(f"{work.name}: {group}", short_header(), [short_cells(found) for found in rows])
-        if targets := target_rows(group, rows):
-            print_columns(f"Targets: {group}", TARGET_HEADER, targets)
-    simulated_h = sum(record["simulated_s"] for record in done.records) / 3600.0
+    interrupted = False
+    for imu in imus:
+        work = work_of(draw, robots, controller, found, group, imu)
+        with showing(work.name) as progress:
+            done = go_on(work, folder / "imu" if imu else folder, threads, progress)
+        if done.ran:
+            typer.echo(
+                f"{work.name}: {done.ran} runs in {duration(done.wall_s)}: {done.ran / done.wall_s:.0f} per second"
+            )
+        records += done.records
+        interrupted = done.interrupted
+        if interrupted:
+            break
+    title = f"crowd, {draw} draw{', calibrated' if calibrated else ''}"
+    for table, rows in tables(records):
+        print_columns(f"{title}: {table}", short_header(), [short_cells(row) for row in rows])
+        if targets := target_rows(table, rows):
+            print_columns(f"Targets: {table}", TARGET_HEADER, targets)
+    simulated_h = sum(record["simulated_s"] for record in records) / 3600.0
+    settings = "".join(f" --set controller.{name}={value}" for name, value in controller.items())
+    again = f"giveway crowd --draw {draw} --only N{' --calibrated' if calibrated else ''}{settings}"
     notes = [
         *notes,
-        f"{len(done.records)} of {work.count} runs, {simulated_h:.1f} h simulated; hits of draw `{draw}`, controller: "
-        f"{', '.join(f'{name} = {value}' for name, value in controller.items()) or 'as it is by default'}.",
+        f"{len(records)} runs, {simulated_h:.1f} h simulated. One of them again, with its report: `{again}`, with "
+        "`--imu` if its table is of robots with an IMU.",
     ]
-    written = write(folder, work.name, notes, done.records)
-    if done.ran:
-        typer.echo(f"{done.ran} runs in {duration(done.wall_s)}: {done.ran / done.wall_s:.0f} per second")
-    failed = [record for record in done.records if not record["judged"]]
-    over = sum(record["status"] == "failed" for record in done.records) - len(failed)
+    written = write(folder, title, notes, records)
+    failed = [record for record in records if not record["judged"]]
+    over = sum(record["status"] == "failed" for record in records) - len(failed)
     if over:
         typer.echo(f"{over} runs ended when the robot tipped over; they count until then")
     for record in failed[:10]:
         typer.echo(f"hit {record['number']}: {record['status']}: {record['message']}", err=True)
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
-    if done.interrupted:
+    if interrupted:
         typer.echo("Interrupted; all parts but the one under way are kept. The same command goes on.", err=True)
         raise typer.Exit(INTERRUPTED)
     if failed:
@@ -159,7 +178,7 @@ def _calibrate(draw: str, robots: int, folder: Path, threads: int) -> tuple[dict
     return beliefs(done.records), [note]
 
 
-def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bool, folder: Path) -> None:
+def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bool, imu: bool, folder: Path) -> None:
     """One hit: its figures as in the crowd, and the usual report of the event-exact run."""
     from giveway.base.checks import whole
     from giveway.base.files import check_output
@@ -174,9 +193,9 @@ def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bo
 
         robot = number // PER_ROBOT
         controller = {**beliefs(calibrate(draw, [robot], 1, lambda _done: None))[robot], **controller}
-    one = hit(draw, number, controller)
-    record = compute(draw, controller, [number], 1, lambda _done: None)[0]
-    what = f"Robot {one.robot.number} ({one.robot.group}), {one.situation}, {one.kind}, bumper {one.bumper}."
+    one = hit(draw, number, controller, imu=imu)
+    record = compute(draw, controller, [number], 1, lambda _done: None, imu=imu)[0]
+    what = f"Robot {one.robot.number} ({one.robot.table}), {one.situation}, {one.kind}, bumper {one.bumper}."
     _report(one.scenario, what, record, folder)
     rows = [
         (
@@ -191,6 +210,8 @@ def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bo
     if record["judged"]:
         for name in ("detections_s", "false_s", "towards_s"):
             typer.echo(f"{name}: {', '.join(f'{time:.3f}' for time in record['judged'][name]) or 'none'}")
+    if record["lifts"]:
+        typer.echo("Wheels: " + ", ".join(f"{name} {value:g}" for name, value in record["lifts"].items()))
     typer.echo(f"Written: {folder / 'report.html'}")
 
 
@@ -224,6 +245,7 @@ def endurance(
     group: Annotated[str | None, typer.Option("--group", help="Only planar, tipping or single rollers.")] = None,
     draw: DrawOption = "tuning",
     only: Annotated[int | None, typer.Option("--only", metavar="N", help="Only run N of the group.")] = None,
+    imu: ImuOption = False,
     assignments: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for tables and runs.")] = Path(
         "out/endurance"
@@ -240,13 +262,19 @@ def endurance(
     share = 1.0 if hours is None else finite("--hours", hours, 1e-3, 1e5, "h") / HOURS["planar"]
     controller = _controller(assignments)
     if only is not None:
-        _one_drive(draw, group or "planar", only, controller, out)
+        _one_drive(draw, group or "planar", only, imu, controller, out)
         return
-    _endure(draw, [group] if group else list(HOURS), share, controller, out, threads)
+    _endure(draw, [group] if group else list(HOURS), share, imu, controller, out / "imu" if imu else out, threads)
 
 
 def _endure(
-    draw: str, groups: list[str], share: float, controller: Mapping[str, Value], out: Path, threads: int | None
+    draw: str,
+    groups: list[str],
+    share: float,
+    imu: bool,
+    controller: Mapping[str, Value],
+    out: Path,
+    threads: int | None,
 ) -> None:
     import json
 
@@ -259,7 +287,7 @@ def _endure(
     found = {}
     interrupted = False
     for group in groups:
-        work = endurance(draw, group, share * HOURS[group], controller)
+        work = endurance(draw, group, share * HOURS[group], controller, imu)
         with showing(work.name) as progress:
             done = go_on(work, out / group.replace(" ", "-"), threads, progress)
         found[group] = {"asked": dict(work.asked), **rates(done.records)}
@@ -287,16 +315,16 @@ def _endure(
         raise typer.Exit(FAILED)
 
 
-def _one_drive(draw: str, group: str, number: int, controller: Mapping[str, Value], out: Path) -> None:
+def _one_drive(draw: str, group: str, number: int, imu: bool, controller: Mapping[str, Value], out: Path) -> None:
     from giveway.base.checks import whole
     from giveway.base.files import check_output
     from giveway.crowd.endurance import compute, drive
 
     whole("--only", number, 0, 2**31 - 1)
-    folder = out / f"{group.replace(' ', '-')}-run-{number}"
+    folder = out / f"{group.replace(' ', '-')}{'-imu' if imu else ''}-run-{number}"
     check_output(folder)
-    _, scenario = drive(draw, group, number, controller)
-    record = compute(draw, group, controller, [number], 1, lambda _done: None)[0]
+    _, scenario = drive(draw, group, number, controller, imu)
+    record = compute(draw, group, controller, [number], 1, lambda _done: None, imu)[0]
     _report(scenario, f"Free motion of robot {number} ({group}): {record['detections']} false alarms.", record, folder)
     typer.echo(f"Written: {folder / 'report.html'}")
 

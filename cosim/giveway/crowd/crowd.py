@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -10,7 +11,9 @@ from giveway import batch
 from giveway.base.errors import UnknownNameError
 from giveway.crowd.blow import Blow
 from giveway.crowd.hits import PER_ROBOT, Hit, hit
-from giveway.crowd.judged import RECORDED, Judged, Limits, judge
+from giveway.crowd.judged import RECORDED, Judged, Limits, judge, limits
+from giveway.crowd.lifts import BLOCKED, lifts
+from giveway.crowd.lifts import RECORDED as LOADS
 from giveway.crowd.parts import Interrupted, Record, Work
 from giveway.crowd.population import DRAWS, GROUPS, group_of, start_value
 from giveway.robot.variables import Value
@@ -25,7 +28,7 @@ PART_ROBOTS = 32  # 300 MB of traces
 Beliefs = Mapping[int, Mapping[str, Value]]
 """By robot: parameters of its controller that a calibration found."""
 
-CODE = ("population.py", "hits.py", "blow.py", "drive.py", "judged.py", "crowd.py", "parts.py")
+CODE = ("population.py", "hits.py", "blow.py", "drive.py", "judged.py", "lifts.py", "crowd.py", "parts.py")
 
 
 def crowd(
@@ -34,24 +37,31 @@ def crowd(
     controller: Mapping[str, Value],
     beliefs: Beliefs | None = None,
     group: str | None = None,
+    imu: bool = False,
 ) -> Work:
     """The work of the first ``robots`` robots of ``draw``, with these parameters of the controller.
 
     ``beliefs``: of each robot's own; without it every controller knows its robot by the robot file alone. ``group``:
-    only the robots among them that have this plant of `GROUPS`.
+    only the robots among them that have this plant of `GROUPS`. ``imu``: the same robots, each with an IMU.
     """
     if group is not None and group not in GROUPS:
         raise UnknownNameError("group", group, GROUPS)
-    asked: dict[str, Any] = {"draw": draw, "seed": DRAWS[draw], "group": group, "controller": dict(controller)}
+    asked: dict[str, Any] = {
+        "draw": draw,
+        "seed": DRAWS[draw],
+        "group": group,
+        "imu": imu,
+        "controller": dict(controller),
+    }
     if beliefs is not None:
         asked["beliefs"] = {str(number): dict(values) for number, values in sorted(beliefs.items())}
     chosen = [number for number in range(robots) if group in (None, group_of(number))]
 
     def run(indices: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
         numbers = [chosen[index // PER_ROBOT] * PER_ROBOT + index % PER_ROBOT for index in indices]
-        return compute(draw, controller, numbers, threads, progress, beliefs)
+        return compute(draw, controller, numbers, threads, progress, beliefs, imu)
 
-    name = f"crowd, {draw} draw" + ("" if beliefs is None else ", calibrated")
+    name = f"crowd, {draw} draw" + ("" if beliefs is None else ", calibrated") + (", IMU" if imu else "")
     return Work(name, asked, len(chosen) * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run, CODE)
 
 
@@ -62,31 +72,68 @@ def compute(
     threads: int,
     progress: Callable[[int], None],
     beliefs: Beliefs | None = None,
+    imu: bool = False,
 ) -> list[Record]:
     """Records of the hits ``numbers``: each has the same bits alone and among others."""
     own = beliefs or {}
-    hits = [hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}) for number in numbers]
+    hits = [hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}, imu=imu) for number in numbers]
     records: dict[int, Record] = {}
-    for one_kind in _alike(hits):
-        method = "event-exact" if one_kind[0].robot.group == "tipping" else "fixed-step"
-        prepared = batch.Prepared([one.scenario for one in one_kind], traces=RECORDED)
+    for alike in _alike(hits):
+        can_tip = alike[0].robot.group == "tipping"
         said = functools.partial(_say, progress, len(records))
-        table = prepared.run(threads=threads, method=method, progress=said)
-        if table.attrs["interrupted"]:
-            raise Interrupted
-        time_s = table["time"].values
-        traces = {name: table[name].values for name in RECORDED}
-        for index, one in enumerate(one_kind):
-            status = (str(table["status"].values[index]), str(table["message"].values[index]))
-            # A robot that goes over ends its run: what was until then counts.
-            rows = round(float(table["simulated"].values[index]) / one.scenario.step_s) + 1
-            judged = None
-            if status[0] in ("ok", "failed") and rows > 1:
-                mine = {name: values[index, :rows] for name, values in traces.items()}
-                judged = judge(time_s[:rows], mine, limits_of(one))
-            method_used, simulated_s = str(table["method"].values[index]), float(table["simulated"].values[index])
-            records[one.number] = record_of(one, status, method_used, simulated_s, judged)
+        ran = _run(alike, (*RECORDED, *LOADS) if can_tip else RECORDED, threads, said)
+        if can_tip:
+            blocked = _run([_blocked(one) for one in alike], (*RECORDED, *LOADS), threads, lambda _done, _of: None)
+            for one, other in zip(ran, blocked, strict=True):
+                one.judge_lifts(other)
+        records |= {one.hit.number: one.record() for one in ran}
     return [records[number] for number in numbers]
+
+
+class _Ran:
+    """A run of the batch library, judged; a robot that goes over ends its run: what was until then counts."""
+
+    def __init__(self, one: Hit, table: Any, index: int, traces: Mapping[str, Any]) -> None:
+        self.hit = one
+        self.status, self.message, self.method = (
+            str(table[name].values[index]) for name in ("status", "message", "method")
+        )
+        self.simulated_s = float(table["simulated"].values[index])
+        rows = round(self.simulated_s / one.scenario.step_s) + 1
+        self.time_s = table["time"].values[:rows]
+        self.traces = {name: values[index, :rows] for name, values in traces.items()}
+        self.judged: Judged | None = None
+        if self.status in ("ok", "failed") and rows > 1:
+            self.judged = judge(self.time_s, self.traces, limits_of(one))
+        self.lifts: Any = None
+
+    def judge_lifts(self, blocked: _Ran) -> None:
+        if self.judged is not None and blocked.judged is not None:
+            self.lifts = lifts(self.hit.scenario.step_s, self.traces, self.judged, blocked.traces, blocked.judged)
+
+    def record(self) -> Record:
+        return {
+            **record_of(self.hit, (self.status, self.message), self.method, self.simulated_s, self.judged),
+            "lifts": self.lifts,
+        }
+
+
+def _run(hits: Sequence[Hit], recorded: tuple[str, ...], threads: int, said: Callable[[int, int], None]) -> list[_Ran]:
+    """Hits of one duration and plant."""
+    method = "event-exact" if hits[0].robot.group == "tipping" else "fixed-step"
+    table = batch.Prepared([one.scenario for one in hits], traces=recorded).run(
+        threads=threads, method=method, progress=said
+    )
+    if table.attrs["interrupted"]:
+        raise Interrupted
+    traces = {name: table[name].values for name in recorded}
+    return [_Ran(one, table, index, traces) for index, one in enumerate(hits)]
+
+
+def _blocked(one: Hit) -> Hit:
+    """The same without a reaction."""
+    controller = {**one.scenario.controller, **BLOCKED}
+    return dataclasses.replace(one, scenario=dataclasses.replace(one.scenario, controller=controller))
 
 
 def _say(progress: Callable[[int], None], before: int, done: int, _of: int) -> None:
@@ -105,9 +152,7 @@ def _alike(hits: Sequence[Hit]) -> list[list[Hit]]:
 
 def limits_of(one: Hit) -> Limits:
     """What `judge` needs to know of a hit."""
-    name = "admittance.acceleration_limit"
-    limit = one.scenario.controller.get(name, start_value(name, "controller"))
-    return Limits(float(limit), start_value("wheel.distance"), one.kind == "moment")
+    return limits(one.scenario.controller, start_value("wheel.distance"), one.kind == "moment")
 
 
 def record_of(one: Hit, status: tuple[str, str], method: str, simulated_s: float, judged: Judged | None) -> Record:
@@ -115,7 +160,7 @@ def record_of(one: Hit, status: tuple[str, str], method: str, simulated_s: float
     return {
         "number": one.number,
         "robot": one.robot.number,
-        "group": one.robot.group,
+        "group": one.robot.table,
         "situation": one.situation,
         "kind": one.kind,
         "bumper": one.bumper,

@@ -19,7 +19,7 @@ from giveway import batch
 from giveway.base.errors import UnknownNameError
 from giveway.crowd.drive import Drive, Leg, tare_s
 from giveway.crowd.parts import Interrupted, Record, Work
-from giveway.crowd.population import DRAWS, GROUPS, Robot, robot_of
+from giveway.crowd.population import DRAWS, GROUPS, Robot, controller_of, robot_of
 from giveway.crowd.statistics import rate_upper_bound
 from giveway.robot.variables import Value
 from giveway.scenario.scenario import Scenario
@@ -49,17 +49,19 @@ SHARES = (0.35, 0.25, 0.25, 0.15)
 LONGEST_RAMP_S = 4.0
 
 
-def endurance(draw: str, group: str, hours: float, controller: Mapping[str, Value]) -> Work:
-    """The work of ``hours`` of free motion of robots of ``group``."""
+def endurance(draw: str, group: str, hours: float, controller: Mapping[str, Value], imu: bool = False) -> Work:
+    """The work of ``hours`` of free motion of robots of ``group``; ``imu``: each with an IMU."""
     if draw not in DRAWS:
         raise UnknownNameError("draw", draw, DRAWS)
     if group not in GROUPS:
         raise UnknownNameError("group", group, GROUPS)
-    asked = {"draw": draw, "seed": DRAWS[draw], "group": group, "controller": dict(controller)}
+    asked = {"draw": draw, "seed": DRAWS[draw], "group": group, "imu": imu, "controller": dict(controller)}
     count = math.ceil(hours * 3600.0 / RUN_S)
     part = PART if group != "tipping" else PART // 8
     code = ("population.py", "drive.py", "endurance.py", "parts.py")
-    return Work(f"endurance, {group}", asked, count, part, functools.partial(compute, draw, group, controller), code)
+    return Work(
+        f"endurance, {group}", asked, count, part, functools.partial(compute, draw, group, controller, imu=imu), code
+    )
 
 
 def compute(
@@ -69,10 +71,11 @@ def compute(
     numbers: Sequence[int],
     threads: int,
     progress: Callable[[int], None],
+    imu: bool = False,
 ) -> list[Record]:
     """Records of the runs ``numbers``."""
     plans = {number // SHARED: _plan(draw, number // SHARED) for number in numbers}
-    scenarios = [_scenario(draw, group, number, plans[number // SHARED], controller) for number in numbers]
+    scenarios = [_driven(draw, group, number, plans[number // SHARED], controller, imu)[1] for number in numbers]
     method = "event-exact" if group == "tipping" else "fixed-step"
     table = batch.Prepared(scenarios).run(threads=threads, method=method, progress=lambda done, _of: progress(done))
     if table.attrs["interrupted"]:
@@ -91,23 +94,29 @@ def compute(
     ]
 
 
-def drive(draw: str, group: str, number: int, controller: Mapping[str, Value]) -> tuple[Robot, Scenario]:
+def drive(
+    draw: str, group: str, number: int, controller: Mapping[str, Value], imu: bool = False
+) -> tuple[Robot, Scenario]:
     """Run ``number``: its robot, and its whole input."""
-    scenario = _scenario(draw, group, number, _plan(draw, number // SHARED), controller)
-    return robot_of(draw, number, group), scenario
+    return _driven(draw, group, number, _plan(draw, number // SHARED), controller, imu)
 
 
-def _scenario(draw: str, group: str, number: int, plan: Drive, controller: Mapping[str, Value]) -> Scenario:
+def _driven(
+    draw: str, group: str, number: int, plan: Drive, controller: Mapping[str, Value], imu: bool
+) -> tuple[Robot, Scenario]:
+    whose = robot_of(draw, number, group, imu)
     seed = int(np.random.default_rng((DRAWS[draw], 3, number)).integers(2**31))
     own: dict[str, Value] = {
-        **robot_of(draw, number, group).testbed,
+        **whose.testbed,
         "slider.present": False,
         "rope.attached": False,
         "start.theta": plan.theta_rad,
     }
-    return Scenario(
-        f"endurance {number}", RUN_S, bumper="none", testbed=own, controller=controller, plan=plan, seed=seed
+    known = controller_of(whose, controller)
+    scenario = Scenario(
+        f"endurance {number}", RUN_S, bumper="none", testbed=own, controller=known, plan=plan, seed=seed
     )
+    return whose, scenario
 
 
 def _plan(draw: str, number: int) -> Drive:

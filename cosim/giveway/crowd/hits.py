@@ -21,7 +21,7 @@ from giveway.base.errors import GivewayError
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.crowd.blow import Blow
 from giveway.crowd.drive import Drive, Leg, tare_s
-from giveway.crowd.population import DRAWS, GROUP_PATTERN, Robot, robot, start_value, start_values
+from giveway.crowd.population import DRAWS, GROUP_PATTERN, Robot, controller_of, robot, start_value, start_values
 from giveway.robot.variables import Value
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
 from giveway.scenario.plan import Plan, Pushes, Rest, TimedPush
@@ -117,14 +117,14 @@ class Hit:
     scenario: Scenario
 
 
-def hit(draw: str, number: int, controller: Mapping[str, Value] | None = None) -> Hit:
-    """Hit ``number`` of ``draw`` with these parameters of the controller."""
-    whose = robot(draw, number // PER_ROBOT)
+def hit(draw: str, number: int, controller: Mapping[str, Value] | None = None, *, imu: bool = False) -> Hit:
+    """Hit ``number`` of ``draw`` with these parameters of the controller; ``imu``: of a robot that has one."""
+    whose = robot(draw, number // PER_ROBOT, imu)
     situation, kind = PATTERN[number % PER_ROBOT]
     if situation == "rest or motion":
         # Half of the robots of every plant, which repeat after ten.
         situation = "motion" if (whose.number + whose.number // len(GROUP_PATTERN)) % 2 else "rest"
-    return _Draw(draw, number, whose, situation, kind).hit(controller or {})
+    return _Draw(draw, number, whose, situation, kind).hit(controller_of(whose, controller or {}))
 
 
 @functools.cache

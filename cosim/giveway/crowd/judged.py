@@ -9,7 +9,8 @@
 - Delay: from the start of the contact to the detection.
 - False: a detection without a contact in the `CAUSE_S` before it.
 - Towards: in a reaction, the commanded velocity has a component against the push that caused it (for a false one, the
-  last push there was). What the robot had when it decided counts only as far as it brakes too slowly.
+  last push there was). What the robot had when it decided counts only as far as it brakes more slowly than with
+  `BRAKING_SHARE` of what the controller's limits leave: of the acceleration, of tipping, of its low-passes.
 - Errors: of the detection's direction and contact point against the true impulse and the mean true contact point up to
   then, in the base frame; once at the decision, once `LATER_S` later.
 """
@@ -24,10 +25,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.base.gravity import GRAVITY_MPS2
+from giveway.crowd.population import start_value
 from giveway.library.recorded import windows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from giveway.robot.variables import Value
 
     Numbers = NDArray[np.float64]
 
@@ -43,6 +48,7 @@ __all__ = [
     "Judged",
     "Limits",
     "judge",
+    "limits",
 ]
 
 TOUCH_N = 0.5
@@ -52,7 +58,9 @@ CAUSE_S = 0.1
 LOCK_OUT_S = 0.3
 LATER_S = 0.03
 STILL_MPS = 5e-3  # a commanded speed that counts as none
-BRAKING_SHARE = 0.5  # of the acceleration limit with which a reaction at least turns round
+BRAKING_SHARE = 0.5  # the change of velocity points aside where the motion does
+ESCAPE, ESCAPE_LOW_PASSES = 2, 2  # admittance.kind; a ramp is late by the sum of their time constants
+LEAST_TIP_MPS2 = 0.05
 MODES_REACTING = (2, 3)
 
 DETECTION = tuple(f"controller.detection.{name}" for name in ("direction", "point_x", "point_y"))
@@ -75,14 +83,31 @@ class Limits:
     """What `judge` needs besides traces.
 
     Attributes:
-        acceleration_mps2: limit of the reaction.
+        acceleration_mps2: with which a reaction changes the velocity in whatever direction.
+        late_s: how much later.
         arm_m: at which a moment counts as a force.
         moment: the run's push is a pure moment.
     """
 
     acceleration_mps2: float
+    late_s: float
     arm_m: float
     moment: bool = False
+
+
+def limits(controller: Mapping[str, Value], wheel_distance_m: float, moment: bool = False) -> Limits:
+    """Those of a controller with these parameters: of tipping as in c_core's gw_tip.c, towards a wheel."""
+
+    def value(name: str) -> float:
+        return float(controller.get(f"admittance.{name}", start_value(f"admittance.{name}", "controller")))
+
+    acceleration = value("acceleration_limit")
+    height = value("tip_height")
+    if height > 0.0:
+        edge = 0.5 * wheel_distance_m - value("tip_offset") - value("tip_slope") * height
+        acceleration = min(acceleration, max(value("tip_share") * GRAVITY_MPS2 * edge / height, LEAST_TIP_MPS2))
+    late = ESCAPE_LOW_PASSES * value("smoothing") if value("kind") == ESCAPE else 0.0
+    return Limits(acceleration, late, wheel_distance_m, moment)
 
 
 @dataclass(frozen=True)
@@ -265,5 +290,6 @@ class _Run:
         if end <= row:
             return False
         speed = (push[0] * get["reference.vx"][row:end] + push[1] * get["reference.vy"][row:end]) / length
-        brakes = BRAKING_SHARE * self._limits.acceleration_mps2 * (self._time[row:end] - self._time[row])
+        since_s = np.maximum(self._time[row:end] - self._time[row] - self._limits.late_s, 0.0)
+        brakes = BRAKING_SHARE * self._limits.acceleration_mps2 * since_s
         return bool((speed < np.minimum(0.0, speed[0] + brakes) - STILL_MPS).any())

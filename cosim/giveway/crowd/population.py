@@ -1,7 +1,8 @@
 """The robots of the crowd: how each differs from the robot file that its controller believes.
 
 `POPULATION` is the whole statement of the distributions. It was written before any detector was tuned; the controller
-never sees any of it. A robot depends on the draw and on its number alone.
+never sees any of it. A robot depends on the draw and on its number alone. With an IMU it is the same robot, and `IMU`
+states how its accelerometer and gyro differ from what their data sheet promises.
 """
 
 from __future__ import annotations
@@ -22,9 +23,13 @@ __all__ = [
     "DRAWS",
     "GROUPS",
     "GROUP_PATTERN",
+    "IMU",
+    "IMU_CONTROLLER",
     "POPULATION",
+    "TABLES",
     "Quantity",
     "Robot",
+    "controller_of",
     "group_of",
     "robot",
     "robot_of",
@@ -37,6 +42,10 @@ DRAWS: Mapping[str, int] = MappingProxyType({"tuning": 20160401, "judging": 2026
 
 GROUPS = ("planar", "tipping", "single rollers")
 """The plants of the crowd, with figures apart: see `group_of`."""
+
+WITH_IMU = ", IMU"
+TABLES = (*GROUPS, *(f"{group}{WITH_IMU}" for group in GROUPS))
+"""The plants again, and each with an IMU."""
 
 GROUP_PATTERN = (2, 1, 0, 0, 1, 0, 0, 0, 0, 0)  # of every ten robots: one with single rollers, two that tip
 
@@ -107,6 +116,25 @@ POPULATION: tuple[Quantity, ...] = (
     ),
 )
 
+IMU: tuple[Quantity, ...] = (
+    Quantity("place off by, m", ("imu.x", "imu.y"), 0.0, 0.02, polar=True),
+    Quantity("height", ("imu.height",), 0.8, 1.2, scales=True),
+    Quantity("turned by, rad", ("imu.azimuth",), -math.radians(2.0), math.radians(2.0)),
+    Quantity("zero of each axis, m/s2", ("imu.acceleration_bias[0]", "imu.acceleration_bias[1]"), -0.4, 0.4, each=True),
+    Quantity("scale of each axis", ("imu.acceleration_scale[0]", "imu.acceleration_scale[1]"), 0.99, 1.01, each=True),
+    Quantity("noise", ("imu.acceleration_noise",), 0.7, 1.5, scales=True),
+    Quantity("zero of the gyro, rad/s", ("imu.gyro_bias",), -math.radians(1.0), math.radians(1.0)),
+    Quantity("scale of the gyro", ("imu.gyro_scale",), 0.99, 1.01),
+    Quantity("noise of the gyro", ("imu.gyro_noise",), 0.7, 1.5, scales=True),
+    Quantity("vibration", ("imu.vibration",), 0.5, 2.0, scales=True),
+    Quantity("growth of the vibration with the speed", ("imu.vibration_growth",), 0.5, 2.0, scales=True),
+    Quantity("natural frequency of the structure", ("imu.vibration_frequency",), 0.7, 1.4, scales=True),
+    Quantity("share of samples that are lost", ("imu.dropout",), 0.0, 0.005),
+)
+
+IMU_CONTROLLER: Mapping[str, Value] = MappingProxyType({"imu.use": 1, "estimator.acceleration_source": 3})
+"""What the controller of a robot with an IMU is told about it."""
+
 
 @functools.cache
 def start_values(model: str = "testbed") -> Mapping[str, Value]:
@@ -128,11 +156,18 @@ class Robot:
         number: from 0.
         group: one of `GROUPS`.
         testbed: parameters that make it differ from the robot file.
+        imu: it has an IMU.
     """
 
     number: int
     group: str
     testbed: Mapping[str, Value]
+    imu: bool = False
+
+    @property
+    def table(self) -> str:
+        """The one of `TABLES` that it belongs to."""
+        return f"{self.group}{WITH_IMU}" if self.imu else self.group
 
 
 def group_of(number: int) -> str:
@@ -140,16 +175,16 @@ def group_of(number: int) -> str:
     return GROUPS[GROUP_PATTERN[number % len(GROUP_PATTERN)]]
 
 
-def robot(draw: str, number: int) -> Robot:
+def robot(draw: str, number: int, imu: bool = False) -> Robot:
     """Robot ``number`` of ``draw`` (a name in `DRAWS`).
 
     Raises:
         UnknownNameError: a parameter of `POPULATION` is not one of the testbed; none is skipped.
     """
-    return robot_of(draw, number, group_of(number))
+    return robot_of(draw, number, group_of(number), imu)
 
 
-def robot_of(draw: str, number: int, group: str) -> Robot:
+def robot_of(draw: str, number: int, group: str, imu: bool = False) -> Robot:
     """Robot ``number`` with the plant of ``group``, whatever it has in the crowd."""
     if draw not in DRAWS:
         raise UnknownNameError("draw", draw, DRAWS)
@@ -162,4 +197,14 @@ def robot_of(draw: str, number: int, group: str) -> Robot:
         values["base.tipping"] = True
     if group == "single rollers":
         values |= {"roller.arrangement": 1, "roller.seed": int(rng.integers(2**31))}
-    return Robot(number, group, MappingProxyType(values))
+    if imu:
+        own = np.random.default_rng((DRAWS[draw], 4, number))  # all else stays as it is without
+        values["imu.present"] = True
+        for quantity in IMU:
+            values.update(quantity.drawn(own))
+    return Robot(number, group, MappingProxyType(values), imu)
+
+
+def controller_of(whose: Robot, controller: Mapping[str, Value]) -> Mapping[str, Value]:
+    """What the controller of this robot is set to: ``controller``, but for what it is told about its IMU."""
+    return {**controller, **IMU_CONTROLLER} if whose.imu else controller

@@ -12,8 +12,8 @@ from typing import Any
 from giveway.base.files import replace_files
 from giveway.crowd.judged import Contact, Judged
 from giveway.crowd.parts import Record
-from giveway.crowd.population import GROUPS
-from giveway.crowd.statistics import Estimate, count_interval, mean, percentile
+from giveway.crowd.population import TABLES, WITH_IMU
+from giveway.crowd.statistics import Estimate, count_interval, mean, percentile, rate_interval
 
 __all__ = [
     "HEADER",
@@ -110,6 +110,9 @@ HEADER = (
     "place 95 %, mm",
     "place 30 ms later mean, mm",
     "place 30 ms later 95 %, mm",
+    "runs with a late lift",
+    "so if blocked, too",
+    "runs with a lift by the reaction",
 )
 
 
@@ -122,6 +125,9 @@ class Found:
         delay_ms: of hits, median and 95th percentile.
         direction_deg, later_direction_deg: 95th percentile of the error.
         place_mm, later_place_mm: mean and 95th percentile of the error; the mean over those noticed.
+        delay_longest_ms: of all of them; infinite: one was missed.
+        late_lifts, late_blocked_lifts, caused_lifts: runs with wheels that lift late, that do so with the reaction
+            blocked, and that lift by the reaction while a contact lasts; None: this plant cannot tip.
     """
 
     name: str
@@ -139,12 +145,19 @@ class Found:
     place_p95_mm: Estimate | None
     later_place_mean_mm: Estimate | None
     later_place_p95_mm: Estimate | None
+    delay_longest_ms: float | None
+    late_lifts: int | None
+    late_blocked_lifts: int | None
+    caused_lifts: int | None
 
     def plain(self) -> dict[str, Any]:
         """For JSON: infinite ends as text."""
         found: dict[str, Any] = {}
         for name, value in vars(self).items():
-            found[name] = [_plain(end) for end in value] if isinstance(value, tuple) else value
+            if isinstance(value, tuple):
+                found[name] = [_plain(end) for end in value]
+            else:
+                found[name] = _plain(value) if isinstance(value, float) else value
         found["missed_interval"] = list(count_interval(self.missed, self.hits)) if self.hits else None
         found["runs_with_false_interval"] = list(count_interval(self.runs_with_false, self.runs)) if self.runs else None
         return found
@@ -197,29 +210,64 @@ def find(row: Row, runs: Read) -> Found:
         errors("later_direction_deg")[1],
         *errors("place_mm"),
         *errors("later_place_mm"),
+        max(delays, default=None),
+        *_lifts([record["lifts"] for record, _ in mine if record.get("lifts")]),
     )
+
+
+def _lifts(of_runs: Sequence[Mapping[str, float]]) -> tuple[int | None, ...]:
+    """Runs with late lifts, with those if blocked, and with lifts by the reaction."""
+    if not of_runs:
+        return None, None, None
+    return tuple(sum(one[name] > 0 for one in of_runs) for name in ("late_s", "late_blocked_s", "caused"))
 
 
 @dataclass(frozen=True)
 class Target:
-    """What a row's figure is to be at most, in the plants `TARGET_GROUPS`."""
+    """What a row's figure is to be at most.
+
+    Attributes:
+        row, what: names.
+        figure: value and interval; None: there is none.
+        most: of the value.
+    """
 
     row: str
     what: str
-    figure: Callable[[Found], float | None]
+    figure: Callable[[Found], Estimate | None]
     most: float
 
 
-def _value(name: str) -> Callable[[Found], float | None]:
-    """The figure of this name, without its interval."""
+def _value(name: str) -> Callable[[Found], Estimate | None]:
+    """The figure of this name with its interval."""
 
-    def figure(found: Found) -> float | None:
-        value = getattr(found, name)
-        if value is None:
-            return None
-        return float(value[0] if isinstance(value, tuple) else value)
+    def figure(found: Found) -> Estimate | None:
+        value: Estimate | None = getattr(found, name)
+        return value
 
     return figure
+
+
+def _number(name: str, of: str) -> Callable[[Found], Estimate | None]:
+    """The count of this name; its interval: per as many as there were."""
+
+    def figure(found: Found) -> Estimate | None:
+        count, every = getattr(found, name), getattr(found, of)
+        if count is None or not every:
+            return None
+        low, high = count_interval(min(count, every), every)
+        return float(count), low * every, high * every
+
+    return figure
+
+
+def _false(found: Found) -> Estimate | None:
+    return rate_interval(found.false, 1e-4 * found.runs) if found.runs else None
+
+
+def _longest(found: Found) -> Estimate | None:
+    longest = found.delay_longest_ms
+    return None if longest is None else (longest, longest, math.inf)
 
 
 def _delays(row: str, median_ms: float, p95_ms: float) -> tuple[Target, Target]:
@@ -229,50 +277,70 @@ def _delays(row: str, median_ms: float, p95_ms: float) -> tuple[Target, Target]:
     )
 
 
-TARGET_GROUPS = ("planar", "tipping")
-TARGETS: tuple[Target, ...] = (
-    Target("all hits", "missed", _value("missed"), 0.0),
-    Target("all hits", "false detections per 10,000 runs", lambda found: 1e4 * found.false / found.runs, 10.0),
-    Target("all hits", "towards", _value("towards"), 0.0),
-    *(
-        target
-        for bumper in ("none", "spring", "magnetic")
-        for target in _delays(f"at rest, 0.5 m/s, {bumper}", 10.0, 12.0)
-    ),
-    *_delays("in motion, 0.5 m/s", 20.0, 25.0),
-    Target("second hit, 0.5 m/s", "missed", _value("missed"), 0.0),
-    *_delays("second hit, 0.5 m/s", 20.0, 25.0),
-    Target("all hits", "direction 95 %, deg", _value("direction_p95_deg"), 15.0),
-    Target("all hits", "direction 30 ms later, deg", _value("later_direction_p95_deg"), 5.0),
-    Target("all hits", "place 30 ms later mean, mm", _value("later_place_mean_mm"), 20.0),
-    Target("all hits", "place 30 ms later 95 %, mm", _value("later_place_p95_mm"), 50.0),
-    Target("slow push in motion", "missed", _value("missed"), 0.0),
-    Target("slow push in motion", "delay 95 %, ms", _value("delay_p95_ms"), 500.0),
-    Target("moment at rest", "missed", _value("missed"), 0.0),
-    Target("moment in motion", "missed", _value("missed"), 0.0),
+MISSED = _number("missed", "hits")
+
+
+def _targets(rest_ms: tuple[float, float], motion_ms: tuple[float, float]) -> tuple[Target, ...]:
+    bumpers = ("none", "spring", "magnetic")
+    return (
+        Target("all hits", "missed", MISSED, 0.0),
+        Target("all hits", "false detections per 10,000 runs", _false, 10.0),
+        Target("all hits", "towards", _number("towards", "runs"), 0.0),
+        *(target for bumper in bumpers for target in _delays(f"at rest, 0.5 m/s, {bumper}", *rest_ms)),
+        *_delays("in motion, 0.5 m/s", *motion_ms),
+        *(target for bumper in bumpers for target in _delays(f"in motion, 0.5 m/s, {bumper}", *motion_ms)),
+        Target("second hit, 0.5 m/s", "missed", MISSED, 0.0),
+        *_delays("second hit, 0.5 m/s", *motion_ms),
+        Target("while reacting", "missed", MISSED, 0.0),
+        Target("all hits", "direction 95 %, deg", _value("direction_p95_deg"), 15.0),
+        Target("all hits", "direction 30 ms later, deg", _value("later_direction_p95_deg"), 5.0),
+        Target("all hits", "place 30 ms later mean, mm", _value("later_place_mean_mm"), 20.0),
+        Target("all hits", "place 30 ms later 95 %, mm", _value("later_place_p95_mm"), 50.0),
+        Target("slow push in motion", "missed", MISSED, 0.0),
+        Target("slow push in motion", "delay longest, ms", _longest, 500.0),
+        Target("slow push in motion", "towards", _number("towards", "runs"), 0.0),
+        Target("slow push at rest", "missed", MISSED, 0.0),
+        Target("slow push at rest", "towards", _number("towards", "runs"), 0.0),
+        Target("moment at rest", "missed", MISSED, 0.0),
+        Target("moment in motion", "missed", MISSED, 0.0),
+    )
+
+
+LIFTS = (
+    Target("all hits", "runs with a late lift", _number("late_lifts", "runs"), 0.0),
+    Target("all hits", "runs with a lift by the reaction", _number("caused_lifts", "runs"), 0.0),
 )
+TARGETS: Mapping[str, tuple[Target, ...]] = {
+    "planar": _targets((10.0, 12.0), (20.0, 25.0)),
+    "tipping": (*_targets((10.0, 12.0), (20.0, 25.0)), *LIFTS),
+    f"planar{WITH_IMU}": _targets((5.0, 6.0), (8.0, 10.0)),
+    f"tipping{WITH_IMU}": (*_targets((5.0, 6.0), (8.0, 10.0)), *LIFTS),
+}
+"""By table; the others have figures alone."""
 
 
-def target_rows(group: str, rows: Sequence[Found]) -> list[tuple[str, str, str, str, str]]:
-    """Row, figure, target, what was found, and whether that meets it; none for other plants."""
-    if group not in TARGET_GROUPS:
-        return []
+def target_rows(group: str, rows: Sequence[Found]) -> list[tuple[str, ...]]:
+    """Row, figure, target, what was found, its interval, and whether that meets it; none for other plants."""
     named = {found.name: found for found in rows}
-    lines = []
-    for target in TARGETS:
+    lines: list[tuple[str, ...]] = []
+    for target in TARGETS.get(group, ()):
         found = named.get(target.row)
-        value = target.figure(found) if found is not None and found.hits else None
-        said = "no hits" if value is None else f"{value:.4g}"
-        met = "-" if value is None else "met" if value <= target.most else "missed"
-        lines.append((target.row, target.what, f"{target.most:g}", said, met))
+        estimate = target.figure(found) if found is not None and found.hits else None
+        said, ends, met = "no hits", "-", "-"
+        if estimate is not None:
+            value, low, high = estimate
+            said, ends = f"{value:.4g}", f"{low:.3g} to {high:.3g}"
+            met = "met" if value <= target.most else "missed"
+        lines.append((target.row, target.what, f"{target.most:g}", said, ends, met))
     return lines
 
 
-TARGET_HEADER = ("row", "figure", "at most", "found", "")
+TARGET_HEADER = ("row", "figure", "at most", "found", "95 % interval", "")
 
 
 def cells(found: Found) -> tuple[str, ...]:
     """The row as text, intervals in brackets."""
+    lifted = found.late_lifts, found.late_blocked_lifts, found.caused_lifts
     return (
         found.name,
         str(found.runs),
@@ -289,6 +357,7 @@ def cells(found: Found) -> tuple[str, ...]:
         _estimate(found.place_p95_mm, 0),
         _estimate(found.later_place_mean_mm, 0),
         _estimate(found.later_place_p95_mm, 0),
+        *("-" if lifts is None else _share(lifts, found.runs) for lifts in lifted),
     )
 
 
@@ -321,18 +390,34 @@ def _estimate(value: Estimate | None, decimals: int) -> str:
 
 
 def tables(records: Sequence[Record]) -> Iterator[tuple[str, list[Found]]]:
-    """Per plant of `GROUPS` that has runs: its rows."""
-    for group in GROUPS:
-        mine = read([record for record in records if record["group"] == group])
+    """Per table of `TABLES` that has runs: its rows."""
+    for group, mine in _by_table(records):
+        judged = read(mine)
+        if judged:
+            yield group, [found for row in ROWS if (found := find(row, judged)).runs]
+
+
+def _by_table(records: Sequence[Record]) -> Iterator[tuple[str, list[Record]]]:
+    for group in TABLES:
+        mine = [record for record in records if record["group"] == group]
         if mine:
-            yield group, [found for row in ROWS if (found := find(row, mine)).runs]
+            yield group, mine
 
 
 def worst(records: Sequence[Record]) -> dict[str, list[list[Any]]]:
-    """The worst cases: what is wrong, then number and value of each."""
+    """The worst cases of one table: what is wrong, then number and value of each."""
     cases: dict[str, list[tuple[float, int]]] = {
         name: []
-        for name in ("missed", "false detections", "towards", "delay at 0.5 m/s, ms", "direction 30 ms later, deg")
+        for name in (
+            "missed",
+            "false detections",
+            "towards",
+            "delay at 0.5 m/s, ms",
+            "direction 30 ms later, deg",
+            "place 30 ms later, mm",
+            "late lift, s",
+            "wheels lifted by the reaction",
+        )
     }
     for record, judged in read(records):
         number = int(record["number"])
@@ -346,6 +431,12 @@ def worst(records: Sequence[Record]) -> dict[str, list[list[Any]]]:
                 cases["delay at 0.5 m/s, ms"].append((contact.delay_ms, number))
             if contact.later_direction_deg is not None and is_hit(record):
                 cases["direction 30 ms later, deg"].append((contact.later_direction_deg, number))
+            if contact.later_place_mm is not None and is_hit(record):
+                cases["place 30 ms later, mm"].append((contact.later_place_mm, number))
+        lifted = record.get("lifts")
+        if lifted:
+            cases["late lift, s"] += [(lifted["late_s"], number)] if lifted["late_s"] else []
+            cases["wheels lifted by the reaction"] += [(lifted["caused"], number)] if lifted["caused"] else []
     found: dict[str, list[list[Any]]] = {}
     for name, values in cases.items():
         values.sort(key=lambda one: (-one[0], one[1]))
@@ -363,11 +454,13 @@ def markdown(title: str, notes: Sequence[str], records: Sequence[Record]) -> str
         if targets:
             lines += [f"| {' | '.join(TARGET_HEADER)} |", "|" + "---|" * len(TARGET_HEADER)]
             lines += [f"| {' | '.join(line)} |" for line in targets] + [""]
-    lines += ["## Worst cases", ""]
-    for name, values in worst(records).items():
-        listed = ", ".join(f"{number} ({value:g})" for number, value in values)
-        lines += [f"- {name}: {listed or 'none'}"]
-    return "\n".join(lines) + "\n"
+    for group, mine in _by_table(records):
+        lines += [f"## {group}: worst cases", ""]
+        for name, values in worst(mine).items():
+            listed = ", ".join(f"{number} ({value:g})" for number, value in values)
+            lines += [f"- {name}: {listed or 'none'}"]
+        lines += [""]
+    return "\n".join(lines)
 
 
 def write(folder: Path, title: str, notes: Sequence[str], records: Sequence[Record]) -> list[Path]:
@@ -377,7 +470,7 @@ def write(folder: Path, title: str, notes: Sequence[str], records: Sequence[Reco
         "title": title,
         "notes": list(notes),
         "tables": {group: [found.plain() for found in rows] for group, rows in tables(records)},
-        "worst": worst(records),
+        "worst": {group: worst(mine) for group, mine in _by_table(records)},
         "ended early": [[one["number"], one["message"]] for one in records if one["judged"] and one["status"] != "ok"],
         "not judged": [[record["number"], record["message"]] for record in records if not record["judged"]],
     }
