@@ -13,14 +13,14 @@ import pytest
 from giveway import batch
 from giveway.base.errors import GivewayError
 from giveway.cli import _main as cli_main
-from giveway.crowd import endurance, table
+from giveway.crowd import endurance, lifts, table
 from giveway.crowd.blow import Blow
 from giveway.crowd.crowd import compute, crowd, limits_of
 from giveway.crowd.drive import Drive, Leg
 from giveway.crowd.hits import PATTERN, PER_ROBOT, Hit, hit
-from giveway.crowd.judged import RECORDED, Judged, judge
+from giveway.crowd.judged import RECORDED, Contact, Judged, judge, limits
 from giveway.crowd.parts import Interrupted, Work, go_on
-from giveway.crowd.population import GROUPS, POPULATION, Quantity, group_of, robot, robot_of, start_value
+from giveway.crowd.population import GROUPS, IMU, POPULATION, Quantity, group_of, robot, robot_of, start_value
 from giveway.crowd.statistics import count_interval, mean, percentile, rate_upper_bound
 
 DRAW = "tuning"
@@ -175,11 +175,57 @@ def test_the_table_has_rows_intervals_and_worst_cases(records: list[dict[str, An
         for line in table.target_rows("planar", [table.find(row, table.read(records)) for row in table.ROWS])
     }
     missed = rows["all hits"]["missed"]
-    assert targets["all hits", "missed"] == ("0", str(missed), "missed" if missed else "met")
-    assert targets["moment in motion", "missed"][1:] == ("no hits", "-")
-    assert targets["at rest, 0.5 m/s, none", "delay 95 %, ms"][1:] != ("0", "met")
+    low, high = count_interval(missed, rows["all hits"]["hits"])
+    ends = f"{low * rows['all hits']['hits']:.3g} to {high * rows['all hits']['hits']:.3g}"
+    assert targets["all hits", "missed"] == ("0", str(missed), ends, "missed" if missed else "met")
+    assert targets["moment in motion", "missed"][1:] == ("no hits", "-", "-")
+    assert targets["at rest, 0.5 m/s, none", "delay 95 %, ms"][1] != "0"
     assert table.target_rows("single rollers", []) == []
-    assert all(number in NUMBERS for values in document["worst"].values() for number, _ in values)
+    assert list(document["worst"]) == ["planar"]
+    assert all(number in NUMBERS for values in document["worst"]["planar"].values() for number, _ in values)
+
+
+def test_every_line_asked_for_has_its_row_in_each_table() -> None:
+    rows = {row.name for row in table.ROWS}
+    asked = {
+        ("missed", "all hits"): (0.0, 0.0),
+        ("false detections per 10,000 runs", "all hits"): (10.0, 10.0),
+        ("towards", "all hits"): (0.0, 0.0),
+        ("missed", "second hit, 0.5 m/s"): (0.0, 0.0),
+        ("delay longest, ms", "slow push in motion"): (500.0, 500.0),
+        ("direction 95 %, deg", "all hits"): (15.0, 15.0),
+        ("direction 30 ms later, deg", "all hits"): (5.0, 5.0),
+        ("place 30 ms later mean, mm", "all hits"): (20.0, 20.0),
+        ("place 30 ms later 95 %, mm", "all hits"): (50.0, 50.0),
+    }
+    for figure, share in (("delay median, ms", 0), ("delay 95 %, ms", 1)):
+        for bumper in ("none", "spring", "magnetic"):
+            asked[figure, f"at rest, 0.5 m/s, {bumper}"] = ((10.0, 12.0)[share], (5.0, 6.0)[share])
+        for row in ("in motion, 0.5 m/s", "second hit, 0.5 m/s"):
+            asked[figure, row] = ((20.0, 25.0)[share], (8.0, 10.0)[share])
+    assert set(table.TARGETS) == {"planar", "tipping", "planar, IMU", "tipping, IMU"}
+    for group, targets in table.TARGETS.items():
+        assert {target.row for target in targets} <= rows
+        most = {(target.what, target.row): target.most for target in targets}
+        for place, values in asked.items():
+            assert most[place] == values["IMU" in group]
+        assert (("runs with a late lift", "all hits") in most) == group.startswith("tipping")
+
+
+def test_a_robot_with_an_imu_is_the_same_robot_and_feels_sooner(records: list[dict[str, Any]]) -> None:
+    without, own = robot(DRAW, ROBOT), robot(DRAW, ROBOT, imu=True)
+    assert without.testbed.items() <= own.testbed.items()
+    assert set(own.testbed) - set(without.testbed) == {
+        "imu.present",
+        *(name for quantity in IMU for name in quantity.parameters),
+    }
+    assert (own.table, without.table) == ("planar, IMU", "planar")
+    one, plain = hit(DRAW, NUMBERS[0], imu=True), hit(DRAW, NUMBERS[0])
+    assert one.scenario.plan == plain.scenario.plan
+    assert one.scenario.controller["imu.use"] == 1
+    found = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, imu=True)[0]
+    assert found["group"] == "planar, IMU"
+    assert found["judged"] != records[0]["judged"]
 
 
 def test_towards_and_false_are_seen(records: list[dict[str, Any]]) -> None:
@@ -199,6 +245,51 @@ def test_towards_and_false_are_seen(records: list[dict[str, Any]]) -> None:
     force = traces["testbed.truth.contact_force"]
     force[-300:] = 0.0
     assert judge(time_s, traces, limits_of(one)).false_s[-1] == pytest.approx(time_s[-5])
+
+
+def test_limits_are_those_of_the_controller() -> None:
+    """Towards: allowed is what the controller's own limits leave, here in numbers that it has."""
+    assert limits({"admittance.acceleration_limit": 2.0}, 0.24).acceleration_mps2 == 2.0
+    # Half of the wheels' distance less the offset, over the height, times gravity (known to 1e-3); half of it.
+    own = {"admittance.tip_height": 0.4, "admittance.tip_slope": 0.0, "admittance.tip_share": 0.5}
+    assert limits(own, 0.24).acceleration_mps2 == pytest.approx(0.5 * 9.81 * (0.12 - 0.03) / 0.4, rel=1e-3)
+    assert limits({"admittance.kind": 2, "admittance.smoothing": 0.03}, 0.24).late_s == pytest.approx(0.06)
+    assert limits({"admittance.kind": 0, "admittance.smoothing": 0.03}, 0.24).late_s == 0.0
+
+
+def test_wheels_that_lift_are_seen_and_excused_by_the_blocked_run() -> None:
+    def judged(start_s: float, end_s: float) -> Judged:
+        return Judged((Contact(start_s, end_s, 5.0, start_s, "noticed", 1),), (), (), ())
+
+    def loads(*lifted: tuple[int, int, int]) -> dict[str, Any]:
+        found = {name: np.full(1000, 100.0) for name in lifts.RECORDED}
+        for wheel, first, last in lifted:
+            found[lifts.RECORDED[wheel]][first:last] = 0.0
+        return found
+
+    nothing = {"late_s": 0.0, "late_blocked_s": 0.0, "caused": 0}
+    own, longer = judged(0.2, 0.3), judged(0.2, 0.5)
+
+    def found(mine: Any, blocked: Any) -> dict[str, float]:
+        return lifts.lifts(1e-3, mine, own, blocked, longer)
+
+    assert found(loads(), loads()) == nothing
+    assert found(loads((0, 100, 150), (1, 310, 390)), loads()) == nothing  # before, and until 0.1 s after
+    assert found(loads((1, 390, 450)), loads())["late_s"] == pytest.approx(
+        0.050, abs=1.5e-3
+    )  # from 401 on, a row either way
+    assert found(loads((1, 250, 260)), loads())["caused"] == 1
+    assert found(loads((1, 250, 260), (2, 250, 260)), loads((1, 480, 490)))["caused"] == 1
+    assert found(loads(), loads((0, 590, 650)))["late_blocked_s"] == pytest.approx(0.050, abs=1.5e-3)
+
+
+def test_a_run_that_can_tip_is_judged_beside_the_blocked_one() -> None:
+    (run,) = compute(DRAW, {}, [PER_ROBOT], 1, lambda _done: None)
+    assert run["group"] == "tipping"
+    assert set(run["lifts"]) == {"late_s", "late_blocked_s", "caused"}
+    (blind,) = compute(DRAW, dict(lifts.BLOCKED), [PER_ROBOT], 1, lambda _done: None)
+    assert blind["lifts"]["caused"] == 0
+    assert blind["lifts"]["late_s"] == blind["lifts"]["late_blocked_s"] == run["lifts"]["late_blocked_s"]
 
 
 def test_a_missed_hit_counts_as_infinite(records: list[dict[str, Any]]) -> None:
@@ -345,7 +436,11 @@ def test_the_command_writes_tables_and_refuses_what_it_cannot_do(
     out = tmp_path / "crowd"
     assert cli_main(["crowd", "--robots", "1", "--out", str(out)]) == 0
     printed = capsys.readouterr()
-    assert f"{PER_ROBOT} runs in" in printed.out
+    assert printed.out.count(f"{PER_ROBOT} runs in") == 2  # without and with an IMU
+    assert list(json.loads((out / "table.json").read_text(encoding="utf-8"))["tables"]) == [
+        "single rollers",
+        "single rollers, IMU",
+    ]
     assert json.loads((out / "table.json").read_text(encoding="utf-8"))["not judged"] == []
     assert cli_main(["crowd", "--robots", "1", "--out", str(out)]) == 0  # everything is there
     assert "runs in" not in capsys.readouterr().out
