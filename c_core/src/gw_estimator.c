@@ -87,9 +87,9 @@ static uint32_t source_of(const gw_estimator_t *estimator, const gw_estimator_in
     uint32_t source = estimator->config.acceleration_source;
     if (source == GW_SOURCE_IMU) {
         const gw_acceleration_t felt = input->imu.acceleration;
-        const bool usable = input->imu.trusted && gw_within(felt.ax_mps2, GW_IMU_ACCELERATION_MAX) &&
-                            gw_within(felt.ay_mps2, GW_IMU_ACCELERATION_MAX) &&
-                            gw_within(felt.alpha_radps2, GW_IMU_ACCELERATION_MAX);
+        const bool usable = input->imu.trusted && gw_within(felt.ax_mps2, PLANNED_ACCELERATION_MAX) &&
+                            gw_within(felt.ay_mps2, PLANNED_ACCELERATION_MAX) &&
+                            gw_within(felt.alpha_radps2, PLANNED_ACCELERATION_MAX);
         source = usable ? GW_SOURCE_IMU : GW_SOURCE_MEASURED;
     }
     return source;
@@ -145,10 +145,10 @@ static void align(const gw_estimator_t *estimator, uint32_t source, gw_lowpass_t
                   gw_wheels_t *values)
 {
     if (estimator->config.aligned != 0U) {
-        const gw_rate_filter_constants_t *const constants =
-            (source == GW_SOURCE_IMU) ? &estimator->imu_constants : &estimator->rate_constants;
+        const gw_rate_filter_constants_t constants =
+            (source == GW_SOURCE_IMU) ? estimator->imu_constants : estimator->rate_constants;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            values->wheel[i] = gw_lowpass_step(&filter[i], constants, values->wheel[i], GW_TORQUE_MAX);
+            values->wheel[i] = gw_lowpass_step(&filter[i], &constants, values->wheel[i], GW_TORQUE_MAX);
         }
     }
 }
@@ -179,11 +179,12 @@ static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *fric
 static void tell_turns(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
                        gw_estimator_output_t *output)
 {
-    output->turned = false;
+    uint32_t changed = 0U;
+    GW_UNROLLED
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        const gw_rate_filter_t *const filter = &estimator->rate[i];
-        output->turned = output->turned || (filter->started && (input->encoder_count[i] != filter->last_count));
+        changed |= (uint32_t)input->encoder_count[i] ^ (uint32_t)estimator->rate[i].last_count;
     }
+    output->turned = estimator->rate[0].started && (changed != 0U); /* all of them start together */
 }
 
 /* By how much another zero has changed the wrench. */
@@ -196,6 +197,9 @@ static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *z
 static void init_alignment(gw_estimator_t *estimator)
 {
     estimator->imu_constants = estimator->rate_constants;
+    if (estimator->config.aligned != 0U) {
+        gw_presliding_take_turns(&estimator->presliding);
+    }
 }
 
 static bool alignment_holds(const gw_estimator_t *estimator)

@@ -30,6 +30,52 @@ void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_
     gw_config_check_real(error, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, config->elastic_fraction);
 }
 
+#if (GW_WITH_CHANNELS == 1)
+static void init_turns(gw_presliding_t *presliding)
+{
+    presliding->in_turn = false;
+    presliding->turn = 0U;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        presliding->bearable_now_n.wheel[i] = presliding->bearable_n; /* at rest */
+    }
+}
+
+void gw_presliding_take_turns(gw_presliding_t *presliding)
+{
+    presliding->in_turn = true;
+}
+
+static bool turns_hold(const gw_presliding_t *presliding)
+{
+    bool holds = (presliding->turn < GW_WHEEL_COUNT);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        holds = holds && gw_in_range(presliding->bearable_now_n.wheel[i], BEARABLE_MIN_N, presliding->bearable_n);
+    }
+    return holds;
+}
+
+static void next_turn(gw_presliding_t *presliding)
+{
+    presliding->turn = (presliding->turn + 1U) % GW_WHEEL_COUNT;
+}
+#else
+static void init_turns(const gw_presliding_t *presliding)
+{
+    (void)presliding;
+}
+
+static bool turns_hold(const gw_presliding_t *presliding)
+{
+    (void)presliding;
+    return true;
+}
+
+static void next_turn(const gw_presliding_t *presliding)
+{
+    (void)presliding;
+}
+#endif
+
 gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
                                const gw_friction_config_t *friction, const gw_kinematics_t *kinematics)
 {
@@ -53,6 +99,7 @@ gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_
                 presliding->last_torque_nm.wheel[i] = GW_ZERO;
                 presliding->last_count[i] = 0;
             }
+            init_turns(presliding);
             gw_presliding_gap(presliding);
         }
     }
@@ -73,7 +120,8 @@ bool gw_presliding_invariant_holds(const gw_presliding_t *presliding)
         gw_config_check_begin(&error);
         gw_presliding_config_check(&presliding->config, &error);
         gw_friction_config_check(&presliding->friction, &error);
-        holds = (error.field == GW_FIELD_NONE) && gw_in_range(presliding->bearable_n, BEARABLE_MIN_N, GW_REAL_MAX);
+        holds = (error.field == GW_FIELD_NONE) && gw_in_range(presliding->bearable_n, BEARABLE_MIN_N, GW_REAL_MAX) &&
+                turns_hold(presliding);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             const gw_real_t most_m = deflection_of(presliding, i, presliding->bearable_n);
             holds = holds && gw_in_range(presliding->deflection_m[i].value, -most_m, most_m) &&
@@ -136,6 +184,25 @@ static gw_real_t bearable_at(const gw_presliding_t *presliding, const gw_kinemat
     return gw_clamp(presliding->bearable_n * share, BEARABLE_MIN_N, presliding->bearable_n);
 }
 
+#if (GW_WITH_CHANNELS == 1)
+/* g of a wheel: of this tick, or of its last turn. */
+static gw_real_t bearable_of(gw_presliding_t *presliding, const gw_kinematics_t *kinematics, uint32_t wheel,
+                             gw_real_t speed_mps)
+{
+    if ((!presliding->in_turn) || (wheel == presliding->turn)) {
+        presliding->bearable_now_n.wheel[wheel] = bearable_at(presliding, kinematics, speed_mps);
+    }
+    return presliding->bearable_now_n.wheel[wheel];
+}
+#else
+static gw_real_t bearable_of(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics, uint32_t wheel,
+                             gw_real_t speed_mps)
+{
+    (void)wheel;
+    return bearable_at(presliding, kinematics, speed_mps);
+}
+#endif
+
 /* Does a displacement, or speed, with this sign deflect the bristle further? */
 static bool deflects_further(gw_real_t deflection_m, gw_real_t motion)
 {
@@ -186,7 +253,7 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
         const gw_vector_t n = kinematics->radial[i];
         const gw_real_t speed_mps = gw_along_radial(n, twist.vx_mps, twist.vy_mps);
         const gw_real_t displacement_m = gw_along_radial(n, moved.vx_mps, moved.vy_mps);
-        const gw_real_t bearable_n = bearable_at(presliding, kinematics, speed_mps);
+        const gw_real_t bearable_n = bearable_of(presliding, kinematics, i, speed_mps);
         /* Speed and displacement may differ in sign: the filtered speed lags. Of each that deflects the bristle further
          * this share goes into it; one that relieves the bristle does so whole. */
         const bool speed_deflects = deflects_further(presliding->deflection_m[i].value, speed_mps);
@@ -202,5 +269,6 @@ gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_
                                   (presliding->config.damping_newton_s_per_m * rate_mps);
         torques.wheel[i] = force_n * kinematics->roller_radius_m;
     }
+    next_turn(presliding);
     return torques;
 }

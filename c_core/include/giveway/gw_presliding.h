@@ -45,6 +45,11 @@ typedef struct {
     int32_t last_count[GW_WHEEL_COUNT];
     bool torque_known; /* last_torque_nm holds something */
     bool count_known;
+#if (GW_WITH_CHANNELS == 1)
+    bool in_turn;
+    uint32_t turn;              /* the wheel whose g is computed anew in this tick */
+    gw_wheels_t bearable_now_n; /* g of each wheel */
+#endif
 } gw_presliding_t;
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
@@ -53,6 +58,11 @@ void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_
 /* Rollers not deflected. */
 gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
                                const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
+#if (GW_WITH_CHANNELS == 1)
+/* From now on g is computed anew for one wheel in a tick, for all in turn: for a speed that is low-passed anyway.
+ * Pointer not NULL. */
+void gw_presliding_take_turns(gw_presliding_t *presliding);
+#endif
 bool gw_presliding_invariant_holds(const gw_presliding_t *presliding);
 /* After a gap in the samples: how far the wheels moved is unknown, so the deflections stay. Pointers not NULL here and
  * below. */

@@ -151,9 +151,30 @@ static void an_impossible_travel_changes_nothing(void)
     CHECK(step(&presliding, after, &no_torque, still).wheel[0] == GW_ZERO);
 }
 
+/* A speed that lasts is felt by all wheels after as many ticks, and from then on as if each had every tick. */
+static void wheels_may_take_turns(void)
+{
+    gw_presliding_t every_tick = made();
+    gw_presliding_t in_turn = made();
+    const gw_twist_t twist = {R(0.02), R(0.01), R(0.0)};
+    const int32_t counts[3] = {0, 0, 0};
+    gw_presliding_take_turns(&in_turn);
+    (void)step(&every_tick, counts, &no_torque, twist);
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        unit_row(i);
+        CHECK(in_turn.bearable_now_n.wheel[i] == in_turn.bearable_n);
+        (void)step(&in_turn, counts, &no_torque, twist);
+        CHECK(in_turn.bearable_now_n.wheel[i] == every_tick.bearable_now_n.wheel[i]);
+        CHECK(in_turn.bearable_now_n.wheel[i] < in_turn.bearable_n);
+    }
+    (void)step(&in_turn, counts, &no_torque, still);
+    CHECK(in_turn.bearable_now_n.wheel[0] == in_turn.bearable_n);
+    CHECK(in_turn.bearable_now_n.wheel[1] < in_turn.bearable_n);
+}
+
 static void the_invariant_sees_every_member(void)
 {
-    gw_presliding_t bad[7];
+    gw_presliding_t bad[9];
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         bad[i] = made();
     }
@@ -164,6 +185,8 @@ static void the_invariant_sees_every_member(void)
     bad[4].deflection_m[0].excess = unit_nan();
     bad[5].last_torque_nm.wheel[2] = unit_infinity();
     bad[6].friction.tanh_slope_s_per_rad = R(-1.0);
+    bad[7].turn = GW_WHEEL_COUNT;
+    bad[8].bearable_now_n.wheel[1] = GW_ZERO;
     CHECK(!gw_presliding_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);
@@ -181,5 +204,6 @@ void suite_presliding(void)
     unit_run("the_wind_up_of_the_drivetrain_is_taken_off", the_wind_up_of_the_drivetrain_is_taken_off);
     unit_run("a_gap_keeps_the_deflection", a_gap_keeps_the_deflection);
     unit_run("an_impossible_travel_changes_nothing", an_impossible_travel_changes_nothing);
+    unit_run("wheels_may_take_turns", wheels_may_take_turns);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }
