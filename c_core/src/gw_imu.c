@@ -5,8 +5,6 @@
 #if (GW_WITH_CHANNELS == 1)
 
 #define YAW_RATE 2U /* index of the gyro's signal, after the axes */
-/* Bound of a sum of good samples: GW_IMU_SHOWN_MAX times the longest tare. */
-#define SUM_MAX ((gw_real_t)1.0e9)
 /* What the robot does on purpose passes two low-passes of this, s; the rest is vibration. */
 #define SMOOTH_S ((gw_real_t)0.004)
 /* Time for which its mean square is taken, s: in that of a start it grows a hundredfold, in that of a hit it does not.
@@ -54,7 +52,7 @@ void gw_imu_config_check(const gw_imu_config_t *config, gw_config_error_t *error
 static void restart_tare(gw_imu_t *imu)
 {
     for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
-        imu->sum[i] = gw_sum_of(GW_ZERO);
+        imu->mean[i] = GW_ZERO;
     }
     imu->tare_count = 0U;
 }
@@ -133,7 +131,7 @@ bool gw_imu_invariant_holds(const gw_imu_t *imu)
                     gw_within(imu->smooth_mps2[i].y, GW_TWO * GW_IMU_SHOWN_MAX);
         }
         for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
-            holds = holds && gw_within(imu->zero[i], GW_IMU_SHOWN_MAX) && gw_sum_invariant_holds(imu->sum[i]) &&
+            holds = holds && gw_within(imu->zero[i], GW_IMU_SHOWN_MAX) && gw_within(imu->mean[i], GW_IMU_SHOWN_MAX) &&
                     gw_within(imu->filter[i].value, GW_IMU_SHOWN_MAX) &&
                     gw_within(imu->filter[i].derivative, GW_RATE_DERIVATIVE_MAX);
         }
@@ -212,14 +210,11 @@ static gw_acceleration_t carried(const gw_imu_t *imu, const gw_real_t zero[GW_IM
                                (imu->filter[1].value - zero[1]) / config->acceleration_scale};
     const gw_vector_t felt = gw_rotate(imu->mounting, shown);
     const gw_real_t omega = (imu->filter[YAW_RATE].value - zero[YAW_RATE]) / config->gyro_scale;
-    const gw_real_t alpha = gw_limited(imu->turning_radps2 / config->gyro_scale, GW_IMU_ACCELERATION_MAX);
+    const gw_real_t alpha = imu->turning_radps2 / config->gyro_scale;
     const gw_real_t square = omega * omega;
-    const gw_acceleration_t acceleration = {
-        gw_limited(felt.x + ((alpha * config->position_y_m) + (square * config->position_x_m)),
-                   GW_IMU_ACCELERATION_MAX),
-        gw_limited(felt.y + ((square * config->position_y_m) - (alpha * config->position_x_m)),
-                   GW_IMU_ACCELERATION_MAX),
-        alpha};
+    const gw_acceleration_t acceleration = {felt.x + ((alpha * config->position_y_m) + (square * config->position_x_m)),
+                                            felt.y + ((square * config->position_y_m) - (alpha * config->position_x_m)),
+                                            alpha};
     return acceleration;
 }
 
@@ -227,13 +222,14 @@ static gw_acceleration_t carried(const gw_imu_t *imu, const gw_real_t zero[GW_IM
 static void tare(gw_imu_t *imu, const gw_real_t shown[GW_IMU_SIGNALS], gw_acceleration_t *zero_step)
 {
     imu->tare_count++;
+    const gw_real_t share = GW_ONE / (gw_real_t)imu->tare_count; /* the first sample, from zero, is taken whole */
     for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
-        imu->sum[i] = gw_sum_limit(gw_sum_add(imu->sum[i], shown[i]), SUM_MAX);
+        imu->mean[i] = gw_approached(imu->mean[i], shown[i], share, GW_IMU_SHOWN_MAX);
     }
     if (imu->tare_count >= imu->config.tare_ticks) {
         const gw_acceleration_t before = carried(imu, imu->zero);
         for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
-            imu->zero[i] = gw_limited(imu->sum[i].value / (gw_real_t)imu->tare_count, GW_IMU_SHOWN_MAX);
+            imu->zero[i] = imu->mean[i];
         }
         const gw_acceleration_t after = carried(imu, imu->zero);
         zero_step->ax_mps2 = after.ax_mps2 - before.ax_mps2;
@@ -272,13 +268,13 @@ static void take(gw_imu_t *imu, const gw_imu_sample_t *sample, bool is_new, bool
     const gw_real_t shown[GW_IMU_SIGNALS] = {gw_known_within(sample->specific_force_mps2[0], GW_IMU_SHOWN_MAX),
                                              gw_known_within(sample->specific_force_mps2[1], GW_IMU_SHOWN_MAX),
                                              gw_known_within(sample->yaw_rate_radps, GW_IMU_SHOWN_MAX)};
+    const gw_rate_filter_constants_t constants = imu->constants;
     const gw_real_t before = imu->filter[YAW_RATE].value;
     for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
-        (void)gw_lowpass_step(&imu->filter[i], &imu->constants, shown[i], GW_IMU_SHOWN_MAX);
+        (void)gw_lowpass_step(&imu->filter[i], &constants, shown[i], GW_IMU_SHOWN_MAX);
     }
     /* Of the first sample it is nonsense, which nobody sees before GW_IMU_RECOVER_TICKS. */
-    imu->turning_radps2 =
-        gw_limited((imu->filter[YAW_RATE].value - before) / imu->constants.period_s, GW_IMU_ACCELERATION_MAX);
+    imu->turning_radps2 = (imu->filter[YAW_RATE].value - before) / constants.period_s;
     follow_shaking(imu);
     if (imu->good_ticks < GW_IMU_RECOVER_TICKS) {
         imu->good_ticks++;
@@ -288,43 +284,53 @@ static void take(gw_imu_t *imu, const gw_imu_sample_t *sample, bool is_new, bool
     }
 }
 
+static void tell_nothing(gw_imu_output_t *output)
+{
+    const gw_acceleration_t none = {GW_ZERO, GW_ZERO, GW_ZERO};
+    output->acceleration = none;
+    output->zero_step = none;
+    output->trusted = false;
+    output->shaking_mps2_2 = GW_ZERO;
+}
+
 gw_status_t gw_imu_step(gw_imu_t *imu, const gw_imu_sample_t *sample, bool at_rest, gw_imu_output_t *output)
 {
-    static const gw_imu_output_t nothing = {0};
     gw_status_t status = GW_STATUS_OK;
-    gw_imu_output_t result = nothing;
-    if ((imu == NULL) || (sample == NULL) || (output == NULL)) {
+    if (output == NULL) {
         status = GW_STATUS_NULL_POINTER;
-    } else if (!imu->initialised) {
-        status = GW_STATUS_NOT_INITIALISED;
     } else {
-        bool is_new;
-        const bool knew = imu->zero_known;
-        status = judge(imu, sample, &is_new);
-        if (!at_rest) {
-            imu->tared = false;
-            restart_tare(imu);
-        }
-        if (status == GW_STATUS_OK) {
-            take(imu, sample, is_new, at_rest, &result.zero_step);
-            if ((imu->good_ticks < GW_IMU_RECOVER_TICKS) || (!imu->zero_known)) {
-                status = GW_STATUS_SENSOR_RECOVERING;
-            }
+        tell_nothing(output);
+        if ((imu == NULL) || (sample == NULL)) {
+            status = GW_STATUS_NULL_POINTER;
+        } else if (!imu->initialised) {
+            status = GW_STATUS_NOT_INITIALISED;
         } else {
-            restart_signals(imu);
-            restart_tare(imu);
+            bool is_new;
+            const bool knew = imu->zero_known;
+            status = judge(imu, sample, &is_new);
+            if (!at_rest) {
+                imu->tared = false;
+                restart_tare(imu);
+            }
+            if (status == GW_STATUS_OK) {
+                take(imu, sample, is_new, at_rest, &output->zero_step);
+                if ((imu->good_ticks < GW_IMU_RECOVER_TICKS) || (!imu->zero_known)) {
+                    status = GW_STATUS_SENSOR_RECOVERING;
+                }
+            } else {
+                restart_signals(imu);
+                restart_tare(imu);
+            }
+            output->trusted = (status == GW_STATUS_OK);
+            if (output->trusted) {
+                output->acceleration = carried(imu, imu->zero);
+                output->shaking_mps2_2 = imu->shaking_mps2_2;
+            }
+            if (!(output->trusted && knew)) {
+                const gw_acceleration_t none = {GW_ZERO, GW_ZERO, GW_ZERO};
+                output->zero_step = none;
+            }
         }
-        result.trusted = (status == GW_STATUS_OK);
-        if (result.trusted) {
-            result.acceleration = carried(imu, imu->zero);
-            result.shaking_mps2_2 = imu->shaking_mps2_2;
-        }
-        if (!(result.trusted && knew)) {
-            result.zero_step = nothing.zero_step;
-        }
-    }
-    if (output != NULL) {
-        *output = result;
     }
     return status;
 }

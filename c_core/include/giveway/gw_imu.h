@@ -17,7 +17,6 @@
 #include "giveway/gw_config.h"
 #include "giveway/gw_lowpass.h"
 #include "giveway/gw_rate_filter.h"
-#include "giveway/gw_sum.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -31,8 +30,8 @@ extern "C" {
 #define GW_IMU_RECOVER_TICKS 20U
 /* No sensor shows more, m/s2 or rad/s: the limits of the configuration. */
 #define GW_IMU_SHOWN_MAX ((gw_real_t)1.0e4)
-/* Bounds of the result, m/s2 and rad/s2. */
-#define GW_IMU_ACCELERATION_MAX ((gw_real_t)1.0e8)
+/* Bounds of the result, m/s2 and rad/s2: what the shown values, the scales, the arm and the period allow. */
+#define GW_IMU_ACCELERATION_MAX ((gw_real_t)1.0e10)
 
 /* One sample as the bus delivers it. Any value is legal here; a struct of zeros means that there is no IMU. */
 typedef struct {
@@ -77,14 +76,14 @@ typedef struct {
     gw_rate_filter_constants_t constants; /* of the low-pass: period, corner and decay count */
     gw_lowpass_t filter[GW_IMU_SIGNALS];
     gw_real_t zero[GW_IMU_SIGNALS];
-    gw_real_t turning_radps2; /* change of the low-passed yaw rate in the last tick, as shown */
-    gw_sum_t sum[GW_IMU_SIGNALS];
-    gw_vector_t smooth_mps2[2]; /* what two low-passes leave: vibration is what they take away */
-    gw_real_t shaking_mps2_2;   /* mean square of that on an axis */
+    gw_real_t turning_radps2;       /* change of the low-passed yaw rate in the last tick, as shown */
+    gw_real_t mean[GW_IMU_SIGNALS]; /* of the tare so far */
+    gw_vector_t smooth_mps2[2];     /* what two low-passes leave: vibration is what they take away */
+    gw_real_t shaking_mps2_2;       /* mean square of that on an axis */
     gw_real_t smooth_share;
     gw_real_t shaking_share;
     gw_real_t least_mps2_2; /* the sensor's own noise in it */
-    uint32_t tare_count;    /* samples in the sums */
+    uint32_t tare_count;    /* samples in the means */
     uint32_t good_ticks;    /* saturating at GW_IMU_RECOVER_TICKS */
     uint32_t last_counter;
     uint32_t age_ticks; /* ticks since the counter advanced, saturating */
