@@ -27,7 +27,7 @@ void gw_tip_config_check(const gw_tip_config_t *config, gw_config_error_t *error
 
 void gw_tip_none(gw_tip_t *tip)
 {
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+    for (uint32_t i = 0U; i < GW_TIP_DIRECTIONS; i++) {
         tip->radial[i].x = GW_ZERO;
         tip->radial[i].y = GW_ZERO;
     }
@@ -42,7 +42,7 @@ void gw_tip_init(gw_tip_t *tip, const gw_tip_config_t *config, const gw_kinemati
         const gw_real_t whole_mps2 =
             (GRAVITY_MPS2 * (edge_m - (config->slope_rad * config->height_m))) / gw_max(config->height_m, HEIGHT_MIN_M);
         tip->margin_mps2 = gw_clamp(config->share * whole_mps2, LEAST_MPS2, MARGIN_MAX);
-        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        for (uint32_t i = 0U; i < GW_TIP_DIRECTIONS; i++) {
             tip->radial[i] = kinematics->radial[i];
         }
     }
@@ -53,7 +53,7 @@ bool gw_tip_invariant_holds(const gw_tip_t *tip)
     bool holds = (tip != NULL);
     if (holds) {
         holds = gw_in_range(tip->margin_mps2, GW_ZERO, MARGIN_MAX);
-        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        for (uint32_t i = 0U; i < GW_TIP_DIRECTIONS; i++) {
             holds = holds && gw_within(tip->radial[i].x, GW_TWO) && gw_within(tip->radial[i].y, GW_TWO);
         }
     }
@@ -63,11 +63,9 @@ bool gw_tip_invariant_holds(const gw_tip_t *tip)
 /* The largest part of a vector towards a wheel. */
 static gw_real_t towards_a_wheel(const gw_tip_t *tip, gw_vector_t vector)
 {
-    gw_real_t largest = GW_ZERO;
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        largest = gw_max(largest, gw_along_radial(tip->radial[i], vector.x, vector.y));
-    }
-    return largest;
+    const gw_real_t first = gw_along_radial(tip->radial[0], vector.x, vector.y);
+    const gw_real_t second = gw_along_radial(tip->radial[1], vector.x, vector.y);
+    return gw_max(gw_max(first, second), -(first + second));
 }
 
 gw_real_t gw_tip_share(const gw_tip_t *tip, gw_vector_t change_mps, gw_real_t period_s)

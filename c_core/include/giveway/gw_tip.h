@@ -30,9 +30,12 @@ typedef struct {
     gw_real_t slope_rad;
 } gw_tip_config_t;
 
+/* The directions of three evenly spaced wheels add up to zero: two tell the third. */
+#define GW_TIP_DIRECTIONS 2U
+
 typedef struct {
-    gw_vector_t radial[GW_WHEEL_COUNT]; /* towards each wheel, base frame */
-    gw_real_t margin_mps2;              /* largest acceleration towards a wheel; 0: no limit */
+    gw_vector_t radial[GW_TIP_DIRECTIONS]; /* towards the wheels, base frame */
+    gw_real_t margin_mps2;                 /* largest acceleration towards a wheel; 0: no limit */
 } gw_tip_t;
 
 /* The values of Trikey, the paper's robot: no limit. */

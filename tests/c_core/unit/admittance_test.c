@@ -300,8 +300,10 @@ static gw_admittance_output_t escape_step(gw_admittance_t *admittance)
     const gw_vector_t change = {output.velocity_mps.x - before.x, output.velocity_mps.y - before.y};
     const gw_vector_t in_base = gw_rotate_back(admittance->yaw, change);
     CHECK(dot(output.velocity_mps, admittance->away) >= (gw_min(dot(before, admittance->away), GW_ZERO) - ULP));
+    const gw_vector_t *const to = admittance->tip.radial;
+    const gw_vector_t towards[GW_WHEEL_COUNT] = {to[0], to[1], {-(to[0].x + to[1].x), -(to[0].y + to[1].y)}};
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        CHECK(dot(in_base, admittance->tip.radial[i]) <= ((admittance->tip.margin_mps2 * PERIOD) + ROUNDING));
+        CHECK(dot(in_base, towards[i]) <= ((admittance->tip.margin_mps2 * PERIOD) + ROUNDING));
     }
     return output;
 }

@@ -161,7 +161,7 @@ static void a_path_is_rejoined_without_lifting_a_wheel(void)
         for (uint32_t tick = 0U; tick < 6000U; tick++) {
             gw_reference_follow(&reference, &plan, true);
             for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
-                largest = gw_max(largest, gw_along_radial(tip.radial[k], reference.acceleration.ax_mps2,
+                largest = gw_max(largest, gw_along_radial(kinematics.radial[k], reference.acceleration.ax_mps2,
                                                           reference.acceleration.ay_mps2));
             }
         }

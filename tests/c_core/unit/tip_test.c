@@ -96,7 +96,7 @@ static void the_invariant_sees_every_member(void)
     bad[0].margin_mps2 = R(-0.1);
     bad[1].margin_mps2 = unit_nan();
     bad[2].radial[0].x = unit_above(GW_TWO);
-    bad[3].radial[2].y = unit_nan();
+    bad[3].radial[1].y = unit_nan();
     CHECK(!gw_tip_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(bad); i++) {
         unit_row(i);
