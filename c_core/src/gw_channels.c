@@ -215,8 +215,7 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
     }
 }
 
-/* A tick in which nothing else is due. */
-static bool has_time(const gw_channels_t *channels)
+bool gw_channels_have_time(const gw_channels_t *channels)
 {
     return (channels->tick % GW_SLOW_TICKS) == FREE_PHASE;
 }
@@ -269,7 +268,7 @@ static void continue_contact(gw_channels_t *channels, const gw_balance_t *balanc
     const bool over =
         ((channels->quiet_ticks > QUIET_TICKS) && (channels->ticks_since_trip >= channels->config.lock_ticks)) ||
         (channels->ticks_since_trip >= channels->config.rearm_ticks);
-    if (over && has_time(channels)) {
+    if (over && gw_channels_have_time(channels)) {
         end_contact(channels, balance, found);
     }
 }
@@ -339,7 +338,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     output->active = channels->active;
     output->refining = channels->active && (channels->ticks_since_trip < GW_REFINE_TICKS);
     output->channel = channels->channel;
-    output->refined = output->tripped || (output->refining && has_time(channels));
+    output->refined = output->tripped || (output->refining && gw_channels_have_time(channels));
     if (output->refined) {
         output->mean_wrench = mean_wrench(channels);
     }

@@ -137,9 +137,11 @@ static gw_channels_noise_t sensor_noise(const gw_controller_config_t *config, co
 static void init_channels(gw_controller_t *controller, const gw_controller_config_t *config)
 {
     static const gw_imu_output_t nothing_felt = {0};
+    static const gw_contact_estimate_t nowhere = {0};
     (void)gw_imu_init(&controller->imu, &config->imu, config->period_s);
     gw_estimator_set_imu_cutoff(&controller->estimator, config->imu.cutoff_radps);
     controller->felt = nothing_felt;
+    controller->contact_now = nowhere;
     const gw_channels_noise_t noise = sensor_noise(config, &controller->estimator, &controller->imu);
     gw_channels_init(&controller->channels, &config->channels, &noise);
 }
@@ -184,12 +186,6 @@ static uint32_t deciding_channel(const gw_controller_t *controller)
 static bool is_refined(const gw_controller_t *controller)
 {
     return controller->contact_found.refined;
-}
-
-/* The contact as it was located last, or none; it is located anew if it lasts longer than it is refined. */
-static bool contact_is_known(const gw_controller_t *controller)
-{
-    return uses_channels(controller) && (controller->contact_found.refining || (!controller->contact_found.active));
 }
 
 /* The acceleration that the IMU shows; its bias is taken where the robot stands, as the last tick saw it. */
@@ -281,12 +277,6 @@ static uint32_t deciding_channel(const gw_controller_t *controller)
 }
 
 static bool is_refined(const gw_controller_t *controller)
-{
-    (void)controller;
-    return false;
-}
-
-static bool contact_is_known(const gw_controller_t *controller)
 {
     (void)controller;
     return false;
@@ -693,18 +683,46 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
     output->enable = controller->drives_enabled && gw_joint_is_placed(&controller->joint);
 }
 
-static void report(const gw_controller_t *controller, gw_controller_output_t *output)
+/* Where the mean wrench of the estimate acts. */
+static void locate_mean(const gw_controller_t *controller, gw_contact_estimate_t *contact)
+{
+    /* The estimate is valid or zero; both are accepted. */
+    (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
+                            sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples), contact);
+}
+
+#if (GW_WITH_CHANNELS == 1)
+/* With channels: the hit as it was refined last, none if nothing touches. A contact that lasts longer than it is
+ * refined is located anew where there is time. */
+static void report_contact(gw_controller_t *controller, gw_contact_estimate_t *contact)
+{
+    static const gw_contact_estimate_t no_contact = {0};
+    if (!uses_channels(controller)) {
+        locate_mean(controller, contact);
+    } else if (!is_felt(controller)) {
+        *contact = no_contact;
+    } else {
+        if (is_refined(controller)) {
+            controller->contact_now = controller->detection_contact;
+        } else if ((!controller->contact_found.refining) && gw_channels_have_time(&controller->channels)) {
+            locate_mean(controller, &controller->contact_now);
+        } else {
+            /* as it was */
+        }
+        *contact = controller->contact_now;
+    }
+}
+#else
+static void report_contact(const gw_controller_t *controller, gw_contact_estimate_t *contact)
+{
+    locate_mean(controller, contact);
+}
+#endif
+
+static void report(gw_controller_t *controller, gw_controller_output_t *output)
 {
     output->estimate = controller->estimate.mean;
-    if (contact_is_known(controller)) {
-        static const gw_contact_estimate_t no_contact = {0};
-        output->contact = is_felt(controller) ? controller->detection_contact : no_contact;
-    } else {
-        /* The estimate is valid or zero; both are accepted. */
-        (void)gw_contact_locate(&controller->contact, controller->estimate.mean,
-                                sigma_of_mean(controller->estimate.sigma, controller->estimate.mean_samples),
-                                &output->contact);
-    }
+    report_contact(controller, &output->contact);
     output->detection_active = uses_channels(controller) ? is_felt(controller) : controller->detector.active;
     output->detection_statistic = controller->detection.statistic;
     output->detection_count = controller->detection_count;

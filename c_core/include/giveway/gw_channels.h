@@ -89,6 +89,8 @@ void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *confi
 bool gw_channels_invariant_holds(const gw_channels_t *channels);
 /* Forgets signals and contact, keeps what was learned of the model and of the noise. */
 void gw_channels_restart(gw_channels_t *channels);
+/* Nothing else was due in this tick: time for what not every tick needs. */
+bool gw_channels_have_time(const gw_channels_t *channels);
 /* One tick. The wrench is valid. */
 void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                       gw_channels_output_t *output);

@@ -96,6 +96,7 @@ typedef struct {
 #if (GW_WITH_CHANNELS == 1)
     gw_channels_t channels;
     gw_channels_output_t contact_found;
+    gw_contact_estimate_t contact_now; /* where it is while it lasts */
     gw_imu_t imu;
     gw_imu_output_t felt;
 #endif
