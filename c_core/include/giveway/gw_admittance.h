@@ -88,9 +88,10 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_admittance_config_trikey(gw_admittance_config_t *config);
-void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_admittance_config_check(const gw_admittance_config_t *config, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. */
-gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config, gw_real_t period_s);
+GW_SMALL gw_status_t gw_admittance_init(gw_admittance_t *admittance, const gw_admittance_config_t *config,
+                                        gw_real_t period_s);
 bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
 /* A hit: from the present velocity along the unit vector direction; (0, 0) means: come to rest here.
  * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
@@ -100,11 +101,11 @@ gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocit
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction);
 #if (GW_WITH_ESCAPE == 1)
 /* The limit of the acceleration that tipping sets; and where the base faces now. Pointers not NULL. */
-void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip);
+GW_SMALL void gw_admittance_set_tip(gw_admittance_t *admittance, const gw_tip_t *tip);
 void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw);
 /* Before a step of the escape, as long as the contact lasts: brakes a velocity towards the push. No effect on other
  * kinds. Pointer not NULL. */
-void gw_admittance_brake(gw_admittance_t *admittance);
+GW_SMALL void gw_admittance_brake(gw_admittance_t *admittance);
 #endif
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */

@@ -85,10 +85,11 @@ typedef struct {
 } gw_channels_t;
 
 /* The configuration was checked. Pointers not NULL here and below. */
-void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *config, const gw_channels_noise_t *noise);
+GW_SMALL void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *config,
+                               const gw_channels_noise_t *noise);
 bool gw_channels_invariant_holds(const gw_channels_t *channels);
 /* Forgets signals and contact, keeps what was learned of the model and of the noise. */
-void gw_channels_restart(gw_channels_t *channels);
+GW_SMALL void gw_channels_restart(gw_channels_t *channels);
 /* Nothing else was due in this tick: time for what not every tick needs. */
 bool gw_channels_have_time(const gw_channels_t *channels);
 /* One tick. The wrench is valid. */

@@ -81,10 +81,10 @@ static inline gw_real_t gw_force_floor(gw_force_floors_t floors, gw_regime_t reg
 
 /* What a low-pass takes over of its input in an interval; at most 0.5, so a time constant is no shorter than 1.44
  * intervals. */
-gw_real_t gw_share_of(gw_real_t interval_s, gw_real_t time_s);
+GW_SMALL gw_real_t gw_share_of(gw_real_t interval_s, gw_real_t time_s);
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_channels_config_trikey(gw_channels_config_t *config);
-void gw_channels_config_check(const gw_channels_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_channels_config_check(const gw_channels_config_t *config, gw_config_error_t *error);
 
 #ifdef __cplusplus
 }

@@ -252,21 +252,22 @@ typedef struct {
 } gw_config_error_t;
 
 /* The row of a field; the row "none" for GW_FIELD_NONE and anything that is no field. */
-gw_config_limit_t gw_config_limit(gw_config_field_t field);
+GW_SMALL gw_config_limit_t gw_config_limit(gw_config_field_t field);
 /* Its name, "none" likewise. The names take 2.1 kB of flash in programs that call this, and none in others if the
  * linker drops unused sections. */
 const char *gw_config_name(gw_config_field_t field);
 
 /* error->field = GW_FIELD_NONE: start of a check. error is not NULL here and below. */
-void gw_config_check_begin(gw_config_error_t *error);
+GW_SMALL void gw_config_check_begin(gw_config_error_t *error);
 /* Notes the field if value is outside its range (or NaN) and no field was noted before. */
-void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, gw_real_t value);
-void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t value);
+GW_SMALL void gw_config_check_real(gw_config_error_t *error, gw_config_field_t field, gw_real_t value);
+GW_SMALL void gw_config_check_count(gw_config_error_t *error, gw_config_field_t field, uint32_t value);
 /* The same for an element of an array. */
-void gw_config_check_element(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value);
+GW_SMALL void gw_config_check_element(gw_config_error_t *error, gw_config_field_t field, uint32_t index,
+                                      gw_real_t value);
 /* Notes the field if value is outside [minimum, maximum]: for a rule that relates several fields. */
-void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field, uint32_t index, gw_real_t value,
-                              gw_real_t minimum, gw_real_t maximum);
+GW_SMALL void gw_config_check_relation(gw_config_error_t *error, gw_config_field_t field, uint32_t index,
+                                       gw_real_t value, gw_real_t minimum, gw_real_t maximum);
 
 #ifdef __cplusplus
 }

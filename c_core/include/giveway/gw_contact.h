@@ -47,8 +47,8 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_contact_config_trikey(gw_contact_config_t *config);
-void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error);
-gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config);
+GW_SMALL void gw_contact_config_check(const gw_contact_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_contact_init(gw_contact_t *contact, const gw_contact_config_t *config);
 bool gw_contact_invariant_holds(const gw_contact_t *contact);
 /* Locates the contact of a wrench whose noise is sigma. All in the base frame. */
 gw_status_t gw_contact_locate(const gw_contact_t *contact, gw_wrench_t wrench, gw_wrench_sigma_t sigma,

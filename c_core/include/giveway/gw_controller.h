@@ -127,12 +127,12 @@ void gw_controller_config_trikey(gw_controller_config_t *config);
 /* The same robot with the paper's reflex: planned motion, impulse detector, frozen impulse. Pointer not NULL. */
 void gw_controller_config_paper(gw_controller_config_t *config);
 /* GW_STATUS_OK if every field is in range; else GW_STATUS_CONFIG_INVALID and the first bad field. Pointers not NULL. */
-gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_controller_config_check(const gw_controller_config_t *config, gw_config_error_t *error);
 /* error may be NULL. After a refusal the controller answers every step with zero motion. */
-gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
-                               gw_config_error_t *error);
+GW_SMALL gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_config_t *config,
+                                        gw_config_error_t *error);
 /* An output that means: do not move, drives off. Pointer not NULL. */
-void gw_controller_safe_output(gw_controller_output_t *output);
+GW_SMALL void gw_controller_safe_output(gw_controller_output_t *output);
 /* One control period. Call it once per period, soon after the sensors were sampled.
  *
  * Reads: the input, and the controller as the last step left it; no clock.

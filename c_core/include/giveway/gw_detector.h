@@ -86,14 +86,14 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_detector_config_trikey(gw_detector_config_t *config);
-void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_detector_config_check(const gw_detector_config_t *config, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. */
-gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s);
+GW_SMALL gw_status_t gw_detector_init(gw_detector_t *detector, const gw_detector_config_t *config, gw_real_t period_s);
 bool gw_detector_invariant_holds(const gw_detector_t *detector);
 /* Empties the integral; an active detector stays active. Pointer not NULL. */
 void gw_detector_clear(gw_detector_t *detector);
 /* Empties the integral and arms the detector. Pointer not NULL. */
-void gw_detector_reset(gw_detector_t *detector);
+GW_SMALL void gw_detector_reset(gw_detector_t *detector);
 /* F0, N. */
 static inline gw_real_t gw_detector_leak(const gw_detector_t *detector, gw_regime_t regime)
 {

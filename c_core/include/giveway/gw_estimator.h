@@ -140,25 +140,25 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_estimator_config_trikey(gw_estimator_config_t *config);
-void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error);
-gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
-                              const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
-                              const gw_friction_config_t *friction, gw_real_t period_s);
+GW_SMALL void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_config_t *config,
+                                       const gw_geometry_config_t *geometry, const gw_inertia_config_t *inertia,
+                                       const gw_friction_config_t *friction, gw_real_t period_s);
 bool gw_estimator_invariant_holds(const gw_estimator_t *estimator);
 /* Starts a new tare of the run; the old zero stays in use until it is done. Pointers not NULL here and below. */
-void gw_estimator_start_tare(gw_estimator_t *estimator);
+GW_SMALL void gw_estimator_start_tare(gw_estimator_t *estimator);
 /* One tick of the tare of the run, standing still. DONE: this torque is the zero, the mode is rest. */
-gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm);
+GW_SMALL gw_tare_progress_t gw_estimator_tare(gw_estimator_t *estimator, const gw_wheels_t *torque_nm);
 /* Filters and average start afresh after a gap; zeros and mode stay. */
-void gw_estimator_restart(gw_estimator_t *estimator);
+GW_SMALL void gw_estimator_restart(gw_estimator_t *estimator);
 /* The IMU's acceleration has passed a low-pass of this corner: what is aligned with it passes the same. After init. */
-void gw_estimator_set_imu_cutoff(gw_estimator_t *estimator, gw_real_t cutoff_radps);
+GW_SMALL void gw_estimator_set_imu_cutoff(gw_estimator_t *estimator, gw_real_t cutoff_radps);
 /* One tick. Input that is not finite or larger than any robot's, or a wrench that is not gw_wrench_is_valid:
  * GW_STATUS_INPUT_INVALID, wrench zero, filters and average start afresh. */
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                               gw_estimator_output_t *output);
 /* Angle of the motor side of a wheel from its count, rad, [-pi, pi). */
-gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count);
+GW_SMALL gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count);
 
 #ifdef __cplusplus
 }

@@ -74,13 +74,13 @@ typedef struct {
 /* Time constant of a low-pass of the bank that is used now, s; j < GW_BANK_COUNT. Pointer not NULL. */
 gw_real_t gw_fast_channel_time(const gw_fast_channel_t *channel, uint32_t j);
 /* The configuration was checked. Pointers not NULL here and below. */
-void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
-                          const gw_channels_noise_t *noise);
+GW_SMALL void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
+                                   const gw_channels_noise_t *noise);
 /* Forgets the balance and the last contact, keeps what was learned of the noise. */
-void gw_fast_channel_restart(gw_fast_channel_t *channel);
+GW_SMALL void gw_fast_channel_restart(gw_fast_channel_t *channel);
 bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel);
 /* A tick of the baseline's first mean: share is 1/(n + 1) in the n-th. */
-void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
+GW_SMALL void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
 /* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
 /* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
@@ -95,10 +95,10 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
 /* Moves the baseline towards this balance. */
 void gw_fast_channel_follow(gw_fast_channel_t *channel, const gw_balance_t *balance);
 /* Another zero: the residual jumps by this. adopt: what the widest low-pass holds becomes part of the baseline. */
-void gw_fast_channel_take_zero(gw_fast_channel_t *channel, gw_wrench_t step, bool adopt);
+GW_SMALL void gw_fast_channel_take_zero(gw_fast_channel_t *channel, gw_wrench_t step, bool adopt);
 /* A contact in this direction, a unit vector or zero, is over: what is left of it becomes part of the baseline. */
-void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *balance, const gw_fast_found_t *found,
-                             gw_vector_t direction);
+GW_SMALL void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *balance,
+                                      const gw_fast_found_t *found, gw_vector_t direction);
 
 #ifdef __cplusplus
 }

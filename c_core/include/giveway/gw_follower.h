@@ -55,9 +55,9 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_follower_config_trikey(gw_follower_config_t *config);
-void gw_follower_config_check(const gw_follower_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_follower_config_check(const gw_follower_config_t *config, gw_config_error_t *error);
 /* The configuration was checked. interval: time between two calls of gw_follower_learn, s. Pointers not NULL. */
-void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *config, gw_real_t interval_s);
+GW_SMALL void gw_follower_init(gw_follower_t *follower, const gw_follower_config_t *config, gw_real_t interval_s);
 bool gw_follower_invariant_holds(const gw_follower_t *follower);
 /* The regressors of the differences in these forces. Pointers not NULL. */
 gw_regressors_t gw_follower_regressors(const gw_kinematics_t *kinematics, const gw_model_forces_t *forces);
@@ -68,8 +68,8 @@ gw_vector_t gw_follower_correction(const gw_follower_t *follower, const gw_kinem
 /* How uncertain the model's force still is: G P G^T; no variance is negative. */
 gw_planar_covariance_t gw_follower_uncertainty(const gw_follower_t *follower, const gw_regressors_t *regressors);
 /* Learns from one component of a residual without contact, N; the other one's turn is later. */
-void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressors, gw_vector_t residual_n,
-                       bool along_y);
+GW_SMALL void gw_follower_learn(gw_follower_t *follower, const gw_regressors_t *regressors, gw_vector_t residual_n,
+                                bool along_y);
 
 #ifdef __cplusplus
 }

@@ -19,7 +19,7 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_friction_config_trikey(gw_friction_config_t *config);
-void gw_friction_config_check(const gw_friction_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_friction_config_check(const gw_friction_config_t *config, gw_config_error_t *error);
 /* B_r tanh(alpha rate) per roller, N m. config is checked, rates are finite; pointers not NULL. */
 static inline gw_wheels_t gw_friction_torques(const gw_friction_config_t *config, const gw_wheels_t *roller_rates_radps)
 {

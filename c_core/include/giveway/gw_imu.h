@@ -116,12 +116,12 @@ typedef struct {
 
 /* No IMU; numbers of a common MEMS part at the base's centre. Pointers not NULL in these two. */
 void gw_imu_config_trikey(gw_imu_config_t *config);
-void gw_imu_config_check(const gw_imu_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_imu_config_check(const gw_imu_config_t *config, gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. */
-gw_status_t gw_imu_init(gw_imu_t *imu, const gw_imu_config_t *config, gw_real_t period_s);
+GW_SMALL gw_status_t gw_imu_init(gw_imu_t *imu, const gw_imu_config_t *config, gw_real_t period_s);
 bool gw_imu_invariant_holds(const gw_imu_t *imu);
 /* How noisy a trusted result is. Pointer not NULL. */
-gw_imu_noise_t gw_imu_noise(const gw_imu_t *imu);
+GW_SMALL gw_imu_noise_t gw_imu_noise(const gw_imu_t *imu);
 /* One tick. at_rest: the robot stands, the bias may be taken. GW_STATUS_OK if the result is trusted, else the first of
  * GW_STATUS_SENSOR_MISSING (also without an IMU), ..._STALE, ..._NONFINITE, ..._SATURATED and ..._RECOVERING (too few
  * good samples yet, or no bias) that holds; the output is written unless it is NULL. */

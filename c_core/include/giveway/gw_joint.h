@@ -25,9 +25,9 @@ typedef struct {
     gw_real_t speed_radps[GW_WHEEL_COUNT];
 } gw_joint_command_t;
 
-void gw_joint_init(gw_joint_t *joint);
+GW_SMALL void gw_joint_init(gw_joint_t *joint);
 /* Starts from these wheel angles, rad. */
-void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad);
+GW_SMALL void gw_joint_place(gw_joint_t *joint, const gw_wheels_t *angle_rad);
 static inline bool gw_joint_is_placed(const gw_joint_t *joint)
 {
     return joint->placed;

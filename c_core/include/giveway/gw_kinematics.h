@@ -52,8 +52,8 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_geometry_config_trikey(gw_geometry_config_t *config);
-void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error);
-gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config);
+GW_SMALL void gw_geometry_config_check(const gw_geometry_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_kinematics_init(gw_kinematics_t *kinematics, const gw_geometry_config_t *config);
 bool gw_kinematics_invariant_holds(const gw_kinematics_t *kinematics);
 
 /* What runs at every tick is inline: as calls it would take a quarter more instructions. */

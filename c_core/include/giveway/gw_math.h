@@ -187,7 +187,7 @@ static inline gw_real_t gw_fraction_inline(gw_real_t part, gw_real_t whole)
 /* e^x; 0 below the smallest normal number and for NaN, GW_REAL_MAX where it would overflow. */
 gw_real_t gw_exp(gw_real_t x);
 /* e^x - 1 without cancellation near 0; -1 far below 0, GW_REAL_MAX where it would overflow, 0 for NaN. */
-gw_real_t gw_expm1(gw_real_t x);
+GW_SMALL gw_real_t gw_expm1(gw_real_t x);
 /* tanh x; exactly +-1 far from 0; 0 for NaN. */
 gw_real_t gw_tanh(gw_real_t x);
 /* Sine and cosine for |angle| <= GW_ANGLE_MAX; else (0, 1). */
@@ -195,7 +195,7 @@ gw_rotation_t gw_sincos(gw_real_t angle_rad);
 /* Angle of the vector (x, y) in [-pi, pi]; 0 for (0, 0) and where an argument is not finite. */
 gw_real_t gw_atan2(gw_real_t y, gw_real_t x);
 /* The angle modulo one turn, in [-pi, pi), for |angle| <= GW_ANGLE_MAX; else 0. */
-gw_real_t gw_wrap_angle(gw_real_t angle_rad);
+GW_SMALL gw_real_t gw_wrap_angle(gw_real_t angle_rad);
 
 /* later - earlier of two counters that wrap at 32 bits, for steps below 2^31 counts. */
 static inline int32_t gw_count_difference(int32_t later, int32_t earlier)

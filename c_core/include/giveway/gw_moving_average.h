@@ -26,7 +26,7 @@ typedef struct {
 } gw_moving_average_t;
 
 /* window: samples, [1, 1024]. */
-gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window);
+GW_SMALL gw_status_t gw_moving_average_init(gw_moving_average_t *average, uint32_t window);
 void gw_moving_average_reset(gw_moving_average_t *average);
 
 /* Bound of a sum of valid wrenches, with room for its rounding. */

@@ -39,9 +39,9 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_inertia_config_trikey(gw_inertia_config_t *config);
-void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error);
-gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
-                            const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
+GW_SMALL void gw_inertia_config_check(const gw_inertia_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_nominal_init(gw_nominal_t *nominal, const gw_inertia_config_t *inertia,
+                                     const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
 bool gw_nominal_invariant_holds(const gw_nominal_t *nominal);
 /* T|0, N m, at a twist and an acceleration over the floor, both along the base's axes and finite, and with this
  * friction of the rollers, N m per roller. Pointers not NULL. */

@@ -54,23 +54,24 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_presliding_config_trikey(gw_presliding_config_t *config);
-void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_presliding_config_check(const gw_presliding_config_t *config, gw_config_error_t *error);
 /* Rollers not deflected. */
-gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
-                               const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
+GW_SMALL gw_status_t gw_presliding_init(gw_presliding_t *presliding, const gw_presliding_config_t *config,
+                                        const gw_friction_config_t *friction, const gw_kinematics_t *kinematics);
 #if (GW_WITH_CHANNELS == 1)
 /* From now on g is computed anew for one wheel in a tick, for all in turn: for a speed that is low-passed anyway.
  * Pointer not NULL. */
-void gw_presliding_take_turns(gw_presliding_t *presliding);
+GW_SMALL void gw_presliding_take_turns(gw_presliding_t *presliding);
 #endif
 bool gw_presliding_invariant_holds(const gw_presliding_t *presliding);
 /* After a gap in the samples: how far the wheels moved is unknown, so the deflections stay. Pointers not NULL here and
  * below. */
 void gw_presliding_gap(gw_presliding_t *presliding);
 /* The present deflections belong to this torque, the mean of a tare: noise of its last sample must not move them. */
-void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm);
+GW_SMALL void gw_presliding_settle(gw_presliding_t *presliding, const gw_wheels_t *mean_torque_nm);
 /* Elastic part of the friction, sigma0 z r_r per roller, N m. */
-gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding, const gw_kinematics_t *kinematics);
+GW_SMALL gw_wheels_t gw_presliding_elastic_torques(const gw_presliding_t *presliding,
+                                                   const gw_kinematics_t *kinematics);
 /* One tick: counts and torques of this sample, |torque| <= GW_TORQUE_MAX, and the twist of the base as it was measured.
  * Friction f r_r per roller, N m; not finite if the twist is not, the state then stays sound. */
 gw_wheels_t gw_presliding_step(gw_presliding_t *presliding, const gw_kinematics_t *kinematics,

@@ -39,10 +39,11 @@ typedef struct {
 
 /* Constants from checked configuration values: period [0.0001, 0.1] s, cutoff [0.1, 10000] rad/s, counts per turn
  * [4, 1000000], stiffness [0, 1e7] N m/rad (0: rigid). */
-gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s, gw_real_t cutoff_radps,
-                                     uint32_t counts_per_turn, gw_real_t stiffness_nm_per_rad);
+GW_SMALL gw_status_t gw_rate_filter_constants(gw_rate_filter_constants_t *constants, gw_real_t period_s,
+                                              gw_real_t cutoff_radps, uint32_t counts_per_turn,
+                                              gw_real_t stiffness_nm_per_rad);
 /* Forgets the past: the next sample starts the filter at rate zero. Pointer not NULL. */
-void gw_rate_filter_restart(gw_rate_filter_t *filter);
+GW_SMALL void gw_rate_filter_restart(gw_rate_filter_t *filter);
 /* The next sample starts a filter that has not started at this rate, unless that is more than 1e6 rad/s. */
 static inline void gw_rate_filter_presume(gw_rate_filter_t *filter, gw_real_t rate_radps)
 {

@@ -67,12 +67,14 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_reference_config_trikey(gw_reference_config_t *config);
-void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s, gw_config_error_t *error);
+GW_SMALL void gw_reference_config_check(const gw_reference_config_t *config, gw_real_t period_s,
+                                        gw_config_error_t *error);
 /* period: s, [0.0001, 0.1]. The reference starts at the origin, at rest. */
-gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config, gw_real_t period_s);
+GW_SMALL gw_status_t gw_reference_init(gw_reference_t *reference, const gw_reference_config_t *config,
+                                       gw_real_t period_s);
 #if (GW_WITH_ESCAPE == 1)
 /* The limit of the acceleration that tipping sets while a path is rejoined; without it there is none. */
-void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip);
+GW_SMALL void gw_reference_set_tip(gw_reference_t *reference, const gw_tip_t *tip);
 #endif
 bool gw_reference_invariant_holds(const gw_reference_t *reference);
 /* True if every number is finite, positions within 1e4 m, angles within 1e4 rad, speeds within 100 m/s and 1000 rad/s,
@@ -104,13 +106,13 @@ static inline gw_plan_t gw_plan_limited(const gw_plan_t *plan)
 
 /* Puts the reference on the plan without motion of the wheels. plan valid. moving: with the plan's velocity, within the
  * limits; else at rest. */
-void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving);
+GW_SMALL void gw_reference_place(gw_reference_t *reference, const gw_plan_t *plan, bool moving);
 /* Follows a valid plan, with its velocity (tracking) or only towards its pose, at rejoin speed (rejoining). */
-void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool rejoining);
+GW_SMALL void gw_reference_follow(gw_reference_t *reference, const gw_plan_t *plan, bool rejoining);
 /* Moves as the admittance says; the yaw rate goes to zero within its limit. */
 void gw_reference_escape(gw_reference_t *reference, gw_vector_t displacement_m, gw_vector_t velocity_mps);
 /* Slows to a stop within the limits. */
-void gw_reference_brake(gw_reference_t *reference);
+GW_SMALL void gw_reference_brake(gw_reference_t *reference);
 /* Stops at once. */
 void gw_reference_freeze(gw_reference_t *reference);
 static inline gw_pose_t gw_reference_pose(const gw_reference_t *reference)

@@ -51,8 +51,8 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_sensor_check_config_trikey(gw_sensor_check_config_t *config);
-void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error);
-gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config);
+GW_SMALL void gw_sensor_check_config_check(const gw_sensor_check_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_sensor_check_init(gw_sensor_check_t *check, const gw_sensor_check_config_t *config);
 bool gw_sensor_check_invariant_holds(const gw_sensor_check_t *check);
 /* One tick: GW_STATUS_OK, or the fault. Faults in order: missing, stale, non-finite, saturated, encoder jump. */
 gw_status_t gw_sensor_check_step(gw_sensor_check_t *check, const gw_sensor_sample_t *sample);

@@ -71,12 +71,12 @@ typedef struct {
     bool initialised;
 } gw_servo_t;
 
-void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error);
-gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config);
+GW_SMALL void gw_servo_config_check(const gw_servo_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_servo_init(gw_servo_t *servo, const gw_servo_config_t *config);
 bool gw_servo_invariant_holds(const gw_servo_t *servo);
 /* One tick. GW_STATUS_REFERENCE_INVALID or _STALE: the torque holds the last angle. Before the first reference the
  * first measured angle is held. Torque is zero if the servo is not initialised or not enabled. */
-gw_status_t gw_servo_step(gw_servo_t *servo, const gw_servo_input_t *input, gw_servo_output_t *output);
+GW_SMALL gw_status_t gw_servo_step(gw_servo_t *servo, const gw_servo_input_t *input, gw_servo_output_t *output);
 
 #ifdef __cplusplus
 }

@@ -35,15 +35,15 @@ typedef struct {
 } gw_slow_channel_t;
 
 /* The configuration was checked. Pointers not NULL here and below. */
-void gw_slow_channel_init(gw_slow_channel_t *channel, const gw_channels_config_t *config,
-                          const gw_channels_noise_t *noise);
-void gw_slow_channel_restart(gw_slow_channel_t *channel);
+GW_SMALL void gw_slow_channel_init(gw_slow_channel_t *channel, const gw_channels_config_t *config,
+                                   const gw_channels_noise_t *noise);
+GW_SMALL void gw_slow_channel_restart(gw_slow_channel_t *channel);
 bool gw_slow_channel_invariant_holds(const gw_slow_channel_t *channel);
 /* A tick of the first mean: share is 1/(n + 1) in the n-th. */
-void gw_slow_channel_begin(gw_slow_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
+GW_SMALL void gw_slow_channel_begin(gw_slow_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
 void gw_slow_channel_step(gw_slow_channel_t *channel, const gw_balance_t *balance);
 /* Another zero: the residual jumps by this. At rest what the channel holds now becomes the baseline. */
-void gw_slow_channel_take_zero(gw_slow_channel_t *channel, gw_wrench_t step, gw_regime_t regime);
+GW_SMALL void gw_slow_channel_take_zero(gw_slow_channel_t *channel, gw_wrench_t step, gw_regime_t regime);
 /* The baseline follows, in motion without contact; to be called every GW_SLOW_TICKS. */
 void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled);
 /* Compares; every few ticks is enough. floor: of which regime the floor is. */
@@ -51,8 +51,8 @@ void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor);
 /* The follower learns from the mean balance, in motion without contact, when all rollers slide: from its component
  * along y or along x. */
-void gw_slow_channel_teach(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics, gw_follower_t *follower,
-                           bool along_y);
+GW_SMALL void gw_slow_channel_teach(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,
+                                    gw_follower_t *follower, bool along_y);
 
 #ifdef __cplusplus
 }

@@ -40,7 +40,7 @@ static inline gw_sum_t gw_sum_add(gw_sum_t sum, gw_real_t increment)
 }
 
 /* The sum, at most a turn off, brought to [-pi, pi). */
-gw_sum_t gw_sum_within_turn(gw_sum_t sum);
+GW_SMALL gw_sum_t gw_sum_within_turn(gw_sum_t sum);
 /* For angles: sum + increment modulo one turn, its value in [-pi, pi). |increment| <= GW_ANGLE_MAX. */
 static inline gw_sum_t gw_sum_add_angle(gw_sum_t sum, gw_real_t increment_rad)
 {

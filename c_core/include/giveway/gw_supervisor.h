@@ -68,11 +68,11 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot. Pointers not NULL in these two. */
 void gw_supervisor_config_trikey(gw_supervisor_config_t *config);
-void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error);
-gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_supervisor_config_t *config);
+GW_SMALL void gw_supervisor_config_check(const gw_supervisor_config_t *config, gw_config_error_t *error);
+GW_SMALL gw_status_t gw_supervisor_init(gw_supervisor_t *supervisor, const gw_supervisor_config_t *config);
 bool gw_supervisor_invariant_holds(const gw_supervisor_t *supervisor);
 /* One tick; returns the mode that holds from now on (GW_MODE_FAULT if there is no usable supervisor). */
-gw_mode_t gw_supervisor_step(gw_supervisor_t *supervisor, const gw_supervisor_events_t *events);
+GW_SMALL gw_mode_t gw_supervisor_step(gw_supervisor_t *supervisor, const gw_supervisor_events_t *events);
 
 #ifdef __cplusplus
 }

@@ -24,11 +24,11 @@ typedef struct {
 } gw_tare_t;
 
 /* Forgets all samples. Pointers not NULL here and below. */
-void gw_tare_start(gw_tare_t *tare);
+GW_SMALL void gw_tare_start(gw_tare_t *tare);
 /* Adds one finite sample. DONE at the given number of samples (at least 1) with the mean in *mean_nm, else mean_nm is
  * left alone. REFUSED: varied by more than variation_nm; started anew. */
-gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *torque_nm, uint32_t samples, gw_real_t variation_nm,
-                               gw_wheels_t *mean_nm);
+GW_SMALL gw_tare_progress_t gw_tare_add(gw_tare_t *tare, const gw_wheels_t *torque_nm, uint32_t samples,
+                                        gw_real_t variation_nm, gw_wheels_t *mean_nm);
 bool gw_tare_invariant_holds(const gw_tare_t *tare);
 
 #ifdef __cplusplus

@@ -40,12 +40,12 @@ typedef struct {
 
 /* The values of Trikey, the paper's robot: no limit. */
 void gw_tip_config_trikey(gw_tip_config_t *config);
-void gw_tip_config_check(const gw_tip_config_t *config, gw_config_error_t *error);
+GW_SMALL void gw_tip_config_check(const gw_tip_config_t *config, gw_config_error_t *error);
 /* No limit, for a module that is used alone. */
-void gw_tip_none(gw_tip_t *tip);
+GW_SMALL void gw_tip_none(gw_tip_t *tip);
 /* Config and geometry were checked. However small the margin, the robot must come to rest: it is at least 0.05 m/s^2.
  */
-void gw_tip_init(gw_tip_t *tip, const gw_tip_config_t *config, const gw_kinematics_t *kinematics);
+GW_SMALL void gw_tip_init(gw_tip_t *tip, const gw_tip_config_t *config, const gw_kinematics_t *kinematics);
 bool gw_tip_invariant_holds(const gw_tip_t *tip);
 /* The share of a change of velocity in a tick (base frame, m/s, components below 1e9) at which no wheel loses more than
  * the margin: 1 if all of it may be. */

@@ -61,6 +61,13 @@
 #define GW_UNROLLED
 #endif
 
+/* Before a function that is made small instead of fast: the longest step does not need it. */
+#if defined(__GNUC__) && !defined(__FRAMAC__)
+#define GW_SMALL __attribute__((cold))
+#else
+#define GW_SMALL
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -81,7 +81,7 @@ static inline gw_wrench_t gw_wrench_external(const gw_kinematics_t *kinematics, 
 }
 
 /* sigma_F = sigma_tau sqrt(1.5)/r_w per axis, sigma_M = sqrt(3) R sigma_tau/r_w, for independent equal noise. */
-gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm);
+GW_SMALL gw_wrench_sigma_t gw_wrench_noise(const gw_kinematics_t *kinematics, gw_real_t torque_noise_nm);
 
 #ifdef __cplusplus
 }
