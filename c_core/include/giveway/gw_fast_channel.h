@@ -6,9 +6,10 @@
  *
  *     S = (k_n^2 noise + floor^2) I + k_m^2 M + h h^T
  *
- * where the noise of each low-pass is followed, M is what the follower does not know of friction and mass with the
- * forces of this tick, and h is what the baseline may still hold of the last contact: its end, a change against its
- * direction, is no hit. The moment has a variance of its own. The channel trips if x^T S^-1 x > 1.
+ * where the noise of each low-pass is followed and k_n is smaller for the longer ones, M is what the follower does not
+ * know of friction and mass with the forces of this tick, and h is what the baseline may still hold of the last
+ * contact: its end, a change against its direction, is no hit. The moment has a variance of its own. The channel trips
+ * if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
