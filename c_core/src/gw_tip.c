@@ -6,6 +6,7 @@
 
 #define GRAVITY_MPS2 ((gw_real_t)9.80665)
 #define LEAST_MPS2 ((gw_real_t)0.05)
+#define ALONG_MIN_MPS2 ((gw_real_t)0.01) /* less than LEAST_MPS2 over what rounding makes of a unit vector */
 #define HEIGHT_MIN_M ((gw_real_t)1.0e-6) /* a robot so low has the largest margin */
 #define MARGIN_MAX ((gw_real_t)1.0e6)
 
@@ -80,7 +81,7 @@ gw_real_t gw_tip_along(const gw_tip_t *tip, gw_vector_t unit, gw_real_t limit_mp
     const gw_real_t largest = towards_a_wheel(tip, unit);
     gw_real_t along_mps2 = limit_mps2;
     if ((limit_mps2 * largest) > tip->margin_mps2) {
-        along_mps2 = limit_mps2 * gw_max(gw_fraction(tip->margin_mps2, limit_mps2 * largest), GW_ZERO);
+        along_mps2 = gw_max(limit_mps2 * gw_fraction(tip->margin_mps2, limit_mps2 * largest), ALONG_MIN_MPS2);
     }
     return along_mps2;
 }

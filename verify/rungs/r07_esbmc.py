@@ -68,8 +68,8 @@ HARNESSES = {
     ),
     "follower": Harness(
         ("gw_math", "gw_kinematics", "gw_config"),
-        "follower->covariance[i][i] = gw_max(follower->covariance[i][i], GW_ZERO);",
-        "",
+        "gw_clamp(follower->difference[i] + (share * surprise_n), -DIFFERENCE_MAX, DIFFERENCE_MAX)",
+        "follower->difference[i] + (share * surprise_n)",
         "src/gw_follower.c",
         checks=(),  # likewise
     ),
@@ -108,7 +108,7 @@ def check(context: Context) -> Figure:
     )
 
 
-def _verified(context: Context, name: str, harness: Harness, core: Path) -> None:
+def _verified(context: Context, name: str, harness: Harness, core: Path, *flags: str) -> None:
     """`RungFailed` with the property that does not hold."""
     folder = context.root / "verify" / "esbmc"
     if harness.assumed:
@@ -122,6 +122,7 @@ def _verified(context: Context, name: str, harness: Harness, core: Path) -> None
         f"-I{core / 'src'}",
         f"-I{folder}",
         PORTABLE,
+        *flags,
         *harness.solver,
         *harness.checks,
         "--unwind",
@@ -149,7 +150,7 @@ def _check_mutant(context: Context, name: str, harness: Harness) -> None:
     file = harness.sick_file or f"src/{harness.modules[0]}.c"
     core = _changed(context.core, context.work / f"mutant_{name}", file, harness.healthy, harness.sick)
     with planted(f"{file} without {harness.healthy}", shows="VERIFICATION FAILED"):
-        _verified(context, name, harness, core)
+        _verified(context, name, harness, core, "-DMUTANT")
 
 
 RUNG = Rung("ESBMC with any bits as input", (ESBMC,), check)
