@@ -81,8 +81,8 @@ DRIVERS = {
     "imu": Driver(
         Mutant(
             "gw_imu.c",
-            "gw_limited(imu->turning_radps2 / config->gyro_scale, GW_IMU_ACCELERATION_MAX)",
-            "imu->turning_radps2",
+            "gw_limited(from.x + (share * (to.x - from.x)), GW_TWO * GW_IMU_SHOWN_MAX)",
+            "from.x + (share * (to.x - from.x))",
         )
     ),
     "kinematics": Driver(
