@@ -218,7 +218,7 @@ static void detect_by_channels(gw_controller_t *controller)
     input.zero_changed = controller->estimate.zero_changed;
     input.regime = controller->estimate.regime;
     input.turned = controller->estimate.turned;
-    input.enabled = looks_for_hits(controller->supervisor.mode);
+    input.enabled = true; /* otherwise they are not asked */
     input.felt = controller->estimate.acceleration_source == GW_SOURCE_IMU;
     input.shaking_mps2_2 = controller->felt.shaking_mps2_2;
     input.reacting = controller->supervisor.mode == GW_MODE_REACTING;

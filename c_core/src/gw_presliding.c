@@ -206,7 +206,7 @@ static gw_real_t bearable_of(const gw_presliding_t *presliding, const gw_kinemat
 /* Does a displacement, or speed, with this sign deflect the bristle further? */
 static bool deflects_further(gw_real_t deflection_m, gw_real_t motion)
 {
-    return ((deflection_m > GW_ZERO) && (motion > GW_ZERO)) || ((deflection_m < GW_ZERO) && (motion < GW_ZERO));
+    return (deflection_m > GW_ZERO) ? (motion > GW_ZERO) : ((deflection_m < GW_ZERO) && (motion < GW_ZERO));
 }
 
 /* 1 - A rho: how much of a motion that deflects the bristle further goes into it; the rest is sliding. */

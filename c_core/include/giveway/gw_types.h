@@ -61,8 +61,8 @@
 #define GW_UNROLLED
 #endif
 
-/* Before a function that is made small instead of fast: the longest step does not need it. */
-#if defined(__GNUC__) && !defined(__FRAMAC__)
+/* Before a function that is made small instead of fast on Arm's microcontrollers: the longest step does not need it. */
+#if defined(__GNUC__) && defined(__arm__)
 #define GW_SMALL __attribute__((cold))
 #else
 #define GW_SMALL
