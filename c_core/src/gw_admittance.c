@@ -133,7 +133,7 @@ static gw_real_t along_away(const gw_admittance_t *admittance, gw_vector_t vecto
     return (admittance->away.x * vector.x) + (admittance->away.y * vector.y);
 }
 
-static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t direction, gw_real_t change_mps)
+GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t direction, gw_real_t change_mps)
 {
     velocity_mps->x = gw_limited(velocity_mps->x + (change_mps * direction.x), SPEED_MAX);
     velocity_mps->y = gw_limited(velocity_mps->y + (change_mps * direction.y), SPEED_MAX);
@@ -351,7 +351,7 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance)
     return holds;
 }
 
-static void aim(gw_admittance_t *admittance, gw_vector_t direction)
+GW_SMALL static void aim(gw_admittance_t *admittance, gw_vector_t direction)
 {
     const gw_real_t distance_m = admittance->config.escape_impulse_newton_s / admittance->config.damping_newton_s_per_m;
     const gw_vector_t limited = limit_components(direction, UNIT_MAX);

@@ -381,7 +381,7 @@ static void find_nothing(gw_controller_t *controller)
 }
 
 /* A tick without an estimate: no push is known, and the model is not reliable. */
-static void blank_tick(gw_controller_t *controller)
+GW_SMALL static void blank_tick(gw_controller_t *controller)
 {
     static const gw_estimator_output_t no_estimate = {.regime = GW_REGIME_CREEPING};
     controller->estimate = no_estimate;
@@ -521,7 +521,7 @@ static void detect(gw_controller_t *controller, bool slow)
 }
 
 /* A new tare of the run was asked for: only a robot that stands may take one. */
-static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, bool *accepted)
+GW_SMALL static gw_status_t judge_tare_request(gw_controller_t *controller, bool requested, bool *accepted)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const bool asked = requested && (!controller->tare_request_before);
@@ -532,7 +532,7 @@ static gw_status_t judge_tare_request(gw_controller_t *controller, bool requeste
 }
 
 /* One sample of the tare that runs in GW_MODE_TARING. */
-static gw_status_t continue_tare(gw_controller_t *controller, const gw_sensor_sample_t *sensor, bool *done)
+GW_SMALL static gw_status_t continue_tare(gw_controller_t *controller, const gw_sensor_sample_t *sensor, bool *done)
 {
     gw_wheels_t torque_nm;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
@@ -597,7 +597,7 @@ static gw_real_t threshold_leak(const gw_controller_t *controller)
 }
 
 /* Input of the live admittance, world frame: the mean force above the detector's leak. */
-static gw_vector_t live_force(const gw_controller_t *controller)
+GW_SMALL static gw_vector_t live_force(const gw_controller_t *controller)
 {
     const gw_vector_t base = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     const gw_real_t length = gw_length(base);
@@ -631,7 +631,7 @@ static void give_way(gw_controller_t *controller)
 
 /* Places the reference on the plan at the first call, then follows the plan. The plan is valid; that its values are
  * within their ranges is said again, in a form that the provers understand. */
-static void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
+GW_SMALL static void take_plan(gw_controller_t *controller, const gw_plan_t *plan)
 {
     const gw_plan_t valid = gw_plan_limited(plan);
     if (controller->on_plan) {
@@ -740,7 +740,7 @@ static void report(gw_controller_t *controller, gw_controller_output_t *output)
 }
 
 /* Has the reference come back to the plan? Asked for a valid plan only. */
-static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
+GW_SMALL static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 {
     const gw_plan_t valid = gw_plan_limited(plan);
     return (gw_reference_distance(&controller->reference, &valid) < controller->supervisor.config.rejoin_distance_m) &&
@@ -748,7 +748,7 @@ static bool is_near(const gw_controller_t *controller, const gw_plan_t *plan)
 }
 
 /* Does nothing push any more? */
-static bool is_quiet(const gw_controller_t *controller)
+GW_SMALL static bool is_quiet(const gw_controller_t *controller)
 {
     const gw_vector_t force = {controller->estimate.mean.force_x_n, controller->estimate.mean.force_y_n};
     return uses_channels(controller)
@@ -773,7 +773,7 @@ static gw_status_t sense(gw_controller_t *controller, const gw_controller_input_
 }
 
 /* The status that a step returns: bad sensors tell more than a bad plan, and that more than a refused tare. */
-static gw_status_t worst_of(gw_status_t sensor_status, bool plan_valid, gw_status_t tare_status)
+GW_SMALL static gw_status_t worst_of(gw_status_t sensor_status, bool plan_valid, gw_status_t tare_status)
 {
     gw_status_t status = tare_status;
     if (sensor_status != GW_STATUS_OK) {

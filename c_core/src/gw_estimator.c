@@ -100,7 +100,7 @@ static bool has_other_source(const gw_estimator_t *estimator, uint32_t source)
     return (estimator->last_source != NO_SOURCE) && (source != estimator->last_source);
 }
 
-static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
+GW_SMALL static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
 {
     return (source == GW_SOURCE_IMU) &&
            (gw_max(gw_magnitude(input->imu.zero_step.ax_mps2), gw_magnitude(input->imu.zero_step.ay_mps2)) > GW_ZERO);
@@ -188,8 +188,8 @@ static void tell_turns(const gw_estimator_t *estimator, const gw_estimator_input
 }
 
 /* By how much another zero has changed the wrench. */
-static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *zero_before_nm,
-                           gw_estimator_output_t *output)
+GW_SMALL static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *zero_before_nm,
+                                    gw_estimator_output_t *output)
 {
     output->zero_step = gw_wrench_external(&estimator->kinematics, present_zero(estimator), zero_before_nm);
 }
@@ -243,7 +243,7 @@ static bool has_other_source(const gw_estimator_t *estimator, uint32_t source)
     return false;
 }
 
-static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
+GW_SMALL static bool has_other_bias(const gw_estimator_input_t *input, uint32_t source)
 {
     (void)input;
     (void)source;
@@ -294,8 +294,8 @@ static void tell_turns(const gw_estimator_t *estimator, const gw_estimator_input
     (void)output;
 }
 
-static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *zero_before_nm,
-                           const gw_estimator_output_t *output)
+GW_SMALL static void tell_zero_step(const gw_estimator_t *estimator, const gw_wheels_t *zero_before_nm,
+                                    const gw_estimator_output_t *output)
 {
     (void)estimator;
     (void)zero_before_nm;
@@ -419,7 +419,7 @@ void gw_estimator_start_tare(gw_estimator_t *estimator)
 }
 
 /* Zero of a tare: its mean torque minus the share of the deflected bristles. */
-static void take_zero(gw_estimator_t *estimator, const gw_wheels_t *mean_nm, gw_wheels_t *zero_nm)
+GW_SMALL static void take_zero(gw_estimator_t *estimator, const gw_wheels_t *mean_nm, gw_wheels_t *zero_nm)
 {
     *zero_nm = *mean_nm;
     if (estimator->config.friction_model == GW_FRICTION_BRISTLE) {

@@ -182,7 +182,7 @@ static gw_status_t status_of(gw_real_t value, gw_real_t limit)
 }
 
 /* Is the sample good? Those that are not finite tell more than saturated ones, and old ones more than both. */
-static gw_status_t judge(gw_imu_t *imu, const gw_imu_sample_t *sample, bool *is_new)
+GW_SMALL static gw_status_t judge(gw_imu_t *imu, const gw_imu_sample_t *sample, bool *is_new)
 {
     gw_status_t status = GW_STATUS_SENSOR_MISSING;
     *is_new = false;
@@ -219,7 +219,7 @@ static gw_acceleration_t carried(const gw_imu_t *imu, const gw_real_t zero[GW_IM
 }
 
 /* One good new sample of the tare. Once a stop; the bias of the stop before holds until it is done. */
-static void tare(gw_imu_t *imu, const gw_real_t shown[GW_IMU_SIGNALS], gw_acceleration_t *zero_step)
+GW_SMALL static void tare(gw_imu_t *imu, const gw_real_t shown[GW_IMU_SIGNALS], gw_acceleration_t *zero_step)
 {
     imu->tare_count++;
     const gw_real_t share = GW_ONE / (gw_real_t)imu->tare_count; /* the first sample, from zero, is taken whole */
