@@ -12,10 +12,10 @@
     ((gw_real_t)0.012)               /* the measured acceleration alone is too noisy to say how wrong the model is \
                                       */
 #define HELD_TIME_S ((gw_real_t)1.0) /* for which the end of an old contact is forgiven */
-/* From this low-pass on an encoder's count is one of many, and the noise is normal: less of its variance is enough. In
- * the shorter ones counts of several wheels fall together, which normal noise does not do. */
+/* From this low-pass on an encoder's count is one of many, and the noise nearly normal: less of its variance is enough.
+ * In the shorter ones counts of several wheels fall together, which normal noise does not do. */
 #define FIRST_NORMAL 2U
-#define NORMAL_SHARE ((gw_real_t)0.6)
+#define NORMAL_SHARE ((gw_real_t)0.8)
 /* Variance of a sum of equal errors over that of independent ones. */
 #define COUNTING_ALIKE ((gw_real_t)GW_WHEEL_COUNT)
 #define NOISE_TIME_S ((gw_real_t)3.0)

@@ -20,7 +20,7 @@ typedef struct {
 
 typedef struct {
     /* How many standard deviations of noise, and of what the follower does not know, a contact must exceed, [1, 100]
-     * and [0, 100]. With encoders the longer low-passes take 0.77 of the first. */
+     * and [0, 100]. With encoders the longer low-passes take 0.89 of the first. */
     gw_real_t noise_multiple;
     gw_real_t model_multiple;
     /* The first of them with an IMU, whose noise has no tails as that of counts has, [1, 100]. */

@@ -455,7 +455,7 @@ static void the_threshold_is_that_of_what_the_robot_does(void)
         const gw_real_t x = channels.fast.bank[3].force_x_n;
         const gw_real_t floor_n = gw_force_floor(config.fast, rows[i].judged);
         const gw_real_t n2 =
-            (floor_n * floor_n) + ((R(0.6) * R(64.0)) * channels.fast.noise_n2[GW_BY_ENCODERS][rows[i].judged][3]);
+            (floor_n * floor_n) + ((R(0.8) * R(64.0)) * channels.fast.noise_n2[GW_BY_ENCODERS][rows[i].judged][3]);
         unit_row(i);
         CHECK_NEAR(output.statistic * output.statistic, (x * x) / n2, ((x * x) / n2) * R(0.01));
     }

@@ -47,12 +47,13 @@ static void steps(uint32_t count)
     }
 }
 
-/* The variance of a low-pass, six tenths of it for the longer ones of encoders, and what the model does not know: none.
+/* The variance of a low-pass, eight tenths of it for the longer ones of encoders, and what the model does not know:
+ * none.
  */
 static gw_real_t threshold_n2(gw_regime_t regime, uint32_t j)
 {
     const gw_real_t floor_n = gw_force_floor(config.fast, regime);
-    const gw_real_t share = ((j >= 2U) && (channel.sensor == GW_BY_ENCODERS)) ? R(0.6) : GW_ONE;
+    const gw_real_t share = ((j >= 2U) && (channel.sensor == GW_BY_ENCODERS)) ? R(0.8) : GW_ONE;
     return ((share * (MULTIPLE * MULTIPLE)) * channel.noise_n2[channel.sensor][regime][j]) + (floor_n * floor_n);
 }
 
