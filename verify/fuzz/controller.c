@@ -34,10 +34,15 @@ static gw_controller_config_t take_config(bytes_t *from)
     }
     if ((replaced & 128U) != 0U) {
         GW_DETECTOR_FIELDS(TAKE, config.detector.)
+        GW_CHANNELS_FIELDS(TAKE, config.channels.)
+        GW_FOLLOWER_FIELDS(TAKE, config.channels.follower.)
     }
     if ((replaced & 256U) != 0U) {
         GW_REFERENCE_FIELDS(TAKE, config.reference.)
         GW_SUPERVISOR_FIELDS(TAKE, config.supervisor.)
+    }
+    if ((replaced & 512U) != 0U) {
+        GW_IMU_FIELDS(TAKE, config.imu.)
     }
     /* Few ticks each, so that an input of some 60 sees all modes. */
     config.sensor_check.recover_ticks = 1U + (replaced >> 28U);
@@ -48,7 +53,12 @@ static gw_controller_config_t take_config(bytes_t *from)
     config.detector.blanking_ticks = (replaced >> 12U) & 3U;
     config.estimator.friction_model = (replaced >> 11U) & 1U;
     config.admittance.kind = (replaced >> 16U) % 3U;
-    config.detector.kind = (replaced >> 9U) & 1U;
+    config.detector.kind = (replaced >> 19U) % 3U;
+    config.imu.use = (replaced >> 10U) & 1U;
+    config.imu.tare_ticks = 1U + ((replaced >> 21U) & 3U);
+    if (config.imu.use == 1U) {
+        config.estimator.acceleration_source = GW_SOURCE_IMU;
+    }
     config.drives_enabled = (replaced & 64U) == 0U;
     *from = bytes;
     return config;
@@ -96,17 +106,23 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         input.imu.yaw_rate_radps = take_value(&bytes, GW_ONE);
         input.imu.counter = counter;
         input.imu.present = (requests & 0xC000U) != 0xC000U;
-        const gw_status_t status = gw_controller_step(&controller, &input, &output);
-        const bool bad = (status >= GW_STATUS_SENSOR_MISSING) && (status <= GW_STATUS_SENSOR_RECOVERING);
-        DEMAND(gw_controller_invariant_holds(&controller));
-        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-            DEMAND(gw_in_range(output.command.angle_rad[i], -GW_PI, GW_PI));
-            DEMAND(gw_is_finite(output.command.speed_radps[i]));
-            DEMAND((!bad) || (output.command.speed_radps[i] == GW_ZERO));
+        /* The same for some ticks: the channels take their first mean over 60. */
+        for (uint32_t held = requests >> 27U; held < 32U; held++) {
+            const gw_status_t status = gw_controller_step(&controller, &input, &output);
+            const bool bad = (status >= GW_STATUS_SENSOR_MISSING) && (status <= GW_STATUS_SENSOR_RECOVERING);
+            DEMAND(gw_controller_invariant_holds(&controller));
+            for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+                DEMAND(gw_in_range(output.command.angle_rad[i], -GW_PI, GW_PI));
+                DEMAND(gw_is_finite(output.command.speed_radps[i]));
+                DEMAND((!bad) || (output.command.speed_radps[i] == GW_ZERO));
+            }
+            DEMAND(gw_wrench_is_valid(output.estimate) && gw_wrench_is_valid(output.detection_wrench));
+            DEMAND(gw_is_finite(output.contact.lever_arm_sigma_m) && gw_is_finite(output.detection_statistic));
+            DEMAND(gw_is_finite(output.reference_pose.x_m) && gw_is_finite(output.reference_pose.y_m));
+            counter += ((requests & 1U) != 0U) ? 0U : 1U;
+            input.sensor.counter = counter;
+            input.imu.counter = counter;
         }
-        DEMAND(gw_wrench_is_valid(output.estimate) && gw_wrench_is_valid(output.detection_wrench));
-        DEMAND(gw_is_finite(output.contact.lever_arm_sigma_m) && gw_is_finite(output.detection_statistic));
-        DEMAND(gw_is_finite(output.reference_pose.x_m) && gw_is_finite(output.reference_pose.y_m));
     }
     return 0;
 }

@@ -35,9 +35,9 @@ HARNESSES = {
     ),
     "plan": Harness(
         ("gw_reference", "gw_math", "gw_sum", "gw_config"),
-        "gw_limited(plan->acceleration.alpha_radps2, GW_PLAN_ACCELERATION_MAX)",
-        "plan->acceleration.alpha_radps2",
-        "include/giveway/gw_reference.h",
+        "(x >= -limit) ? ((x <= limit) ? x : limit) : -limit",
+        "(x >= GW_ZERO) ? ((x <= limit) ? x : limit) : -limit",
+        "include/giveway/gw_math.h",
     ),
     "sensor_check": Harness(
         ("gw_sensor_check", "gw_math", "gw_config"),
