@@ -40,6 +40,7 @@ static void set_no_escape(gw_admittance_config_t *config)
     config->smoothing_s = GW_ZERO;
     config->brake_limit_mps2 = GW_ZERO;
     config->lead_s = GW_ZERO;
+    config->push_share = GW_ZERO;
     gw_tip_config_trikey(&config->tip);
 }
 
@@ -48,6 +49,7 @@ static void check_escape(const gw_admittance_config_t *config, gw_config_error_t
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_SMOOTHING, config->smoothing_s);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_BRAKE_LIMIT, config->brake_limit_mps2);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_LEAD, config->lead_s);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_PUSH_SHARE, config->push_share);
     gw_tip_config_check(&config->tip, error);
 }
 
@@ -189,6 +191,23 @@ void gw_admittance_brake(gw_admittance_t *admittance)
         const gw_real_t change_mps = gw_min(admittance->config.brake_limit_mps2 * admittance->period_s, towards_mps);
         add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
         for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+            add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
+        }
+    }
+}
+
+void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg)
+{
+    const gw_real_t above_n = along_away(admittance, force_n) - floor_n;
+    if (is_escape(admittance) && (above_n > GW_ZERO)) {
+        const gw_admittance_config_t *const config = &admittance->config;
+        const gw_real_t push_mps2 = gw_min((config->push_share * above_n) / mass_kg, config->acceleration_limit_mps2);
+        const gw_real_t goal_mps =
+            gw_min(admittance->rate_per_s * along_away(admittance, ahead_of(admittance)), config->speed_limit_mps);
+        const gw_real_t left_mps = gw_max(goal_mps - along_away(admittance, admittance->smooth_mps[0]), GW_ZERO);
+        const gw_real_t change_mps = gw_min(push_mps2 * admittance->period_s, left_mps);
+        add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
+        for (uint32_t i = 0U; i < (GW_SMOOTH_COUNT - 1U); i++) {
             add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
         }
     }

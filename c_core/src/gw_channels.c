@@ -285,18 +285,20 @@ static void warm_up(gw_channels_t *channels, const gw_balance_t *balance)
 
 /* A tick after the warm-up. Returns the larger statistic. */
 static gw_real_t compare(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
-                         const gw_balance_t *balance, bool *tripped)
+                         const gw_balance_t *balance, gw_channels_output_t *output)
 {
     const gw_regime_t regime = judged_regime(channels, input);
     gw_fast_found_t found;
     gw_fast_channel_step(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
                          !channels->active, &found);
     gw_slow_channel_step(&channels->slow, balance);
+    output->force_n.x = found.change.force_x_n;
+    output->force_n.y = found.change.force_y_n;
     /* In a reaction a lasting force is told from wrong friction by nothing: impacts alone count. */
     const gw_real_t largest = input->reacting ? found.statistic : gw_max(found.statistic, channels->slow.statistic);
     if ((!channels->active) && input->enabled && (largest > GW_ONE)) {
         begin_contact(channels, &found);
-        *tripped = true;
+        output->tripped = true;
     } else {
         if (!input->zero_changed) {
             do_what_is_due(channels, kinematics, input, balance, regime, found.statistic);
@@ -324,6 +326,8 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     const gw_balance_t balance = gw_balance_limited(input->wrench, input->forces);
     gw_real_t largest = GW_ZERO;
     output->tripped = false;
+    output->force_n.x = GW_ZERO;
+    output->force_n.y = GW_ZERO;
     if (input->zero_changed) {
         take_zero_step(channels, input);
     }
@@ -332,7 +336,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     if (channels->warm_up_ticks < WARM_UP_TICKS) {
         warm_up(channels, &balance);
     } else {
-        largest = compare(channels, kinematics, input, &balance, &output->tripped);
+        largest = compare(channels, kinematics, input, &balance, output);
     }
     output->statistic = gw_sqrt_of_square(largest);
     output->active = channels->active;

@@ -47,9 +47,11 @@ static void choose_escape(gw_controller_config_t *config)
 {
     config->admittance.kind = GW_ADMITTANCE_ESCAPE;
     config->admittance.tip.height_m = GW_TRIKEY_BASE_COM_HEIGHT_M;
-    config->admittance.smoothing_s = (gw_real_t)0.035;
+    config->admittance.tip.share = (gw_real_t)0.25;
+    config->admittance.smoothing_s = (gw_real_t)0.025;
     config->admittance.lead_s = (gw_real_t)0.04;
     config->admittance.brake_limit_mps2 = (gw_real_t)4.5;
+    config->admittance.push_share = GW_TWO;
 }
 #else
 static void choose_escape(const gw_controller_config_t *config)
@@ -314,23 +316,48 @@ static void set_up_escape(gw_controller_t *controller, const gw_controller_confi
     gw_admittance_set_tip(&controller->admittance, &tip);
     gw_reference_set_tip(&controller->reference, &tip);
     controller->may_press = false;
+    controller->may_be_pushed = false;
 }
 
-/* A reaction begins: does the robot move towards what it hit? */
+#if (GW_WITH_CHANNELS == 1)
+/* The force of this tick, base frame; the paper's detectors do not tell it from what was before. */
+static gw_vector_t felt_force(const gw_controller_t *controller)
+{
+    return controller->contact_found.force_n;
+}
+#else
+static gw_vector_t felt_force(const gw_controller_t *controller)
+{
+    static const gw_vector_t nothing_felt = {0};
+    (void)controller;
+    return nothing_felt;
+}
+#endif
+
+/* A reaction begins: does the robot move towards what it hit, or may the push accelerate it? Neither within a reaction:
+ * there the robot rocks, and what it feels of that would make it rock more. */
 static void note_press(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
 {
     const gw_real_t towards_mps = -((velocity.x * direction.x) + (velocity.y * direction.y));
-    /* Not in a reaction: there the robot rocks, and what it feels of that would make it rock more. */
-    controller->may_press =
-        (before != GW_MODE_REACTING) && (towards_mps > controller->supervisor.config.settled_speed_mps);
+    const bool begins = (before != GW_MODE_REACTING);
+    const bool presses = (towards_mps > controller->supervisor.config.settled_speed_mps);
+    controller->may_press = begins && presses;
+    controller->may_be_pushed = begins && (!presses);
 }
 
 /* Before a step of the admittance. */
 static void prepare_escape(gw_controller_t *controller)
 {
     gw_admittance_face(&controller->admittance, controller->reference.yaw);
-    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->may_press && controller->detection.active) {
-        gw_admittance_brake(&controller->admittance);
+    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->detection.active) {
+        if (controller->may_press) {
+            gw_admittance_brake(&controller->admittance);
+        } else if (controller->may_be_pushed) {
+            gw_admittance_push(&controller->admittance, gw_rotate(controller->reference.yaw, felt_force(controller)),
+                               channels_leak(controller), controller->estimator.nominal.total_mass_kg);
+        } else {
+            /* a reaction within a reaction */
+        }
     }
 }
 

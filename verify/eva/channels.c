@@ -63,6 +63,7 @@ static void part_step(void)
         demand_real(output.statistic, GW_ZERO, (gw_real_t)1.0e10);
         demand_count(output.channel, 0U, GW_CHANNEL_SLOW);
         hold_wrench(&output.mean_wrench, GW_WRENCH_MAX);
+        hold_vector(&output.force_n, GW_WRENCH_MAX);
     }
     hold_channels(&channels);
     (void)gw_channels_invariant_holds(&channels);

@@ -53,6 +53,9 @@ typedef struct {
      * the speed limit in each component. The inertia that a wheel moves over the servo's kd lets the robot follow
      * without lag. */
     gw_real_t lead_s;
+    /* Escape: as long as a push is felt, the acceleration away from it grows by this share, [0, 5], of what the push
+     * would give a free robot of its mass. */
+    gw_real_t push_share;
     gw_tip_config_t tip;
 #endif
 } gw_admittance_config_t;
@@ -106,6 +109,11 @@ void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw);
 /* Before a step of the escape, as long as the contact lasts: brakes a velocity towards the push. No effect on other
  * kinds. Pointer not NULL. */
 GW_SMALL void gw_admittance_brake(gw_admittance_t *admittance);
+/* Likewise, instead of it, for a robot that does not move towards the push: accelerates away from it, past the first
+ * low-pass, at most to the speed of (2). What exceeds the floor of the felt force, |F| at most 1e9 N, counts; mass
+ * above 0. No effect on other kinds. Pointer not NULL. */
+GW_SMALL void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n,
+                                 gw_real_t mass_kg);
 #endif
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */

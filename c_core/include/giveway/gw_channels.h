@@ -62,6 +62,7 @@ typedef struct {
     /* Root of x^T S^-1 x, the larger of both channels; trips above 1. */
     gw_real_t statistic;
     gw_wrench_t mean_wrench; /* kept until the next contact */
+    gw_vector_t force_n;     /* difference from the baseline in this tick */
 } gw_channels_output_t;
 
 typedef struct {

@@ -115,7 +115,8 @@ typedef struct {
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */
 #if (GW_WITH_ESCAPE == 1)
-    bool may_press; /* the reaction began with a hit on the way: the robot may still move towards what it hit */
+    bool may_press;     /* the reaction began with a hit on the way: the robot may still move towards what it hit */
+    bool may_be_pushed; /* it began with a hit, and the robot did not move towards it */
 #endif
     bool initialised;
     gw_estimator_t estimator;

@@ -51,6 +51,7 @@ digest_t drive_escape(void)
     trikey.admittance.kind = GW_ADMITTANCE_ESCAPE;
     trikey.admittance.smoothing_s = (gw_real_t)0.03;
     trikey.admittance.brake_limit_mps2 = (gw_real_t)4.0;
+    trikey.admittance.push_share = GW_TWO;
     trikey.admittance.tip.height_m = (gw_real_t)0.414;
     digest_u32(&digest, (uint32_t)gw_kinematics_init(&kinematics, &trikey.geometry));
     gw_tip_init(&tip, &trikey.admittance.tip, &kinematics);
@@ -70,6 +71,11 @@ digest_t drive_escape(void)
             }
             if (i < 100U) {
                 gw_admittance_brake(&admittance);
+            } else if (i < 200U) {
+                gw_admittance_push(&admittance, generator_vector(&generator, (gw_real_t)60.0), (gw_real_t)4.0,
+                                   (gw_real_t)35.0);
+            } else {
+                /* not touched any more */
             }
             digest_u32(&digest, (uint32_t)gw_admittance_step(&admittance, no_force, &output));
             digest_vector(&digest, output.velocity_mps);

@@ -455,6 +455,44 @@ static void a_velocity_towards_a_push_is_braked_harder(void)
     }
 }
 
+/* What is felt above the floor, over the mass, accelerates away from the push behind the first low-pass: at most the
+ * limit, to the speed of (2) and the longest one; no other kind. p/B 0.8/s = 0.4 m/s. */
+static void a_push_helps_to_give_way(void)
+{
+    const struct {
+        uint32_t kind;
+        gw_real_t force_n;
+        gw_real_t speed;
+        gw_real_t speed_limit;
+        gw_real_t gain;
+    } rows[] = {
+        {GW_ADMITTANCE_ESCAPE, R(25.0), R(0.0), R(0.5), R(0.001)}, /* 1.5 (25 N - 5 N)/30 kg */
+        {GW_ADMITTANCE_ESCAPE, R(5.0), R(0.0), R(0.5), R(0.0)},
+        {GW_ADMITTANCE_ESCAPE, R(-25.0), R(0.0), R(0.5), R(0.0)},
+        {GW_ADMITTANCE_ESCAPE, R(200.0), R(0.0), R(0.5), R(0.0028)},
+        {GW_ADMITTANCE_ESCAPE, R(25.0), R(-0.2), R(0.5), R(0.001)},
+        {GW_ADMITTANCE_ESCAPE, R(25.0), R(0.3995), R(0.5), R(0.0005)},
+        {GW_ADMITTANCE_ESCAPE, R(25.0), R(0.45), R(0.5), R(0.0)}, /* is not braked */
+        {GW_ADMITTANCE_ESCAPE, R(25.0), R(0.2995), R(0.3), R(0.0005)},
+        {GW_ADMITTANCE_FROZEN_IMPULSE, R(25.0), R(0.0), R(0.5), R(0.0)},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        const gw_vector_t velocity = {rows[i].speed, R(0.0)};
+        const gw_vector_t force = {rows[i].force_n, R(100.0)}; /* the part across does nothing */
+        gw_admittance_config_t from = config(rows[i].kind);
+        from.push_share = R(1.5);
+        from.speed_limit_mps = rows[i].speed_limit;
+        gw_admittance_t admittance = of_config(&from);
+        unit_row(i);
+        CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
+        gw_admittance_push(&admittance, force, R(5.0), R(30.0));
+        CHECK_NEAR(admittance.velocity_mps.x, rows[i].speed + rows[i].gain, ULP);
+        CHECK(admittance.velocity_mps.y == GW_ZERO);
+        CHECK_NEAR(admittance.smooth_mps[0].x, rows[i].speed + rows[i].gain, ULP);
+        CHECK(admittance.smooth_mps[1].x == rows[i].speed);
+    }
+}
+
 /* The margin limits every kind of reaction. */
 static void no_kind_lifts_a_wheel(void)
 {
@@ -526,6 +564,7 @@ void suite_admittance(void)
     unit_run("a_goal_that_was_passed_is_given_up", a_goal_that_was_passed_is_given_up);
     unit_run("low_passes_delay_by_their_time", low_passes_delay_by_their_time);
     unit_run("a_velocity_towards_a_push_is_braked_harder", a_velocity_towards_a_push_is_braked_harder);
+    unit_run("a_push_helps_to_give_way", a_push_helps_to_give_way);
     unit_run("no_kind_lifts_a_wheel", no_kind_lifts_a_wheel);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

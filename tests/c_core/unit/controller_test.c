@@ -138,6 +138,46 @@ static void an_escape_brakes_as_long_as_it_is_pushed(void)
     }
 }
 
+/* The acceleration of an escape from rest, as soon as a push of 60 N is felt in full. */
+static gw_real_t acceleration_of_an_escape(uint32_t detector, gw_real_t push_share)
+{
+    rig_set_up();
+    rig_config.estimator.tare_ticks = 0U;
+    rig_config.detector.kind = detector;
+    if (detector == GW_DETECTOR_CHANNELS) {
+        rig_config.estimator.acceleration_source = GW_SOURCE_MEASURED;
+        rig_config.estimator.aligned = 1U;
+    }
+    rig_config.detector.force_threshold_n = R(10.0);
+    rig_config.admittance.kind = GW_ADMITTANCE_ESCAPE;
+    rig_config.admittance.tip.height_m = R(0.414);
+    rig_config.admittance.push_share = push_share;
+    rig_config.admittance.escape_impulse_newton_s *= R(5.0);
+    rig_begin();
+    rig_ticks(200U);
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 300U);
+    rig_ticks(40U);
+    return rig_controller.reference.acceleration.ax_mps2;
+}
+
+/* The channels know the force of a contact, and it accelerates the escape; the paper's detectors do not. */
+static void a_push_accelerates_an_escape(void)
+{
+    for (uint32_t kind = 0U; kind <= GW_DETECTOR_CHANNELS; kind++) {
+        const gw_real_t alone = acceleration_of_an_escape(kind, GW_ZERO);
+        const gw_real_t pushed = acceleration_of_an_escape(kind, R(0.002));
+        unit_row(kind);
+        CHECK_NEAR(alone, rig_controller.admittance.tip.margin_mps2, R(0.001));
+        if (kind == GW_DETECTOR_CHANNELS) {
+            /* 60 N less 14 N in motion, over 0.1 kg. */
+            CHECK_NEAR(pushed - alone, R(0.92), R(0.01));
+        } else {
+            CHECK_NEAR(pushed, alone, R(0.001));
+        }
+    }
+}
+
 /* In a reaction the commanded speeds are ahead of the reference by the configured time; on the path they are not. */
 static void a_reaction_leads_the_servos(void)
 {
@@ -479,6 +519,7 @@ void suite_controller(void)
     unit_run("without_a_tare_it_starts_at_the_plan_s_speed", without_a_tare_it_starts_at_the_plan_s_speed);
     unit_run("it_gives_way_to_a_push_and_comes_back", it_gives_way_to_a_push_and_comes_back);
     unit_run("an_escape_brakes_as_long_as_it_is_pushed", an_escape_brakes_as_long_as_it_is_pushed);
+    unit_run("a_push_accelerates_an_escape", a_push_accelerates_an_escape);
     unit_run("a_reaction_leads_the_servos", a_reaction_leads_the_servos);
     unit_run("a_second_push_on_the_way_is_a_hit_too", a_second_push_on_the_way_is_a_hit_too);
     unit_run("settled_can_mean_to_stay", settled_can_mean_to_stay);
