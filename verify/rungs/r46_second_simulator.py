@@ -19,7 +19,7 @@ STEP_S = 0.25e-3
 # Halving the step may move a detection by a tick of the controller and the noise that it sees then, and the peak by
 # what a method of first order does; the magnet lets go within a few steps.
 DELAY_MS, PEAK_SHARE = 2.0, {"none": 0.01, "spring": 0.01, "magnetic": 0.05}
-LATEST_MS = 150.0  # of a hit at rest: the bumper with the plain spring takes the longest, 105 ms
+LATEST_MS = 30.0  # of a hit at rest: found within 7 to 16 ms
 WRONG_DEG = 30.0
 
 

@@ -55,7 +55,7 @@ def main(words: Sequence[str] | None = None) -> int:
         chosen = [replace(case, run=replace(case.run, wiring=(1, 0, 2))) for case in chosen]
     records = _run_all(chosen, testbed, controller, drives, asked)
     if records:
-        print(markdown(records))
+        print(markdown(records, bool(controller.get("imu.use", 0))))
     document = {
         "step_s": asked.step,
         "seed": asked.seed,

@@ -1,4 +1,4 @@
-"""What the reflexes did: the table of `giveway crowd` over the runs of the second simulator, and its quiet runs."""
+"""What the reflexes did: table and targets of `giveway crowd` over the second simulator's runs, and its quiet runs."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from giveway.crowd.judged import Judged, judge, limits
+from giveway.crowd.population import WITH_IMU
 from giveway.crowd.statistics import rate_upper_bound
-from giveway.crowd.table import HEADER, ROWS, cells, find, read
+from giveway.crowd.table import HEADER, ROWS, TARGET_HEADER, cells, find, read, target_rows
 
 from verify.second_simulator.loop import Traces
 
@@ -21,7 +22,10 @@ QUIET_HEADER = (
     "false detections",
     "per hour",
     "95 % upper bound",
+    "at most",
+    "",
 )
+ASKED = "tipping"  # its base can tip
 
 Record = Mapping[str, Any]
 
@@ -48,17 +52,27 @@ def quiet_rows(records: Sequence[Record]) -> list[tuple[str, ...]]:
                 str(sum(counts)),
                 f"{sum(counts) / hours:.0f}",
                 f"{rate_upper_bound(sum(counts), hours):.0f}",
+                "0",
+                "missed" if sum(counts) else "met",
             )
         )
     return rows
 
 
-def markdown(records: Sequence[Record]) -> str:
-    """Both tables."""
+def markdown(records: Sequence[Record], imu: bool = False) -> str:
+    """The classes of hits, what is asked of them, and the quiet runs; ``imu``: the controller has one."""
     touched = read([dict(record) for record in records if record["kind"] != "nothing"])
     found = [found for row in ROWS if (found := find(row, touched)).runs]
-    lines = [f"| {' | '.join(HEADER)} |", "|" + "---|" * len(HEADER)]
-    lines += [f"| {' | '.join(cells(one))} |" for one in found]
-    lines += ["", f"| {' | '.join(QUIET_HEADER)} |", "|" + "---|" * len(QUIET_HEADER)]
-    lines += [f"| {' | '.join(row)} |" for row in quiet_rows(records)]
-    return "\n".join(lines) + "\n"
+    # Wheels that lift are not compared with a blocked run here.
+    asked = [line for line in target_rows(ASKED + WITH_IMU * imu, found) if line[-1] != "-"]
+    return "\n".join(
+        [
+            *_table(HEADER, [cells(one) for one in found]),
+            *_table(TARGET_HEADER, asked),
+            *_table(QUIET_HEADER, quiet_rows(records)),
+        ]
+    )
+
+
+def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    return [f"| {' | '.join(line)} |" for line in (header, ["---"] * len(header), *rows)] + [""]
