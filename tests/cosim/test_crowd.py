@@ -22,6 +22,7 @@ from giveway.crowd.judged import RECORDED, Contact, Judged, judge, limits
 from giveway.crowd.parts import Interrupted, Work, go_on
 from giveway.crowd.population import GROUPS, IMU, POPULATION, Quantity, group_of, robot, robot_of, start_value
 from giveway.crowd.statistics import count_interval, mean, percentile, rate_upper_bound
+from giveway.robot.presets import NO_REFLEX
 
 DRAW = "tuning"
 ROBOT = 3  # a planar one
@@ -287,7 +288,7 @@ def test_a_run_that_can_tip_is_judged_beside_the_blocked_one() -> None:
     (run,) = compute(DRAW, {}, [PER_ROBOT], 1, lambda _done: None)
     assert run["group"] == "tipping"
     assert set(run["lifts"]) == {"late_s", "late_blocked_s", "caused"}
-    (blind,) = compute(DRAW, dict(lifts.BLOCKED), [PER_ROBOT], 1, lambda _done: None)
+    (blind,) = compute(DRAW, NO_REFLEX, [PER_ROBOT], 1, lambda _done: None)
     assert blind["lifts"]["caused"] == 0
     assert blind["lifts"]["late_s"] == blind["lifts"]["late_blocked_s"] == run["lifts"]["late_blocked_s"]
 

@@ -12,10 +12,11 @@ from giveway.base.errors import UnknownNameError
 from giveway.crowd.blow import Blow
 from giveway.crowd.hits import PER_ROBOT, Hit, hit
 from giveway.crowd.judged import RECORDED, Judged, Limits, judge, limits
-from giveway.crowd.lifts import BLOCKED, lifts
 from giveway.crowd.lifts import RECORDED as LOADS
+from giveway.crowd.lifts import lifts
 from giveway.crowd.parts import Interrupted, Record, Work
 from giveway.crowd.population import DRAWS, GROUPS, group_of, start_value
+from giveway.robot.presets import NO_REFLEX
 from giveway.robot.variables import Value
 from giveway.scenario.plan import Rest
 
@@ -132,7 +133,7 @@ def _run(hits: Sequence[Hit], recorded: tuple[str, ...], threads: int, said: Cal
 
 def _blocked(one: Hit) -> Hit:
     """The same without a reaction."""
-    controller = {**one.scenario.controller, **BLOCKED}
+    controller = {**one.scenario.controller, **NO_REFLEX}
     return dataclasses.replace(one, scenario=dataclasses.replace(one.scenario, controller=controller))
 
 

@@ -1,13 +1,12 @@
 """Wheels that lift: of a robot that can tip, against the same run with the reaction blocked.
 
 From `AFTER_S` after a contact has ended no wheel shall lift; while it lasts none that would not have lifted with the
-reaction blocked. A blocked reflex notices nothing: the robot goes on with its plan.
+reaction blocked. A blocked reflex (`NO_REFLEX`) notices nothing: the robot goes on with its plan.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,14 +17,9 @@ from giveway.robot.wheels import WHEELS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.robot.variables import Value
-
-__all__ = ["AFTER_S", "BLOCKED", "RECORDED", "lifts"]
+__all__ = ["AFTER_S", "RECORDED", "lifts"]
 
 AFTER_S = 0.1
-BLOCKED: Mapping[str, Value] = MappingProxyType(
-    {"detector.kind": 0, "detector.impulse_threshold": 1000.0, "detector.force_threshold": 10000.0}
-)
 RECORDED = tuple(f"testbed.truth.wheel_load[{wheel}]" for wheel in range(WHEELS))
 
 Traces = Mapping[str, "NDArray[Any]"]
