@@ -59,7 +59,15 @@ def _group_rows(study: Study, statics: Statics) -> list[Row]:
         rows += [
             Row(f"{name}, median", float(np.median(groups[:, column])), unit, "assumed"),
             Row(f"{name}, as in Fig. 9, median", float(np.median(placed[:, column])), unit, "assumed"),
-            Row(f"{name}: percentile of the paper's", percentile, "% of groups", "assumed", printed, BAND, reason),
+            Row(
+                f"{name}: percentile of the paper's {printed.text}",
+                percentile,
+                "% of groups",
+                "assumed",
+                printed,
+                BAND,
+                reason,
+            ),
         ]
     missing = 100.0 * float(np.mean(~study.random.on_outline))
     rows.append(Row("pushes whose zero-moment line misses the outline", missing, "%", "assumed"))
