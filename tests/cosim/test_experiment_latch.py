@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from giveway import batch, experiments
 from giveway.experiments import latch
 from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.simulation.result import Result
+
+KINDS = ("spring", "magnetic spring")
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +41,14 @@ def test_the_rows_are_the_force_of_the_first_60_ms(findings: Findings) -> None:
     assert row(findings, "force of the first 60 ms, 5.2, spring") == pytest.approx(spring)
     assert row(findings, "force of the first 60 ms, 5.2, magnetic spring") == pytest.approx(magnetic)
     assert row(findings, "the latch raises it by, 5.2") == pytest.approx(100.0 * (magnetic / spring - 1.0))
+
+
+def test_the_readme_tells_what_it_costs(findings: Findings) -> None:
+    text = " ".join((Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8").split())
+    for case in ("5.2", "0.2 m/s"):
+        spring, magnetic = (row(findings, f"force of the first 60 ms, {case}, {one}") for one in KINDS)
+        assert f"{magnetic:.0f} instead of {spring:.0f} N" in text
+    assert f"noticed {row(findings, 'the latch is noticed earlier by, 5.2'):.0f} ms before the plain spring" in text
 
 
 def test_the_shipped_latch_costs_force_at_every_speed(findings: Findings) -> None:
