@@ -223,7 +223,7 @@ def _alarms_otherwise(estimator: str, hours: float, effort: Effort) -> str:
     """The same hour with a detector that ignores more."""
     alarms = _false_alarms(estimator, hours, effort, {"detector.leak_motion": LEAK_N})
     return (
-        f"tried on the same runs, with all else as it is: {alarms.sum():.0f} false alarms with detector.leak_motion "
+        f"tried on the same runs, with all else as it is: {alarms.sum():.0f} in all with detector.leak_motion "
         f"{LEAK_N:g} N"
     )
 

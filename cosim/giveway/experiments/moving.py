@@ -140,6 +140,7 @@ def _rows(result: Result, still_nm: float, again: Mapping[str, Result]) -> list[
             ""
             if in_time.met(reversal_ms)
             else f"{detection:.0f} ms pass until the decision; then the reaction's acceleration limit decides: {late}",
+            decimals=0,
         ),
         Row(
             "peak torque over 5.2's with bumpers",
