@@ -236,7 +236,7 @@ def _reason_of_delay(bumper: str, by_height: dict[float, _Run]) -> str:
     """Other heights (without a bumper) and another threshold, which then holds for every bumper."""
 
     def with_threshold(bumper: str) -> str:
-        case = scenario(bumper)
+        case = _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M})
         controller = {**case.controller, "detector.impulse_threshold": QUICK_NS}
         return _ms(_Run(dataclasses.replace(case, controller=controller)).detection_ms())
 
@@ -271,10 +271,10 @@ def _tips_at(bumpers: Sequence[str], masses_kg: Sequence[float], testbed: dict[s
     """The first of the falling masses with which it passes the point of no return in a hit with one of the bumpers."""
     for mass_kg in masses_kg:
         for bumper in bumpers:
-            case = scenario(bumper)
+            case = _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M, **testbed})
             controller = {**case.controller, **UNLIMITED, "admittance.mass": mass_kg}
             try:
-                tried = _Run(dataclasses.replace(case, testbed={**case.testbed, **testbed}, controller=controller))
+                tried = _Run(dataclasses.replace(case, controller=controller))
             except SimulationError as error:
                 if "tips over" not in str(error):
                     raise
