@@ -89,6 +89,28 @@ def test_the_reduced_experiment_has_every_row(findings: Findings) -> None:
     assert [picture.name for picture in findings.pictures] == ["path", "alarm"]
 
 
+def test_the_undisturbed_rounds_start_from_all_headings_and_encoder_phases() -> None:
+    runs = circle.undisturbed_runs(circle.FULL, 1.0, 90)
+    assert sum(run.duration_s for run in runs) == pytest.approx(3600.0)
+    headings = np.array([float(run.testbed["start.theta"]) for run in runs])
+    assert sorted(np.floor(np.degrees(headings % (2.0 * np.pi)) / 4.0)) == list(range(90))
+    for run, heading in zip(runs, headings, strict=True):
+        assert run.plan(np.zeros(1))[0, 2] == heading  # the plan keeps it
+    for wheel in range(3):
+        phases = [float(run.testbed[f"electronics.encoder_phase[{wheel}]"]) for run in runs]
+        assert np.histogram(phases, bins=10, range=(0.0, 1.0))[0].min() >= 2
+    assert len({run.seed for run in runs}) == 90
+    again = circle.undisturbed_runs(circle.PAPER, 1.0, 90)
+    assert [run.testbed for run in again] == [run.testbed for run in runs]  # the same for every estimator
+
+
+def test_oblique_pushes_have_their_targets_and_reasons(findings: Findings) -> None:
+    oblique = [one for one in findings.rows if "oblique" in one.quantity]
+    assert len(oblique) == 4
+    assert all(one.target is not None for one in oblique)
+    assert all(one.reason for one in findings.rows if one.met is False)
+
+
 def test_rollers_that_rub_unlike_the_model_do_raise_false_alarms(findings: Findings) -> None:
     # The count of undisturbed rounds could not be trusted if nothing ever raised one: 20 % of 42 N is 8.4 N, far above
     # the 3 N that the detector ignores in motion, and below the 9 N of the last row.

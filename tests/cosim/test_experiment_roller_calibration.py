@@ -39,7 +39,9 @@ def test_the_papers_numbers_stand_beside_ours(findings: Findings) -> None:
     for plant in ("bristle rollers", "tanh rollers"):
         assert rows[f"B_r, {plant}, mean"].ours == pytest.approx(0.2, rel=0.05)
         assert rows[f"alpha, {plant}, mean"].ours == pytest.approx(0.4, rel=0.05)
-    assert rows["torque of wheel 1 over wheel 0, wheel 0 moving"].paper == -0.5
+        assert (rows[f"B_r, {plant}, mean"].papers, rows[f"B_r, {plant}, mean"].met) == (0.2, True)
+        assert (rows[f"alpha, {plant}, mean"].papers, rows[f"alpha, {plant}, mean"].met) == (0.4, True)
+    assert rows["torque of wheel 1 over wheel 0, wheel 0 moving"].kind == "own requirement"  # Fig. 7 has no number
 
 
 def test_pictures_show_both_arcs(findings: Findings) -> None:

@@ -55,6 +55,20 @@ def test_with_the_wheels_kept_down_it_is_the_planar_robot(findings: Findings) ->
     assert agreement.met
 
 
+def test_the_papers_times_of_detection_have_targets_with_tipping_too(findings: Findings) -> None:
+    (found,) = [r for r in findings.rows if r.quantity == "detection time with tipping, no bumper"]
+    assert (found.kind, found.met) == ("fitted", False)
+    assert "only one below the centre of mass, at 0.3 m, after 4" in found.reason
+
+
+def test_a_lighter_reaction_tips_it_over_and_a_heavier_one_does_not(findings: Findings) -> None:
+    (found,) = [r for r in findings.rows if r.quantity.startswith("largest M_des")]
+    assert found.kind == "predicted"
+    assert found.ours is not None
+    assert 0.3 < found.ours < 2.0
+    assert tipping._tips_at(("none",), (2.4,), {}) is None
+
+
 def test_every_miss_has_its_reason_and_there_is_a_picture(findings: Findings) -> None:
     assert all(r.reason for r in findings.rows if r.met is False)
     assert [p.name for p in findings.pictures] == ["wheel-torque"]

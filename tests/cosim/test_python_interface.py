@@ -12,7 +12,7 @@ import giveway
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
-from giveway.study import Study, study_file, variations
+from giveway.study import Study, parts, study_file, variations
 from giveway.study.designs import OPTIONS
 
 USER_FILE = """
@@ -82,6 +82,7 @@ def keywords(method: object) -> set[str]:
 def test_the_keywords_are_all_keys_of_a_study_file() -> None:
     assert keywords(Study.collision) == set(study_file._COLLISION)
     assert keywords(Study.vary) == set(variations.VARY)
+    assert keywords(Study.parts) == set(parts.PARTS)
     assert keywords(Study.tolerance) == set(variations.TOLERANCE)
     assert keywords(Study.designs) == {"kind", *(option for options in OPTIONS.values() for option in options)}
     goal = set(study_file._GOAL)
@@ -92,6 +93,7 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
         "collision",
         "designs",
         "vary",
+        "parts",
         "tolerances",
         "tolerance",
         "objective",

@@ -15,9 +15,12 @@ from cosim_helpers import Cli
 from giveway import experiments
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.experiments import Experiment
+from giveway.experiments.reproduction import findings as findings_module
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.experiments.reproduction.page import render
 from giveway.experiments.reproduction.reproduce import chosen, reproduce, table_rows, write_table
+from giveway.paper.matched import matched
+from giveway.paper.printed import printed
 from matplotlib.figure import Figure
 
 Registry = Callable[..., None]
@@ -38,10 +41,9 @@ def findings(effort: Effort) -> Findings:
     figure = Figure(figsize=(4.0, 2.0))
     figure.subplots().plot([0, 1], [0, effort.pick(2, 1)])
     rows = (
-        Row("detection time, spring", 101.0, "ms", "fitted", 95.0, Target.around(95.0, 10.0)),
-        Row(
-            "peak torque, spring to none", 0.95, "1", "fitted", "about -20 %", Target(0.7, 0.9), "k_b would be 2 N/m", 2
-        ),
+        Row("detection time, spring", 101.0, "ms", "fitted", printed("detection, spring"), Target.around(95.0, 10.0)),
+        Row("plateau", 0.95, "1", "fitted", printed("plateau, no bumper"), Target(0.7, 0.9), "k_b would be 2 N/m", 2),
+        Row("noticed", 1.0, "1", "computed", "each", Target(minimum=1.0)),
         Row("seen", math.nan, "m", "computed"),
     )
     pictures = (Picture("force", "A figure", "What <to> look for", figure, (("detection, spring", "95 ms"),)),)
@@ -87,6 +89,36 @@ def test_a_row_says_how_its_number_came_about() -> None:
     assert Row("x", None, "m", "given", target=Target(0.0)).met is False
 
 
+def test_a_row_s_class_comes_from_what_was_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
+    target = Target.around(100.0, 10.0)
+    fitted = Row("x", 101.0, "ms", "computed", printed("detection, spring"), target)
+    predicted = Row("x", 101.0, "ms", "fitted", printed("plateau, no bumper"), target)
+    assert (fitted.kind, predicted.kind) == ("fitted", "predicted")  # whatever the provenance of ours
+    assert Row("x", 1.0, "1", "fitted", "about as much", target).kind == "own requirement"
+    assert Row("x", 1.0, "1", "fitted", target=target).kind == "own requirement"
+    assert Row("x", 1.0, "1", "fitted").kind == ""
+    # A number that the fit takes up, or drops, changes the class of its rows, and nothing else has to.
+    planted = {name: how for name, how in matched().items() if name != "detection, spring"}
+    planted["plateau, no bumper"] = ("giveway fit",)
+    monkeypatch.setattr(findings_module, "matched", lambda: planted)
+    assert (fitted.kind, predicted.kind) == ("predicted", "fitted")
+
+
+def test_a_number_of_the_paper_has_a_target_and_stands_in_the_list() -> None:
+    with pytest.raises(GivewayError, match=r"x: target: None is not allowed; allowed: one for the paper's 95 ms"):
+        Row("x", 1.0, "ms", "fitted", printed("detection, spring"))
+    with pytest.raises(GivewayError, match=r"x: paper: 95.0 is not allowed"):
+        Row("x", 1.0, "ms", "fitted", 95.0, Target(0.0))  # type: ignore[arg-type]
+    with pytest.raises(UnknownNameError, match=r"detection, sprung.*did you mean detection, spring"):
+        printed("detection, sprung")
+
+
+def test_the_papers_number_is_shown_in_words_where_the_row_has_another_unit() -> None:
+    other = Row("x", 5.0, "% of groups", "assumed", printed("direction error, largest of four pushes"), Target(0.0))
+    assert other.papers == "12 deg"
+    assert Row("x", 5.0, "deg", "assumed", other.paper, Target(0.0)).papers == 12.0
+
+
 def test_the_order_is_the_papers(registry: Registry) -> None:
     registry(EXTRA, FIRST, EARLIER, SINGLE)
     assert [entry.name for entry in chosen()] == ["earlier", "first", "extra"]
@@ -100,26 +132,34 @@ def test_the_table_and_its_json(registry: Registry, tmp_path: Path) -> None:
     told: list[tuple[str, float]] = []
     found = reproduce(full=False, progress=lambda name, share: told.append((name, share)))
     assert told == [("first", 0.0), ("first", 0.5), ("first", 1.0)]
-    assert (found.count(True), found.count(False), found.failed) == (1, 1, False)
+    assert found.summary() == ["predicted: 0 met of 1", "fitted: 1 met of 1", "own requirements: 1 met of 1"]
+    assert not found.failed
     assert table_rows(found) == [
-        ("5.2 first", "detection time, spring", "95.0", "101.0", "ms", "95 ± 10", "yes", "fitted"),
-        ("5.2 first", "peak torque, spring to none", "about -20 %", "0.95", "", "at least 0.7 and at most 0.9", "MISS",
-         "fitted"),
-        ("5.2 first", "seen", "-", "-", "m", "", "", "computed"),
+        ("5.2 first", "detection time, spring", "95.0", "101.0", "ms", "95 ± 10", "yes", "fitted", "fitted"),
+        ("5.2 first", "plateau", "about 50", "0.95", "", "at least 0.7 and at most 0.9", "MISS", "predicted", "fitted"),
+        ("5.2 first", "noticed", "each", "1.0", "", "at least 1", "yes", "own requirement", "computed"),
+        ("5.2 first", "seen", "-", "-", "m", "", "", "", "computed"),
     ]  # fmt: skip
     write_table(tmp_path / "table.json", found)
     table = json.loads((tmp_path / "table.json").read_text(encoding="utf-8"))
     assert table["schema_version"] == 1
     assert table["rows"][1] == {
         "experiment": "first",
-        "quantity": "peak torque, spring to none",
-        "paper": "about -20 %",
+        "quantity": "plateau",
+        "paper": "about 50",
         "ours": 0.95,
         "unit": "1",
         "target": "at least 0.7 and at most 0.9",
         "met": False,
+        "class": "predicted",
         "provenance": "fitted",
         "reason": "k_b would be 2 N/m",
+    }
+    assert table["rows"][0]["paper"] == 95.0
+    assert table["counts"] == {
+        "predicted": {"met": 0, "missed": 1},
+        "fitted": {"met": 1, "missed": 0},
+        "own requirement": {"met": 1, "missed": 0},
     }
     assert table["manifest"]["effort"] == "reduced"
 
@@ -164,6 +204,9 @@ def test_the_report_stands_alone_and_shows_the_paper_beside_the_figure(registry:
     assert "<dt>detection, spring</dt><dd>95 ms</dd>" in page
     assert "k_b would be 2 N/m" in page
     assert "fitted (" in page  # the parameter set by provenance
+    assert "<strong>predicted: 0 met of 2</strong>" in page
+    assert "<strong>own requirements: 2 met of 2</strong>" in page
+    assert "the same event as the detection after 45 ms" in page  # what no row judges
 
 
 def test_wrong_input_is_refused_before_anything_runs(process: Cli, tmp_path: Path) -> None:

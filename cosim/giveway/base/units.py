@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["WrittenUnit", "factor"]
+__all__ = ["WrittenUnit", "check_unit", "factor"]
 
 DIGITS = 15  # digits of a displayed value: one less than a conversion in both directions may change
 
@@ -78,10 +78,18 @@ class WrittenUnit:
         return "" if self.name == "1" else self.name
 
 
+def check_unit(field: str, unit: str, allowed: str) -> None:
+    """Refuse what is no unit."""
+    _read(field, unit, allowed)
+
+
 def factor(field: str, unit: str, wanted: str) -> float:
     """The factor from ``unit`` to ``wanted``; a GivewayError names ``field``."""
-    size, dimension = _read(field, unit, wanted)
-    wanted_size, wanted_dimension = _read(field, wanted or "1", wanted)
+    size, dimension = _read(field, unit, _allowed(wanted))
+    try:
+        wanted_size, wanted_dimension = _read(field, wanted or "1", "")
+    except GivewayError:  # a currency: nothing is converted to it
+        raise GivewayError(field, unit, wanted) from None
     if dimension != wanted_dimension:
         raise GivewayError(field, unit, _allowed(wanted))
     return size / wanted_size
@@ -91,7 +99,7 @@ def _allowed(wanted: str) -> str:
     return f"{wanted}, or a unit of the same kind" if wanted not in ("", "1") else "1 or %: it has no unit"
 
 
-def _read(field: str, unit: str, wanted: str) -> tuple[float, _Dimension]:
+def _read(field: str, unit: str, allowed: str) -> tuple[float, _Dimension]:
     """Magnitude and dimension of ``N.m.s/rad``: all factors after the one slash are divisors."""
     size, dimension = 1.0, [0, 0, 0, 0, 0]
     above, _, below = unit.partition("/")
@@ -99,12 +107,12 @@ def _read(field: str, unit: str, wanted: str) -> tuple[float, _Dimension]:
         for word in part.split(".") if part else ():
             found = _FACTOR.fullmatch(word)
             if found is None or found[1] not in _ATOMS:
-                raise GivewayError(field, unit, _allowed(wanted))
+                raise GivewayError(field, unit, allowed)
             power = sign * int(found[2] or 1)
             atom, exponents = _ATOMS[found[1]]
             size *= atom**power
             dimension = [total + power * one for total, one in zip(dimension, exponents, strict=True)]
     if not above or unit.count("/") > 1 or (not below and "/" in unit):
-        raise GivewayError(field, unit, _allowed(wanted))
+        raise GivewayError(field, unit, allowed)
     a, b, c, d, e = dimension
     return size, (a, b, c, d, e)

@@ -28,6 +28,7 @@ from giveway.experiments.reproduction.findings import Effort, Findings, Picture,
 from giveway.robot.presets import DEFAULT, check_preset
 from giveway.robot.presets import PAPER as PAPER_PRESET
 from giveway.robot.variables import Value, table
+from giveway.robot.wheels import WHEELS
 from giveway.scenario.plan import Circle, Pushes, TimedPush, start_values
 from giveway.scenario.scenario import Scenario
 
@@ -81,6 +82,9 @@ OBLIQUE_DEG = 45.0
 
 PAPERS_DIRECTION_DEG = 12.0  # the largest error of a direction in 5.1
 FALSE_ALARMS_PER_HOUR = 3.0
+HEADINGS = 90  # runs of the false-alarm hour: one in each of as many equal sectors of the heading
+UNDISTURBED_SEED = 54
+DEAF_N = 15.0  # of leak in motion, for comparison: a push of 30 N is still noticed
 LEAK_N = 9.0  # 20 % of three rollers' 2 x 21 N, and a margin
 
 
@@ -197,16 +201,49 @@ def _refuse_failures(data: xarray.Dataset) -> None:
             raise SimulationError(f"run {run}", str(data["message"].values[run]), float(data["simulated"].values[run]))
 
 
-def _false_alarms(estimator: str, hours: float, effort: Effort) -> int:
-    """Detections during undisturbed rounds, in several runs with different noise."""
+def undisturbed_runs(estimator: str, hours: float, count: int) -> list[Scenario]:
+    """``count`` rounds without a push, ``hours`` together, that differ in heading, encoders and noise.
+
+    The heading is anywhere in its own sector of 360/count deg: it is constant on the way, so this is also every
+    direction in which the robot starts. Each encoder stands anywhere within a count. The same for every estimator.
+    """
+    import numpy as np
+
+    random = np.random.default_rng(UNDISTURBED_SEED)
+    runs = []
+    for seed in range(count):
+        heading = math.remainder(2.0 * math.pi * (seed + random.uniform()) / count, 2.0 * math.pi)
+        phases = {f"electronics.encoder_phase[{wheel}]": float(random.uniform()) for wheel in range(WHEELS)}
+        plan = Circle(DIAMETER_M, SPEED_MPS, theta_rad=heading, acceleration_mps2=START_MPS2)
+        around = _around(plan, 3600.0 * hours / count, estimator, None)
+        runs.append(dataclasses.replace(around, testbed={**around.testbed, **phases}, seed=seed))
+    return runs
+
+
+def _false_alarms(
+    estimator: str, hours: float, effort: Effort, controller: Mapping[str, Value] = MappingProxyType({})
+) -> NDArray[np.float64]:
+    """Detections in each of the undisturbed runs."""
+    import numpy as np
+
     from giveway import batch
 
-    runs = effort.pick(6, 2)
-    plan = Circle(DIAMETER_M, SPEED_MPS, acceleration_mps2=START_MPS2)
-    around = _around(plan, 3600.0 * hours / runs, estimator, None)
-    data = batch.run_many([dataclasses.replace(around, seed=seed) for seed in range(runs)], threads=effort.threads)
+    runs = [
+        dataclasses.replace(one, controller={**one.controller, **controller})
+        for one in undisturbed_runs(estimator, hours, effort.pick(HEADINGS, 3))
+    ]
+    data = batch.run_many(runs, threads=effort.threads)
     _refuse_failures(data)
-    return int(data["false detections"].values.sum())
+    return np.asarray(data["false detections"].values)
+
+
+def _alarms_otherwise(estimator: str, hours: float, effort: Effort) -> str:
+    """The same hour with a detector that ignores more."""
+    alarms = _false_alarms(estimator, hours, effort, {"detector.leak_motion": LEAK_N})
+    return (
+        f"tried on the same runs, with all else as it is: {alarms.sum():.0f} in all with detector.leak_motion "
+        f"{LEAK_N:g} N"
+    )
 
 
 def _mismatched(
@@ -250,12 +287,22 @@ def reproduce(effort: Effort) -> Findings:
     rows = _rows_of_the_round(found, lag_m, reference_m)
 
     count = effort.pick(40, 4)
-    for step, (name, oblique) in enumerate(((FULL, False), (FULL, True), (PAPER, False), (BETWEEN, False))):
-        rows += _rows_of_random_pushes(name, oblique, _respond(_random_pushes(count, oblique, name), effort.threads))
-        effort.progress(0.15 + 0.1 * step)
+    cases = ((FULL, False), (FULL, True), (PAPER, False), (PAPER, True), (BETWEEN, False))
+    by_full: dict[bool, list[Responses]] = {}
+    for step, (name, oblique) in enumerate(cases):
+        pushed = _random_pushes(count, oblique, name)
+        response = _respond(pushed, effort.threads)
+        tried = functools.partial(_ignoring_more, pushed, effort)
+        if name == FULL:
+            by_full[oblique] = response
+        else:
+            tried = functools.partial(_by_the_full_one, by_full[oblique])
+        rows += _rows_of_random_pushes(name, oblique, response, tried)
+        effort.progress(0.15 + 0.08 * step)
     hours = effort.pick(1.0, 0.01)
     for step, name in enumerate((FULL, PAPER)):
-        rows += _rows_of_false_alarms(name, _false_alarms(name, hours, effort), hours)
+        tried = functools.partial(_alarms_otherwise, name, hours, effort)
+        rows += _rows_of_false_alarms(name, _false_alarms(name, hours, effort), hours, tried)
         effort.progress(0.65 + 0.15 * step)
 
     shares = effort.pick(
@@ -341,49 +388,102 @@ def _rows_of_the_round(found: Mapping[str, Responses], lag_m: float, reference_m
             at_path,
             decimals=4,
         ),
-        Row(f"pushes noticed, of {count}, {PAPER}", paper.detected, "1", "assumed", "each", decimals=0),
-        Row(f"pushes invented, {PAPER}", len(paper.invented_s), "1", "assumed", None, decimals=0),
+        Row(
+            f"pushes noticed, of {count}, {PAPER}",
+            paper.detected,
+            "1",
+            "assumed",
+            "each",
+            Target(minimum=count),
+            "" if paper.detected == count else f"{full.detected} by the full estimator",
+            0,
+        ),
+        Row(
+            f"pushes invented, {PAPER}",
+            len(paper.invented_s),
+            "1",
+            "assumed",
+            None,
+            Target(maximum=0.0),
+            f"{len(full.invented_s)} by the full estimator" if paper.invented_s else "",
+            0,
+        ),
     ]
 
 
-def _rows_of_random_pushes(estimator: str, oblique: bool, found: Sequence[Responses]) -> list[Row]:
+def _rows_of_random_pushes(
+    estimator: str, oblique: bool, found: Sequence[Responses], tried: Callable[[], str]
+) -> list[Row]:
+    """What was noticed and invented; ``tried`` says how many of both with other settings, if one is missed."""
     how = f"up to {OBLIQUE_DEG:g} deg oblique" if oblique else "perpendicular"
-    count = len(found)
+    count, noticed, invented = len(found), *_noticed_and_invented(found)
+    all_of_them, none = Target(minimum=count), Target(maximum=0.0)
+    reason = "" if all_of_them.met(noticed) and none.met(invented) else tried()
     return [
         Row(
             f"random pushes noticed, of {count}, {how}, {estimator}",
-            sum(one.detected for one in found),
+            noticed,
             "1",
             "assumed",
-            decimals=0,
+            "each",
+            all_of_them,
+            "" if all_of_them.met(noticed) else reason,
+            0,
         ),
         Row(
             f"invented around {count} random pushes, {how}, {estimator}",
-            sum(len(one.invented_s) for one in found),
+            invented,
             "1",
             "assumed",
-            decimals=0,
+            None,
+            none,
+            "" if none.met(invented) else reason,
+            0,
         ),
     ]
 
 
-def _rows_of_false_alarms(estimator: str, count: int, hours: float) -> list[Row]:
+def _noticed_and_invented(found: Sequence[Responses]) -> tuple[int, int]:
+    return sum(one.detected for one in found), sum(len(one.invented_s) for one in found)
+
+
+def _ignoring_more(runs: Sequence[tuple[Scenario, TimedPush]], effort: Effort) -> str:
+    """The same pushes with a detector that ignores more, for the reason of a miss."""
+    deaf = {"detector.leak_motion": DEAF_N}
+    varied = [(dataclasses.replace(one, controller={**one.controller, **deaf}), push) for one, push in runs]
+    noticed, invented = _noticed_and_invented(_respond(varied, effort.threads))
+    return (
+        f"tried, with all else as it is: {noticed} noticed, {invented} invented with detector.leak_motion {DEAF_N:g} N"
+    )
+
+
+def _by_the_full_one(found: Sequence[Responses]) -> str:
+    noticed, invented = _noticed_and_invented(found)
+    return f"{noticed} noticed and {invented} invented by the full estimator"
+
+
+def _rows_of_false_alarms(
+    estimator: str, alarms: NDArray[np.float64], hours: float, tried: Callable[[], str]
+) -> list[Row]:
     from giveway.simulation.push_response import most_events
 
-    target = (
-        Target(maximum=FALSE_ALARMS_PER_HOUR, text=f"below {FALSE_ALARMS_PER_HOUR:g}") if estimator == FULL else None
-    )
+    target = Target(maximum=FALSE_ALARMS_PER_HOUR, text=f"below {FALSE_ALARMS_PER_HOUR:g}")
+    count = int(alarms.sum())
+    bound = most_events(count) / hours
+    shown = target if hours >= 1.0 else None  # a shorter time cannot show it
+    reason = "" if shown is None or shown.met(bound) else tried()
+    headings = len(alarms)
     return [
         Row(f"false alarms in {hours:g} h undisturbed, {estimator}", count, "1", "assumed", None, decimals=0),
         Row(
-            f"false alarms, upper bound at 95 %, {estimator}",
-            most_events(count) / hours,
-            "1/h",
+            f"of {headings} headings, with a false alarm, {estimator}",
+            int((alarms > 0).sum()),
+            "1",
             "assumed",
             None,
-            target if hours >= 1.0 else None,  # a shorter time cannot show it
-            decimals=3,
+            decimals=0,
         ),
+        Row(f"false alarms, upper bound at 95 %, {estimator}", bound, "1/h", "assumed", None, shown, reason, 3),
     ]
 
 
@@ -411,6 +511,8 @@ def _rows_of_mismatch(estimator: str, shares: Sequence[float], data: xarray.Data
 
 NOTES = (
     "Pushes, their shape, the start and the return are chosen here: the paper prints the circle and the speed only.",
+    f"Undisturbed: {HEADINGS} rounds of 40 s, each with a start from rest; heading uniform in its own sector of "
+    f"{360 / HEADINGS:g} deg, each encoder uniform within a count, noise of its own (seed {UNDISTURBED_SEED}).",
     "The robot knows its place from its wheels alone. Its reference is back on the plan exactly; the base itself lags "
     "by what servo and drivetrains give, and each escape, in which it yaws by a few tenths of a degree, leaves a "
     "millimetre or so of dead reckoning.",
@@ -420,8 +522,9 @@ NOTES = (
     "The paper's estimator takes the planned acceleration for the real one. When a push ends, servo and drivetrains "
     "spring back, and in the escape the robot lags its reference: it takes both for pushes. Where one roller hardly "
     "turns, tanh (28) knows nothing of what it holds, up to 21 N for seconds, which it takes for a push, too.",
-    "What the full estimator still invents around oblique pushes was not looked into one by one; the slow creep of a "
-    "roller that hardly turns is where the bristle model is weakest.",
+    "Most of what the full estimator invents around oblique pushes comes seconds after the push, in the return to the "
+    "path, where a roller creeps. The encoders' steps are half of it: with a million counts a turn 5 of 10 are left, "
+    "with twice the threshold 5 as well.",
 )
 
 

@@ -155,7 +155,8 @@ def reproduce(
     for chapter, row in found.rows():
         if row.met is False:
             typer.echo(f"MISS {chapter.experiment.name}: {row.quantity}: {row.reason or 'reason not yet known'}")
-    typer.echo(f"{found.count(True)} targets met, {found.count(False)} missed")
+    for line in found.summary():
+        typer.echo(line)
     typer.echo(f"Written: {out / 'report.html'} and {out / 'table.json'}")
     if found.interrupted:
         typer.echo(f"Interrupted; not run: {', '.join(found.interrupted)}. What was found is kept.", err=True)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from giveway.experiments import PAPER_BUMPERS, Experiment
 from giveway.experiments.placement import pulled_by_weight, stated_contact
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
+from giveway.paper.printed import printed
 from giveway.robot.presets import DEFAULT, PAPER
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.scenario import Scenario
@@ -28,12 +29,15 @@ IMPACT_S = 0.6  # the part up to detection and peak torque: contact at 0.16 s, a
 HOLD = 0  # after the escape; 1 would go back to the path
 SEEDS, FEW_SEEDS = 20, 3
 LABELS = {"none": "no bumper", "spring": "spring", "magnetic": "magnetic spring"}
-PAPER_DETECTION_MS = {"none": 45.0, "spring": 95.0, "magnetic": 85.0}
-PAPER_ACCELERATION_MS = {"magnetic": 140.0}  # when it peaks: Fig. 10a
+PAPER_DETECTION = {
+    bumper: printed(f"detection, {words}")
+    for bumper, words in (("none", "no bumper"), ("spring", "spring"), ("magnetic", "magnetic"))
+}
+QUICKER_MPS2 = (5.0, 10.0)  # the reaction's acceleration limit, which the paper does not have, for comparison
 CAPTION = (
     "Dashed: the moment of detection. Bumpers spread the hit over time and lower the peak torque of the impact; the "
     "magnetic latch holds until its force is exceeded, so that the robot feels the hit earlier than with the plain "
-    "spring. After detection the robot drives away, and the torque changes its sign."
+    "spring, and harder in the first 60 ms. After detection the robot drives away, and the torque changes its sign."
 )
 
 
@@ -72,14 +76,14 @@ def reproduce(effort: Effort) -> Findings:
         short = scenario(bumper, IMPACT_S, preset=PAPER)
         notes.append(noise_note(f"Detection time, {label}", short, "detection time", seeds, effort))
     paper = [
-        *((f"detection, {LABELS[bumper]}", f"{time_ms:g} ms") for bumper, time_ms in PAPER_DETECTION_MS.items()),
+        *((f"detection, {LABELS[bumper]}", paper.text) for bumper, paper in PAPER_DETECTION.items()),
         ("peak torque with bumpers", "about 20 % below that without"),
         ("escape", "0.5 m"),
     ]
     figure = draw({BUMPER_LABELS[bumper]: result for bumper, result in results.items()})
     picture = Picture("fig10", "Hit while motionless, with three bumpers (Fig. 10)", CAPTION, figure, paper)
     return Findings(
-        [*_compared(results), *_each(results)],
+        [*_compared(results), *_each(results), _acceleration_row(results["magnetic"])],
         [picture],
         [*notes, *_remarks(results), *warning_notes({LABELS[b]: r for b, r in results.items()})],
     )
@@ -119,16 +123,20 @@ def _compared(results: Mapping[str, Result]) -> Iterator[Row]:
         for metric in ("detection time", "peak wheel torque", "peak force of the run")
     )
     speed = value(results["none"], "contact speed")
-    yield Row("slider speed at contact", speed, "m/s", "fitted", 0.5, Target.around(0.5, 0.01), decimals=3)
-    for bumper, paper_ms in PAPER_DETECTION_MS.items():
-        target = Target.around(paper_ms, 10.0)
-        yield Row(f"detection time, {LABELS[bumper]}", detection[bumper], "ms", "fitted", paper_ms, target)
-    lead_ms, earlier = detection["spring"] - detection["magnetic"], Target(minimum=1.0, text="earlier: at least 1 tick")
-    yield Row("magnetic spring is noticed before the spring, by", lead_ms, "ms", "fitted", 10.0, earlier)
+    yield Row(
+        "slider speed at contact", speed, "m/s", "fitted", printed("slider speed"), Target.around(0.5, 0.01), decimals=3
+    )
+    for bumper, paper in PAPER_DETECTION.items():
+        target = Target.around(paper.value, 10.0)
+        yield Row(f"detection time, {LABELS[bumper]}", detection[bumper], "ms", "fitted", paper, target)
+    lead_ms, lead = detection["spring"] - detection["magnetic"], printed("lead of magnetic over spring")
+    half = Target.around(lead.value, 5.0)  # half the paper's lead is still a lead
+    yield Row("magnetic spring is noticed before the spring, by", lead_ms, "ms", "fitted", lead, half)
     for bumper in ("spring", "magnetic"):
         name = f"peak torque of the impact, {LABELS[bumper]} against no bumper"
         change = 100.0 * (torque[bumper] / torque["none"] - 1.0)
-        yield Row(name, change, "%", "fitted", "about -20", Target.around(-20.0, 5.0))
+        yield Row(name, change, "%", "fitted", printed("peak torque with bumpers"), Target.around(-20.0, 5.0))
+    # Over the run, which the weight's pull decides; the latch's own force comes first: see `latch`.
     name = f"peak contact force, magnetic spring against spring ({_masses(results['magnetic'])})"
     change = 100.0 * (force["magnetic"] / force["spring"] - 1.0)
     yield Row(name, change, "%", "assumed", None, Target(maximum=5.0))
@@ -146,19 +154,45 @@ def _masses(result: Result) -> str:
 def _each(results: Mapping[str, Result]) -> Iterator[Row]:
     """The rows of each bumper."""
     for bumper, result in results.items():
-        label, paper_ms = LABELS[bumper], PAPER_ACCELERATION_MS.get(bumper)
+        label = LABELS[bumper]
         force, torque, either, escape = (
             value(result, metric)
             for metric in ("peak force of the run", "peak wheel torque", "peak torque, any sign", "escape distance")
         )
         half_metre = Target.around(0.5, 0.005)
-        yield Row(f"escape of the admittance, {label}", escape, "m", "given", 0.5, half_metre, decimals=3)
+        yield Row(f"escape of the admittance, {label}", escape, "m", "given", printed("escape"), half_metre, decimals=3)
         yield Row(f"peak contact force, {label} ({_masses(result)})", force, "N", "assumed")
         yield Row(f"peak torque of the impact, {label}", torque, "N.m", "fitted", decimals=2)
         yield Row(f"time of that peak, {label}", peak_torque_ms(result), "ms", "fitted", decimals=0)
         yield Row(f"peak torque of either sign, {label}", either, "N.m", "fitted", decimals=2)
-        acceleration_ms = _acceleration_ms(bumper, result)
-        yield Row(f"time of the largest acceleration, {label}", acceleration_ms, "ms", "fitted", paper_ms, decimals=0)
+        if bumper != "magnetic":
+            acceleration_ms = _acceleration_ms(bumper, result)
+            yield Row(f"time of the largest acceleration, {label}", acceleration_ms, "ms", "fitted", decimals=0)
+
+
+def _acceleration_row(result: Result) -> Row:
+    """Fig. 10a; the reason of a miss is the same number with other limits of the reaction's acceleration."""
+    paper = printed("largest acceleration, magnetic")
+    target, ours = Target.around(paper.value, 10.0), _acceleration_ms("magnetic", result)
+    reason = "" if target.met(ours) else _with_quicker_reactions()
+    name = f"time of the largest acceleration, {LABELS['magnetic']}"
+    return Row(name, ours, "ms", "fitted", paper, target, reason, 0)
+
+
+def _with_quicker_reactions() -> str:
+    import dataclasses
+
+    from giveway.simulation.runner import run
+
+    tried = []
+    for limit in QUICKER_MPS2:
+        quicker = scenario("magnetic", 1.0, preset=PAPER)
+        controller = {**quicker.controller, "admittance.acceleration_limit": limit}
+        peak_ms = _acceleration_ms(
+            "magnetic", run(dataclasses.replace(quicker, controller=controller), engine="native")
+        )
+        tried.append(f"{peak_ms:.0f} ms with one of {limit:g} m/s2")
+    return f"the reaction's acceleration limit, which the paper does not have, decides: {' and '.join(tried)}"
 
 
 def _remarks(results: Mapping[str, Result]) -> Iterator[str]:

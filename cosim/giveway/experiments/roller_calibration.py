@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from giveway.base.checks import finite
 from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
+from giveway.paper.printed import printed
 from giveway.robot.presets import NO_REFLEX, PAPER
 from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 from giveway.scenario.plan import PLAN_INPUTS
@@ -42,6 +43,7 @@ PLANTS: Mapping[str, int] = {"bristle rollers": 0, "tanh rollers": 1}
 OFFSET_NM = 0.1  # sensors are off by up to this; three times their noise
 RECORDED = tuple(f"testbed.sensor.{what}[{wheel}]" for what in ("torque", "encoder") for wheel in range(WHEELS))
 PLATEAU = 0.9  # of the largest wheel rate: the top of the wave
+ERROR = 0.05  # of a fitted friction
 EDGE = 0.9  # of the plateau: where a wave counts as risen
 
 
@@ -167,7 +169,6 @@ def _wave_rows(log: FittedLog) -> list[Row]:
             measured[wheel] / measured[0],
             "1",
             "computed",
-            paper=-0.5,
             # Kinematics gives -1/2 exactly; noise and the fit's few per cent leave 5 % of it.
             target=Target.around(-0.5, 0.025),
             decimals=3,
@@ -212,24 +213,26 @@ def _change_s(log: FittedLog, plateau: float) -> float:
 
 def _fit_rows(plant: str, found: Sequence[Calibration], robot: Robot) -> list[Row]:
     truths = {
-        "B_r": (0.2, float(robot.value("roller.coulomb_torque")), [one.coulomb_torque_nm for one in found], "N.m"),
-        "alpha": (0.4, float(robot.value("roller.tanh_slope")), [one.tanh_slope_s_rad for one in found], "s/rad"),
+        "B_r": (float(robot.value("roller.coulomb_torque")), [one.coulomb_torque_nm for one in found], "N.m"),
+        "alpha": (float(robot.value("roller.tanh_slope")), [one.tanh_slope_s_rad for one in found], "s/rad"),
     }
     rows: list[Row] = []
     held: list[bool] = []
-    for symbol, (paper, truth, estimates, unit) in truths.items():
+    for symbol, (truth, estimates, unit) in truths.items():
         values = [estimate.value for estimate in estimates]
         held += [estimate.holds(truth) for estimate in estimates]
         error = max(abs(value / truth - 1.0) for value in values)
         width = max(estimate.half_width / truth for estimate in estimates)
+        paper = printed(symbol)
+        around = Target.around(paper.value, ERROR * paper.value)
         rows += [
-            Row(f"{symbol}, {plant}, mean", sum(values) / len(values), unit, "given", paper=paper, decimals=4),
+            Row(f"{symbol}, {plant}, mean", sum(values) / len(values), unit, "given", paper, around, decimals=4),
             Row(
                 f"{symbol}, {plant}, largest error of {len(values)}",
                 100.0 * error,
                 "%",
                 "computed",
-                target=Target(maximum=5.0),
+                target=Target(maximum=100.0 * ERROR),
                 decimals=2,
             ),
             Row(f"{symbol}, {plant}, widest half of an interval", 100.0 * width, "%", "computed", decimals=2),
@@ -258,7 +261,7 @@ def _pictures(found: Calibration) -> list[Picture]:
             "Left as measured on bristle rollers, tare taken off; right what (27) with the fitted friction says. The "
             "model passes through zero where the bristles turn over.",
             torque_figure(found),
-            [("torques, wheel 0 moving", "2 : -1 : -1"), ("B_r", "0.2 N m"), ("alpha", "0.4 s/rad")],
+            [("torques, wheel 0 moving", "about square waves"), ("B_r", "0.2 N m"), ("alpha", "0.4 s/rad")],
         ),
         Picture(
             "residuals",

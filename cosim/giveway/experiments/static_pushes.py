@@ -53,13 +53,21 @@ def _group_rows(study: Study, statics: Statics) -> list[Row]:
     groups, placed = group_values(study.random), group_values(study.paper)
     rows = []
     for column, printed in enumerate(PRINTED):
-        name, unit, paper = printed.name, printed.unit, printed.value
-        percentile = percentile_of(paper, groups[:, column])
+        name, unit = printed.name, printed.unit
+        percentile = percentile_of(printed.value, groups[:, column])
         reason = "" if BAND.met(percentile) else _reason(column, study, statics)
         rows += [
-            Row(f"{name}, median", float(np.median(groups[:, column])), unit, "assumed", paper),
-            Row(f"{name}, as in Fig. 9, median", float(np.median(placed[:, column])), unit, "assumed", paper),
-            Row(f"{name}: percentile of the paper's {paper:g} {unit}", percentile, "%", "assumed", None, BAND, reason),
+            Row(f"{name}, median", float(np.median(groups[:, column])), unit, "assumed"),
+            Row(f"{name}, as in Fig. 9, median", float(np.median(placed[:, column])), unit, "assumed"),
+            Row(
+                f"{name}: percentile of the paper's {printed.text}",
+                percentile,
+                "% of groups",
+                "assumed",
+                printed,
+                BAND,
+                reason,
+            ),
         ]
     missing = 100.0 * float(np.mean(~study.random.on_outline))
     rows.append(Row("pushes whose zero-moment line misses the outline", missing, "%", "assumed"))

@@ -21,6 +21,7 @@ from giveway.base.gravity import GRAVITY_MPS2
 from giveway.batch import run_many
 from giveway.experiments import PAPER_BUMPERS, motionless, moving
 from giveway.experiments.placement import has_default_outline
+from giveway.paper.matched import QUANTITIES, Quantity
 from giveway.robot.presets import PAPER, preset_values
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import Value, table
@@ -49,58 +50,6 @@ SMOOTH: Mapping[str, Mapping[str, Value]] = {
     },
     "controller": {"estimator.encoder_counts": 1_000_000, "sensor_check.encoder_jump": 100_000},
 }
-NOT_HAPPENED = 10.0  # residual, in tolerances, of an event that did not happen: larger than any real miss
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A number of the paper.
-
-    Attributes:
-        name: what it is.
-        section: of the paper.
-        unit: of the numbers.
-        aim: what ours should be.
-        tolerance: the deviation that counts as one.
-        paper: in the paper's words.
-        upper: only values above the aim count as deviating.
-    """
-
-    name: str
-    section: str
-    unit: str
-    aim: float
-    tolerance: float
-    paper: str
-    upper: bool = False
-
-    def residual(self, value: float) -> float:
-        """Deviation of ``value`` from the aim in tolerances; `NOT_HAPPENED` for NaN."""
-        if np.isnan(value):
-            return NOT_HAPPENED
-        deviation = (value - self.aim) / self.tolerance
-        return max(0.0, deviation) if self.upper else deviation
-
-
-# A detection time may deviate by 10 ms; the tolerances of the ratios are our reading of "about".
-QUANTITIES = (
-    Quantity("contact speed", "5.2", "m/s", 0.5, 0.002, "0.5 m/s"),
-    Quantity("detection time, no bumper", "5.2", "ms", 45.0, 10.0, "45 ms"),
-    Quantity("detection time, spring", "5.2", "ms", 95.0, 10.0, "95 ms"),
-    Quantity("detection time, magnetic", "5.2", "ms", 85.0, 10.0, "85 ms"),
-    # Half the paper's lead is still a lead; the two times above alone could agree within 10 ms in the wrong order.
-    Quantity("lead of magnetic over spring", "5.2", "ms", 10.0, 5.0, "10 ms"),
-    Quantity("peak wheel torque, spring over no bumper", "5.2", "1", 0.8, 0.05, "about 20 % lower"),
-    Quantity("peak wheel torque, magnetic over no bumper", "5.2", "1", 0.8, 0.05, "about 20 % lower"),
-    # The project's own demand: not more than 5 % higher.
-    Quantity("peak contact force, magnetic over spring", "3.5", "1", 1.0, 0.05, "a latch does not cost force", True),
-    Quantity("detection time, moving", "5.3", "ms", 105.0, 10.0, "105 ms"),
-    # The project's own demand: the robot's own acceleration must not come near to being mistaken for another hit.
-    Quantity("false impulse after the reversal over the threshold", "5.3", "1", 0.5, 0.2, "one reaction", True),
-    Quantity("peak torque of the reversal over 5.2's with bumpers", "5.3", "1", 2.0, 0.2, "about twice"),
-    # With uniform rollers: the mean of what the paper saw; its range, which is their scatter, is two deviations wide.
-    Quantity("sensed force of a 9.81 N push at rest", "5.1", "N", 7.75, 1.125, "5.5 to 10 N"),
-)
 
 
 @dataclass(frozen=True)

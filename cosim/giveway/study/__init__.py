@@ -171,6 +171,34 @@ class Study:
             "vary", {"quantity": quantity, **_given({**keys, "distribution": distribution, "also": _list(also)})}
         )
 
+    def parts(
+        self,
+        name: str,
+        catalogue: Path | str,
+        *,
+        sets: Mapping[str, str],
+        count: int | None = None,
+        at_most: Mapping[str, str] | None = None,
+        at_least: Mapping[str, str] | None = None,
+        only: Sequence[str] | None = None,
+        nominal: str | None = None,
+    ) -> Study:
+        """A part that designs choose from a catalogue.
+
+        Args:
+            name: what is chosen: "spring".
+            catalogue: CSV file with one part per line.
+            sets: quantities by name, each with the column that has its value: ``{"testbed.bumper.spring_rate":
+                "rate"}``; ``"rate * count"`` for equal parts side by side, ``"rate / count"`` one behind the other.
+            count: how many of it are built in; 1 if left out.
+            at_most, at_least: quantities that a part limits, each with the column that has its limit.
+            only: names of the parts that are admitted; left out: all.
+            nominal: the part while another quantity varies, for "one-at-a-time".
+        """
+        tables = {"sets": dict(sets), "at_most": _table(at_most), "at_least": _table(at_least)}
+        keys = {"count": count, **tables, "only": _list(only), "nominal": nominal}
+        return self._add("parts", {"name": name, "catalogue": str(catalogue), **_given(keys)})
+
     def tolerance(
         self,
         quantity: str,

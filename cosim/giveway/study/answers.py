@@ -114,6 +114,8 @@ class Answers:
     def goal_name(self, index: int) -> str:
         """Name of the goal, with how it is taken over collisions and tolerances where there are several."""
         goal = self.goals[index]
+        if goal.metric.of_design:
+            return goal.metric.name
         over = []
         if len(self.setup.cases) > 1:
             over.append(f"{goal.collisions} collision")

@@ -23,7 +23,7 @@ VARIES = "varies"
 def asked(setup: Setup) -> list[tuple[str, str]]:
     """Name and text of each; what differs between the designs is said to vary."""
     scenario, document = setup.cases[0].scenario, setup.cases[0].document
-    varied = {columns().names[column] for one in setup.varied for column in one.quantity.columns}
+    varied = {columns().names[column] for one in setup.varied for column in one.columns}
     variables = table("testbed")
     testbed = {variable.name: variable.start for variable in variables.select("parameter")}
     testbed |= scenario.parameters("testbed")

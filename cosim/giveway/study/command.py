@@ -156,6 +156,8 @@ def _print_answers(found: Answers) -> None:
     from giveway.study import tables
 
     print_columns(f"{found.setup.name}: {tables.counts(found)}", tables.goal_header(found), tables.design_rows(found))
+    if misfits := tables.misfit_rows(found):
+        print_columns("Parts that do not fit", tables.MISFIT_HEADER, misfits)
     rows = tables.sensitivity_rows(found)
     if rows:
         print_columns("What decides", tables.sensitivity_header(found), rows)

@@ -92,9 +92,9 @@ def make(plan: DesignPlan, varied: Sequence[Varied], seed: int) -> NDArray[np.fl
 
 def _one_at_a_time(varied: Sequence[Varied]) -> NDArray[np.float64]:
     nominal = []
-    for index, one in enumerate(varied):
+    for one in varied:
         if one.nominal is None:
-            raise GivewayError(f"vary[{index}].nominal", "nothing", "its value while another quantity varies")
+            raise GivewayError(f"{one.field}.nominal", "nothing", "its value while another quantity varies")
         nominal.append(one.nominal)
     rows = [nominal]
     for j, one in enumerate(varied):

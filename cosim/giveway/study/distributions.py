@@ -16,6 +16,8 @@ from giveway.study.quantities import Quantity
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from giveway.study.parts import PartChoice
+
 __all__ = ["DISTRIBUTIONS", "Spread", "Tolerance", "Varied", "check_spread"]
 
 SIGMAS = 3.0  # where a normal distribution is truncated if the study does not say
@@ -63,7 +65,7 @@ class Varied:
     """A quantity that differs from design to design: either between ``levels``, or over ``spread``.
 
     ``nominal`` is what it has while another one varies; None: what the scenario has. All values are in the quantity's
-    unit; ``written`` is the user's.
+    unit; ``written`` is the user's. ``field`` is its table of the study file; ``parts``: its values are parts.
     """
 
     quantity: Quantity
@@ -71,6 +73,18 @@ class Varied:
     levels: tuple[float, ...] = ()
     spread: Spread | None = None
     written: WrittenUnit | None = None
+    field: str = ""
+    parts: PartChoice | None = None
+
+    @property
+    def sets(self) -> tuple[Quantity, ...]:
+        """The quantities to which it gives values: itself, or what its parts set."""
+        return (self.quantity,) if self.parts is None else tuple(one.quantity for one in self.parts.settings)
+
+    @property
+    def columns(self) -> tuple[int, ...]:
+        """Columns of the run table that it decides."""
+        return tuple(column for quantity in self.sets for column in quantity.columns)
 
     @property
     def unit(self) -> WrittenUnit:

@@ -20,10 +20,11 @@ from giveway.base.words import memory
 from giveway.library.batch_library import library
 from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
+from giveway.study.parts import choices_of
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
 from giveway.study.runs import RunTable
 from giveway.study.setup import Setup
-from giveway.study.store import INPUT_FILES, KeyIndex, Store
+from giveway.study.store import INPUT_FILES, KeyIndex, Store, catalogue_copy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -336,6 +337,11 @@ def _fingerprint(table: RunTable, contexts: list[bytes]) -> str:
         found.update(hashlib.sha256(part).digest())
     for case in table.cases:
         found.update(case.base.tobytes() + repr(case.case.hit).encode())
+    for choice in choices_of(table.varied):  # a design has the number of its part, which may be another one by now
+        stated = {name: (column.unit, column.cells) for name, column in choice.catalogue.columns.items()}
+        found.update(json.dumps([choice.name, choice.parts, choice.count, stated]).encode())
+        found.update(json.dumps([[one.quantity.name, one.values.tolist()] for one in choice.settings]).encode())
+        found.update(json.dumps([[one.quantity.name, one.column, one.sense] for one in choice.limits]).encode())
     return found.hexdigest()
 
 
@@ -371,6 +377,8 @@ def _portable(setup: Setup) -> dict[str, Any]:
         document["scenario"]["robot"] = INPUT_FILES[0]
     if document.get("designs", {}).get("kind") == "csv":
         document["designs"]["file"] = INPUT_FILES[1]
+    for index, parts in enumerate(document.get("parts", [])):
+        parts["catalogue"] = catalogue_copy(index, parts["catalogue"])
     assert isinstance(document, dict)
     return document
 
@@ -380,7 +388,7 @@ def _keep_inputs(setup: Setup, folder: Path) -> None:
     from giveway.base.files import write_text
 
     for source, name in _input_files(setup):
-        text = source.read_text(encoding="utf-8")
+        text = source.read_text(encoding="utf-8-sig")
         if not (folder / name).is_file() or (folder / name).read_text(encoding="utf-8") != text:
             write_text(folder / name, text)
 
@@ -391,6 +399,8 @@ def _input_files(setup: Setup) -> Iterator[tuple[Path, str]]:
         yield Path(robot), INPUT_FILES[0]
     if setup.plan.kind == "csv":
         yield setup.folder / setup.document["designs"]["file"], INPUT_FILES[1]
+    for index, parts in enumerate(setup.document.get("parts", [])):
+        yield setup.folder / parts["catalogue"], catalogue_copy(index, parts["catalogue"])
 
 
 def load_runs(folder: Path | str) -> tuple[Setup, RunTable, dict[str, Any]]:

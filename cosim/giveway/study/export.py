@@ -15,6 +15,7 @@ from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.base.files import check_file, replace_file, write_text
 from giveway.robot.variables import table as variable_table
 from giveway.study.chosen import hit_of, settings_of_run
+from giveway.study.parts import part_lines
 from giveway.study.runs import COVER
 
 if TYPE_CHECKING:
@@ -129,10 +130,10 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
     study, table = answers.setup.cases[case], answers.runs
     document: dict[str, Any] = {**study.document, "name": f"{answers.setup.name}, design {design}"[:80]}
     settings, hit = settings_of_run(table, design, 0, case), hit_of(table, design, 0, case)
-    quantities = [one.quantity for one in answers.setup.varied]
+    quantities = [quantity for one in answers.setup.varied for quantity in one.sets]
     if study.hit is not None:
         document["collision"] = _collision(study.document["collision"], hit, settings, {one.name for one in quantities})
-    changed = {name for one in quantities for name in (table.columns.names[column] for column in one.columns)}
+    changed = {table.columns.names[column] for one in answers.setup.varied for column in one.columns}
     if "body_region" in document and COVER in changed:  # the design states the stiffness of cover and body together
         document["judge_as"] = document.pop("body_region")
         document["collision"]["mass"] = settings["testbed"]["slider.mass"]
@@ -146,6 +147,8 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
         changed.add("testbed.bumper.latch_force")
     text = tomlkit.document()
     text.add(tomlkit.comment(f"Design {design} of the study {answers.setup.name!r}. Run it with `giveway run`."))
+    for line in part_lines(answers.setup.varied, answers.designs[design]):
+        text.add(tomlkit.comment(line))
     for key, value in document.items():
         if key not in ("testbed", "controller"):
             text[key] = value
@@ -219,7 +222,9 @@ def _ssv(answers: Answers, design: int, case: int, model: str) -> str:
     ElementTree.register_namespace("ssv", SSV)
     ElementTree.register_namespace("ssc", SSC)
     name = f"{answers.setup.name}, design {design}"
-    root = ElementTree.Element(f"{{{SSV}}}ParameterSet", {"version": "1.0", "name": name})
+    told = part_lines(answers.setup.varied, answers.designs[design])
+    about = {"version": "1.0", "name": name} | ({"description": "; ".join(told)} if told else {})
+    root = ElementTree.Element(f"{{{SSV}}}ParameterSet", about)
     parameters = ElementTree.SubElement(root, f"{{{SSV}}}Parameters")
     units: set[str] = set()
     for variable, value in kept.items():

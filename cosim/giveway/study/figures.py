@@ -24,6 +24,8 @@ CHOSEN_COLOURS = ("#c8500a", "#0b64a8", "#0a8a63", "#7a2ea0", "#8a6d00")
 POINTS_MAX = 3000  # drawn in a panel; of more designs a sample
 POINTS_OF_FIGURE_MAX = 9000  # and in all panels of a figure
 QUANTITIES_MAX = 5
+CHOICES_LEVEL = 3  # so many names stand side by side under a panel; more are turned
+CHOICES_NAMED = 26  # turned names that a panel has room for
 BEFORE_MS, AFTER_MS = 20.0, 250.0
 
 
@@ -96,7 +98,14 @@ def effects(answers: Answers) -> Figure:
                 ticks = np.geomspace(one.unit.of(spread.low), one.unit.of(spread.high), 3)
                 axes.set_xticks(ticks, [f"{tick:.4g}" for tick in ticks])
             if quantity.kind == "choice":
-                axes.set_xticks(range(len(quantity.choices)), quantity.choices)
+                every = 1 + (len(quantity.choices) - 1) // CHOICES_NAMED
+                many = len(quantity.choices) > CHOICES_LEVEL
+                axes.set_xticks(
+                    range(0, len(quantity.choices), every),
+                    quantity.choices[::every],
+                    rotation=90 if many else 0,
+                    fontsize=5 if many else None,
+                )
             if i == rows - 1:
                 axes.set_xlabel(axis_label(quantity.name.removeprefix("testbed."), one.unit.shown))
             if j == 0:

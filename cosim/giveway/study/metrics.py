@@ -13,9 +13,10 @@ from giveway.simulation.metric_names import current_name
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Metric", "all_metrics", "find_metric"]
+__all__ = ["MASS_OF_PARTS", "PRICE_OF_PARTS", "Metric", "all_metrics", "find_metric"]
 
 TRUE, ERROR = " (true)", " (error)"
+PRICE_OF_PARTS, MASS_OF_PARTS = "price of parts", "mass of parts"  # of a design, not of its runs (parts.py)
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,11 @@ class Metric:
     unit: str
     column: str
     truth: str | None = None
+
+    @property
+    def of_design(self) -> bool:
+        """It is the same in all runs of a design."""
+        return self.name in (PRICE_OF_PARTS, MASS_OF_PARTS)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -60,9 +66,9 @@ def all_metrics() -> dict[str, Metric]:
 
 
 def find_metric(field: str, name: str) -> Metric:
-    """The metric ``name``; the error names ``field`` and the nearest."""
+    """The metric ``name`` of a run; the error names ``field`` and the nearest."""
     known = all_metrics()
     name = current_name(field, name)
     if name not in known:
-        raise UnknownNameError(field, name, known)
+        raise UnknownNameError(field, name, (*known, PRICE_OF_PARTS, MASS_OF_PARTS))
     return known[name]

@@ -10,11 +10,12 @@ import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from giveway.base import native
+from giveway.base.checks import finite
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.variables import Variable, table
 from giveway.scenario.scenario import BUMPERS
@@ -23,7 +24,7 @@ from giveway.scenario.scenario_file import SET_BY
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HIT", "REFERENCE_TEMPERATURE", "Columns", "Quantity", "columns", "find"]
+__all__ = ["HIT", "REFERENCE_TEMPERATURE", "Columns", "Quantity", "columns", "find", "value_of"]
 
 REFERENCE_TEMPERATURE = 20.0  # degC, at which a magnet's force is stated
 
@@ -144,6 +145,23 @@ def find(field: str, name: str) -> Quantity:
     variable = all_columns.variables[all_columns.index[column]]
     low, high = (0.0, 1.0) if variable.type == "boolean" else (variable.minimum, variable.maximum)
     return Quantity(name, variable.unit, variable.type, low, high, (all_columns.index[column],))
+
+
+def value_of(field: str, value: Any, quantity: Quantity, scale: float = 1.0, whole_needed: bool = True) -> float:
+    """``value`` of a quantity, checked, in its own unit: ``scale`` is the factor to it; errors name ``field``."""
+    if quantity.kind == "choice":
+        if value not in quantity.choices:
+            raise UnknownNameError(field, str(value), quantity.choices)
+        return float(quantity.choices.index(value))
+    if quantity.kind == "boolean":
+        if not isinstance(value, bool):
+            raise GivewayError(field, value, quantity.allowed)
+        return float(value)
+    number = finite(field, value) * scale
+    fraction = quantity.kind == "integer" and whole_needed and number != round(number)
+    if fraction or not quantity.minimum <= number <= quantity.maximum:
+        raise GivewayError(field, value if scale == 1.0 else f"{value} (= {number:g})", quantity.allowed)
+    return number
 
 
 def _refuse_what_is_set_elsewhere(field: str, name: str) -> None:

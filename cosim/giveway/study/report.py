@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from giveway.base.files import write_text
 from giveway.report.figures import NamedFigure
 from giveway.study.asked import asked, in_words
+from giveway.study.part_rules import misfit, rules_in_words
+from giveway.study.parts import choices_of
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -34,7 +36,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     import jinja2
 
     from giveway.simulation.metrics import definitions
-    from giveway.study.tables import counts, design_rows, goal_header, sensitivity_header, sensitivity_rows
+    from giveway.study import tables
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
@@ -43,24 +45,27 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     setup = answers.setup
     text = environment.get_template("study.html.j2").render(
         title=setup.name,
-        counts=counts(answers),
+        counts=tables.counts(answers),
         complete=answers.complete,
         manifest=answers.manifest,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        header=[_breakable(name) for name in goal_header(answers)],
-        rows=design_rows(answers, DESIGNS_MAX),
+        header=[_breakable(name) for name in tables.goal_header(answers)],
+        rows=tables.design_rows(answers, DESIGNS_MAX),
         definitions=definitions(goal.metric.column for goal in answers.goals),
         ranked=len(answers.order),
         figures=_figures(answers, results),
-        sensitivity_header=sensitivity_header(answers),
-        sensitivities=sensitivity_rows(answers),
+        sensitivity_header=tables.sensitivity_header(answers),
+        sensitivities=tables.sensitivity_rows(answers),
         unknown=answers.sensitivities().reason,
         asked=asked(setup),
         varied=[(one.quantity.name, _range(one)) for one in setup.varied],
         tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
         collisions=[(case.name, in_words(case.document.get("collision", {}))) for case in setup.cases],
         constraints=[_constraint(one) for one in setup.constraints],
-        reasons=_reasons(answers.reason),
+        misfit_header=tables.MISFIT_HEADER,
+        misfits=tables.misfit_rows(answers, DESIGNS_MAX),
+        judged=[(choice.name, rules_in_words(choice)) for choice in choices_of(setup.varied)],
+        reasons=_reasons({design: text for design, text in answers.reason.items() if misfit(text) is None}),
         warnings=_warnings(answers.warnings),
         style=style,
     )
@@ -141,9 +146,12 @@ def _sensitivity_caption(answers: Answers) -> str:
 
 def _range(one: Varied) -> str:
     unit = f" {one.unit.shown}" if one.unit.shown else ""
+    if one.parts is not None:
+        many = f", {one.parts.count} of each" if one.parts.count > 1 else ""
+        unit = f" ({one.parts.catalogue.path.name}{many})"
     if one.levels and one.spread is None:
         return (
-            ", ".join(one.text(value) for value in one.levels[:12]) + unit + (", ..." if len(one.levels) > 12 else "")
+            ", ".join(one.text(value) for value in one.levels[:12]) + (", ..." if len(one.levels) > 12 else "") + unit
         )
     if one.spread is None:
         return "from the file"

@@ -11,6 +11,7 @@ from giveway.base.errors import FileError
 from giveway.library.batch_library import STATUSES, native_metrics
 from giveway.simulation.metric_names import former_name
 from giveway.simulation.run_warnings import codes_of
+from giveway.study.parts import part_sums
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -103,6 +104,8 @@ def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcome
         values = table.designs[design, j]
         text = [one.quantity.text(value) for value in values] if one.quantity.kind == "choice" else values
         columns[one.quantity.name] = (text, one.quantity.unit)
+    for name, (totals, unit) in part_sums(table.varied, table.designs[design]).items():
+        columns[name] = (totals, unit)
     for j, tolerance in enumerate(table.tolerances):
         unit = "1" if tolerance.relative else tolerance.quantity.unit
         columns[f"deviation of {tolerance.quantity.name}"] = (table.deviations[sample, j], unit)

@@ -22,7 +22,9 @@ from giveway.scenario.scenario_file import PLAN_KEYS
 from giveway.simulation.master import plan_table, push_table
 from giveway.simulation.run_warnings import Stated, plan_speed
 from giveway.study.distributions import Tolerance, Varied
-from giveway.study.quantities import REFERENCE_TEMPERATURE, Columns, columns
+from giveway.study.part_rules import part_rules, refusals
+from giveway.study.parts import choices_of
+from giveway.study.quantities import REFERENCE_TEMPERATURE, Columns, columns, find
 from giveway.study.setup import Case, Hit, Setup
 
 if TYPE_CHECKING:
@@ -101,7 +103,9 @@ class RunTable:
         self.samples = len(deviations)
         self.per_design = self.samples * len(self.cases)
         self.count = len(designs) * self.per_design
-        quantities = [*(one.quantity for one in setup.varied), *(one.quantity for one in setup.tolerances)]
+        self.rules = [part_rules(choice) for choice in choices_of(setup.varied)]
+        quantities = [quantity for one in setup.varied for quantity in one.sets]
+        quantities += [one.quantity for one in setup.tolerances]
         touched = [column for quantity in quantities for column in quantity.columns]
         met = [self.columns.index[f"testbed.{name}"] for name in SLIDER] if setup.cases[0].hit is not None else []
         named = {quantity.name for quantity in quantities}
@@ -134,6 +138,7 @@ class RunTable:
         if self.noise_seeds:
             values[:, self.columns.index["testbed.electronics.seed"]] += sample
         latch = self.columns.index["testbed.bumper.latch_force"]
+        unfit = self._misfits(design, values, free)
         warmer = free.pop("temperature") - REFERENCE_TEMPERATURE
         if warmer.any():
             values[:, latch] *= 1.0 + MAGNET_PER_KELVIN * warmer
@@ -144,8 +149,26 @@ class RunTable:
         if table.case.hit is not None:
             speed_mps, reasons = self._meet(table, values, free)
             refused = reasons | refused
+        refused |= unfit
         values += 0.0  # no negative zeros: equal runs have equal rows
         return Rows(values, free, _stated(table.case, free, speed_mps), refused)
+
+    def _misfits(
+        self, design: NDArray[np.int64], values: NDArray[np.float64], free: dict[str, NDArray[np.float64]]
+    ) -> dict[int, str]:
+        """Why the parts of runs do not fit."""
+        found: dict[int, str] = {}
+
+        def of(name: str) -> NDArray[np.float64]:
+            quantity = find(name, name)
+            return values[:, quantity.columns[0]] if quantity.columns else free[name.removeprefix("collision.")]
+
+        chosen = [(j, one.parts) for j, one in enumerate(self.varied) if one.parts is not None]
+        kind = values[:, self.columns.index["testbed.bumper.kind"]]
+        for (j, choice), rules in zip(chosen, self.rules, strict=True):
+            part = self.designs[design, j].astype(np.intp)
+            found = refusals(choice, rules, part, of, kind) | found
+        return found
 
     def _beyond_limits(self, table: _CaseTable, values: NDArray[np.float64]) -> dict[int, str]:
         """Why the controller cannot follow the plan, per run: its limits may vary."""
@@ -242,10 +265,16 @@ def _nominal_hit(hit: Hit | None, count: int) -> dict[str, NDArray[np.float64]]:
 def _write(
     values: NDArray[np.float64], free: dict[str, NDArray[np.float64]], one: Varied, found: NDArray[np.float64]
 ) -> None:
-    for column in one.quantity.columns:
-        values[:, column] = found
-    if not one.quantity.columns:
-        free[one.quantity.name.removeprefix("collision.")] = found.copy()
+    if one.parts is not None:
+        part = found.astype(np.intp)
+        given = [(setting.quantity, setting.values[part]) for setting in one.parts.settings]
+    else:
+        given = [(one.quantity, found)]
+    for quantity, its in given:
+        for column in quantity.columns:
+            values[:, column] = its
+        if not quantity.columns:
+            free[quantity.name.removeprefix("collision.")] = its.copy()
 
 
 def _deviate(

@@ -3,7 +3,7 @@
     DIR/manifest.json                what was asked for, versions, hashes, seeds
     DIR/parts/HASH/designs.npz       values of all designs, deviations of all tolerance samples
     DIR/parts/HASH/part-A-B.parquet  the results of runs A to B - 1
-    DIR/robot.toml, designs.csv      copies of what the study file named
+    DIR/robot.toml, designs.csv, catalogue-N-NAME.csv  copies of what the study file named
 
 HASH stands for everything that decides the results; a study that was changed since has another one, and what is the
 same in both is taken from the old parts. Studies whose folders lie side by side share their results in the same way.
@@ -34,6 +34,7 @@ __all__ = [
     "SCHEMA_VERSION",
     "KeyIndex",
     "Store",
+    "catalogue_copy",
     "list_parts",
     "read_designs",
     "read_manifest",
@@ -42,10 +43,16 @@ __all__ = [
 SCHEMA_VERSION = 1
 KIND = "giveway study"
 MANIFEST_FILE, LOCK_FILE, PARTS, DESIGNS_FILE = "manifest.json", ".lock", "parts", "designs.npz"
-INPUT_FILES = ("robot.toml", "designs.csv")
+INPUT_FILES, CATALOGUE = ("robot.toml", "designs.csv"), "catalogue-"
 HINT = "give a folder that `giveway sweep` wrote"
 _PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
 MERGED_AT = 16
+
+
+def catalogue_copy(number: int, path: str) -> str:
+    """Name of the copy of the catalogue ``path``."""
+    beginning = f"{CATALOGUE}{number}-"
+    return beginning + Path(path).name.removeprefix(beginning)
 
 
 def read_manifest(folder: Path, kind: str = KIND) -> dict[str, Any]:
@@ -78,8 +85,8 @@ class Store:
         """What a process that was killed while it wrote has left."""
         for left in self.parts_folder.glob(".*"):
             shutil.rmtree(left, ignore_errors=True)
-        for name in (MANIFEST_FILE, *INPUT_FILES):
-            for left in self.folder.glob(f".{name}-*"):
+        for name in (MANIFEST_FILE + "-", *(name + "-" for name in INPUT_FILES), CATALOGUE):
+            for left in self.folder.glob(f".{name}*"):
                 left.unlink(missing_ok=True)
 
     @staticmethod

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +21,9 @@ from giveway.scenario.scenario import Scenario
 from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
 from giveway.simulation.run_warnings import plan_speed
 from giveway.study.distributions import Varied
-from giveway.study.metrics import find_metric
+from giveway.study.metrics import Metric, find_metric
+from giveway.study.part_rules import part_rules
+from giveway.study.parts import SUMS, PartChoice, choices_of, known_sums, part_metric, parts_of
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns
 from giveway.study.runs import COVER
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
@@ -31,7 +34,7 @@ __all__ = ["check", "read"]
 SCHEMA_VERSION = 1
 _TOP = (
     "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
-    "tolerances", "tolerance", "objective", "constraint", "report",
+    "parts", "tolerances", "tolerance", "objective", "constraint", "report",
 )  # fmt: skip
 _SCENARIO = (
     "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "preset", "plan", "push",
@@ -70,18 +73,32 @@ def check(
     cases = _cases(top, folder)
     varied = tuple(varied_of(Section(f"vary[{i}]", one, VARY)) for i, one in enumerate(_list(top, "vary")))
     refuse_twice("vary", [one.quantity.name for one in varied])
+    varied = (*parts_of(_list(top, "parts"), folder), *varied)
     tolerances = tuple(
         tolerance_of(Section(f"tolerance[{i}]", one, TOLERANCE)) for i, one in enumerate(_list(top, "tolerance"))
     )
     refuse_twice("tolerance", [one.quantity.name for one in tolerances])
     plan, varied = designs_of(top, varied, folder)
-    for i, one in enumerate(varied):
-        _fits_cases(f"vary[{i}].quantity", one.quantity, cases, [v.quantity.name for v in varied])
+    choices = choices_of(varied)
+    for choice in choices:
+        part_rules(choice)  # refuses half a rule
+    _refuse_set_twice(varied)
+    set_by_design = [quantity.name for one in varied for quantity in one.sets]
+    for one in varied:
+        for quantity in one.sets:
+            field = f"{one.field}.quantity" if one.parts is None else f"{one.field}.sets.{quantity.name}"
+            _fits_cases(field, quantity, cases, set_by_design)
+    for choice in choices:
+        for limit in choice.limits:
+            if not limit.quantity.columns:
+                key = "at_most" if limit.sense > 0 else "at_least"
+                _fits_cases(f"{choice.field}.{key}.{limit.quantity.name}", limit.quantity, cases, set_by_design)
     for i, tolerance in enumerate(tolerances):
-        _fits_cases(f"tolerance[{i}].quantity", tolerance.quantity, cases, [v.quantity.name for v in varied])
-    _check_plans(cases, [*(one.quantity for one in varied), *(one.quantity for one in tolerances)])
+        _fits_cases(f"tolerance[{i}].quantity", tolerance.quantity, cases, set_by_design)
+    quantities = [quantity for one in varied for quantity in one.sets]
+    _check_plans(cases, [*quantities, *(one.quantity for one in tolerances)])
     if plan.kind == "one-at-a-time":
-        varied = tuple(_with_nominal(i, one, cases) for i, one in enumerate(varied))
+        varied = tuple(_with_nominal(one, cases) for one in varied)
     drawn = top.table("tolerances", ("kind", "samples", "noise_seeds")) or Section("tolerances", {}, None)
     kind = drawn.choice("kind", TOLERANCE_KINDS, "sobol")
     noise = drawn.flag("noise_seeds", False)
@@ -107,11 +124,11 @@ def check(
         tolerance_kind=kind,
         tolerance_count=count,
         noise_seeds=noise,
-        objectives=tuple(_objective(f"objective[{i}]", one) for i, one in enumerate(_list(top, "objective"))),
+        objectives=tuple(_objective(f"objective[{i}]", one, choices) for i, one in enumerate(_list(top, "objective"))),
         constraints=tuple(
-            _constraint(f"constraint[{i}]", one, judged) for i, one in enumerate(_list(top, "constraint"))
+            _constraint(f"constraint[{i}]", one, judged, choices) for i, one in enumerate(_list(top, "constraint"))
         ),
-        shown=(*_speeds(cases), *_shown(report)),
+        shown=(*(Goal(metric, 1) for metric in known_sums(choices)), *_speeds(cases), *_shown(report, choices)),
         chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
         part_runs=whole("part_runs", top.values.get("part_runs", 0), 0, PART_MAX),
         text=text,
@@ -126,6 +143,18 @@ def _check_plans(cases: Sequence[Case], quantities: Sequence[Quantity]) -> None:
         with renamed("scenario.plan", **PLAN_KEYS):
             for case in cases:
                 check_plan_of(case.scenario)
+
+
+def _refuse_set_twice(varied: Sequence[Varied]) -> None:
+    """Two quantities that decide the same would hide each other where a part is one of them."""
+    owner: dict[object, Varied] = {}
+    for one in sorted(varied, key=lambda each: each.parts is not None):
+        for quantity in one.sets:
+            for target in quantity.columns or (quantity.name,):
+                other = owner.setdefault(target, one)
+                if other is not one and one.parts is not None:
+                    allowed = f"what {other.field} ({other.quantity.name}) does not set, too"
+                    raise GivewayError(f"{one.field}.sets.{quantity.name}", quantity.name, allowed)
 
 
 def _plant_step(top: Section, method: str) -> float | None:
@@ -199,7 +228,7 @@ def _fits_cases(field: str, quantity: Quantity, cases: Sequence[Case], varied: S
     for case in cases:
         hit, body = case.hit, case.scenario.body_region
         weighed = columns().index["testbed.slider.mass"] in quantity.columns
-        if body is not None and field.startswith("vary") and (name == COVER or weighed):
+        if body is not None and not field.startswith("tolerance") and (name == COVER or weighed):
             allowed = f'what body_region = "{body}" does not decide, such as robot.contact.stiffness; or write judge_as'
             raise GivewayError(field, name, allowed)
         if name.startswith("collision.") and hit is None:
@@ -220,14 +249,14 @@ def _fits_cases(field: str, quantity: Quantity, cases: Sequence[Case], varied: S
             raise GivewayError(field, name, f"no direction in {case.name}: it does not fit every side")
 
 
-def _with_nominal(index: int, one: Varied, cases: Sequence[Case]) -> Varied:
+def _with_nominal(one: Varied, cases: Sequence[Case]) -> Varied:
     """What a quantity has in the scenario while another one varies."""
     if one.nominal is not None:
         return one
-    found = {_nominal(one.quantity, case) for case in cases}
+    found = {None if one.parts is not None else _nominal(one.quantity, case) for case in cases}
     if len(found) != 1 or None in found:
-        raise GivewayError(f"vary[{index}].nominal", "nothing", "its value while another quantity varies")
-    return Varied(one.quantity, found.pop(), one.levels, one.spread)
+        raise GivewayError(f"{one.field}.nominal", "nothing", "its value while another quantity varies")
+    return dataclasses.replace(one, nominal=found.pop())
 
 
 def _nominal(quantity: Quantity, case: Case) -> float | None:
@@ -248,15 +277,20 @@ def _nominal(quantity: Quantity, case: Case) -> float | None:
     }.get(quantity.name)
 
 
-def _objective(field: str, entry: Any) -> Goal:
+def _objective(field: str, entry: Any, choices: Sequence[PartChoice]) -> Goal:
     section = Section(field, entry, (*_GOAL, "goal", "weight"))
     sense = 1 if section.choice("goal", ("minimise", "maximise"), "minimise") == "minimise" else -1
     weight = finite(section.full("weight"), section.number("weight", 1.0), 0.0, 1e6)
-    return _goal(section, sense, weight)
+    return _goal(section, choices, sense, weight)
 
 
-def _goal(section: Section, sense: int, weight: float = 1.0) -> Goal:
-    metric = find_metric(section.full("metric"), section.text("metric", section.values.get("metric", "")))
+def _metric(field: str, name: str, choices: Sequence[PartChoice]) -> Metric:
+    """Something that comes out of a run, or of the parts of a design."""
+    return part_metric(field, name, choices) if name in SUMS else find_metric(field, name)
+
+
+def _goal(section: Section, choices: Sequence[PartChoice], sense: int, weight: float = 1.0) -> Goal:
+    metric = _metric(section.full("metric"), section.text("metric", section.values.get("metric", "")), choices)
     return Goal(
         metric,
         sense,
@@ -266,11 +300,11 @@ def _goal(section: Section, sense: int, weight: float = 1.0) -> Goal:
     )
 
 
-def _constraint(field: str, entry: Any, judged: Scenario) -> Constraint:
+def _constraint(field: str, entry: Any, judged: Scenario, choices: Sequence[PartChoice]) -> Constraint:
     section = Section(field, entry, (*_GOAL, "minimum", "maximum", "unit"))
     if ("minimum" in section.values) == ("maximum" in section.values):
         raise GivewayError(section.full("maximum"), "nothing or both", "one of minimum and maximum")
-    goal = _goal(section, 1 if "maximum" in section.values else -1)
+    goal = _goal(section, choices, 1 if "maximum" in section.values else -1)
     key = "maximum" if "maximum" in section.values else "minimum"
     value = section.values[key]
     written = written_unit(section, goal.metric.unit)
@@ -294,11 +328,11 @@ def _speeds(cases: Sequence[Case]) -> Iterator[Goal]:
             yield Goal(find_metric("report.metrics", "robot speed at contact"), 1)
 
 
-def _shown(report: Section) -> tuple[Goal, ...]:
+def _shown(report: Section, choices: Sequence[PartChoice]) -> tuple[Goal, ...]:
     names = report.values.get("metrics", [])
     if not isinstance(names, list):
         raise GivewayError("report.metrics", names, "a list of metrics")
-    return tuple(Goal(find_metric(f"report.metrics[{i}]", str(name)), 1) for i, name in enumerate(names))
+    return tuple(Goal(_metric(f"report.metrics[{i}]", str(name), choices), 1) for i, name in enumerate(names))
 
 
 def with_line(setup: Setup, error: GivewayError) -> GivewayError:

@@ -6,11 +6,21 @@ import math
 from typing import TYPE_CHECKING
 
 from giveway.base.words import counted
+from giveway.study.part_rules import misfit
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
 
-__all__ = ["counts", "design_rows", "goal_header", "number", "sensitivity_header", "sensitivity_rows"]
+__all__ = [
+    "MISFIT_HEADER",
+    "counts",
+    "design_rows",
+    "goal_header",
+    "misfit_rows",
+    "number",
+    "sensitivity_header",
+    "sensitivity_rows",
+]
 
 SHOWN = 12  # designs in the table
 
@@ -65,6 +75,26 @@ def sensitivity_header(answers: Answers) -> tuple[str, ...]:
     return ("objective", "quantity", *(("mu*", "+-", "sigma") if effects else ("S1", "+-", "ST")))
 
 
+MISFIT_HEADER = ("part", "designs", "does not fit", "for instance")
+
+
+def misfit_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
+    """Which parts do not fit and why, those with the most designs first; one row sums up those that are left out."""
+    found: dict[tuple[str, str], list[tuple[int, str]]] = {}
+    for design, reason in answers.reason.items():
+        if (told := misfit(reason)) is not None:
+            part, rule, words = told
+            found.setdefault((part, rule), []).append((design, words))
+    ordered = sorted(found.items(), key=lambda item: -len(item[1]))
+    rows: list[tuple[str, ...]] = [
+        (part, f"{len(designs):,}", rule, f"design {designs[0][0]}: {designs[0][1]}")
+        for (part, rule), designs in ordered[:count]
+    ]
+    if left := ordered[count:]:
+        rows.append((f"{len(left):,} others", f"{sum(len(designs) for _, designs in left):,}", "", ""))
+    return rows
+
+
 def counts(answers: Answers) -> str:
     """How many designs there are and what became of them, in one sentence."""
     done = int((answers.stored > 0).sum())
@@ -74,7 +104,10 @@ def counts(answers: Answers) -> str:
     words += (
         f", {int(answers.feasible.sum()):,} meet all constraints, {int(answers.pareto.sum()):,} on the Pareto front"
     )
-    failed = int((answers.failed > 0).sum())
+    unfit = sum(misfit(reason) is not None for reason in answers.reason.values())
+    if unfit:
+        words += f", {unfit:,} with parts that do not fit"
+    failed = int((answers.failed > 0).sum()) - unfit
     if failed:
         words += f", {failed:,} with failed runs"
     if answers.warnings:

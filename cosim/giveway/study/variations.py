@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from giveway.base.checks import finite, whole
-from giveway.base.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.base.errors import FileError, GivewayError, InputFileError
 from giveway.base.toml_sections import Section
 from giveway.base.units import WrittenUnit, factor
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
-from giveway.study.quantities import Quantity, find
+from giveway.study.quantities import Quantity, find, value_of
 
 __all__ = ["TOLERANCE", "VARY", "designs_of", "refuse_twice", "tolerance_of", "varied_of", "written_unit"]
 
@@ -59,10 +59,13 @@ def written_unit(section: Section, unit: str) -> WrittenUnit | None:
     if "unit" not in section.values:
         return None
     name = section.text("unit")
+    if name == unit:
+        return WrittenUnit(name)  # a currency has no other one
     return WrittenUnit(name, factor(section.full("unit"), name, unit))
 
 
 def varied_of(section: Section) -> Varied:
+    """The quantity and values of a table ``[[vary]]``."""
     quantity = _quantity(section)
     if "unit" in section.values and quantity.unit == "":
         raise GivewayError(section.full("unit"), section.values["unit"], f"none: {quantity.name} has no unit")
@@ -70,7 +73,7 @@ def varied_of(section: Section) -> Varied:
     scale = 1.0 if written is None else written.scale
     nominal = None
     if "nominal" in section.values:
-        nominal = _value(section.full("nominal"), section.values["nominal"], quantity, scale)
+        nominal = value_of(section.full("nominal"), section.values["nominal"], quantity, scale)
     if "values" in section.values:
         for key in ("levels", "scale", "distribution", *_SPREAD):
             if key in section.values:
@@ -78,14 +81,14 @@ def varied_of(section: Section) -> Varied:
         values = section.values["values"]
         if not isinstance(values, list) or not values:
             raise GivewayError(section.full("values"), values, "a list with at least one value")
-        levels = tuple(_value(section.full("values"), value, quantity, scale) for value in values)
-        return Varied(quantity, nominal, levels, written=written)
+        levels = tuple(value_of(section.full("values"), value, quantity, scale) for value in values)
+        return Varied(quantity, nominal, levels, written=written, field=section.name)
     kind = section.text("distribution", "loguniform" if _logarithmic(section) else "uniform")
     given = {key: section.number(key) * scale for key in _SPREAD if key in section.values}
     spread = check_spread(section.name, quantity, kind, given)
     for key, value in (("low", spread.low), ("high", spread.high)):
         where = section.full(key if key in section.values else "sigma")
-        _value(where, value, quantity, 1.0, whole_needed=False)
+        value_of(where, value, quantity, 1.0, whole_needed=False)
     levels = ()
     if "levels" in section.values:
         count = whole(section.full("levels"), section.values["levels"], 2, LEVELS_MAX)
@@ -93,30 +96,13 @@ def varied_of(section: Section) -> Varied:
         found = space(spread.low, spread.high, count)
         found = np.rint(found) if quantity.kind == "integer" else found
         levels = tuple(float(value) for value in dict.fromkeys(found.tolist()))
-    return Varied(quantity, nominal, levels, spread, written)
+    return Varied(quantity, nominal, levels, spread, written, section.name)
 
 
 def _logarithmic(section: Section) -> bool:
     if "scale" in section.values and "distribution" in section.values:
         raise GivewayError(section.full("scale"), section.values["scale"], "nothing beside a distribution")
     return section.choice("scale", ("linear", "log"), "linear") == "log"
-
-
-def _value(field: str, value: Any, quantity: Quantity, scale: float, whole_needed: bool = True) -> float:
-    """One value of a quantity, in its own unit."""
-    if quantity.kind == "choice":
-        if value not in quantity.choices:
-            raise UnknownNameError(field, str(value), quantity.choices)
-        return float(quantity.choices.index(value))
-    if quantity.kind == "boolean":
-        if not isinstance(value, bool):
-            raise GivewayError(field, value, quantity.allowed)
-        return float(value)
-    number = finite(field, value) * scale
-    fraction = quantity.kind == "integer" and whole_needed and number != round(number)
-    if fraction or not quantity.minimum <= number <= quantity.maximum:
-        raise GivewayError(field, value if scale == 1.0 else f"{value} (= {number:g})", quantity.allowed)
-    return number
 
 
 def tolerance_of(section: Section) -> Tolerance:
@@ -148,22 +134,26 @@ def _is_number(section: Section, key: str) -> bool:
 
 
 def designs_of(top: Section, varied: tuple[Varied, ...], folder: Path) -> tuple[DesignPlan, tuple[Varied, ...]]:
+    """Which designs are made of what varies; a CSV file of designs says itself what varies besides parts."""
     values = top.values.get("designs", {"kind": "factorial"})
     kind = Section("designs", values, None).choice("kind", design_module.KINDS)
     section = Section("designs", values, ("kind", *design_module.OPTIONS[kind]))
     if kind == "csv":
-        if varied:
-            raise GivewayError("vary[0].quantity", varied[0].quantity.name, "no [[vary]] beside a CSV file of designs")
-        found, rows = _csv(folder / section.text("file"), section)
+        for one in varied:
+            if one.parts is None:
+                raise GivewayError(
+                    f"{one.field}.quantity", one.quantity.name, "no [[vary]] beside a CSV file of designs"
+                )
+        found, rows = _csv(folder / section.text("file"), section, varied)
         return DesignPlan(kind, rows=rows), found
     if not varied:
         if kind != "factorial":
-            raise GivewayError("designs.kind", kind, "at least one [[vary]]")
+            raise GivewayError("designs.kind", kind, "at least one [[vary]] or [[parts]]")
         return DesignPlan("factorial"), ()
     if kind in ("factorial", "one-at-a-time"):
-        for index, one in enumerate(varied):
+        for one in varied:
             if not one.levels:
-                raise GivewayError(f"vary[{index}].levels", "nothing", f"levels or values: {kind} needs them")
+                raise GivewayError(f"{one.field}.levels", "nothing", f"levels or values: {kind} needs them")
     plan = DesignPlan(
         kind,
         count=whole("designs.count", section.required("count", "a whole number"), 2, design_module.COUNT_MAX)
@@ -175,15 +165,18 @@ def designs_of(top: Section, varied: tuple[Varied, ...], folder: Path) -> tuple[
     if plan.grid % 2:
         raise GivewayError("designs.grid", plan.grid, "an even number of levels")
     if kind in ("morris", "sobol-indices") and len(varied) < 2:
-        raise GivewayError("designs.kind", kind, "at least two [[vary]]")
+        raise GivewayError("designs.kind", kind, "at least two [[vary]] or [[parts]]")
     if (size := plan.size(varied)) > design_module.COUNT_MAX:
         key = "designs.count" if "count" in section.values else "designs.kind"
         raise GivewayError(key, f"{size} designs", f"at most {design_module.COUNT_MAX}")
     return plan, varied
 
 
-def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
-    """Quantities and designs of a CSV file: a line of names (``testbed.bumper.travel [mm]``), one line per design."""
+def _csv(path: Path, section: Section, parts: Sequence[Varied]) -> tuple[tuple[Varied, ...], Any]:
+    """Quantities and designs of a CSV file: a line of names (``testbed.bumper.travel [mm]``), one line per design.
+
+    A column may also be one of the choices of ``parts``, all of which must be there.
+    """
     if not path.is_file():
         raise GivewayError(section.full("file"), section.values["file"], "a CSV file, its path seen from this file")
     try:
@@ -200,11 +193,19 @@ def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
     try:
         for cell in head:
             name, _, unit = cell.strip().partition("[")
+            chosen = [one for one in parts if one.quantity.name == name.strip()]
+            if chosen and not unit:
+                found.append(chosen[0])
+                scales.append(1.0)
+                continue
             quantity = find(f"column {len(found) + 1}", name.strip())
             label = unit.strip(" ]")
             scales.append(factor(name.strip(), label, quantity.unit) if unit else 1.0)
             found.append(Varied(quantity, written=WrittenUnit(label, scales[-1]) if unit else None))
         refuse_twice("column", [one.quantity.name for one in found])
+        for one in parts:
+            if one not in found:
+                raise GivewayError("columns", ", ".join(head), f"a column {one.quantity.name}, {one.field}")
     except GivewayError as error:
         raise InputFileError(path, head_line, error) from None
     rows = np.empty((len(lines) - 1, len(found)))
@@ -213,7 +214,7 @@ def _csv(path: Path, section: Section) -> tuple[tuple[Varied, ...], Any]:
             if len(row) != len(found):
                 raise GivewayError("columns", len(row), f"{len(found)}, as in the first line")
             rows[index] = [
-                _value(one.quantity.name, _cell(cell.strip(), one.quantity), one.quantity, scale)
+                value_of(one.quantity.name, _cell(cell.strip(), one.quantity), one.quantity, scale)
                 for one, cell, scale in zip(found, row, scales, strict=True)
             ]
         except GivewayError as error:

@@ -1,7 +1,7 @@
 """An experiment's part in the reproduction of the paper: rows of its table and figures of its report.
 
 An experiment's module defines ``EXPERIMENT`` with a ``reproduce`` function from an `Effort` to `Findings`. That
-function computes the rows; only the paper's printed numbers are typed in, once, next to their quantity.
+function computes the rows; the paper's printed numbers stand in `giveway.paper.printed`.
 """
 
 from __future__ import annotations
@@ -9,21 +9,34 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeVar
 
 from giveway.base.errors import GivewayError
+from giveway.paper.matched import matched
+from giveway.paper.printed import Printed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from giveway.simulation.result import Result
 
-__all__ = ["PROVENANCES", "Effort", "Findings", "Picture", "Row", "Target", "warning_notes"]
+__all__ = ["CLASSES", "PROVENANCES", "Effort", "Findings", "Picture", "Row", "Target", "warning_notes"]
 
 _T = TypeVar("_T")
 
 PROVENANCES = ("given", "sourced", "fitted", "assumed", "computed")
 """Provenance of a row's number: the weakest of its inputs, in this order; computed has no such input."""
+
+PREDICTED, FITTED, REQUIREMENT = "predicted", "fitted", "own requirement"
+CLASSES: Mapping[str, str] = MappingProxyType(
+    {
+        PREDICTED: "numbers of the paper that no value here was chosen to match",
+        FITTED: "numbers of the paper that values here were fitted or set to match",
+        REQUIREMENT: "what the paper says without a number, and what this project asks for",
+    }
+)
+"""What a target is worth: the classes of judged rows, in the order of the summary."""
 
 Progress = Callable[[float], None]
 """Called now and then with the finished share of the experiment, 0 to 1."""
@@ -92,7 +105,7 @@ class Row:
         ours: the computed number in ``unit``; None if it did not happen.
         unit: of paper, ours and target; "1" if there is none.
         provenance: one of `PROVENANCES`.
-        paper: what the paper printed, or None where it says nothing.
+        paper: the paper's number, which needs a target; what it says without a number; None where it says nothing.
         target: required range of ours, or None for a number that is only shown.
         reason: why a target is missed, found by experiment: the parameter values that would meet it. A miss needs one.
         decimals: digits after the point that are worth printing.
@@ -102,7 +115,7 @@ class Row:
     ours: float | None
     unit: str
     provenance: str
-    paper: float | str | None = None
+    paper: Printed | str | None = None
     target: Target | None = None
     reason: str = ""
     decimals: int = 1
@@ -110,6 +123,10 @@ class Row:
     def __post_init__(self) -> None:
         if self.provenance not in PROVENANCES:
             raise GivewayError(f"{self.quantity}: provenance", self.provenance, ", ".join(PROVENANCES))
+        if isinstance(self.paper, Printed) and self.target is None:
+            raise GivewayError(f"{self.quantity}: target", None, f"one for the paper's {self.paper.text}")
+        if self.paper is not None and not isinstance(self.paper, Printed | str):
+            raise GivewayError(f"{self.quantity}: paper", self.paper, "a result of giveway.paper.printed, or words")
         if self.ours is not None:
             number = float(self.ours)
             object.__setattr__(self, "ours", number if math.isfinite(number) else None)
@@ -118,6 +135,22 @@ class Row:
     def met(self) -> bool | None:
         """Whether the target is met; None without one."""
         return None if self.target is None else self.target.met(self.ours)
+
+    @property
+    def kind(self) -> str:
+        """Its class in `CLASSES`; "" without a target. What was fitted is asked of the fit's list, not stated here."""
+        if self.target is None:
+            return ""
+        if not isinstance(self.paper, Printed):
+            return REQUIREMENT
+        return FITTED if self.paper.name in matched() else PREDICTED
+
+    @property
+    def papers(self) -> float | str | None:
+        """The paper's cell: its number if that is in the row's unit, else words."""
+        if not isinstance(self.paper, Printed):
+            return self.paper
+        return self.paper.value if self.paper.unit == self.unit and not self.paper.words else self.paper.text
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from giveway.base import native
 from giveway.base.files import write_text
-from giveway.experiments.reproduction.findings import PROVENANCES
+from giveway.experiments.reproduction.findings import CLASSES, PROVENANCES
 from giveway.experiments.reproduction.reproduce import number
+from giveway.paper.printed import NOT_JUDGED
 from giveway.report.inline_svg import inline_svg
 from giveway.report.style import STYLE
 from giveway.robot.robot_file import read_robot
@@ -35,6 +36,7 @@ class _Line:
     ours: str
     target: str
     verdict: str
+    kind: str
     provenance: str
     reason: str
 
@@ -64,8 +66,8 @@ def render(reproduction: Reproduction) -> str:
             chapter.experiment.name: [_line(row) for row in chapter.findings.rows] for chapter in reproduction.chapters
         },
         drawings=drawings,
-        met=reproduction.count(True),
-        missed=reproduction.count(False),
+        summary=list(zip(reproduction.summary(), CLASSES.values(), strict=True)),
+        not_judged=NOT_JUDGED,
         interrupted=reproduction.interrupted,
         manifest=reproduction.manifest,
         parameters=_parameters(),
@@ -80,7 +82,8 @@ def _line(row: Row) -> _Line:
         return number(value, row.decimals) + (unit if isinstance(value, float | int) else "")
 
     target = "" if row.target is None else f"{row.target.text}{unit}"
-    return _Line(row.quantity, cell(row.paper), cell(row.ours), target, VERDICTS[row.met], row.provenance, row.reason)
+    verdict = VERDICTS[row.met]
+    return _Line(row.quantity, cell(row.papers), cell(row.ours), target, verdict, row.kind, row.provenance, row.reason)
 
 
 def _parameters() -> Sequence[tuple[str, list[tuple[str, Entry]]]]:

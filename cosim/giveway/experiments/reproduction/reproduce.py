@@ -24,7 +24,8 @@ from giveway.base import native
 from giveway.base.errors import GivewayError, UnknownNameError, one_line
 from giveway.base.files import write_text
 from giveway.base.version import VERSION
-from giveway.experiments.reproduction.findings import Effort, Findings, Row
+from giveway.experiments.reproduction.findings import CLASSES, REQUIREMENT, Effort, Findings, Row
+from giveway.paper.printed import NOT_JUDGED
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["HEADER", "Chapter", "Reproduction", "chosen", "reproduce", "table_rows", "write_table"]
 
 SCHEMA_VERSION = 1
-HEADER = ("experiment", "quantity", "paper", "ours", "unit", "target", "met", "provenance")
+HEADER = ("experiment", "quantity", "paper", "ours", "unit", "target", "met", "class", "provenance")
 MISS_WITHOUT_REASON = "not yet known"
 
 Progress = Callable[[str, float], None]
@@ -78,9 +79,18 @@ class Reproduction:
             for row in chapter.findings.rows:
                 yield chapter, row
 
-    def count(self, met: bool) -> int:
-        """Number of rows that meet (or miss) their target."""
-        return sum(row.met is met for _, row in self.rows())
+    def count(self, kind: str, met: bool) -> int:
+        """Number of rows of a class in `CLASSES` that meet (or miss) their target."""
+        return sum(row.kind == kind and row.met is met for _, row in self.rows())
+
+    def summary(self) -> list[str]:
+        """One line per class: how many of its targets are met."""
+        lines = []
+        for kind in CLASSES:
+            met, missed = self.count(kind, True), self.count(kind, False)
+            name = f"{kind}s" if kind == REQUIREMENT else kind
+            lines.append(f"{name}: {met} met of {met + missed}")
+        return lines
 
     @property
     def failed(self) -> bool:
@@ -200,10 +210,11 @@ def table_rows(reproduction: Reproduction) -> list[tuple[str, ...]]:
         if chapter.failure:
             lines.append((name, f"failed: {chapter.failure}", *[""] * (len(HEADER) - 2)))
         for row in chapter.findings.rows:
-            cells = (number(row.paper, row.decimals), number(row.ours, row.decimals))
+            cells = (number(row.papers, row.decimals), number(row.ours, row.decimals))
             met = {True: "yes", False: "MISS", None: ""}[row.met]
             target = "" if row.target is None else row.target.text
-            lines.append((name, row.quantity, *cells, "" if row.unit == "1" else row.unit, target, met, row.provenance))
+            unit = "" if row.unit == "1" else row.unit
+            lines.append((name, row.quantity, *cells, unit, target, met, row.kind, row.provenance))
     return lines
 
 
@@ -215,16 +226,21 @@ def write_table(path: Path, reproduction: Reproduction) -> None:
             {
                 "experiment": chapter.experiment.name,
                 "quantity": row.quantity,
-                "paper": row.paper,
+                "paper": row.papers,
                 "ours": row.ours,
                 "unit": row.unit,
                 "target": None if row.target is None else row.target.text,
                 "met": row.met,
+                "class": row.kind,
                 "provenance": row.provenance,
                 "reason": row.reason or (MISS_WITHOUT_REASON if row.met is False else ""),
             }
             for chapter, row in reproduction.rows()
         ],
+        "counts": {
+            kind: {"met": reproduction.count(kind, True), "missed": reproduction.count(kind, False)} for kind in CLASSES
+        },
+        "not_judged": dict(NOT_JUDGED),
         "experiments": [
             {
                 "name": chapter.experiment.name,

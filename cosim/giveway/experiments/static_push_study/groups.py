@@ -2,47 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from giveway.paper.printed import printed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.experiments.static_push_study.trials import Readings
 
-__all__ = ["GROUP", "PRINTED", "Printed", "group_values", "percentile_of"]
+__all__ = ["GROUP", "PRINTED", "group_values", "percentile_of"]
 
 GROUP = 4
 PAPER_FORCE_N = 10.0  # the paper's value for the weight of 1 kg, used in its comparisons
 
 
-@dataclass(frozen=True)
-class Printed:
-    """A number that the paper prints for its four pushes.
-
-    Attributes:
-        name: the quantity.
-        unit: of the value.
-        value: printed.
-        decimals: digits worth printing.
-    """
-
-    name: str
-    unit: str
-    value: float
-    decimals: int = 1
-
-
 # 5.1: 5.5 to 10 N of 10 N; 12 deg at most, "mean value of 2 %" of the full circle; 11 cm at most, 4.5 cm in the mean.
-PRINTED = (
-    Printed("magnitude error, weakest of four pushes", "%", -45.0),
-    Printed("magnitude error, strongest of four pushes", "%", 0.0),
-    Printed("direction error, largest of four pushes", "deg", 12.0),
-    Printed("direction error, mean of four pushes", "deg", 7.2),
-    Printed("location error, largest of four pushes", "cm", 11.0),
-    Printed("location error, mean of four pushes", "cm", 4.5),
+PRINTED = tuple(
+    printed(f"{error} of four pushes")
+    for error in (
+        "magnitude error, weakest",
+        "magnitude error, strongest",
+        "direction error, largest",
+        "direction error, mean",
+        "location error, largest",
+        "location error, mean",
+    )
 )
 
 

@@ -1,0 +1,1 @@
+"""The numbers that the paper prints (`printed`), and which of them our values were chosen to match (`matched`)."""
