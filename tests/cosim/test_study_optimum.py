@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -293,6 +294,7 @@ def test_answers_and_report_tell_how_the_search_went(found: Path, tmp_path: Path
     write_report(tmp_path / "report.html", answers, {})
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "How the search went" in page
+    assert "kind = optimised, designs = at most 40, population = 8" in page
     assert "The search ended: 40 designs, as many as were asked for." in page
 
 
@@ -356,6 +358,16 @@ def test_a_search_needs_an_objective_and_something_that_varies(tmp_path: Path) -
         small_study(vary=[]).optimise(tmp_path / "s")
     with pytest.raises(GivewayError, match=r"objective: nothing .* \[\[objective\]\]"):
         small_study().optimise(tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
+def test_more_designs_than_the_disk_holds_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from giveway.study import engine
+
+    (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
+    monkeypatch.setattr(engine.shutil, "disk_usage", lambda _: SimpleNamespace(free=900))
+    with pytest.raises(GivewayError, match=r"s\.toml:17: optimise\.designs: 3000 runs .* free space"):
+        optimise(study_file.read(tmp_path / "s.toml", search=True), tmp_path / "s")
     assert not (tmp_path / "s").exists()
 
 

@@ -121,7 +121,8 @@ def check_disk(setup: Setup, count: int, folder: Path) -> None:
         parent = parent.parent
     free = shutil.disk_usage(parent).free
     if needed > DISK_SHARE * free:
-        key = "designs.count" if setup.plan.count else "designs"
+        searched = setup.plan.kind == OPTIMISED
+        key = "optimise.designs" if searched else "designs.count" if setup.plan.count else "designs"
         allowed = f"as many as fit into {memory(DISK_SHARE * free)} of free space on the disk of {folder}"
         raise _with_line(setup, GivewayError(key, f"{count} runs ({memory(needed)})", allowed))
 

@@ -167,6 +167,18 @@ def _new(space: Space, designs: NDArray[np.float64], tried: set[bytes]) -> NDArr
     return designs[kept]
 
 
+def _candidates(known: Known, size: int) -> NDArray[np.intp]:
+    """The designs among which the best ``size`` are: pymoo takes long for each that it has to look at."""
+    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+
+    feasible = np.flatnonzero(known.feasible)
+    fronts = NonDominatedSorting().do(known.costs[feasible], n_stop_if_ranked=size) if len(feasible) else []
+    found = [feasible[one] for one in fronts]
+    broken = np.flatnonzero(known.judged & ~known.feasible)
+    found.append(broken[np.argsort(known.violation[broken], kind="stable")][: max(0, size - len(feasible))])
+    return np.sort(np.concatenate(found))
+
+
 def _mated(space: Space, known: Known, tried: set[bytes], rng: np.random.Generator, size: int) -> NDArray[np.float64]:
     """Children of the best designs."""
     from pymoo.algorithms.moo.nsga2 import RankAndCrowdingSurvival, binary_tournament
@@ -178,7 +190,7 @@ def _mated(space: Space, known: Known, tried: set[bytes], rng: np.random.Generat
 
     objectives = known.costs.shape[1]
     problem = Problem(vars=space.variables(), n_obj=objectives, n_ieq_constr=1)
-    judged = np.flatnonzero(known.judged)
+    judged = _candidates(known, size)
     rows = space.coordinates(known.designs[judged])
     best = Population.new(
         X=[{f"{j}": value for j, value in enumerate(row)} for row in rows.tolist()],
