@@ -30,7 +30,7 @@ from giveway.fitting.command import fit
 from giveway.fmu_tools.command import fmu_app, ssp
 from giveway.identification.command import calibrate
 from giveway.robot.command import variables
-from giveway.study.command import study_app, sweep_designs
+from giveway.study.command import optimise_designs, study_app, sweep_designs
 
 __all__ = ["app", "main"]
 
@@ -47,6 +47,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     **{"run": run, "demo": demo, "reproduce": reproduce, "list": list_experiments, "variables": variables},
     **{"drivetrain": drivetrain, "fit": fit, "calibrate": calibrate, "bench": bench, "ssp": ssp},
     "sweep": sweep_designs,
+    "optimise": optimise_designs,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

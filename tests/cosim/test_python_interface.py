@@ -12,7 +12,7 @@ import giveway
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
-from giveway.study import Study, parts, study_file, variations
+from giveway.study import Study, parts, search_plan, study_file, variations
 from giveway.study.designs import OPTIONS
 
 USER_FILE = """
@@ -83,6 +83,7 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
     assert keywords(Study.collision) == set(study_file._COLLISION)
     assert keywords(Study.vary) == set(variations.VARY)
     assert keywords(Study.parts) == set(parts.PARTS)
+    assert keywords(Study.optimise) == {*search_plan.OPTIMISE, *keywords(Study.run)}
     assert keywords(Study.tolerance) == set(variations.TOLERANCE)
     assert keywords(Study.designs) == {"kind", *(option for options in OPTIONS.values() for option in options)}
     goal = set(study_file._GOAL)
@@ -98,6 +99,7 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
         "tolerance",
         "objective",
         "constraint",
+        "optimise",
         "report",
     }
     of_the_top = set(study_file._TOP) - tables - {"schema_version"}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from giveway.base.options import FmiOption
-from giveway.base.terminal import print_columns, progress_bars, working
+from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, working
 
 __all__ = ["bench"]
 
@@ -18,6 +19,16 @@ def bench(
     scale: Annotated[
         bool, typer.Option("--scale", help="Only: does the cost grow with the designs, to a million?")
     ] = False,
+    optimum: Annotated[
+        Path | None,
+        typer.Option("--optimum", metavar="STUDY.toml", help="Only: what a search finds, against an even sample."),
+    ] = None,
+    sample: Annotated[int, typer.Option("--sample", help="Runs of the even sample.")] = 200_000,
+    runs: Annotated[int, typer.Option("--runs", help="Runs of each search.")] = 2000,
+    seeds: Annotated[int, typer.Option("--seeds", help="Searches, each with a seed of its own.")] = 10,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where their runs are stored.")] = Path(
+        "out/bench/optimum"
+    ),
 ) -> None:
     """Measure speed: a co-simulated second over FMPy, runs per second, cost and error of the integration methods."""
     from giveway.base.checks import whole
@@ -38,6 +49,9 @@ def bench(
         finally:
             print_columns(title, collisions.SCALE_HEADER, found_rows)
         return
+    if optimum is not None:
+        _compare_searches(optimum, out, sample, runs, seeds)
+        return
     with working("co-simulation over FMPy"):
         rows = [(row.name, f"{row.minimum_ms:.1f}", f"{row.median_ms:.1f}") for row in measure(repeats, fmi)]
     title = f"1 s of co-simulation at 1 ms over FMPy, FMI {fmi}, best and median of {repeats}"
@@ -54,3 +68,17 @@ def bench(
     with working("integration methods"):
         cells = [measurement.cells for measurement in measure_solvers(repeats, fmi)]
     print_columns(title, HEADER, cells)
+
+
+def _compare_searches(study: Path, out: Path, sample: int, runs: int, seeds: int) -> None:
+    from giveway.bench.optimum import HEADER, Comparison, compare, names, shares_in_words
+
+    found: list[Comparison] = []
+    try:
+        with progress_bars(names(seeds)) as progress:
+            found.extend(compare(study, out, sample, runs, seeds, progress))
+    except KeyboardInterrupt:
+        typer.echo("Interrupted; what is stored is kept. The same command goes on from there.", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    print_columns(f"Searches of {study}", HEADER, [one.cells for one in found])
+    typer.echo(shares_in_words(found, sample, runs))

@@ -344,6 +344,48 @@ class Study:
             sweep(setup, folder, threads=threads, progress=report)
         return load(folder)
 
+    def optimise(
+        self,
+        folder: Path | str,
+        *,
+        designs: int | None = None,
+        population: int | None = None,
+        patience: int | None = None,
+        growth: float | None = None,
+        reference: Sequence[float] | None = None,
+        threads: int | None = None,
+        progress: Report | bool = True,
+    ) -> Answers:
+        """Search the best designs in ``folder`` and return the answers; after Ctrl-C the same call continues.
+
+        Args:
+            folder: where results are stored; made if it is not there.
+            designs: at most so many; 2000 if left out.
+            population: designs of a generation; 24 if left out.
+            patience, growth: the search ends when in 10 generations the hypervolume grew by no more than 0.001 of it.
+            reference: point of the hypervolume, a value of each objective; left out: from the first designs.
+            threads, progress: as in `run`.
+
+        Raises:
+            MissingExtraError: pymoo is not installed.
+            GivewayError: the study is wrong; nothing was run.
+            FileError: the folder holds something else, is in use, or cannot be written.
+            WriteError: writing failed; the parts written before are kept.
+        """
+        from giveway.study.answers import load
+        from giveway.study.messages import showing
+        from giveway.study.optimum import optimise
+        from giveway.study.search_plan import OPTIMISED
+        from giveway.study.study_file import check
+
+        keys = {"designs": designs, "population": population, "patience": patience, "growth": growth}
+        options = _given({**keys, "reference": _list(reference)})
+        changed = {"designs": {"kind": OPTIMISED}, "optimise": self.document.get("optimise", {}) | options}
+        setup = check(copy.deepcopy({**self.document, **changed}), Path(), self.document["name"])
+        with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
+            optimise(setup, folder, threads=threads, progress=report)
+        return load(folder)
+
     def _add(self, table: str, entry: dict[str, Any]) -> Study:
         self.document.setdefault(table, []).append(entry)
         return self

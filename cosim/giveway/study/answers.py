@@ -29,8 +29,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Answers",
+    "Block",
     "Sensitivities",
     "Sensitivity",
+    "blocks_of",
+    "costs_of",
+    "goals_of",
     "load",
     "over_runs",
     "sensitivities_of",
@@ -203,7 +207,7 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
         FileError: there is no study, or it was written by another version.
     """
     setup, table, manifest = load_runs(folder)
-    goals = (*setup.objectives, *(one.goal for one in setup.constraints), *setup.shown)
+    goals = goals_of(setup)
     count = len(table.designs)
     values = np.full((count, len(goals)), np.nan)
     stored, failed = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
@@ -212,7 +216,7 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
     parts_folder = Path(folder) / PARTS / manifest["fingerprint"][:16]
     if progress is not None:
         progress(0.0)
-    for block in _designs_of(parts_folder, table, goals):
+    for block in blocks_of(parts_folder, table, goals):
         if progress is not None:
             progress(block.first / max(1, count))
         part = slice(block.first, block.first + len(block.stored))
@@ -224,7 +228,7 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
     for index, constraint in enumerate(setup.constraints):
         column = values[:, offset + index]
         feasible &= (column >= constraint.minimum) & (column <= constraint.maximum)  # NaN meets nothing
-    costs = values[:, :offset] * np.array([goal.sense for goal in setup.objectives])
+    costs = costs_of(setup, values)
     feasible &= np.isfinite(costs).all(axis=1)
     costs[~feasible] = np.nan
     on_front = front(costs) if offset else np.zeros(count, dtype=bool)
@@ -236,9 +240,19 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
     )
 
 
+def goals_of(setup: Setup) -> tuple[Goal, ...]:
+    """Objectives, then constraints, then what else is shown."""
+    return (*setup.objectives, *(one.goal for one in setup.constraints), *setup.shown)
+
+
+def costs_of(setup: Setup, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The objectives among ``values`` (n, goals) so that less is better."""
+    return np.asarray(values[:, : len(setup.objectives)] * np.array([goal.sense for goal in setup.objectives]))
+
+
 @dataclass
-class _Block:
-    """Some designs that follow each other."""
+class Block:
+    """Some designs that follow each other: `Answers` has the same attributes for all."""
 
     first: int
     values: NDArray[np.float64]
@@ -248,11 +262,16 @@ class _Block:
     warnings: dict[int, dict[str, int]]
 
 
-def _designs_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...]) -> Iterator[_Block]:
-    """The stored runs, design by design; a design may begin in one part and end in the next."""
+def blocks_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...], first_design: int = 0) -> Iterator[Block]:
+    """The stored runs, design by design; a design may begin in one part and end in the next.
+
+    ``first_design`` has to be the first one of a part.
+    """
     names = sorted({name for goal in goals for name in goal.metric.columns})
     pending: dict[str, Any] = {}
-    for _, _, path in list_parts(parts_folder):
+    for begin, _, path in list_parts(parts_folder):
+        if begin < first_design * table.per_design:
+            continue
         part = read_part(path, ["run", "status", "message", "warnings", *names])
         found: dict[str, Any] = {name: part[name].to_numpy() for name in ("run", *names)}
         found["ok"] = np.array(part["status"].to_pylist()) == "ok"
@@ -268,7 +287,7 @@ def _designs_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...]) ->
         yield from _blocks(pending, table, goals)
 
 
-def _blocks(runs: dict[str, Any], table: RunTable, goals: tuple[Goal, ...]) -> Iterator[_Block]:
+def _blocks(runs: dict[str, Any], table: RunTable, goals: tuple[Goal, ...]) -> Iterator[Block]:
     size = table.per_design
     first = int(runs["run"][0]) // size
     count = int(runs["run"][-1]) // size - first + 1
@@ -289,7 +308,7 @@ def _blocks(runs: dict[str, Any], table: RunTable, goals: tuple[Goal, ...]) -> I
         flat = np.full(count * size, np.nan)
         flat[where] = goal.metric.of(runs)
         values[:, j] = over_runs(goal, flat.reshape(shape))
-    yield _Block(first, values, stored, failed, reason, warnings)
+    yield Block(first, values, stored, failed, reason, warnings)
 
 
 def over_runs(goal: Goal, runs: NDArray[np.float64]) -> NDArray[np.float64]:

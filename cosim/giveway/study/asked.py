@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from giveway.base import native
 from giveway.robot.variables import table
 from giveway.study.quantities import columns
+from giveway.study.search_plan import OPTIMISED
 
 if TYPE_CHECKING:
     from giveway.study.setup import Setup
@@ -50,10 +51,19 @@ def asked(setup: Setup) -> list[tuple[str, str]]:
         ("body region", _region(scenario.body_region, scenario.judge_as)),
         ("contact", ", ".join(contact) if setup.cases[0].hit is not None else "none"),
         ("duration", f"{scenario.duration_s:g} s"),
-        ("designs", in_words(setup.document.get("designs", {"kind": setup.plan.kind}))),
+        ("designs", _designs(setup)),
         ("objectives", "; ".join(in_words(one) for one in setup.document.get("objective", [])) or "none"),
     ]
     return [(name, words) for name, words in rows if words]
+
+
+def _designs(setup: Setup) -> str:
+    stated = dict(setup.document.get("designs", {"kind": setup.plan.kind}))
+    if setup.plan.kind == OPTIMISED:
+        search, told = setup.search, setup.document.get("optimise", {})
+        stated |= {"designs": f"at most {search.designs:,}", "population": search.population}
+        stated |= {key: value for key, value in told.items() if key not in stated}
+    return in_words(stated)
 
 
 def _region(given: str | None, judged: str | None) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -13,7 +13,7 @@ from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, wor
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
 
-__all__ = ["study_app", "sweep_designs"]
+__all__ = ["optimise_designs", "study_app", "sweep_designs"]
 
 QUICK_S = 1.0  # nobody needs to be told of what takes less
 
@@ -49,17 +49,58 @@ def sweep_designs(
     typer.echo(messages.overview(setup, outcome))
     if outcome.interrupted:
         again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
-        typer.echo(f"Interrupted; what is stored is kept. `{again}` goes on from there.", err=True)
-        raise typer.Exit(INTERRUPTED)
+        _interrupted(f"what is stored is kept. `{again}` goes on from there.")
+    _write_and_print(folder)
+
+
+def _interrupted(words: str) -> NoReturn:
+    typer.echo(f"Interrupted; {words}", err=True)
+    raise typer.Exit(INTERRUPTED)
+
+
+def _write_and_print(folder: Path) -> None:
+    """Traces of the best, report and tables of a study whose runs are all there."""
+    from giveway.study import messages
+
     try:
         found = _load(folder)
         with progress_bars((messages.CHOSEN, messages.REPORT)) as report_progress:
             written = messages.write_all(found, progress=report_progress)
     except KeyboardInterrupt:
-        typer.echo(f"Interrupted; all runs are stored. `giveway study show {folder}` shows the answers.", err=True)
-        raise typer.Exit(INTERRUPTED) from None
+        _interrupted(f"all runs are stored. `giveway study show {folder}` shows the answers.")
     _print_answers(found)
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+def optimise_designs(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="Study file; see `examples/studies/spring_and_magnet.toml`.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the search. Without it: out/optima/STUDY.")
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
+    ] = None,
+    check: Annotated[bool, typer.Option("--check", help="Check the study and say how many runs it may take.")] = False,
+) -> None:
+    """Search the best designs of a study, or go on with it; then what `giveway sweep` gives, too (needs pymoo)."""
+    from giveway.study import messages, optimum, study_file
+
+    setup = study_file.read(study, search=True)
+    optimum.check_search(setup)
+    folder = Path("out/optima") / study.stem if out is None else out
+    if check:
+        typer.echo(messages.search_sizes(setup))
+        return
+    with messages.showing(setup.name) as progress:
+        found = optimum.optimise(setup, folder, threads=threads, progress=progress)
+    typer.echo(messages.overview(setup, found.outcome))
+    if found.outcome.interrupted:
+        again = f"giveway optimise {study}" + ("" if out is None else f" --out {out}")
+        _interrupted(f"what is stored is kept. `{again}` goes on from there.")
+    typer.echo(f"The search ended: {found.reason}.")
+    _write_and_print(folder)
 
 
 @study_app.command("show")

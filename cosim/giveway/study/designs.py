@@ -12,13 +12,14 @@ import numpy as np
 
 from giveway.base.errors import GivewayError
 from giveway.study.distributions import Tolerance, Varied
+from giveway.study.search_plan import OPTIMISED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["KINDS", "DesignPlan", "deviations", "make", "problem", "shares"]
 
-KINDS = ("factorial", "latin-hypercube", "sobol", "one-at-a-time", "morris", "sobol-indices", "csv")
+KINDS = ("factorial", "latin-hypercube", "sobol", "one-at-a-time", "morris", "sobol-indices", "csv", OPTIMISED)
 COUNT_MAX = 20_000_000
 OPTIONS: Mapping[str, tuple[str, ...]] = {
     "factorial": (),
@@ -28,6 +29,7 @@ OPTIONS: Mapping[str, tuple[str, ...]] = {
     "morris": ("trajectories", "grid"),
     "sobol-indices": ("count",),
     "csv": ("file",),
+    OPTIMISED: (),
 }
 """Options of each kind, by the key of the study file."""
 
@@ -38,7 +40,7 @@ class DesignPlan:
 
     Attributes:
         kind: one of `KINDS`.
-        count: designs of a Latin hypercube or a Sobol sequence; base samples of "sobol-indices".
+        count: designs of a Latin hypercube or a Sobol sequence, at most of a search; base samples of "sobol-indices".
         trajectories, grid: of the Morris method: how many, and levels per quantity (even).
         rows: the designs of a CSV file, shape (n, quantities).
     """

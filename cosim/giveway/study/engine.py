@@ -23,13 +23,28 @@ from giveway.study import designs as design_module
 from giveway.study.parts import choices_of
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
 from giveway.study.runs import RunTable
+from giveway.study.search_plan import OPTIMISED
 from giveway.study.setup import Setup
 from giveway.study.store import INPUT_FILES, KeyIndex, Store, catalogue_copy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Outcome", "Progress", "Report", "load_runs", "plan_runs", "sweep"]
+__all__ = [
+    "Outcome",
+    "Progress",
+    "Report",
+    "Runner",
+    "check_disk",
+    "deviations_of",
+    "fingerprint_of",
+    "keep_inputs",
+    "load_runs",
+    "manifest_of",
+    "plan_runs",
+    "shared_facts",
+    "sweep",
+]
 
 PART_S = 5.0  # of work in one part: what a kill may lose
 PART_FIRST, PART_MAX = 32, 8192
@@ -85,11 +100,16 @@ class _Prepared:
 
 def plan_runs(setup: Setup) -> RunTable:
     """The table of all runs of ``setup``."""
-    designs = design_module.make(setup.plan, setup.varied, setup.seed)
-    deviations = design_module.deviations(setup.tolerances, setup.tolerance_kind, setup.tolerance_count, setup.seed + 1)
+    if setup.plan.kind == OPTIMISED:
+        raise _with_line(setup, GivewayError("designs.kind", OPTIMISED, "`giveway optimise` of this file"))
+    return RunTable(setup, design_module.make(setup.plan, setup.varied, setup.seed), deviations_of(setup))
+
+
+def deviations_of(setup: Setup) -> NDArray[np.float64]:
+    """The tolerance samples of every design, the nominal one first."""
     if setup.noise_seeds and not setup.tolerances:
-        deviations = np.zeros((1 + setup.tolerance_count, 0))
-    return RunTable(setup, designs, deviations)
+        return np.zeros((1 + setup.tolerance_count, 0))
+    return design_module.deviations(setup.tolerances, setup.tolerance_kind, setup.tolerance_count, setup.seed + 1)
 
 
 def check_disk(setup: Setup, count: int, folder: Path) -> None:
@@ -101,14 +121,19 @@ def check_disk(setup: Setup, count: int, folder: Path) -> None:
         parent = parent.parent
     free = shutil.disk_usage(parent).free
     if needed > DISK_SHARE * free:
-        key = "designs.count" if setup.plan.count else "designs"
+        searched = setup.plan.kind == OPTIMISED
+        key = "optimise.designs" if searched else "designs.count" if setup.plan.count else "designs"
         allowed = f"as many as fit into {memory(DISK_SHARE * free)} of free space on the disk of {folder}"
-        error = GivewayError(key, f"{count} runs ({memory(needed)})", allowed)
-        if setup.text is not None and setup.path is not None:
-            from giveway.base.toml_lines import line_of
+        raise _with_line(setup, GivewayError(key, f"{count} runs ({memory(needed)})", allowed))
 
-            raise InputFileError(setup.path, line_of(setup.text, key), error)
-        raise error
+
+def _with_line(setup: Setup, error: GivewayError) -> GivewayError:
+    """``error`` about a key of the study, with file and line if it came from a file."""
+    if setup.text is None or setup.path is None:
+        return error
+    from giveway.base.toml_lines import line_of
+
+    return InputFileError(setup.path, line_of(setup.text, error.field), error)
 
 
 def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progress: Report | None = None) -> Outcome:
@@ -131,18 +156,17 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
     expected = design_count * max(1, setup.tolerance_count) * len(setup.cases)
     check_disk(setup, expected, folder)  # before the designs are made: they may be too many for the memory as well
     table = plan_runs(setup)
-    shared = _shared(setup)
+    shared = shared_facts(setup)
     contexts = [case.context(shared) for case in table.cases]
-    fingerprint = _fingerprint(table, contexts)
+    fingerprint = fingerprint_of(table, contexts)
     store = Store(folder, fingerprint)
     try:
-        manifest = _manifest(setup, table, shared, fingerprint)
+        manifest = manifest_of(setup, table, shared, fingerprint)
         store.write_designs(table.designs, table.deviations)
         # First the manifest: without one, a folder with files in it is taken for somebody else's.
         store.write_manifest({**manifest, "complete": not store.missing(table.count)})
-        _keep_inputs(setup, store.folder)
-        runner = _Runner(setup, table, contexts, store, threads, progress)
-        outcome = runner.run()
+        keep_inputs(setup, store.folder)
+        outcome = Runner(setup, contexts, store, threads, progress).run(table)
         if not outcome.interrupted:
             store.write_manifest({**manifest, "complete": True})
         return outcome
@@ -150,34 +174,37 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
         store.close()
 
 
-class _Runner:
+class Runner:
     """The loop over the parts."""
 
     def __init__(
         self,
         setup: Setup,
-        table: RunTable,
         contexts: list[bytes],
         store: Store,
         threads: int,
         progress: Report | None,
     ) -> None:
-        self._setup, self._table, self._contexts, self._store = setup, table, contexts, store
+        self._setup, self._contexts, self._store = setup, contexts, store
         self._threads, self._progress = threads, progress
-        self._index = KeyIndex()
+        self._index: KeyIndex | None = None
         self._stored = self._ran = self._reused = self._failed = 0
         self._started = time.perf_counter()
         self._before = 0  # runs that were stored when this began
         self._rate = 0.0
         self._said = 0.0
 
-    def run(self) -> Outcome:
+    def run(self, table: RunTable, expected: int | None = None) -> Outcome:
+        """Run what is missing of ``table``; it may be called again with a longer one, up to ``expected`` runs."""
+        self._table = table
+        self._expected = table.count if expected is None else expected
         interrupted = False
         try:
-            self._load_keys()
-            gaps = self._store.missing(self._table.count)
-            self._stored = self._table.count - sum(end - first for first, end in gaps)
-            self._before, self._started = self._stored, time.perf_counter()
+            gaps = self._store.missing(table.count)
+            self._stored = table.count - sum(end - first for first, end in gaps)
+            if self._index is None:
+                self._index = self._load_keys()
+                self._before, self._started = self._stored, time.perf_counter()
             prepared = None
             for first, end in gaps:
                 while first < end:
@@ -195,7 +222,8 @@ class _Runner:
         found = (self._table.count, self._stored, self._ran, self._reused, self._failed)
         return Outcome(self._store.folder, *found, wall_s, interrupted)
 
-    def _load_keys(self) -> None:
+    def _load_keys(self) -> KeyIndex:
+        index = KeyIndex()
         for path in self._store.all_parts():
             try:
                 part = read_part(path, ["key", "status"])
@@ -204,7 +232,8 @@ class _Runner:
                     raise
                 continue  # another study's: it is not needed
             keys, statuses = part["key"].to_pylist(), part["status"].to_pylist()
-            self._index.add(path, [b"" if s in NOT_CACHED else key for key, s in zip(keys, statuses, strict=True)])
+            index.add(path, [b"" if s in NOT_CACHED else key for key, s in zip(keys, statuses, strict=True)])
+        return index
 
     def _part_size(self) -> int:
         if self._setup.part_runs:
@@ -235,6 +264,7 @@ class _Runner:
 
     def _run_part(self, part: _Prepared, following: tuple[int, int] | None) -> _Prepared | None:
         """Run and store a part; meanwhile prepare the ``following`` one (first run, number of runs)."""
+        assert self._index is not None
         outcomes = Outcomes(len(part.keys))
         for index, message in part.refused.items():
             outcomes.refuse(index, message)
@@ -265,6 +295,7 @@ class _Runner:
 
     def _take_stored(self, part: _Prepared, outcomes: Outcomes) -> set[int]:
         """Results that are there already, from whichever part."""
+        assert self._index is not None
         found = self._index.find(part.keys)
         taken: set[int] = set()
         for number in np.unique(found[found[:, 0] >= 0, 0]):
@@ -312,10 +343,10 @@ class _Runner:
         self._said = now
         done = self._stored + under_way
         rate = (done - self._before) / max(now - self._started, 1e-6)
-        self._progress(Progress(done, self._table.count, self._reused, self._failed, rate))
+        self._progress(Progress(done, self._expected, self._reused, self._failed, rate))
 
 
-def _shared(setup: Setup) -> dict[str, Any]:
+def shared_facts(setup: Setup) -> dict[str, Any]:
     """What decides every run, besides its own numbers: the code and the method."""
     models = library().models
     return {
@@ -328,7 +359,7 @@ def _shared(setup: Setup) -> dict[str, Any]:
     }
 
 
-def _fingerprint(table: RunTable, contexts: list[bytes]) -> str:
+def fingerprint_of(table: RunTable, contexts: list[bytes]) -> str:
     """Hash of everything that decides the results of the study, and in which order they lie."""
     found = hashlib.sha256()
     names = [one.quantity.name for one in table.varied] + [one.quantity.name for one in table.tolerances]
@@ -345,7 +376,8 @@ def _fingerprint(table: RunTable, contexts: list[bytes]) -> str:
     return found.hexdigest()
 
 
-def _manifest(setup: Setup, table: RunTable, shared: dict[str, Any], fingerprint: str) -> dict[str, Any]:
+def manifest_of(setup: Setup, table: RunTable, shared: dict[str, Any], fingerprint: str) -> dict[str, Any]:
+    """What the folder says about itself."""
     import importlib.metadata
 
     return {
@@ -383,7 +415,7 @@ def _portable(setup: Setup) -> dict[str, Any]:
     return document
 
 
-def _keep_inputs(setup: Setup, folder: Path) -> None:
+def keep_inputs(setup: Setup, folder: Path) -> None:
     """Copies of the files that the study names: the folder must be complete by itself."""
     from giveway.base.files import write_text
 

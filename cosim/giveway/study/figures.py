@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from giveway.simulation.result import Result
     from giveway.study.answers import Answers
 
-__all__ = ["axis_label", "drawn", "effect_panels", "effects", "sensitivities", "traces", "trade_off"]
+__all__ = ["axis_label", "drawn", "effect_panels", "effects", "growth", "sensitivities", "traces", "trade_off"]
 
 FRONT_COLOUR, DESIGN_COLOUR, INFEASIBLE_COLOUR = "#0a8a63", "#0b64a8", "#d5d9de"
 CHOSEN_COLOURS = ("#c8500a", "#0b64a8", "#0a8a63", "#7a2ea0", "#8a6d00")
@@ -73,6 +73,20 @@ def trade_off(answers: Answers) -> Figure:
     for set_label, index in ((axes.set_xlabel, 0), (axes.set_ylabel, 1)):
         set_label(axis_label(answers.goal_name(index), answers.goal_unit(index).shown))
     axes.legend()
+    return figure
+
+
+def growth(answers: Answers) -> Figure | None:
+    """The hypervolume of a search over its designs, in shares of the last; None if there was no search."""
+    told = answers.manifest.get("optimum")
+    if not told or not told["hypervolume"] or not told["hypervolume"][-1]:
+        return None
+    figure = Figure(figsize=(9.6, 3.0), layout="constrained")
+    axes = figure.subplots()
+    share = 100.0 * np.array(told["hypervolume"]) / told["hypervolume"][-1]
+    axes.plot(told["designs"], share, "o-", color=FRONT_COLOUR, ms=3, lw=1.2)
+    axes.set_xlabel("designs")
+    axes.set_ylabel("hypervolume (% of the last)")
     return figure
 
 

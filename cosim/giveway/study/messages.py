@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from giveway.study.runs import RunTable
     from giveway.study.setup import Setup
 
-__all__ = ["CHOSEN", "REPORT", "duration", "overview", "showing", "sizes", "write_all"]
+__all__ = ["CHOSEN", "REPORT", "duration", "overview", "search_sizes", "showing", "sizes", "write_all"]
 
 SAY_EVERY_S = 5.0  # without a terminal
 CHOSEN, REPORT = "chosen designs", "report"  # what `write_all` does
@@ -83,6 +83,15 @@ def sizes(setup: Setup, table: RunTable) -> str:
     return (
         f"{setup.name}: {counted(len(table.designs), 'design')}, {counted(len(table.cases), 'collision')}, "
         f"{counted(table.samples, 'sample')} with the nominal one: {counted(table.count, 'run')}"
+    )
+
+
+def search_sizes(setup: Setup) -> str:
+    """One line about a search that has not been run."""
+    per_design = len(setup.cases) * (1 + setup.tolerance_count)
+    return (
+        f"{setup.name}: at most {counted(setup.search.designs, 'design')}, {setup.search.population} in a generation, "
+        f"{counted(per_design, 'run')} each"
     )
 
 

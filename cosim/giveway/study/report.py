@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from giveway.base.files import write_text
 from giveway.report.figures import NamedFigure
@@ -116,6 +116,8 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
         if known and len(answers.setup.objectives) >= 2:
             caption = f"{_points(answers, 1)} Those on the front are beaten by no other one; numbers: the best ranked."
             add("Trade-off", caption, figures.trade_off(answers))
+        if optimum := answers.manifest.get("optimum"):
+            add("How the search went", _search_caption(answers, optimum), figures.growth(answers))
         if known and answers.setup.objectives and answers.setup.varied:
             add(
                 "What each quantity does",
@@ -128,6 +130,14 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
             caption = "The best ranked designs, event-exact at their nominal values. Dashed: the moment of detection."
             add("Chosen designs", caption, figures.traces(results))
     return found
+
+
+def _search_caption(answers: Answers, told: Mapping[str, Any]) -> str:
+    """What the hypervolume's figure shows."""
+    pairs = zip(answers.setup.objectives, told["reference"] or (), strict=False)
+    reference = ", ".join(f"{goal.metric.name} {value:.4g} {goal.metric.unit}" for goal, value in pairs)
+    ended = told["reason"] or "it was interrupted, or goes on"
+    return f"One point per generation; reference point: {reference}. The search ended: {ended}."
 
 
 def _points(answers: Answers, panels: int) -> str:

@@ -10,6 +10,7 @@ from giveway.base.units import WrittenUnit
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.metrics import Metric
+from giveway.study.search_plan import SearchPlan
 
 if TYPE_CHECKING:
     from giveway.scenario.scenario import Scenario
@@ -107,6 +108,7 @@ class Setup:
         shown: further metrics of the table.
         chosen: how many of the best designs are simulated once more, with traces.
         part_runs: runs per file; 0: chosen from how many there are.
+        search: how the best designs are searched, if they are.
         text, path: of the study file, for messages; None: from Python.
     """
 
@@ -128,5 +130,6 @@ class Setup:
     shown: tuple[Goal, ...]
     chosen: int
     part_runs: int
+    search: SearchPlan
     text: str | None = field(default=None, repr=False)
     path: Path | None = None

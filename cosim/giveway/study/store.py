@@ -131,6 +131,22 @@ class Store:
             with replace_file(path) as temporary:
                 np.savez(temporary, designs=designs, deviations=deviations)
 
+    def write_generations(
+        self, designs: NDArray[np.float64], deviations: NDArray[np.float64], generation: NDArray[np.int64]
+    ) -> None:
+        """Keep all designs of a search so far, with the generation of each."""
+        with replace_file(self.parts_folder / DESIGNS_FILE) as temporary:
+            np.savez(temporary, designs=designs, deviations=deviations, generation=generation)
+
+    def read_generations(self, quantities: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Designs and generations that `write_generations` kept; none if there are none."""
+        path = self.parts_folder / DESIGNS_FILE
+        if not path.is_file():
+            return np.empty((0, quantities)), np.empty(0, dtype=np.int64)
+        designs, _ = read_designs(self.parts_folder)
+        with np.load(path) as kept:
+            return designs, kept["generation"]
+
     def parts(self) -> list[tuple[int, int, Path]]:
         """First run, last run + 1 and file of each part of this study, in order."""
         return list_parts(self.parts_folder)

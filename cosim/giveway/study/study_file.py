@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base.checks import finite, whole
-from giveway.base.errors import GivewayError, InputFileError, UnknownNameError
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.library.batch_library import METHODS, PLANT_STEP_RANGE_S
 from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan_of
@@ -26,6 +26,7 @@ from giveway.study.part_rules import part_rules
 from giveway.study.parts import SUMS, PartChoice, choices_of, known_sums, part_metric, parts_of
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns
 from giveway.study.runs import COVER
+from giveway.study.search_plan import OPTIMISED, search_plan_of
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
 from giveway.study.variations import TOLERANCE, VARY, designs_of, refuse_twice, tolerance_of, varied_of, written_unit
 
@@ -34,7 +35,7 @@ __all__ = ["check", "read"]
 SCHEMA_VERSION = 1
 _TOP = (
     "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
-    "parts", "tolerances", "tolerance", "objective", "constraint", "report",
+    "parts", "tolerances", "tolerance", "objective", "constraint", "optimise", "report",
 )  # fmt: skip
 _SCENARIO = (
     "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "preset", "plan", "push",
@@ -48,8 +49,8 @@ SAMPLES_MAX, PART_MAX, CHOSEN_MAX, CORNERS_MAX = 1_000_000, 65_536, 20, 12
 LIMITS = ("transient limit", "lasting limit")
 
 
-def read(path: Path | str) -> Setup:
-    """The study in the file ``path``, checked.
+def read(path: Path | str, search: bool = False) -> Setup:
+    """The study in the file ``path``, checked; ``search``: its designs are searched, whatever it says of them.
 
     Raises:
         FileError: it, or a file it names, cannot be read.
@@ -57,6 +58,8 @@ def read(path: Path | str) -> Setup:
     """
     path = Path(path)
     text, document = read_toml(path, "give the path of a study file (TOML)")
+    if search:
+        document = {**document, "designs": {"kind": OPTIMISED}}
     with lines_named(path, text):
         return check(document, path.parent, path.stem, text, path)
 
@@ -78,7 +81,13 @@ def check(
         tolerance_of(Section(f"tolerance[{i}]", one, TOLERANCE)) for i, one in enumerate(_list(top, "tolerance"))
     )
     refuse_twice("tolerance", [one.quantity.name for one in tolerances])
+    objectives = tuple(
+        _objective(f"objective[{i}]", one, choices_of(varied)) for i, one in enumerate(_list(top, "objective"))
+    )
+    search = search_plan_of(top, objectives)
     plan, varied = designs_of(top, varied, folder)
+    if plan.kind == OPTIMISED:
+        plan = dataclasses.replace(plan, count=search.designs)
     choices = choices_of(varied)
     for choice in choices:
         part_rules(choice)  # refuses half a rule
@@ -124,13 +133,14 @@ def check(
         tolerance_kind=kind,
         tolerance_count=count,
         noise_seeds=noise,
-        objectives=tuple(_objective(f"objective[{i}]", one, choices) for i, one in enumerate(_list(top, "objective"))),
+        objectives=objectives,
         constraints=tuple(
             _constraint(f"constraint[{i}]", one, judged, choices) for i, one in enumerate(_list(top, "constraint"))
         ),
         shown=(*(Goal(metric, 1) for metric in known_sums(choices)), *_speeds(cases), *_shown(report, choices)),
         chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
         part_runs=whole("part_runs", top.values.get("part_runs", 0), 0, PART_MAX),
+        search=search,
         text=text,
         path=path,
     )
@@ -333,12 +343,3 @@ def _shown(report: Section, choices: Sequence[PartChoice]) -> tuple[Goal, ...]:
     if not isinstance(names, list):
         raise GivewayError("report.metrics", names, "a list of metrics")
     return tuple(Goal(_metric(f"report.metrics[{i}]", str(name), choices), 1) for i, name in enumerate(names))
-
-
-def with_line(setup: Setup, error: GivewayError) -> GivewayError:
-    """``error`` about a key of the study, with file and line if it came from a file."""
-    from giveway.base.toml_lines import line_of
-
-    if setup.text is None or setup.path is None:
-        return error
-    return InputFileError(setup.path, line_of(setup.text, error.field), error)

@@ -1,0 +1,440 @@
+"""The search for the best designs: known fronts are found, and nothing that happens on the way changes a bit."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from giveway.base.errors import GivewayError
+from giveway.base.extras import MissingExtraError, extra
+from giveway.cli import _main
+from giveway.study import Study, study_file
+from giveway.study.answers import load
+from giveway.study.designs import DesignPlan, make
+from giveway.study.distributions import Spread, Varied
+from giveway.study.engine import plan_runs
+from giveway.study.hypervolume import hypervolume, reference_of, stopped
+from giveway.study.optimiser import Known, Space, next_generation
+from giveway.study.optimum import optimise, violation_of
+from giveway.study.quantities import Quantity
+from giveway.study.report import write_report
+from giveway.study.search_plan import SearchPlan
+from giveway.study.setup import Constraint, Goal, Metric, Setup
+from giveway.study.store import PARTS, read_designs, read_manifest
+from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
+
+TRAVEL = "testbed.bumper.travel"
+
+
+def real(name: str, low: float, high: float) -> Varied:
+    return Varied(Quantity(name, "1", "real", low, high), spread=Spread("uniform", low, high))
+
+
+def part(name: str, count: int) -> Varied:
+    names = tuple(f"{name} {index}" for index in range(count))
+    quantity = Quantity(name, "", "choice", 0.0, count - 1.0, (), names)
+    return Varied(quantity, levels=tuple(float(index) for index in range(count)))
+
+
+# Problems with known fronts: objectives (n, 2), and constraints (n, c) that are met up to 0.
+def binh_korn(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Binh and Korn (1997), often called BNH: two quantities, two constraints."""
+    a, b = x.T
+    constraints = [(a - 5.0) ** 2 + b**2 - 25.0, 7.7 - (a - 8.0) ** 2 - (b + 3.0) ** 2]
+    return np.stack([4.0 * a**2 + 4.0 * b**2, (a - 5.0) ** 2 + (b - 5.0) ** 2], 1), np.stack(constraints, 1)
+
+
+def front_of_binh_korn() -> np.ndarray:
+    first, second = np.linspace(0.0, 3.0, 5001), np.linspace(3.0, 5.0, 5001)
+    return binh_korn(np.concatenate([np.stack([first, first], 1), np.stack([second, np.full_like(second, 3.0)], 1)]))[0]
+
+
+def zitzler_with_a_gap(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """ZDT1 of Zitzler, Deb and Thiele (2000), best where all but the first number are 0, with a gap in its front."""
+    a, rest = x[:, 0], 1.0 + 9.0 * x[:, 1:].mean(axis=1)
+    return np.stack([a, rest * (1.0 - np.sqrt(a / rest))], 1), 0.01 - (a[:, None] - 0.5) ** 2
+
+
+WIDTHS = np.random.default_rng(5).permutation(np.linspace(0.0, 1.0, 12))  # of parts, in no order
+
+
+def zitzler_of_parts(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same with one of twelve parts for the second and for the third number."""
+    numbers = x.copy()
+    numbers[:, 1:3] = WIDTHS[x[:, 1:3].astype(int)]
+    return zitzler_with_a_gap(numbers)
+
+
+def front_with_a_gap() -> np.ndarray:
+    a = np.linspace(0.0, 1.0, 20001)
+    a = a[np.abs(a - 0.5) >= 0.1]
+    return np.stack([a, 1.0 - np.sqrt(a)], 1)
+
+
+LEVELS = Varied(Quantity("d", "1", "real", 0.0, 1.0), levels=tuple(np.linspace(0.0, 1.0, 11).tolist()))
+MIXED = (real("a", 0, 1), part("b", 12), part("c", 12), LEVELS, real("e", 0, 1))
+PROBLEMS = {  # what varies, front, reference point, designs, share of the front's hypervolume
+    "constrained": (binh_korn, (real("a", 0, 5), real("b", 0, 3)), front_of_binh_korn, (140.0, 50.0), 400, 0.985),
+    "with a gap": (zitzler_with_a_gap, tuple(real(name, 0, 1) for name in "abcdef"), front_with_a_gap, (1.1, 1.1), 1600,
+                   0.97),
+    "mixed": (zitzler_of_parts, MIXED, front_with_a_gap, (1.1, 1.1), 1600, 0.95),
+}  # fmt: skip
+
+
+def searched(
+    problem: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], varied: tuple[Varied, ...], seed: int, count: int
+) -> Known:
+    """The designs of a search, as `giveway.study.optimum` makes them."""
+    space, number = Space(varied), 0
+    known = Known(np.empty((0, len(varied))), np.empty((0, 2)), np.empty(0))
+    while len(known.designs) < count:
+        new = next_generation(space, known, seed, number, min(24, count - len(known.designs)))
+        costs, constraints = problem(new)
+        known = Known(
+            np.concatenate([known.designs, new]),
+            np.concatenate([known.costs, costs]),
+            np.append(known.violation, np.maximum(constraints, 0.0).sum(axis=1)),
+        )
+        number += 1
+    return known
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_the_known_front_of_a_problem_is_found(name: str) -> None:
+    problem, varied, front, reference, count, wanted = PROBLEMS[name]
+    point = np.array(reference)
+    known = searched(problem, varied, 1, count)
+    best = hypervolume(front(), point)
+    found = hypervolume(known.costs[known.feasible], point) / best
+    # A finite number of points is always a little behind the curve; `wanted` leaves room for what seeds differ by.
+    assert wanted < found <= 1.0 + 1e-6
+    if len(varied) > 2:  # two quantities are a plane that even points fill, too
+        costs, constraints = problem(make(DesignPlan("sobol", count=count), varied, 1))
+        assert hypervolume(costs[(constraints <= 0.0).all(axis=1)], point) < 0.5 * best
+    assert len(np.unique(Space(varied).coordinates(known.designs), axis=0)) == count, "a design was tried twice"
+
+
+def test_the_first_designs_are_a_sobol_sequence_and_the_same_seed_gives_the_same() -> None:
+    _, varied, *_ = PROBLEMS["mixed"]
+    one, again = (searched(zitzler_of_parts, varied, 3, 120).designs for _ in range(2))
+    np.testing.assert_array_equal(one, again)
+    np.testing.assert_allclose(one[:24], make(DesignPlan("sobol", count=24), varied, 3), rtol=1e-15)
+    assert not np.array_equal(one, searched(zitzler_of_parts, varied, 4, 120).designs)
+
+
+def test_failed_designs_are_excluded_and_not_penalised() -> None:
+    """The next generation is the one that there would be without them."""
+    _, varied, *_ = PROBLEMS["constrained"]
+    space, known = Space(varied), searched(binh_korn, varied, 1, 80)
+    failed = np.array([[4.9, 2.9], [0.1, 2.8], [2.5, 1.5]])
+    with_failed = Known(
+        np.concatenate([known.designs, failed]),
+        np.concatenate([known.costs, np.full((3, 2), np.nan)]),
+        np.append(known.violation, [0.0, np.nan, 0.0]),
+    )
+    expected = next_generation(space, known, 1, 2, 40)
+    np.testing.assert_array_equal(next_generation(space, with_failed, 1, 2, 40), expected)
+    penalised = Known(with_failed.designs, np.nan_to_num(with_failed.costs, nan=0.0), np.zeros(83))
+    assert not np.array_equal(next_generation(space, penalised, 1, 2, 40), expected)  # so the test can fail
+
+
+def test_as_long_as_nothing_can_be_judged_the_sample_goes_on() -> None:
+    _, varied, *_ = PROBLEMS["constrained"]
+    space = Space(varied)
+    sobol = make(DesignPlan("sobol", count=60), varied, 1)
+    known = Known(sobol[:40], np.full((40, 2), np.nan), np.zeros(40))
+    np.testing.assert_allclose(next_generation(space, known, 1, 1, 20), sobol[40:], rtol=1e-15)
+
+
+def test_coordinates_come_back_as_the_values_that_they_were() -> None:
+    wide = Varied(Quantity("w", "N", "real", 0.0, 1e9), spread=Spread("loguniform", 1e-3, 1e5))
+    whole = Varied(Quantity("n", "", "integer", 0.0, 99.0), spread=Spread("uniform", 2.0, 9.0))
+    levels = Varied(Quantity("l", "N", "real", 0.0, 99.0), levels=(3.0, 1.0, 7.5))
+    space = Space((wide, whole, levels, part("p", 4)))
+    designs = np.array([[1e-3, 2.0, 7.5, 0.0], [1e5, 9.0, 3.0, 3.0], [10.0, 5.0, 1.0, 1.0]])
+    coordinates = space.coordinates(designs)
+    np.testing.assert_allclose(coordinates, [[0, 0, 2, 0], [1, 7, 0, 3], [0.5, 3, 1, 1]])
+    np.testing.assert_allclose(space.designs(coordinates), designs, rtol=1e-12)
+    np.testing.assert_array_equal(space.coordinates(space.designs(coordinates)), coordinates)
+
+
+def test_a_hypervolume_is_the_volume_of_boxes() -> None:
+    assert hypervolume(np.array([[3.0], [1.0]]), np.array([4.0])) == 3.0
+    two = np.array([[0.0, 2.0], [1.0, 1.0], [2.0, 0.0], [2.0, 2.0]])
+    assert hypervolume(two, np.array([3.0, 3.0])) == pytest.approx(1 * 1 + 1 * 2 + 1 * 3)
+    assert hypervolume(two, np.array([1.5, 1.5])) == pytest.approx(0.25)
+    assert hypervolume(np.array([[0.0, 0.0, 0.0], [5.0, 5.0, 5.0]]), np.array([2.0, 3.0, 4.0])) == pytest.approx(24.0)
+    assert hypervolume(np.empty((0, 2)), np.array([1.0, 1.0])) == 0.0
+    assert reference_of(np.array([[1.0, 5.0]])) is None
+    np.testing.assert_allclose(reference_of(np.array([[1.0, 5.0], [3.0, 5.0]])), [3.2, 5.5])  # type: ignore[arg-type]
+
+
+def test_a_search_ends_when_the_hypervolume_no_longer_grows() -> None:
+    plan = SearchPlan(designs=100, patience=3, growth=0.01)
+    assert stopped(plan, [0.0, 0.0, 0.0, 0.0], 40) == ""  # nothing feasible yet
+    assert stopped(plan, [1.0, 1.005, 1.009], 40) == ""
+    assert stopped(plan, [1.0, 1.0, 1.0, 1.02], 40) == ""
+    words = "the hypervolume grew by 0.9 % in 3 generations, no more than 1 %"
+    assert stopped(plan, [0.5, 1.0, 1.0, 1.005, 1.009], 40) == words
+    assert stopped(plan, [1.0], 100) == "100 designs, as many as were asked for"
+
+
+def test_a_constraint_is_broken_in_shares_of_its_limit() -> None:
+    goal = Goal(Metric("x", "N", "x"), 1)
+    values = np.array([50.0, 100.0, 150.0, np.nan, np.inf])
+    np.testing.assert_array_equal(violation_of(Constraint(goal, -np.inf, 100.0), values), [0, 0, 0.5, np.nan, np.inf])
+    np.testing.assert_array_equal(violation_of(Constraint(goal, 100.0, np.inf), values), [0.5, 0, 0, np.nan, 0])
+
+
+CATALOGUE = """\
+name, price [EUR], rate [N/mm]
+a, 1, 0.5
+b, 2, 1.1
+c, 3, 0.8
+d, 9, 2.0
+"""
+
+
+def bumper(folder: Path, **options: object) -> Study:
+    """A small search: springs from a catalogue, latch and travel; a short travel makes the run fail."""
+    (folder / "springs.csv").write_text(CATALOGUE, encoding="utf-8")
+    study = small_study(vary=[], part_runs=3, optimise={"designs": 40, "population": 8, **options})
+    study.parts("spring", folder / "springs.csv", sets={SPRING: "rate"}).vary(LATCH, low=0.0, high=60.0)
+    study.vary(TRAVEL, low=0.02, high=0.1).tolerance(TRAVEL, absolute=0.03).tolerances(kind="corners")
+    study.objective("peak force of the run", tolerances="mean").objective("price of parts")
+    return study.constraint("bumper compression", maximum=60, unit="mm")
+
+
+def search_of(study: Study) -> Setup:
+    study.document["designs"] = {"kind": "optimised"}
+    return study.setup()
+
+
+def same(one: Path, other: Path) -> None:
+    first, second = stored_runs(one), stored_runs(other)
+    assert first.keys() == second.keys()
+    for name in first:
+        np.testing.assert_array_equal(first[name], second[name], name)
+    told, again = read_manifest(one), read_manifest(other)
+    assert told["optimum"] == again["optimum"]
+    hashes = [folder / PARTS / found["fingerprint"][:16] for folder, found in ((one, told), (other, again))]
+    np.testing.assert_array_equal(read_designs(hashes[0])[0], read_designs(hashes[1])[0])
+
+
+def in_a_child(setup: Setup, folder: Path) -> int:
+    pid = os.fork()
+    if pid == 0:
+        try:
+            optimise(setup, folder, threads=1)
+        finally:
+            os._exit(0)
+    return pid
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished search of 40 designs."""
+    folder = tmp_path_factory.mktemp("search")
+    done = optimise(search_of(bumper(folder)), folder / "whole", threads=1)
+    assert done.reason == "40 designs, as many as were asked for"
+    assert done.outcome.stored == done.outcome.runs == 40 * 3
+    return folder / "whole"
+
+
+def test_kills_at_random_moments_change_nothing(found: Path, tmp_path: Path) -> None:
+    setup, killed = search_of(bumper(tmp_path)), tmp_path / "k" / "killed"
+    pick, kills, seen = random.Random(7), 0, 0
+    while kills < 60:
+        pid = in_a_child(setup, killed)
+        time.sleep(pick.uniform(0.0, 0.25))
+        os.kill(pid, signal.SIGKILL)
+        _, status = os.waitpid(pid, 0)
+        if not os.WIFSIGNALED(status):
+            break
+        kills += 1
+        stored = len(part_files(killed)) if killed.exists() else 0
+        assert stored >= seen, "a part that was there is gone"
+        seen = stored
+    assert kills >= 3, "the search ended before it was killed: make it longer"
+    optimise(setup, killed, threads=2)
+    same(found, killed)
+    assert not [path.name for path in killed.rglob(".*-*")], "left by a kill"
+
+
+def test_a_finished_search_is_not_run_again_and_another_takes_over_its_runs(found: Path, tmp_path: Path) -> None:
+    folder = found.parent
+    again = optimise(search_of(bumper(folder)), found, threads=1)
+    assert (again.outcome.ran, again.reason) == (0, "40 designs, as many as were asked for")
+    longer = optimise(search_of(bumper(folder, designs=48)), folder / "longer", threads=1)
+    assert longer.outcome.reused + longer.outcome.failed >= 40 * 3
+    assert longer.outcome.ran <= 8 * 3
+
+
+def test_answers_and_report_tell_how_the_search_went(found: Path, tmp_path: Path) -> None:
+    answers = load(found)
+    assert answers.complete
+    assert len(answers.designs) == 40
+    # 0.02 m less 0.03 m is no travel: such runs fail, and their designs are on no front.
+    assert (answers.failed > 0).any()
+    assert not answers.feasible[answers.failed > 0].any()
+    told = answers.manifest["optimum"]
+    assert told["designs"] == [8, 16, 24, 32, 40]
+    assert told["hypervolume"] == sorted(told["hypervolume"])
+    costs = answers.values[answers.feasible][:, :2]
+    assert hypervolume(costs, np.array(told["reference"])) == pytest.approx(told["hypervolume"][-1], rel=1e-12)
+    write_report(tmp_path / "report.html", answers, {})
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "How the search went" in page
+    assert "kind = optimised, designs = at most 40, population = 8" in page
+    assert "The search ended: 40 designs, as many as were asked for." in page
+
+
+def test_every_design_is_tried_at_most_once(tmp_path: Path) -> None:
+    study = bumper(tmp_path, designs=500, population=4)
+    study.document["vary"] = [{"quantity": LATCH, "values": [0.0, 20.0, 40.0]}]
+    study.document["tolerance"] = []
+    done = optimise(search_of(study), tmp_path / "s", threads=1)
+    assert done.reason == "every design has been tried"
+    assert done.outcome.runs == 12
+
+
+def test_a_python_study_is_optimised_in_one_call(tmp_path: Path) -> None:
+    answers = bumper(tmp_path).optimise(tmp_path / "s", designs=16, population=8, threads=1, progress=False)
+    assert len(answers.designs) == 16
+    assert answers.manifest["optimum"]["reason"].startswith("16 designs")
+
+
+STUDY = """\
+schema_version = 1
+[scenario]
+duration = 0.2
+bumper = "magnetic"
+[[collision]]
+speed = 0.5
+mass = 9.08
+edge = 0
+time = 0.12
+[[vary]]
+quantity = "testbed.bumper.latch_force"
+low = 0.0
+high = 60.0
+[[objective]]
+metric = "peak force of the run"
+[optimise]
+designs = 3000
+population = 30
+reference = [500.0]
+"""
+
+
+@pytest.mark.parametrize(("old", "new", "line", "words"), [
+    ("designs = 3000", "designs = 3", 17, "optimise.designs: 3 is not allowed; allowed: a whole number from 30 to"),
+    ("population = 30", "population = 3", 18, "optimise.population: 3 is not allowed; allowed: a whole number from 4"),
+    ("[500.0]", "[500.0, 1.0]", 19, "allowed: a list of 1 numbers, one for each objective"),
+    ("[500.0]", '["far"]', 19, "optimise.reference[0]: far is not allowed; allowed: a finite number N"),
+    ("population", "populatoin", 18, "optimise.populatoin: populatoin is unknown"),
+    ("[optimise]", "[optimise]\ngrowth = 2.0", 17, "optimise.growth: 2.0 is not allowed; allowed: a number from 0"),
+])  # fmt: skip
+def test_a_wrong_table_is_refused_with_line_and_key(old: str, new: str, line: int, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(STUDY.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(GivewayError) as caught:
+        study_file.read(path, search=True)
+    assert str(caught.value).startswith(f"{path}:{line}: ")
+    assert words in str(caught.value)
+
+
+def test_a_search_needs_an_objective_and_something_that_varies(tmp_path: Path) -> None:
+    with pytest.raises(GivewayError, match=r"designs\.kind: optimised .* at least one \[\[vary\]\] or \[\[parts\]\]"):
+        small_study(vary=[]).optimise(tmp_path / "s")
+    with pytest.raises(GivewayError, match=r"objective: nothing .* \[\[objective\]\]"):
+        small_study().optimise(tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
+def test_more_designs_than_the_disk_holds_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from giveway.study import engine
+
+    (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
+    monkeypatch.setattr(engine.shutil, "disk_usage", lambda _: SimpleNamespace(free=900))
+    with pytest.raises(GivewayError, match=r"s\.toml:17: optimise\.designs: 3000 runs .* free space"):
+        optimise(study_file.read(tmp_path / "s.toml", search=True), tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_sweep_of_designs_that_are_searched_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(STUDY + '[designs]\nkind = "optimised"\n', encoding="utf-8")
+    with pytest.raises(GivewayError, match=r"s\.toml:21: designs\.kind: optimised .* `giveway optimise`"):
+        plan_runs(study_file.read(path))
+
+
+def test_a_missing_extra_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "pymoo", None)
+    for arguments in (["optimise", "s.toml"], ["optimise", "s.toml", "--check"]):
+        assert _main(arguments) == 2
+        said = capsys.readouterr().err
+        assert said == "giveway: pymoo is not installed; `pip install 'giveway[optimise]'` installs it\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_what_an_extra_lacks_itself_is_not_taken_for_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "half_there.py").write_text("import nowhere_at_all\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(ModuleNotFoundError, match="nowhere_at_all"):
+        extra("half_there", "optimise")
+    with pytest.raises(MissingExtraError, match=r"not_there is not installed; `pip install 'giveway\[x\]'`"):
+        extra("not_there", "x")
+
+
+def test_ctrl_c_keeps_what_is_stored_and_the_same_command_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "s.toml").write_text("part_runs = 5\n" + STUDY, encoding="utf-8")
+    command = [sys.executable, "-m", "giveway", "optimise", "s.toml", "--out", "s"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        for _ in range(1200):
+            if (tmp_path / "s").exists() and len(part_files(tmp_path / "s")) >= 8:
+                break
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        out, said = process.communicate(timeout=60)
+    assert process.returncode == 130, out + said
+    assert "Traceback" not in said
+    assert "`giveway optimise s.toml --out s` goes on from there" in said
+    assert len(stored_runs(tmp_path / "s")["run"]) >= 40
+    assert not read_manifest(tmp_path / "s")["complete"]
+
+
+def test_at_the_command_line_it_says_why_it_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = STUDY.replace("3000", "24").replace("population = 30", "population = 8")
+    (tmp_path / "s.toml").write_text(text + "[report]\nchosen = 0\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert _main(["optimise", "s.toml", "--check"]) == 0
+    assert "at most 24 designs, 8 in a generation, 1 run each" in capsys.readouterr().out
+    assert not (tmp_path / "out").exists()
+    assert _main(["optimise", "s.toml"]) == 0
+    said = capsys.readouterr().out
+    assert "The search ended: 24 designs, as many as were asked for." in said
+    assert (tmp_path / "out" / "optima" / "s" / "report.html").is_file()
+    assert _main(["study", "export", "out/optima/s", "--design", "0", "--out", "d.toml"]) == 0
+
+
+def test_the_examples_can_be_searched() -> None:
+    for path in sorted((Path(__file__).parents[2] / "examples" / "studies").glob("*.toml")):
+        setup = study_file.read(path, search=True)
+        assert setup.plan.kind == "optimised"
+        assert setup.plan.count == setup.search.designs
