@@ -10,7 +10,7 @@ import pytest
 import xarray
 from figure_labels import Curve, across, check_panels, check_planted, curve, keeping
 from giveway import batch, experiments
-from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, Clamped, _safe_speed, scenario
+from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, Clamped, _own_row, _safe_speed, scenario
 from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.scenario.body_regions import NOTICE, body_region
 from giveway.scenario.scenario import BUMPERS
@@ -146,3 +146,17 @@ def test_safe_speed_is_the_last_one_before_the_first_that_fails() -> None:
     assert _safe_speed(found(False, True)) is None  # type: ignore[arg-type]
     assert _safe_speed(found(True)) == pytest.approx(0.1)  # type: ignore[arg-type]
     assert SPEED_MPS == 0.22  # of the paper's 5.3
+
+
+def test_our_own_reflex_has_a_row_per_bumper_that_says_where_it_fails() -> None:
+    def found(lasting_n: float) -> dict[float, object]:
+        judged = [SimpleNamespace(ok=ok, peak_n=100.0, lasting_n=lasting_n) for ok in (True, lasting_n < 130.0, True)]
+        return {
+            speed: SimpleNamespace(judgement=one, detection_ms=400.0)
+            for speed, one in zip((0.1, 0.2, 0.5), judged, strict=True)
+        }
+
+    good, bad = (_own_row("spring", found(lasting_n)) for lasting_n in (100.0, 150.0))  # type: ignore[arg-type]
+    assert (good.ours, good.met, good.reason) == (0.5, True, "")
+    assert (bad.ours, bad.met) == (0.1, False)
+    assert bad.reason == "at 0.2 m/s the leg is noticed after 400 ms and feels 100 N at first and 150 N lasting"

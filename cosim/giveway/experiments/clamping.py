@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 REGION = "lower leg"
 SPEED_MPS = 0.22
 SPEEDS_MPS = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5)  # up to the robot's own limit
+ASKED_MPS: Mapping[str, float] = {"none": 0.225, "spring": 0.375, "magnetic": 0.5}
+"""Up to these speeds our own reflex shall keep the limits, with the leg before the wall."""
+ASKED_PLACE = "20 mm before the wall"
 SLIDER_KG = 13.62  # the paper's, of 5.3
 GAPS_M: Mapping[str, float] = {"at the wall": 0.001, "20 mm before the wall": 0.02}
 STEADY_S = 0.4  # at full speed before the contact: the servo's lag has settled
@@ -108,6 +111,12 @@ def reproduce(effort: Effort) -> Findings:
         for bumper in PAPER_BUMPERS
         for speed in speeds
     }
+    own = effort.pick(tuple(sorted({*SPEEDS_MPS, *ASKED_MPS.values()})), tuple(ASKED_MPS.values()))
+    cases |= {
+        ("own", bumper, speed): scenario(bumper, speed, GAPS_M[ASKED_PLACE])
+        for bumper in PAPER_BUMPERS
+        for speed in own
+    }
     longest = max(case.duration_s for case in cases.values())  # traces need one duration
     table = batch.run_many(
         [dataclasses.replace(case, duration_s=longest) for case in cases.values()],
@@ -122,6 +131,7 @@ def reproduce(effort: Effort) -> Findings:
         for bumper in PAPER_BUMPERS
     }
     rows = [row for case in safe for row in _rows(*case, forces[case], safe[case])]
+    rows += [_own_row(bumper, {speed: forces["own", bumper, speed] for speed in own}) for bumper in PAPER_BUMPERS]
     rows += [
         Row(f"lasting force, no reflex, {place}", forces["no reflex", place].judgement.lasting_n, "N", "assumed")
         for place in GAPS_M
@@ -185,6 +195,21 @@ def _rows(bumper: str, place: str, clamped: Clamped, safe_mps: float | None) -> 
         ),
         Row(f"limits kept up to this speed, {case}", safe_mps, "m/s", "assumed", decimals=2),
     ]
+
+
+def _own_row(bumper: str, found: Mapping[float, Clamped]) -> Row:
+    """Up to which speed our own reflex keeps the limits, and where it does not first."""
+    safe, asked = _safe_speed(found), ASKED_MPS[bumper]
+    failed = next(((speed, clamped) for speed, clamped in found.items() if not clamped.judgement.ok), None)
+    reason = ""
+    if failed is not None and (safe is None or safe < asked):
+        speed, clamped = failed
+        when = "is not noticed" if clamped.detection_ms is None else f"is noticed after {clamped.detection_ms:.0f} ms"
+        forces = f"{clamped.judgement.peak_n:.0f} N at first and {clamped.judgement.lasting_n:.0f} N lasting"
+        reason = f"at {speed:g} m/s the leg {when} and feels {forces}"
+    target = Target(minimum=asked)
+    name = f"limits kept up to this speed, our own reflex, {bumper}, {ASKED_PLACE}"
+    return Row(name, safe, "m/s", "assumed", target=target, reason=reason, decimals=3)
 
 
 def _safe_speed(found: Mapping[float, Clamped]) -> float | None:
