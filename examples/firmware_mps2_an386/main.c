@@ -16,7 +16,8 @@ int main(void)
     digest_t digest = digest_begin();
     int32_t first_hit_tick = -1;
 
-    recorded_collision_config(&config);
+    gw_controller_config_trikey(&config);
+    config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD; /* as in that run */
     if (gw_controller_init(&controller, &config, NULL) != GW_STATUS_OK) {
         semihosting_write("the configuration was refused\n");
         return 1;

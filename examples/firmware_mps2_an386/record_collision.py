@@ -1,5 +1,7 @@
 """Records the sensors of the paper's experiment 5.2, rigid slider, in recorded_collision.inc for the firmware.
 
+The robot reacts as in the paper: c_core is compared with another form of that reflex on this recording, too.
+
 From the top of the repository, after `make build`: .venv/bin/python examples/firmware_mps2_an386/record_collision.py
 """
 
@@ -11,6 +13,7 @@ import numpy as np
 from giveway.base import native
 from giveway.base.files import write_text
 from giveway.experiments.motionless import scenario
+from giveway.robot.presets import PAPER
 from giveway.robot.robot_file import read_robot
 from giveway.simulation.master import simulate
 
@@ -23,7 +26,7 @@ HEADING = """\
 
 
 def main() -> None:
-    traces = simulate(scenario("none")).traces
+    traces = simulate(scenario("none", preset=PAPER)).traces
     resolution_nm = read_robot(native.robot()).value("drivetrain.torque_sensor_resolution")
     torques_nm = np.column_stack([traces[f"testbed.sensor.torque[{wheel}]"][:TICKS] for wheel in range(3)])
     encoders = np.column_stack([traces[f"testbed.sensor.encoder[{wheel}]"][:TICKS] for wheel in range(3)])

@@ -1,4 +1,4 @@
-/* The sensors of a collision as they were recorded, and the controller's configuration in that run. */
+/* The sensors of a collision as they were recorded, and the controller's configuration in that run: the paper's. */
 #ifndef RECORDED_COLLISION_H
 #define RECORDED_COLLISION_H
 

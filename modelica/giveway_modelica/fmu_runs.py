@@ -20,6 +20,7 @@ from pathlib import Path
 import giveway
 import numpy as np
 from giveway.base import native
+from giveway.robot.presets import PAPER, preset_values
 from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Circle, Plan, Straight
 from giveway.simulation.fmu import Instance, open_fmu
@@ -43,6 +44,7 @@ TESTBED: Mapping[str, Value] = {
     "electronics.torque_resolution": RESOLUTION_NM,
 }
 CONTROLLER: Mapping[str, Value] = {
+    **preset_values(PAPER),  # which is what the block is
     "estimator.encoder_counts": COUNTS,
     "sensor_check.encoder_jump": COUNTS,
 }

@@ -1,5 +1,5 @@
 within GiveWay.Components;
-block SampledController "Estimator, detector and admittance of the paper, sampled at 1 kHz"
+block SampledController "Estimator, detector and admittance of the paper, sampled at 1 kHz: the FMU's preset paper"
   import Modelica.Units.SI;
   parameter Parameters.Trikey robot "The robot's parameters";
   parameter SI.Time period=0.001 "Sample period";
@@ -267,6 +267,9 @@ heading is held (3). After half a second at rest without a push it returns to th
 meanwhile.</li>
 <li>The reference becomes wheel angles and speeds, which reach the servos one sample later.</li>
 </ol>
+<p>This is the controller FMU with the preset \"paper\" (<code>giveway variables controller --preset paper</code>). What
+the FMU does with its start values, two channels on measured motion and an escape that keeps the wheels down, is not in
+this package.</p>
 <p>Left out, as no example needs them: sensor faults, stopping, live force instead of the frozen impulse, and plans that
 turn.</p>
 </html>"));
