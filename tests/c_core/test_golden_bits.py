@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from giveway.base import native
+from giveway.robot.presets import preset_values
 from giveway.robot.variables import Value, VariableTable, table
 from giveway.simulation.fmu import Instance, open_fmu
 
@@ -25,6 +26,8 @@ ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples" / "firmware_mps2_an386"
 FNV_START, FNV_PRIME = 0xCBF29CE484222325, 0x100000001B3
 NAN_BITS = 0x7FC00000
+# Outputs that are newer than the digests, which keep their values.
+NOT_DIGESTED = {"detection.channel", "imu.trusted", "estimate.acceleration_source"}
 
 
 def context(folder: Path) -> Context:
@@ -80,7 +83,7 @@ class ControllerFmu:
 
     def __init__(self, instance: Instance, variables: VariableTable, parameters: dict[str, Value]) -> None:
         self.inputs = [(v.name, v.type, v.reference) for v in variables.select("input")]
-        outputs = variables.select("output")
+        outputs = [v for v in variables.select("output") if v.name not in NOT_DIGESTED]
         self.kinds = {kind: [v.reference for v in outputs if v.type == kind] for kind in ("real", "integer", "boolean")}
         self.order = [(v.type, self.kinds[v.type].index(v.reference)) for v in outputs]
         self.names = [v.name for v in outputs]
@@ -150,7 +153,7 @@ def test_the_fmu_gives_the_golden_bits_of_the_script(tmp_path: Path, opened: tup
         f"-I{folder / 'golden'}",
     )
     lines = HOST.run(context(tmp_path), program).stdout.splitlines()
-    fmu = ControllerFmu(*opened, parameters={})
+    fmu = ControllerFmu(*opened, parameters=preset_values("paper"))
     plan = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
     assert len(lines) > 5000
     for line in lines:
@@ -169,7 +172,20 @@ def test_firmware_and_fmu_notice_the_recorded_collision_alike(
 ) -> None:
     make = ["make", "--silent", "-C", str(EXAMPLE), f"BUILD={tmp_path}", "run"]
     printed = subprocess.run(make, check=True, capture_output=True, text=True, timeout=300).stdout
-    fmu = ControllerFmu(*opened, parameters={"supervisor.after_settled": 0})
+    ticks, digest = replayed(opened, {"supervisor.after_settled": 0})
+    first = next(tick for tick in ticks if tick >= 0)
+    assert printed == f"first hit at tick {first}\nlast hit at tick {ticks[-1]}\noutputs {digest}\n"
+    assert printed in (EXAMPLE / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_paper_s_reflex_on_the_recorded_collision(opened: tuple[Instance, VariableTable]) -> None:
+    _, digest = replayed(opened, {"supervisor.after_settled": 0, **preset_values("paper")})
+    assert digest == expected("controller.recorded")
+
+
+def replayed(opened: tuple[Instance, VariableTable], parameters: dict[str, Value]) -> tuple[list[int], str]:
+    """Ticks of the last hit, tick by tick, and the digest of all outputs."""
+    fmu = ControllerFmu(*opened, parameters=parameters)
     rows = re.findall(r"^\{(.*)\},$", (EXAMPLE / "recorded_collision.inc").read_text(), re.MULTILINE)
     ticks = []
     for counter, row in enumerate(rows):
@@ -178,6 +194,4 @@ def test_firmware_and_fmu_notice_the_recorded_collision_alike(
         values |= {f"sensor.torque[{wheel}]": numbers[wheel] * 0.0143 for wheel in range(3)}
         values |= {f"sensor.encoder[{wheel}]": numbers[3 + wheel] for wheel in range(3)}
         ticks.append(int(fmu.run_tick(values)["detection.tick"]))
-    first = next(tick for tick in ticks if tick >= 0)
-    assert printed == f"first hit at tick {first}\nlast hit at tick {ticks[-1]}\noutputs {fmu.digest:016x}\n"
-    assert f"{fmu.digest:016x}" == expected("controller.recorded")
+    return ticks, f"{fmu.digest:016x}"

@@ -24,6 +24,7 @@ from giveway.base.errors import FileError, GivewayError, SimulationError, Unknow
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.library import batch_library, recorded
 from giveway.robot import variables
+from giveway.robot.presets import NO_REFLEX
 from giveway.scenario.body_regions import body_region
 from giveway.scenario.plan import PLAN_INPUTS, PUSH_INPUTS
 from giveway.scenario.scenario import BUMPERS
@@ -48,12 +49,12 @@ def strong_push(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def drive_left(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """From rest to 0.1 m/s in 0.2 s, once the torque sensors are tared."""
-    moving = np.clip(time_s - 0.1, 0.0, 0.2)
+    """From rest to 0.1 m/s in 0.2 s; the hit comes in between."""
+    moving = np.clip(time_s, 0.0, 0.2)
     rows = np.zeros((len(time_s), 9))
-    rows[:, 7] = 0.5 * ((time_s >= 0.1) & (time_s < 0.3))
+    rows[:, 7] = 0.5 * (time_s < 0.2)
     rows[:, 4] = 0.5 * moving
-    rows[:, 1] = 0.25 * moving**2 + 0.1 * np.clip(time_s - 0.3, 0.0, None)
+    rows[:, 1] = 0.25 * moving**2 + 0.1 * np.clip(time_s - 0.2, 0.0, None)
     return rows
 
 
@@ -81,6 +82,7 @@ CASES: dict[str, giveway.Scenario] = {
         testbed={"slider.mass": 13.62, "drivetrain.stiffness": 400.0, "bumper.mount": 1, "slider.run_up": 0.2},
         controller={"detector.force_threshold": 30.0, "controller.drives_enabled": True, "estimator.average_window": 7},
     ),
+    "paper": short(preset="paper"),
     "push": short(push=push, testbed={"slider.present": False}),
     "plan": short(plan=drive_left),
     "rest elsewhere": short(plan=giveway.scenario.plan.Rest(0.3, -0.2, 0.4)),
@@ -123,7 +125,7 @@ def test_the_manifest_names_the_library(tmp_path: Path) -> None:
 JUDGED: dict[str, giveway.Scenario] = {
     **CASES,
     "long": short(duration_s=2.0),
-    "a person": short(duration_s=1.0, judge_as="lower leg"),
+    "a person": short(duration_s=1.0, judge_as="lower leg", preset="paper"),
     "no transient contact allowed": short(judge_as="skull"),
     "pressed into its stop": short("spring", testbed={"bumper.travel": 0.01}),
     "thrown back": short(
@@ -133,7 +135,7 @@ JUDGED: dict[str, giveway.Scenario] = {
     "tips": short(testbed={"base.tipping": True}),
     "no contact": short(testbed={"slider.present": False}),
     "contact in the last row": short(duration_s=0.158),
-    "hit twice": short("none", duration_s=0.8),
+    "hit twice": short("none", duration_s=0.8, preset="paper"),
     "drives into it": giveway.experiment("moving").scenario("none", 0.1),
     "a plan beyond the limits": short(
         plan=drive_too_fast,
@@ -143,8 +145,8 @@ JUDGED: dict[str, giveway.Scenario] = {
     ),
     "sensor at its end": short("none", testbed={"electronics.torque_range": 3.0}),
     "sensor fault": short("none", controller={"sensor_check.torque_limit": 3.0}),
-    "motor at its end": short(duration_s=0.4, testbed={"drivetrain.torque_limit": 5.0}),
-    "no detection": short(controller={"detector.force_threshold": 1000.0, "detector.impulse_threshold": 1000.0}),
+    "motor at its end": short(duration_s=0.4, testbed={"drivetrain.torque_limit": 5.0}, preset="paper"),
+    "no detection": short(controller=NO_REFLEX),
 }
 
 

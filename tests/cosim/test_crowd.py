@@ -22,7 +22,7 @@ from giveway.crowd.judged import RECORDED, Contact, Judged, judge, limits
 from giveway.crowd.parts import Interrupted, Work, go_on
 from giveway.crowd.population import GROUPS, IMU, POPULATION, Quantity, group_of, robot, robot_of, start_value
 from giveway.crowd.statistics import count_interval, mean, percentile, rate_upper_bound
-from giveway.robot.presets import NO_REFLEX
+from giveway.robot.presets import NO_REFLEX, preset_values
 
 DRAW = "tuning"
 ROBOT = 3  # a planar one
@@ -250,7 +250,7 @@ def test_towards_and_false_are_seen(records: list[dict[str, Any]]) -> None:
 
 def test_limits_are_those_of_the_controller() -> None:
     """Towards: allowed is what the controller's own limits leave, here in numbers that it has."""
-    assert limits({"admittance.acceleration_limit": 2.0}, 0.24).acceleration_mps2 == 2.0
+    assert limits({"admittance.acceleration_limit": 2.0, "admittance.tip_height": 0.0}, 0.24).acceleration_mps2 == 2.0
     # Half of the wheels' distance less the offset, over the height, times gravity (known to 1e-3); half of it.
     own = {"admittance.tip_height": 0.4, "admittance.tip_slope": 0.0, "admittance.tip_share": 0.5}
     assert limits(own, 0.24).acceleration_mps2 == pytest.approx(0.5 * 9.81 * (0.12 - 0.03) / 0.4, rel=1e-3)
@@ -294,7 +294,7 @@ def test_a_run_that_can_tip_is_judged_beside_the_blocked_one() -> None:
 
 
 def test_a_missed_hit_counts_as_infinite(records: list[dict[str, Any]]) -> None:
-    blind = compute(DRAW, {"detector.impulse_threshold": 1000.0}, NUMBERS[:2], 2, lambda _done: None)
+    blind = compute(DRAW, NO_REFLEX, NUMBERS[:2], 2, lambda _done: None)
     found = table.find(table.ROWS[0], table.read(blind))
     assert (found.missed, found.hits) == (2, 2)
     assert found.delay_median_ms is not None
@@ -353,18 +353,16 @@ def test_the_controller_is_as_asked_and_the_robot_is_not() -> None:
     assert one.scenario.testbed == default.scenario.testbed
 
 
-BLIND = {"detector.impulse_threshold": 1000.0}
-
-
 def test_free_motion_has_the_same_bits_alone_and_its_alarms_are_counted() -> None:
     numbers = [0, 1, endurance.SHARED]
-    many = endurance.compute(DRAW, "planar", {}, numbers, 2, lambda _done: None)
-    assert endurance.compute(DRAW, "planar", {}, numbers[2:], 1, lambda _done: None) == many[2:]
-    # Of robots with other friction than their file's the first detector makes many.
+    paper = preset_values("paper")
+    many = endurance.compute(DRAW, "planar", paper, numbers, 2, lambda _done: None)
+    assert endurance.compute(DRAW, "planar", paper, numbers[2:], 1, lambda _done: None) == many[2:]
+    # Of robots with other friction than their file's the paper's detector makes many.
     found = endurance.rates(many)
     assert found["false alarms"] == sum(record["detections"] for record in many) > 0
     assert found["hours"] == pytest.approx(3.0 * endurance.RUN_S / 3600.0)
-    quiet = endurance.rates(endurance.compute(DRAW, "planar", BLIND, numbers[:1], 1, lambda _done: None))
+    quiet = endurance.rates(endurance.compute(DRAW, "planar", NO_REFLEX, numbers[:1], 1, lambda _done: None))
     assert (quiet["false alarms"], quiet["runs with one"], quiet["worst"]) == (0, 0, [])
     assert quiet["per hour, upper 95 % bound"] == pytest.approx(-math.log(0.05) * 3600.0 / endurance.RUN_S)
 
@@ -422,10 +420,10 @@ def test_one_plant_alone_has_the_same_numbers() -> None:
 
 
 def test_a_calibrated_controller_believes_what_was_found_for_its_own_robot(records: list[dict[str, Any]]) -> None:
-    own = {ROBOT: BLIND, ROBOT + 1: {}}
+    own = {ROBOT: NO_REFLEX, ROBOT + 1: {}}
     blind = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, own)
     assert Judged.of(blind[0]["judged"]).detections_s == ()
-    other = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, {ROBOT + 1: BLIND})
+    other = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, {ROBOT + 1: NO_REFLEX})
     assert other == records[:1]
     asked = compute(DRAW, {"detector.impulse_threshold": 2.0}, NUMBERS[:1], 1, lambda _done: None, own)
     assert Judged.of(asked[0]["judged"]).detections_s  # what is asked for goes before what was found

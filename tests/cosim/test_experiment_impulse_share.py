@@ -42,7 +42,7 @@ def test_there_is_a_picture_and_a_note_for_every_hit(findings: Findings) -> None
 
 def test_impulses_are_those_of_the_traces() -> None:
     """Seen and true impulse of one run, summed up here from the run as `giveway.batch.run` gives it."""
-    scenario = dataclasses.replace(motionless.scenario("spring"), duration_s=0.42)
+    scenario = motionless.scenario("spring", 0.42, preset="paper")
     form = FORMS["bristles"]
     (result,) = run_forms(scenario, [form], 1)
     traces = batch.run(dataclasses.replace(scenario, controller=form.parameters(scenario), seed=1)).traces
@@ -58,7 +58,7 @@ def test_impulses_are_those_of_the_traces() -> None:
 
 def test_bristles_that_are_far_too_soft_miss_the_rollers_part() -> None:
     """The compensation does the work: with hardly any stiffness it sees no more than the paper's law does."""
-    scenario = dataclasses.replace(motionless.scenario("spring"), duration_s=0.42)
+    scenario = motionless.scenario("spring", 0.42, preset="paper")
     limp = Form("limp", FORMS["bristles"].controller, softness=0.01)
     found: list[Seen] = run_forms(scenario, [FORMS["measured"], FORMS["bristles"], limp], 1)
     measured, bristles, without = (float(result.share(0.08)[0]) for result in found)

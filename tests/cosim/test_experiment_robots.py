@@ -143,6 +143,6 @@ def test_the_fit_is_for_the_papers_outline(cli: Cli, tmp_path: Path) -> None:
 def test_without_a_bumper_an_experiment_has_the_magnetic_one_or_its_own(name: str) -> None:
     own = get(name).bumpers
     bumper = "magnetic" if not own or "magnetic" in own else own[0]
-    scenario, _ = _scenario(name, None, None)
+    scenario, _ = _scenario(name, None, None, None)
     assert scenario.bumper == bumper
     assert scenario == get(name).scenario(bumper)

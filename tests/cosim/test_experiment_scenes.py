@@ -28,7 +28,7 @@ def findings() -> Findings:
 
 @pytest.fixture(scope="module")
 def results() -> dict[str, Result]:
-    return {name: batch.run(scenario(name)) for name in SCENES}
+    return {name: batch.run(scenario(name, "paper")) for name in SCENES}
 
 
 def collision(result: Result) -> Collision:

@@ -132,7 +132,7 @@ def test_runs_that_end_early_do_not_touch_their_neighbours() -> None:
 
 def test_random_designs_are_those_of_the_event_exact_method() -> None:
     """At small size what `giveway bench` prints for thousands."""
-    scenarios = random_collisions(300, 20260101)
+    scenarios = random_collisions(300, 20260101, preset="paper")  # as in the bench
     exact, table = batch.run_many(scenarios), fixed(scenarios, threads=2)
     assert set(table["status"].values) == {"ok"}
     assert set(table["method"].values) == {"fixed-step"}
@@ -236,7 +236,7 @@ def test_accelerometer_and_gyro_are_those_of_the_event_exact_method() -> None:
 
 def on_rollers(duration_s: float, **testbed: object) -> giveway.Scenario:
     """Sets off and drives at 0.22 m/s on rollers one by one, nothing in the way."""
-    driving = moving.scenario("none")
+    driving = moving.scenario("none", preset="paper")
     alone = {"slider.present": False, "rope.attached": False, "roller.arrangement": 1, "electronics.torque_noise": 0.0}
     return dataclasses.replace(driving, duration_s=duration_s, testbed={**alone, **testbed}, contact=None)
 

@@ -114,7 +114,8 @@ RUNS: dict[str, tuple[giveway.Scenario, list[str], str]] = {
         "asked for 0.5 m/s",
     ),
     "nothing to hit": (short(testbed={"slider.present": False}), ["no contact"], "did not touch"),
-    "hit twice": (short("none", duration_s=0.8), ["second hit harder"], "203 N after 187 N"),
+    # The paper's reflex: the default one is so soon that the second hit is the weaker one.
+    "hit twice": (short("none", duration_s=0.8, preset="paper"), ["second hit harder"], "203 N after 187 N"),
     "a plan beyond the limits": (
         short(plan=too_fast, testbed={"slider.present": False}, contact=None),
         ["plan not followed"],
@@ -125,7 +126,11 @@ RUNS: dict[str, tuple[giveway.Scenario, list[str], str]] = {
         ["torque sensor saturated"],
         "torque sensor",
     ),
-    "motor at its end": (short(testbed={"drivetrain.torque_limit": 5.0}), ["motor saturated"], "largest torque"),
+    "motor at its end": (
+        short(testbed={"drivetrain.torque_limit": 5.0}, preset="paper"),
+        ["motor saturated"],
+        "largest torque",
+    ),
     "pressed into its stop": (short("spring", testbed={"bumper.travel": 0.01}), ["bumper bottomed"], "mm beyond"),
     "too short to judge": (short(judge_as="lower leg"), ["lasting force unknown"], "0.5 s after the contact"),
 }
@@ -274,8 +279,9 @@ def test_several_results_say_whose_they_are() -> None:
 
 
 def test_the_terminal_shows_them(cli: Cli) -> None:
-    said = cli("run", "motionless", "--bumper", "none", "--duration", "0.8", "--out", "out")
+    said = cli("run", "motionless", "--bumper", "none", "--preset", "paper", "--duration", "0.8", "--out", "out")
     assert said.returncode == 0, said.stderr
+    assert 'The controller has the preset "paper": ' in said.stdout
     assert "Warnings\n  a later contact was harder than the first: 203 N after 187 N\n" in said.stdout
 
 

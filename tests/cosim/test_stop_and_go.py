@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from giveway import batch
+from giveway.robot.presets import NO_REFLEX
 from giveway.scenario.plan import PLAN_INPUTS
 from giveway.scenario.scenario import Scenario
 
@@ -49,9 +50,10 @@ def forces_after_stops(controller: dict[str, Value]) -> NDArray[np.float64]:
             "stop and go",
             12.0,
             testbed={"slider.present": False, "rope.attached": False},
-            controller={**controller, "detector.impulse_threshold": 1000.0},
+            controller={**controller, **NO_REFLEX},
             plan=StopAndGo(direction),
             seed=seed,
+            preset="paper",
         )
         for seed, direction in enumerate((0.0, 0.3, 1.0, 2.0))
     ]

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from giveway.experiments import Experiment, motionless
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
-from giveway.robot.presets import PAPER
 
 if TYPE_CHECKING:
     from giveway.experiments.impulse_trials import Seen
@@ -36,10 +35,8 @@ def hits() -> dict[str, Scenario]:
         "at rest, spring": "spring",
         "at rest, magnetic": "magnetic",
     }
-    short = {
-        name: motionless.scenario(bumper, CONTACT_S + SHOWN_S + 0.01, preset=PAPER) for name, bumper in still.items()
-    }
-    return short | {"moving, magnetic": moving.scenario("magnetic", SHOWN_S + 0.05, preset=PAPER)}
+    short = {name: motionless.scenario(bumper, CONTACT_S + SHOWN_S + 0.01) for name, bumper in still.items()}
+    return short | {"moving, magnetic": moving.scenario("magnetic", SHOWN_S + 0.05)}
 
 
 def reproduce(effort: Effort) -> Findings:

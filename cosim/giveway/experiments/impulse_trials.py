@@ -17,7 +17,7 @@ import numpy as np
 
 from giveway import batch
 from giveway.base.errors import SimulationError
-from giveway.robot.presets import NO_REFLEX
+from giveway.robot.presets import NO_REFLEX, PAPER
 from giveway.robot.variables import table
 from giveway.robot.wheels import WHEELS
 
@@ -56,7 +56,7 @@ class Form:
 
     Attributes:
         label: for tables and figures.
-        controller: its parameters.
+        controller: its parameters, beside those of the preset "paper".
         softness: the bristle stiffness that it assumes, relative to that of the rollers.
     """
 
@@ -152,7 +152,7 @@ def _run(scenario: Scenario, form: Form, seed: int, seeds: int, noise: bool) -> 
     for name, along in (("slider.target_x", -math.cos(direction)), ("slider.target_y", -math.sin(direction))):
         if name in testbed:  # only for a moving robot is the slider elsewhere
             testbed[name] = float(testbed[name]) + further_m * along
-    return dataclasses.replace(scenario, testbed=testbed, controller=controller, seed=seed)
+    return dataclasses.replace(scenario, testbed=testbed, controller=controller, seed=seed, preset=PAPER)
 
 
 def _start(model: str, name: str) -> Value:

@@ -143,7 +143,7 @@ def _forces(axes: Axes, runs: list[Run]) -> None:
     axes.set(xlabel="time since contact (ms)", ylabel="contact force (N)", xlim=window)
     axes.margins(y=0.12)
     axes.set_ylim(bottom=0.0)
-    axes.legend(loc="center", bbox_to_anchor=(0.47, 0.6), fontsize=8)
+    axes.legend(loc="center", bbox_to_anchor=(0.7, 0.75), fontsize=8)
 
 
 def _escapes(axes: Axes, runs: list[Run]) -> None:

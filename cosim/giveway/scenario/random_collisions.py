@@ -14,6 +14,7 @@ import numpy as np
 
 from giveway.base.checks import whole
 from giveway.base.gravity import GRAVITY_MPS2
+from giveway.robot.presets import DEFAULT
 from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.approach import Approach, edge_middle, meet, outline_of
@@ -65,14 +66,16 @@ LONGEST_FALL_M = 0.15  # of the hanging weight before the hit
 TILT_RAD = math.radians(35.0)  # from the side's normal
 
 
-def random_collisions(count: int, seed: int, duration_s: float = DURATION_S) -> list[Scenario]:
+def random_collisions(count: int, seed: int, duration_s: float = DURATION_S, preset: str = DEFAULT) -> list[Scenario]:
     """``count`` scenarios ([0, 1e6]) of ``duration_s`` (s); each depends only on ``seed`` and its number."""
     whole("count", count, 0, 10**6)
     start = {variable.name: variable.start for variable in table("testbed") if variable.start is not None}
-    return [_scenario(np.random.default_rng((seed, index)), start, index, duration_s) for index in range(count)]
+    return [_scenario(np.random.default_rng((seed, index)), start, index, duration_s, preset) for index in range(count)]
 
 
-def _scenario(rng: np.random.Generator, start: Mapping[str, Value], index: int, duration_s: float) -> Scenario:
+def _scenario(
+    rng: np.random.Generator, start: Mapping[str, Value], index: int, duration_s: float, preset: str
+) -> Scenario:
     values: dict[str, Value] = {name: float(start[name]) * _factor(rng, factor) for name, factor in FACTORS.items()}
     values["drivetrain.gear_stiction"] = float(values["drivetrain.gear_coulomb"]) * rng.uniform(1.0, 1.5)
     for wheel in range(WHEELS):
@@ -84,7 +87,8 @@ def _scenario(rng: np.random.Generator, start: Mapping[str, Value], index: int, 
     values["electronics.seed"] = int(rng.integers(2**31))
     values |= _approach(rng, {**start, **values, "bumper.kind": BUMPERS[bumper]})
     del values["electronics.seed"]
-    return Scenario(f"random {index}", duration_s, bumper=bumper, testbed=values, seed=int(rng.integers(2**31)))
+    seed = int(rng.integers(2**31))
+    return Scenario(f"random {index}", duration_s, bumper=bumper, testbed=values, seed=seed, preset=preset)
 
 
 def _approach(rng: np.random.Generator, testbed: Mapping[str, Value]) -> dict[str, float | bool]:
