@@ -592,11 +592,22 @@ static void the_invariant_sees_every_member(void)
     CHECK(!gw_estimator_invariant_holds(&estimator));
 }
 
+/* A rest speed of zero is in range: a plan that stands still is slow enough. */
+static void standing_still_is_rest_at_any_rest_speed(void)
+{
+    const gw_estimator_input_t resting = input_of(torques(R(0.0), R(0.0), R(0.0)), still);
+    set_robot();
+    robot.estimator.rest_speed_mps = GW_ZERO;
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    CHECK(step(&resting, GW_STATUS_OK).regime == GW_REGIME_REST);
+}
+
 void suite_estimator(void)
 {
     unit_run("bad_arguments_are_refused", bad_arguments_are_refused);
     unit_run("at_rest_the_change_of_the_torques_is_the_push", at_rest_the_change_of_the_torques_is_the_push);
     unit_run("the_regime_follows_the_planned_speed", the_regime_follows_the_planned_speed);
+    unit_run("standing_still_is_rest_at_any_rest_speed", standing_still_is_rest_at_any_rest_speed);
     unit_run("a_stop_has_a_zero_of_its_own", a_stop_has_a_zero_of_its_own);
     unit_run("a_stop_that_is_not_quiet_waits", a_stop_that_is_not_quiet_waits);
     unit_run("standing_long_does_not_wrap", standing_long_does_not_wrap);

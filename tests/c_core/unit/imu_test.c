@@ -90,6 +90,7 @@ static void bad_arguments_are_refused(void)
     start();
     CHECK_STATUS(gw_imu_init(NULL, &config, PERIOD), GW_STATUS_NULL_POINTER);
     CHECK_STATUS(gw_imu_init(&imu, NULL, PERIOD), GW_STATUS_NULL_POINTER);
+    output.trusted = true;
     CHECK_STATUS(gw_imu_step(NULL, &sample, true, &output), GW_STATUS_NULL_POINTER);
     CHECK(!output.trusted);
     CHECK_STATUS(gw_imu_step(&imu, NULL, true, &output), GW_STATUS_NULL_POINTER);

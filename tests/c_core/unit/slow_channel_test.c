@@ -201,6 +201,13 @@ static void the_invariant_sees_every_member(void)
         CHECK(!gw_slow_channel_invariant_holds(&channel));
         channel = good;
     }
+    gw_real_t *const shares[] = {&channel.share, &channel.settled_share, &channel.unsettled_share};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(shares); i++) {
+        unit_row(i);
+        *shares[i] = unit_above(GW_HALF);
+        CHECK(!gw_slow_channel_invariant_holds(&channel));
+        channel = good;
+    }
     CHECK(gw_slow_channel_invariant_holds(&channel));
 }
 
