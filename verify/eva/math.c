@@ -4,6 +4,7 @@
 static void part_init(void)
 {
     gw_controller_config_t config;
+    gw_controller_config_paper(&config);
     gw_controller_config_trikey(&config);
     (void)gw_config_limit((gw_config_field_t)any_count);
     (void)gw_config_name((gw_config_field_t)any_count);
