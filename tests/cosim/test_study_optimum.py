@@ -174,21 +174,27 @@ def in_a_child(setup: Setup, folder: Path) -> int:
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished search of 40 designs."""
+def timed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float]:
+    """A finished search of 40 designs, and how long it took, s."""
     folder = tmp_path_factory.mktemp("search")
     done = optimise(search_of(bumper(folder)), folder / "whole", threads=1)
     assert done.reason == "40 designs, as many as were asked for"
     assert done.outcome.stored == done.outcome.runs == 40 * 3
-    return folder / "whole"
+    return folder / "whole", done.outcome.wall_s
 
 
-def test_kills_at_random_moments_change_nothing(found: Path, tmp_path: Path) -> None:
+@pytest.fixture
+def found(timed: tuple[Path, float]) -> Path:
+    """Its folder."""
+    return timed[0]
+
+
+def test_kills_at_random_moments_change_nothing(timed: tuple[Path, float], tmp_path: Path) -> None:
     setup, killed = search_of(bumper(tmp_path)), tmp_path / "k" / "killed"
     pick, kills, seen = random.Random(7), 0, 0
     while kills < 60:
         pid = in_a_child(setup, killed)
-        time.sleep(pick.uniform(0.0, 0.25))
+        time.sleep(pick.uniform(0.0, timed[1] / 6.0))
         os.kill(pid, signal.SIGKILL)
         _, status = os.waitpid(pid, 0)
         if not os.WIFSIGNALED(status):
@@ -199,7 +205,7 @@ def test_kills_at_random_moments_change_nothing(found: Path, tmp_path: Path) -> 
         seen = stored
     assert kills >= 3, "the search ended before it was killed: make it longer"
     optimise(setup, killed, threads=2)
-    same(found, killed)
+    same(timed[0], killed)
     assert not [path.name for path in killed.rglob(".*-*")], "left by a kill"
 
 
