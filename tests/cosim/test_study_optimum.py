@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
 from giveway.base.extras import MissingExtraError, extra
-from giveway.bench.known_fronts import PROBLEMS, part, searched
+from giveway.bench.known_fronts import PROBLEMS, part, real, searched
 from giveway.cli import _main
 from giveway.study import Study, study_file
 from giveway.study.answers import load
@@ -62,6 +62,24 @@ def test_the_first_designs_are_a_sobol_sequence_and_the_same_seed_gives_the_same
     np.testing.assert_array_equal(one, again)
     np.testing.assert_allclose(one[:24], make(DesignPlan("sobol", count=24), problem.varied, 3), rtol=1e-15)
     assert not np.array_equal(one, searched(problem, 4, 120).designs)
+
+
+def test_only_designs_that_meet_all_constraints_are_feasible() -> None:
+    costs = np.array([[1.0], [1.0], [np.nan], [1.0], [np.inf]])
+    known = Known(np.zeros((5, 1)), costs, np.array([0.0, 0.1, 0.0, np.nan, 0.0]))
+    assert known.judged.tolist() == [True, True, False, False, False]
+    assert known.feasible.tolist() == [True, False, False, False, False]
+
+
+def test_designs_that_break_a_constraint_come_after_all_that_meet_them() -> None:
+    """Parents are left of 1, where everything is worse: their children are, too."""
+    space = Space((real("a", 0.0, 3.0), real("b", 0.0, 3.0)))
+    designs = make(DesignPlan("sobol", count=64), space.varied, 1)
+    costs = np.stack([4.0 - designs[:, 0], 4.0 - designs[:, 0] + designs[:, 1]], 1)
+    broken = Known(designs, costs, np.maximum(designs[:, 0] - 1.0, 0.0))
+    assert np.median(next_generation(space, broken, 1, 1, 8)[:, 0]) < 1.1
+    free = Known(designs, costs, np.zeros(64))
+    assert np.median(next_generation(space, free, 1, 1, 8)[:, 0]) > 2.0
 
 
 def test_failed_designs_are_excluded_and_not_penalised() -> None:
