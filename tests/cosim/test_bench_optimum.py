@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from giveway.bench.known_fronts import PROBLEMS
 from giveway.bench.optimum import Comparison, compare, shares_in_words
 from giveway.cli import _main
 from giveway.study.answers import load
@@ -53,6 +54,8 @@ def test_a_search_is_compared_with_an_even_sample(
     said = capsys.readouterr().out
     assert "24 searched runs reach" in said
     assert "of the hypervolume of 64 even ones (median of 2 seeds" in said
+    for name in PROBLEMS:
+        assert name in said
     found = list(compare(Path("s.toml"), Path("b"), 64, 24, 2, lambda _name, _share: None))
     point = np.array([200.0, 60.0])
     sample = load("b/sample")

@@ -28,7 +28,9 @@ study.vary("testbed.bumper.spring_rate", low=0.4, high=3.0, unit="N/mm", levels=
 study.vary("testbed.bumper.latch_force", values=[0.0, 40.0]).tolerance("temperature", absolute=30.0)
 study.designs("sobol", count=64).tolerances(samples=4, kind="corners").report(metrics=["contact speed"], chosen=2)
 study.objective("detection time", goal="minimise", weight=2.0).constraint("contact speed", maximum=0.6)
+study.parts("spring", Path("springs.csv"), count=2, sets={"testbed.bumper.spring_rate": "rate * count"}, only=["a"])
 answers: giveway.Answers = study.run("out/latch", threads=2, progress=False)
+best: giveway.Answers = study.optimise("out/best", designs=200, reference=[90.0])
 for one in answers.sensitivities():
     print(one.goal, one.quantity, one.main)
 table = giveway.batch.run(giveway.read_scenario("case.toml")).traces
@@ -41,6 +43,8 @@ WRONG_LINES = {
     'study.designs("sobool")': "designs",
     'giveway.run(giveway.read_scenario("case.toml"), engine="fast")': "engine",
     'study.objective("detection time", goal="smaller")': "goal",
+    'study.parts("spring", "springs.csv", set={})': "set",
+    'study.optimise("out/best", design=200)': "design",
 }
 
 

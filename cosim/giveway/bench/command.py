@@ -71,14 +71,18 @@ def bench(
 
 
 def _compare_searches(study: Path, out: Path, sample: int, runs: int, seeds: int) -> None:
+    from giveway.bench import known_fronts
     from giveway.bench.optimum import HEADER, Comparison, compare, names, shares_in_words
 
     found: list[Comparison] = []
+    known = "known fronts"
     try:
-        with progress_bars(names(seeds)) as progress:
+        with progress_bars([*names(seeds), known]) as progress:
             found.extend(compare(study, out, sample, runs, seeds, progress))
+            rows = list(known_fronts.measure(sample, runs, seeds, lambda share: progress(known, share)))
     except KeyboardInterrupt:
         typer.echo("Interrupted; what is stored is kept. The same command goes on from there.", err=True)
         raise typer.Exit(INTERRUPTED) from None
     print_columns(f"Searches of {study}", HEADER, [one.cells for one in found])
     typer.echo(shares_in_words(found, sample, runs))
+    print_columns(f"Searches of problems whose fronts are known, median of {seeds} seeds", known_fronts.HEADER, rows)

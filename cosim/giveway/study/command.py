@@ -99,7 +99,6 @@ def optimise_designs(
     if found.outcome.interrupted:
         again = f"giveway optimise {study}" + ("" if out is None else f" --out {out}")
         _interrupted(f"what is stored is kept. `{again}` goes on from there.")
-    typer.echo(f"The search ended: {found.reason}.")
     _write_and_print(folder)
 
 
@@ -197,6 +196,8 @@ def _print_answers(found: Answers) -> None:
     from giveway.study import tables
 
     print_columns(f"{found.setup.name}: {tables.counts(found)}", tables.goal_header(found), tables.design_rows(found))
+    if told := tables.search_in_words(found):
+        typer.echo(told)
     if misfits := tables.misfit_rows(found):
         print_columns("Parts that do not fit", tables.MISFIT_HEADER, misfits)
     rows = tables.sensitivity_rows(found)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["EXTRA", "Known", "Space", "next_generation", "pymoo_version"]
 
 EXTRA = "optimise"
+PARENTS = 2  # for each child
 PARENTS_MIN = 4
 DIGITS = 9  # of a coordinate on [0, 1]: designs that differ by less are the same
 TRIES = 20  # matings, until a generation of new designs is complete
@@ -190,7 +191,7 @@ def _mated(space: Space, known: Known, tried: set[bytes], rng: np.random.Generat
 
     objectives = known.costs.shape[1]
     problem = Problem(vars=space.variables(), n_obj=objectives, n_ieq_constr=1)
-    judged = _candidates(known, size)
+    judged = _candidates(known, PARENTS * size)
     rows = space.coordinates(known.designs[judged])
     best = Population.new(
         X=[{f"{j}": value for j, value in enumerate(row)} for row in rows.tolist()],
@@ -200,7 +201,7 @@ def _mated(space: Space, known: Known, tried: set[bytes], rng: np.random.Generat
     for individual in best:
         individual.evaluated = {"F", "G"}
     survival = RankAndCrowdingSurvival(crowding_func="pcd" if objectives <= 2 else "mnn")
-    parents = survival.do(problem, best, n_survive=min(size, len(best)), random_state=rng)
+    parents = survival.do(problem, best, n_survive=min(PARENTS * size, len(best)), random_state=rng)
     mating = MixedVariableMating(
         selection=TournamentSelection(func_comp=binary_tournament),
         eliminate_duplicates=NoDuplicateElimination(),

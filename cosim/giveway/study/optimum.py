@@ -106,7 +106,7 @@ class _Search:
         ran, judged, first = np.empty(0, dtype=bool), 0, True
         while True:
             table = RunTable(setup, designs, self._deviations)
-            if first or len(designs) > len(values):
+            if len(designs) and (first or len(designs) > len(values)):
                 self._write_manifest(table, version, generation, "")
                 engine.keep_inputs(setup, store.folder)
             outcome = self._runner.run(table, setup.plan.count * table.per_design)

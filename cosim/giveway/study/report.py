@@ -15,6 +15,7 @@ from giveway.report.figures import NamedFigure
 from giveway.study.asked import asked, in_words
 from giveway.study.part_rules import misfit, rules_in_words
 from giveway.study.parts import choices_of
+from giveway.study.tables import search_in_words
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -136,8 +137,7 @@ def _search_caption(answers: Answers, told: Mapping[str, Any]) -> str:
     """What the hypervolume's figure shows."""
     pairs = zip(answers.setup.objectives, told["reference"] or (), strict=False)
     reference = ", ".join(f"{goal.metric.name} {value:.4g} {goal.metric.unit}" for goal, value in pairs)
-    ended = told["reason"] or "it was interrupted, or goes on"
-    return f"One point per generation; reference point: {reference}. The search ended: {ended}."
+    return f"One point per generation; reference point: {reference}. {search_in_words(answers)}"
 
 
 def _points(answers: Answers, panels: int) -> str:

@@ -27,7 +27,7 @@ class SearchPlan:
 
     Attributes:
         designs: at most so many.
-        population: designs of a generation, and their parents.
+        population: designs of a generation.
         patience, growth: it ends when in so many generations the hypervolume grew by no more than this share.
         reference: point of the hypervolume, a value of each objective in the metric's own unit; None: somewhat worse
             than the first feasible designs.

@@ -18,6 +18,7 @@ __all__ = [
     "goal_header",
     "misfit_rows",
     "number",
+    "search_in_words",
     "sensitivity_header",
     "sensitivity_rows",
 ]
@@ -73,6 +74,16 @@ def sensitivity_header(answers: Answers) -> tuple[str, ...]:
     """The first line of `sensitivity_rows`."""
     effects = answers.setup.plan.kind == "morris"
     return ("objective", "quantity", *(("mu*", "+-", "sigma") if effects else ("S1", "+-", "ST")))
+
+
+def search_in_words(answers: Answers) -> str:
+    """How a search of the best ended; "" for designs that were not searched."""
+    told = answers.manifest.get("optimum")
+    if told is None:
+        return ""
+    if told["reason"]:
+        return f"The search ended: {told['reason']}."
+    return "The search has not ended: it goes on, or was interrupted."
 
 
 MISFIT_HEADER = ("part", "designs", "does not fit", "for instance")
