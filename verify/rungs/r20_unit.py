@@ -41,7 +41,7 @@ def _passed(context: Context, target: Target, core: Path, double: int) -> int:
         "-O2",
         f"-DGW_REAL_DOUBLE={double}",
     )
-    answer = target.run(context, program, timeout_s=300.0, expect=None)
+    answer = target.run(context, program, timeout_s=600.0, expect=None)
     closing = CLOSING.search(answer.stdout)
     if closing is None or closing[2] != "0":
         raise RungFailed(f"{target.name}, {TYPES[double]}\n{answer.evidence}")

@@ -311,12 +311,12 @@ static gw_admittance_output_t escape_step(gw_admittance_t *admittance)
 static void an_escape_never_goes_against_the_push(void)
 {
     uint32_t seed = 1U;
-    for (uint32_t i = 0U; i < 300U; i++) {
+    for (uint32_t i = 0U; i < 100U; i++) {
         gw_admittance_t admittance = drawn_escape(&seed);
         unit_row(i);
         /* A sharper direction at every tick of the first 60, anywhere around the first; once more in the middle. */
         const gw_vector_t first = admittance.away;
-        for (uint32_t tick = 0U; tick < 4000U; tick++) {
+        for (uint32_t tick = 0U; tick < 1500U; tick++) {
             if ((tick < 60U) || (tick == 300U)) {
                 const gw_vector_t other = draw_unit(&seed);
                 const gw_vector_t sum = {first.x + (R(0.9) * other.x), first.y + (R(0.9) * other.y)};
@@ -352,7 +352,7 @@ static void an_escape_does_not_follow_a_contradiction(void)
 static void an_escape_comes_to_rest_and_holds(void)
 {
     uint32_t seed = 2U;
-    for (uint32_t i = 0U; i < 50U; i++) {
+    for (uint32_t i = 0U; i < 20U; i++) {
         gw_admittance_t admittance = drawn_escape(&seed);
         const gw_vector_t velocity = admittance.velocity_mps;
         const gw_real_t lag_s = GW_TWO * admittance.config.smoothing_s;
