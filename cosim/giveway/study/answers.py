@@ -89,6 +89,7 @@ class Answers:
         feasible: all runs are there and none failed, and all constraints are met.
         pareto: feasible, and no other design is better in all objectives.
         order: designs, the best first; only feasible ones.
+        score: distance from the best of every objective, in widths of the front; NaN: not feasible.
     """
 
     folder: Path
@@ -104,6 +105,7 @@ class Answers:
     feasible: NDArray[np.bool_]
     pareto: NDArray[np.bool_]
     order: NDArray[np.int64]
+    score: NDArray[np.float64]
 
     @property
     def designs(self) -> NDArray[np.float64]:
@@ -235,9 +237,8 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
     score = scores(costs, on_front, np.array([goal.weight for goal in setup.objectives]))
     candidates = np.flatnonzero(feasible)
     order = candidates[np.lexsort((score[candidates], ~on_front[candidates]))]
-    return Answers(
-        Path(folder), setup, table, manifest, goals, values, stored, failed, reason, warnings, feasible, on_front, order
-    )
+    judged = (feasible, on_front, order, score)
+    return Answers(Path(folder), setup, table, manifest, goals, values, stored, failed, reason, warnings, *judged)
 
 
 def goals_of(setup: Setup) -> tuple[Goal, ...]:

@@ -194,7 +194,12 @@ def _load(folder: Path) -> Answers:
 
 def _print_answers(found: Answers) -> None:
     from giveway.study import tables
+    from giveway.study.advice import MARGIN_HEADER, advice
 
+    first = advice(found)
+    print_columns(first.title, (found.setup.name, ""), first.lines)
+    if first.margins:
+        print_columns("Margins", MARGIN_HEADER, first.margins)
     print_columns(f"{found.setup.name}: {tables.counts(found)}", tables.goal_header(found), tables.design_rows(found))
     if told := tables.search_in_words(found):
         typer.echo(told)

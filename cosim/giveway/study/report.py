@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.base.files import write_text
 from giveway.report.figures import NamedFigure
+from giveway.study.advice import MARGIN_HEADER, advice
 from giveway.study.asked import asked, in_words
+from giveway.study.limits import limit_words
 from giveway.study.part_rules import misfit, rules_in_words
 from giveway.study.parts import choices_of
 from giveway.study.tables import search_in_words
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
     from giveway.simulation.result import Result
     from giveway.study.answers import Answers
     from giveway.study.distributions import Tolerance, Varied
-    from giveway.study.setup import Constraint
 
 __all__ = ["write_report"]
 
@@ -47,6 +48,8 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     text = environment.get_template("study.html.j2").render(
         title=setup.name,
         counts=tables.counts(answers),
+        advice=advice(answers),
+        margin_header=MARGIN_HEADER,
         complete=answers.complete,
         manifest=answers.manifest,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
@@ -62,7 +65,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         varied=[(one.quantity.name, _range(one)) for one in setup.varied],
         tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
         collisions=[(case.name, in_words(case.document.get("collision", {}))) for case in setup.cases],
-        constraints=[_constraint(one) for one in setup.constraints],
+        constraints=[f"{one.goal.metric.name}: {limit_words(setup, i)}" for i, one in enumerate(setup.constraints)],
         misfit_header=tables.MISFIT_HEADER,
         misfits=tables.misfit_rows(answers, DESIGNS_MAX),
         judged=[(choice.name, rules_in_words(choice)) for choice in choices_of(setup.varied)],
@@ -173,9 +176,3 @@ def _tolerance(one: Tolerance) -> str:
     if one.relative:
         return f"+-{100.0 * one.spread.high:g} %, {one.spread.kind}"
     return f"+-{one.unit.of(one.spread.high):g} {one.unit.name}, {one.spread.kind}"
-
-
-def _constraint(one: Constraint) -> str:
-    low, high = one.unit.of(one.minimum), one.unit.of(one.maximum)
-    unit = f" {one.unit.shown}" if one.unit.shown else ""
-    return f"{one.goal.metric.name}: " + (f"at most {high:g}{unit}" if math.isinf(low) else f"at least {low:g}{unit}")
