@@ -259,10 +259,9 @@ HELD = {  # module and function that make a figure: the file that holds its labe
     "report/overview.py write_overview": HERE,
     "report/push_path.py path": "test_experiment_circle.py",
     "report/pushes.py _forces": "test_push_metrics.py",
-    "study/figures.py effects": "test_study_units.py",
+    "study/figures.py _panels": "test_study_units.py",
+    "study/figures.py growth": "test_study_units.py",
     "study/figures.py sensitivities": "test_study_units.py",
-    "study/figures.py traces": HERE,
-    "study/figures.py trade_off": "test_study_units.py",
     "study/gallery.py latch_figure": "test_study_gallery.py",
     "study/gallery.py sensor_figure": "test_study_gallery.py",
 }

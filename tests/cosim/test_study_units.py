@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import html
 from pathlib import Path
 
 import numpy as np
 import pytest
-from figure_labels import check_panels, check_planted, curve, in_si, unit_in
+from figure_labels import across, check_panel, check_panels, check_planted, curve, in_si, unit_in
 from giveway.base.units import WrittenUnit
+from giveway.report.inline_svg import inline_svg
 from giveway.robot.variables import table
 from giveway.study import figures
 from giveway.study.answers import Answers
 from giveway.study.asked import asked
+from giveway.study.chosen import simulate
 from giveway.study.export import export_design, export_table
 from giveway.study.report import write_report
 from giveway.study.tables import design_rows, goal_header, sensitivity_rows
@@ -67,8 +70,11 @@ def test_the_figures_labels_say_what_they_draw(answers: Answers) -> None:
     front = np.flatnonzero(answers.pareto)
     front = front[np.argsort(compression_m[front])]
     others = [np.flatnonzero(~answers.feasible), np.flatnonzero(answers.feasible & ~answers.pareto)]
-    clouds = [curve(compression_m[some], "m", peak_n[some], "N") for some in (front, *others) if len(some)]
+    best = [np.array([design]) for design in answers.order[:3]]
+    clouds = [curve(compression_m[some], "m", peak_n[some], "N") for some in (front, *others, *best) if len(some)]
     check_planted(figure, lambda: check_panels(figure, [clouds]))
+    assert across(figure.axes[0], "x") == [3.0]  # cm, the limit
+    assert "at most 3 cm" in [text.get_text() for text in figure.axes[0].texts]
 
     figure = figures.effects(answers)
     good, bad = np.flatnonzero(answers.feasible), np.flatnonzero(~answers.feasible)
@@ -78,6 +84,77 @@ def test_the_figures_labels_say_what_they_draw(answers: Answers) -> None:
             x = answers.designs[:, column]
             panels.append([curve(x[some], x_unit, values[some], unit) for some in (good, bad)])
     check_planted(figure, lambda: check_panels(figure, panels))
+    assert [across(axes, "y") for axes in figure.axes] == [[3.0], [3.0], [], []]
+
+
+def test_every_two_objectives_are_drawn_against_each_other(tmp_path: Path) -> None:
+    study = (
+        small_study().objective("peak force of the run").objective("bumper compression").objective("contact impulse")
+    )
+    study.constraint("bumper compression", maximum=3.0, unit="cm").constraint("peak force of the run", maximum=9000.0)
+    found = study.run(tmp_path / "study", progress=False)
+    values = {"N": found.values[:, 0], "m": 1e-3 * found.values[:, 1], "N.s": found.values[:, 2]}
+    figure = figures.trade_off(found)
+    clouds = [np.flatnonzero(found.pareto), np.flatnonzero(found.feasible & ~found.pareto)]
+    clouds = [*clouds, np.flatnonzero(~found.feasible), *(np.array([design]) for design in found.order[:3])]
+    panels = []
+    for x, y in (("N", "m"), ("N", "N.s"), ("m", "N.s")):
+        seen = [some[np.argsort(values[x][some], kind="stable")] for some in clouds if len(some)]
+        panels.append([curve(values[x][some], x, values[y][some], y) for some in seen])
+    drawn = [axes for axes in figure.axes if axes.axison]
+    for axes, wanted in zip(drawn, panels, strict=True):
+        check_panel(figure, axes, wanted)
+    assert [across(axes, "y") for axes in drawn] == [[3.0], [], []]
+    assert [across(axes, "x") for axes in drawn] == [[], [], [3.0]]
+    # A limit that would leave no room for the points is named at the edge, and no line is drawn.
+    assert "at most 9000 N: above this range" in [text.get_text() for text in drawn[0].texts]
+
+
+def test_the_growth_of_a_search_is_in_shares_of_its_end(answers: Answers) -> None:
+    told = {"designs": [24, 48, 72], "hypervolume": [2.0, 3.0, 4.0], "reference": None, "reason": "enough"}
+    figure = figures.growth(dataclasses.replace(answers, manifest=answers.manifest | {"optimum": told}))
+    assert figure is not None
+    wanted = curve([24.0, 48.0, 72.0], "1", [0.5, 0.75, 1.0], "1")
+    check_planted(figure, lambda: check_panels(figure, [[wanted]]))
+
+
+def test_one_objective_is_drawn_against_what_has_a_limit(tmp_path: Path) -> None:
+    study = small_study().objective("peak force of the run").constraint("bumper compression", maximum=3.0, unit="cm")
+    found = study.run(tmp_path / "study", progress=False)
+    assert figures.pairs(found) == [(0, 1)]
+    (axes,) = figures.trade_off(found).axes
+    assert across(axes, "y") == [3.0]
+
+
+def test_limits_of_forces_are_in_the_traces_too(tmp_path: Path) -> None:
+    study = (
+        small_study().objective("peak force of the run").constraint("peak force of the run", maximum=0.07, unit="kN")
+    )
+    found = study.run(tmp_path / "study", progress=False)
+    design = int(found.order[0])
+    results = {design: simulate(found.setup, found.runs, found.folder, design)}
+    figure = figures.traces(results, found)
+    (axes,) = figure.axes
+    assert unit_in(axes.get_ylabel()) == (1.0, "kN")
+    assert across(axes, "y") == [0.07]
+    force = results[design]["front"].traces["testbed.truth.contact_force"].values
+    assert 1e3 * max(np.asarray(axes.lines[0].get_ydata())) == pytest.approx(force.max())
+    assert "peak force of the run at most 0.07 kN" in [text.get_text() for text in axes.texts]
+
+
+def test_thousands_of_points_are_an_image_and_labels_stay_text(answers: Answers) -> None:
+    many = 20_000
+    wide = dataclasses.replace(
+        answers,
+        values=np.tile(answers.values, (many // 4, 1)),
+        feasible=np.ones(many, dtype=bool),
+        pareto=np.arange(many) == answers.order[0],
+    )
+    text = inline_svg(figures.trade_off(wide), "x")
+    assert text.count("<image") == 1
+    assert len(text) < 1_000_000
+    for words in ("at most 3 cm", f"design {answers.order[0]}", "bumper compression"):
+        assert words in text
 
 
 def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> None:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+import math
+import textwrap
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
+from giveway.base.units import WrittenUnit
 from giveway.report.style import TRUTH_COLOUR
+from giveway.study.limit_lines import DETECTION, FORCES, draw_limits, limit_lines, limits_of_metrics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,17 +22,24 @@ if TYPE_CHECKING:
 
     from giveway.simulation.result import Result
     from giveway.study.answers import Answers
+    from giveway.study.distributions import Varied
 
-__all__ = ["axis_label", "drawn", "effect_panels", "effects", "growth", "sensitivities", "traces", "trade_off"]
+__all__ = ["axis_label", "drawn", "effect_panels", "effects", "growth", "pairs", "sensitivities", "traces", "trade_off"]
 
 FRONT_COLOUR, DESIGN_COLOUR, INFEASIBLE_COLOUR = "#0a8a63", "#0b64a8", "#d5d9de"
 CHOSEN_COLOURS = ("#c8500a", "#0b64a8", "#0a8a63", "#7a2ea0", "#8a6d00")
-POINTS_MAX = 3000  # drawn in a panel; of more designs a sample
-POINTS_OF_FIGURE_MAX = 9000  # and in all panels of a figure
+POINTS_MAX = 20_000  # drawn in a panel; of more designs a sample
+POINTS_OF_FIGURE_MAX = 60_000  # and in all panels of a figure
+PIXELS_PER_IN = 160
+PIXELS_FROM = 1000  # so many points are drawn as an image: it is smaller, and drawn faster
 QUANTITIES_MAX = 5
 CHOICES_LEVEL = 3  # so many names stand side by side under a panel; more are turned
-CHOICES_NAMED = 26  # turned names that a panel has room for
+CHOICE_IN = 0.11  # width of a turned name
 BEFORE_MS, AFTER_MS = 20.0, 250.0
+WIDTH_IN, LEFT_IN, RIGHT_IN, BOTTOM_IN = 9.6, 0.75, 0.15, 0.5
+LEGEND_COLUMNS, LEGEND_IN = 5, 0.24  # entries in a line, and its height
+PAIRS_BESIDE = 3  # panels of the trade-off side by side
+MARKERS = "D^svPX*"
 
 
 def axis_label(name: str, unit: str) -> str:
@@ -48,32 +61,95 @@ def effect_panels(answers: Answers) -> tuple[int, int]:
     return len(answers.setup.objectives), len(answers.setup.varied[:QUANTITIES_MAX])
 
 
+def pairs(answers: Answers) -> list[tuple[int, int]]:
+    """Which goals the trade-off draws against each other: all objectives; a single one against what has a limit."""
+    count = len(answers.setup.objectives)
+    if count == 1:
+        limited = range(count, count + len(answers.setup.constraints))
+        return [(0, j) for j in limited if j in answers.columns]
+    return list(itertools.combinations(range(count), 2))
+
+
 def trade_off(answers: Answers) -> Figure:
-    """The first two objectives against each other."""
-    figure = Figure(figsize=(9.6, 4.2), layout="constrained")
-    axes = figure.subplots()
-    shown = drawn(answers)
-    x, y = answers.shown_values(0), answers.shown_values(1)
-    for mask, colour, label in (
-        (~answers.feasible, INFEASIBLE_COLOUR, "constraints not met"),
-        (answers.feasible & ~answers.pareto, DESIGN_COLOUR, "designs"),
-    ):
-        which = shown[mask[shown]]
-        if which.size:
-            axes.scatter(x[which], y[which], s=11, color=colour, alpha=0.7, linewidths=0, label=label)
+    """Every two objectives against each other, with their limits; the best ranked designs have marks."""
+    wanted = pairs(answers)
+    columns = min(PAIRS_BESIDE, len(wanted))
+    rows = math.ceil(len(wanted) / columns)
+    best = answers.order[: max(1, answers.setup.chosen)].tolist()
+    height = 3.6 if columns == 1 else 2.7
+    figure, grid = _panels(rows, columns, height, 3 + len(best), (0.62, 0.75), bottom_in=0.7)
+    shown = drawn(answers, len(wanted))
     on_front = np.flatnonzero(answers.pareto)
-    on_front = on_front[np.argsort(x[on_front], kind="stable")]
     on_front = on_front[:: 1 + len(on_front) // POINTS_MAX]
-    line = "-" if len(answers.setup.objectives) == 2 else ""
-    axes.plot(x[on_front], y[on_front], f"o{line}", color=FRONT_COLOUR, ms=4, lw=1.2, label="Pareto front")
-    for rank, design in enumerate(answers.order[: answers.setup.chosen].tolist()):
-        axes.annotate(
-            f"{design}", (x[design], y[design]), xytext=(6, 6 + 12 * rank), textcoords="offset points", fontsize=9
-        )
-    for set_label, index in ((axes.set_xlabel, 0), (axes.set_ylabel, 1)):
-        set_label(axis_label(answers.goal_name(index), answers.goal_unit(index).shown))
-    axes.legend()
+    for (i, j), axes in zip(wanted, grid.flat, strict=False):
+        x, y = answers.shown_values(i), answers.shown_values(j)
+        for mask, colour, label in (
+            (~answers.feasible, INFEASIBLE_COLOUR, "constraints not met"),
+            (answers.feasible & ~answers.pareto, DESIGN_COLOUR, "designs"),
+        ):
+            _points(axes, x, y, shown[mask[shown]], colour, label)
+        along = on_front[np.argsort(x[on_front], kind="stable")]
+        line = "-" if len(answers.setup.objectives) == 2 else ""
+        axes.plot(x[along], y[along], f"o{line}", color=FRONT_COLOUR, ms=4, lw=1.2, label="Pareto front")
+        for rank, (design, colour) in enumerate(zip(best, CHOSEN_COLOURS * 4, strict=False)):
+            ring = {"marker": "o", "ms": 14, "mfc": "none", "mec": colour, "mew": 2.2}  # seen around all others
+            mark = {"marker": MARKERS[rank % len(MARKERS)], "ms": 7, "mfc": colour, "mec": "white", "mew": 0.8}
+            style: dict[str, Any] = mark if rank else ring
+            axes.plot(x[[design]], y[[design]], ls="", zorder=5, label=f"design {design}", **style)
+        for set_label, index, inches in ((axes.set_xlabel, i, WIDTH_IN / columns), (axes.set_ylabel, j, height)):
+            set_label(_wrapped(axis_label(answers.goal_name(index), answers.goal_unit(index).shown), inches - 0.5))
+        draw_limits(axes, limit_lines(answers, i), "x")
+        draw_limits(axes, limit_lines(answers, j), "y")
+    for axes in grid.flat[len(wanted) :]:
+        axes.set_axis_off()
+    _legend(figure, grid.flat[0])
     return figure
+
+
+def _panels(
+    rows: int, columns: int, height_in: float, entries: int, between_in: tuple[float, float], **shared: Any
+) -> tuple[Figure, NDArray[Any]]:
+    """Panels of ``height_in`` with fixed margins and room for so many ``entries`` of a legend above them.
+
+    A layout engine would take as long as the drawing.
+    """
+    top = 0.12 + LEGEND_IN * math.ceil(entries / LEGEND_COLUMNS)
+    bottom = shared.pop("bottom_in", BOTTOM_IN)
+    whole = top + bottom + rows * height_in + (rows - 1) * between_in[1]
+    panel = (WIDTH_IN - LEFT_IN - RIGHT_IN - (columns - 1) * between_in[0]) / columns
+    figure = Figure(figsize=(WIDTH_IN, whole), dpi=PIXELS_PER_IN)
+    figure.subplots_adjust(
+        left=LEFT_IN / WIDTH_IN,
+        right=1.0 - RIGHT_IN / WIDTH_IN,
+        top=1.0 - top / whole,
+        bottom=bottom / whole,
+        wspace=between_in[0] / panel,
+        hspace=between_in[1] / height_in,
+    )
+    return figure, figure.subplots(rows, columns, squeeze=False, **shared)
+
+
+def _points(
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], which: NDArray[np.int64], colour: str, label: str
+) -> None:
+    if which.size:
+        size = 11.0 if which.size < PIXELS_FROM else 4.0
+        cloud = axes.scatter(x[which], y[which], s=size, color=colour, alpha=0.7, linewidths=0, label=label, zorder=1.8)
+        cloud.set_rasterized(which.size >= PIXELS_FROM)
+
+
+def _legend(figure: Figure, axes: Axes) -> None:
+    """Above the panels, where it hides nothing."""
+    handles, labels = axes.get_legend_handles_labels()
+    legend = figure.legend(handles, labels, loc="upper left", ncols=LEGEND_COLUMNS, fontsize=8.5, borderaxespad=0.2)
+    for handle in legend.legend_handles:
+        if isinstance(handle, PathCollection):
+            handle.set_sizes([20.0])
+
+
+def _wrapped(label: str, inches: float) -> str:
+    """A label that is no longer than its axis."""
+    return textwrap.fill(label, max(16, int(inches / 0.07)), break_long_words=False)
 
 
 def growth(answers: Answers) -> Figure | None:
@@ -86,45 +162,59 @@ def growth(answers: Answers) -> Figure | None:
     share = 100.0 * np.array(told["hypervolume"]) / told["hypervolume"][-1]
     axes.plot(told["designs"], share, "o-", color=FRONT_COLOUR, ms=3, lw=1.2)
     axes.set_xlabel("designs")
-    axes.set_ylabel("hypervolume (% of the last)")
+    axes.set_ylabel("hypervolume, share of the last (%)")
     return figure
 
 
 def effects(answers: Answers) -> Figure:
-    """Every objective over every quantity: one point per design."""
+    """Every objective over every quantity: one point per design, with its limits."""
     varied = answers.setup.varied[:QUANTITIES_MAX]
     rows, columns = effect_panels(answers)
-    figure = Figure(figsize=(9.6, 0.5 + 2.3 * rows), layout="constrained")
-    grid = figure.subplots(rows, columns, squeeze=False, sharey="row", sharex="col")
+    turned = [one for one in varied if len(one.quantity.choices) > CHOICES_LEVEL]
+    longest = max((len(name) for one in turned for name in one.quantity.choices), default=0)
+    room = {"bottom_in": BOTTOM_IN + 0.06 * longest, "sharey": "row", "sharex": "col"}
+    figure, grid = _panels(rows, columns, 2.0, 2, (0.15, 0.2), **room)
     shown = drawn(answers, rows * columns)
     good, bad = shown[answers.feasible[shown]], shown[~answers.feasible[shown]]
     x = [answers.shown_designs(j) for j in range(columns)]
     y = [answers.shown_values(i) for i in range(rows)]
+    width = WIDTH_IN / columns
     for i in range(rows):
         for j, one in enumerate(varied):
             axes: Axes = grid[i, j]
-            for which, colour in ((bad, INFEASIBLE_COLOUR), (good, DESIGN_COLOUR)):
-                axes.scatter(x[j][which], y[i][which], s=8, color=colour, alpha=0.6, lw=0)
-            quantity, spread = one.quantity, one.spread
-            if spread is not None and spread.kind == "loguniform":
-                axes.set_xscale("log")
-                axes.minorticks_off()
-                ticks = np.geomspace(one.unit.of(spread.low), one.unit.of(spread.high), 3)
-                axes.set_xticks(ticks, [f"{tick:.4g}" for tick in ticks])
-            if quantity.kind == "choice":
-                every = 1 + (len(quantity.choices) - 1) // CHOICES_NAMED
-                many = len(quantity.choices) > CHOICES_LEVEL
-                axes.set_xticks(
-                    range(0, len(quantity.choices), every),
-                    quantity.choices[::every],
-                    rotation=90 if many else 0,
-                    fontsize=5 if many else None,
-                )
+            for which, colour, label in (
+                (bad, INFEASIBLE_COLOUR, "constraints not met"),
+                (good, DESIGN_COLOUR, "designs"),
+            ):
+                _points(axes, x[j], y[i], which, colour, label)
             if i == rows - 1:
-                axes.set_xlabel(axis_label(quantity.name.removeprefix("testbed."), one.unit.shown))
+                _quantity_ticks(axes, one, width)
+                name = axis_label(one.quantity.name.removeprefix("testbed."), one.unit.shown)
+                axes.set_xlabel(_wrapped(name, width))
             if j == 0:
-                axes.set_ylabel(axis_label(answers.goals[i].metric.name, answers.goal_unit(i).shown))
+                axes.set_ylabel(_wrapped(axis_label(answers.goals[i].metric.name, answers.goal_unit(i).shown), 1.8))
+        for j in range(columns):
+            draw_limits(grid[i, j], limit_lines(answers, i), "y", named=j == columns - 1)
+    _legend(figure, grid[0, 0])
     return figure
+
+
+def _quantity_ticks(axes: Axes, one: Varied, width_in: float) -> None:
+    quantity, spread = one.quantity, one.spread
+    if spread is not None and spread.kind == "loguniform":
+        axes.set_xscale("log")
+        axes.minorticks_off()
+        ticks = np.geomspace(one.unit.of(spread.low), one.unit.of(spread.high), 3)
+        axes.set_xticks(ticks, [f"{tick:.4g}" for tick in ticks])
+    if quantity.kind == "choice":
+        many = len(quantity.choices) > CHOICES_LEVEL
+        every = 1 + int((len(quantity.choices) - 1) * CHOICE_IN / width_in) if many else 1
+        axes.set_xticks(
+            range(0, len(quantity.choices), every),
+            quantity.choices[::every],
+            rotation=90 if many else 0,
+            fontsize=6.5 if many else None,
+        )
 
 
 def sensitivities(answers: Answers) -> Figure | None:
@@ -152,24 +242,39 @@ def sensitivities(answers: Answers) -> Figure | None:
     return figure
 
 
-def traces(results: Mapping[int, Mapping[str, Result]]) -> Figure:
-    """Contact force of the chosen designs over the time since the contact, one panel per collision."""
+def traces(results: Mapping[int, Mapping[str, Result]], answers: Answers | None = None) -> Figure:
+    """Contact force of the chosen designs over the time since the contact, one panel per collision.
+
+    ``answers`` have the limits of forces and of the detection time, and the units of both.
+    """
     names = list(next(iter(results.values())))
-    figure = Figure(figsize=(9.6, 0.6 + 2.4 * len(names)), layout="constrained")
-    grid = figure.subplots(len(names), 1, squeeze=False, sharex=True)[:, 0]
-    for axes, name in zip(grid, names, strict=True):
+    figure, grid = _panels(len(names), 1, 2.2, len(results), (0.2, 0.45), sharex=True)
+    force_unit = _unit_of(answers, FORCES, "N")
+    time_unit = _unit_of(answers, (DETECTION,), "ms")
+    before, after = time_unit.of(-BEFORE_MS), time_unit.of(AFTER_MS)
+    for axes, name in zip(grid[:, 0], names, strict=True):
         for colour, (design, by_collision) in zip(CHOSEN_COLOURS * 4, results.items(), strict=False):
             result = by_collision[name]
             contact_s = float(result.traces["testbed.truth.first_contact_time"].values[-1])
-            time_ms = 1e3 * (result.traces["time"].values - max(contact_s, 0.0))
-            shown = (time_ms >= -BEFORE_MS) & (time_ms <= AFTER_MS)
-            force = result.traces["testbed.truth.contact_force"].values
-            axes.plot(time_ms[shown], force[shown], color=colour, label=f"design {design}")
-            detected = result.metric("detection time").value
+            time = 1e3 * (result.traces["time"].values - max(contact_s, 0.0)) / time_unit.scale
+            shown = (time >= before) & (time <= after)
+            force = result.traces["testbed.truth.contact_force"].values / force_unit.scale
+            axes.plot(time[shown], force[shown], color=colour, label=f"design {design}")
+            detected = result.metric(DETECTION).value
             if detected is not None:
-                axes.axvline(detected, color=colour, ls="--", lw=0.9)
-        axes.set_ylabel("contact force (N)")
+                axes.axvline(time_unit.of(detected), color=colour, ls="--", lw=0.9)
+        axes.set_ylabel(axis_label("contact force", force_unit.shown))
         axes.set_title(name)
-    grid[0].legend()
-    grid[-1].set_xlabel("time since the contact (ms)")
+        if answers is not None:
+            draw_limits(axes, limits_of_metrics(answers, FORCES, force_unit), "y")
+            draw_limits(axes, limits_of_metrics(answers, (DETECTION,), time_unit), "x")
+    _legend(figure, grid[0, 0])
+    grid[-1, 0].set_xlabel(axis_label("time since the contact", time_unit.shown))
     return figure
+
+
+def _unit_of(answers: Answers | None, metrics: tuple[str, ...], unit: str) -> WrittenUnit:
+    """The unit that the user wrote for one of these metrics; left out: ``unit``."""
+    constraints = answers.setup.constraints if answers is not None else ()
+    written = (one.written for one in constraints if one.goal.metric.name in metrics)
+    return next((found for found in written if found is not None), WrittenUnit(unit))

@@ -117,8 +117,10 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
 
     known = bool((answers.stored > 0).any())
     with context(STYLE):
-        if known and len(answers.setup.objectives) >= 2:
-            caption = f"{_points(answers, 1)} Those on the front are beaten by no other one; numbers: the best ranked."
+        if known and (drawn := len(figures.pairs(answers))):
+            caption = (
+                f"{_points(answers, drawn)} Those on the front are beaten by no other one; named: the best ranked."
+            )
             add("Trade-off", caption, figures.trade_off(answers))
         if optimum := answers.manifest.get("optimum"):
             add("How the search went", _search_caption(answers, optimum), figures.growth(answers))
@@ -132,14 +134,16 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
             add("What decides", _sensitivity_caption(answers), figures.sensitivities(answers))
         if results:
             caption = "The best ranked designs, event-exact at their nominal values. Dashed: the moment of detection."
-            add("Chosen designs", caption, figures.traces(results))
+            add("Chosen designs", caption, figures.traces(results, answers))
     return found
 
 
 def _search_caption(answers: Answers, told: Mapping[str, Any]) -> str:
     """What the hypervolume's figure shows."""
-    pairs = zip(answers.setup.objectives, told["reference"] or (), strict=False)
-    reference = ", ".join(f"{goal.metric.name} {value:.4g} {goal.metric.unit}" for goal, value in pairs)
+    reference = ", ".join(
+        f"{answers.goals[index].metric.name} {answers.goal_unit(index).of(value):.4g} {answers.goal_unit(index).shown}"
+        for index, value in enumerate(told["reference"] or ())
+    )
     return f"One point per generation; reference point: {reference}. {search_in_words(answers)}"
 
 
