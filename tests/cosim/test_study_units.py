@@ -99,7 +99,8 @@ def test_every_two_objectives_are_drawn_against_each_other(tmp_path: Path) -> No
     clouds = [*clouds, np.flatnonzero(~found.feasible), *(np.array([design]) for design in found.order[:3])]
     panels = []
     for x, y in (("N", "m"), ("N", "N.s"), ("m", "N.s")):
-        seen = [some[np.argsort(values[x][some], kind="stable")] for some in clouds if len(some)]
+        clouds[0] = clouds[0][np.argsort(values[x][clouds[0]], kind="stable")]  # joined by a line
+        seen = [some for some in clouds if len(some)]
         panels.append([curve(values[x][some], x, values[y][some], y) for some in seen])
     drawn = [axes for axes in figure.axes if axes.axison]
     for axes, wanted in zip(drawn, panels, strict=True):
