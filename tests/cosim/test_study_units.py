@@ -13,7 +13,7 @@ from figure_labels import across, check_panel, check_panels, check_planted, curv
 from giveway.base.units import WrittenUnit
 from giveway.report.inline_svg import inline_svg
 from giveway.robot.variables import table
-from giveway.study import figures
+from giveway.study import Study, figures
 from giveway.study.answers import Answers
 from giveway.study.asked import asked
 from giveway.study.chosen import simulate
@@ -178,7 +178,7 @@ def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> No
 
 def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
     write_report(tmp_path / "report.html", answers, {})
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    page = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
     for words in ("0.6, 2.4 N/mm", "1.2 to 2.1 km/h", "+-0.002 kN", "bumper compression: at most 3 cm"):
         assert words in page
     definition = "largest compression: what the collision used of the bumper's travel, which is a parameter"
@@ -188,10 +188,25 @@ def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> Non
     said = dict(asked(answers.setup))
     assert said["robot"] == "trikey.toml, which the FMUs were built with"
     assert said["plan"] == "rest: the robot stands"
-    assert said["bumper"] == "magnetic, on the slider"
+    assert said["bumper"].startswith("magnetic, on the slider, spring rate varies, preload 2 N, ")
+    assert said["preset"].startswith("default: ")
+    assert "contact area" not in said
     assert said["body region"] == "none"
     assert f"stiffness {table('testbed')['contact.stiffness'].start:g} N/m" in said["contact"]
     assert said["objectives"] == "metric = bumper compression; metric = peak force of the run"
+
+
+def test_everything_that_a_scenario_sets_is_said() -> None:
+    study = Study("all", duration=0.3, bumper="none", preset="paper", judge_as="lower leg", noise_seed=7,
+                  contact_area={"value": 30.0, "unit": "cm2"}, testbed={"slider.friction": 2.0},
+                  controller={"admittance": {"speed_limit": 0.4}})  # fmt: skip
+    said = dict(asked(study.collision("front", speed=0.5, mass=9.08, edge=0, time=0.12).setup()))
+    assert said["preset"].startswith("paper: ")
+    assert said["bumper"] == "none"
+    assert said["contact area"] == "30 cm2"
+    assert said["testbed"] == "slider.friction = 2.0"
+    assert said["controller"] == "admittance.speed_limit = 0.4"
+    assert said["sensor noise"] == "seed 7"
 
 
 def test_what_varies_is_said_to_vary() -> None:
@@ -199,7 +214,7 @@ def test_what_varies_is_said_to_vary() -> None:
     study.vary("testbed.contact.stiffness", values=[5.0, 9.0], unit="kN/m")
     study.document["scenario"] |= {"judge_as": "lower leg", "plan": {"kind": "rest", "x": 0.1}}
     said = dict(asked(study.setup()))
-    assert said["bumper"] == "varies, on the slider"
+    assert said["bumper"].startswith("varies, on the slider, spring rate ")
     assert "stiffness varies" in said["contact"]
     assert said["body region"] == "lower leg: its limits only"
     assert said["plan"] == "kind = rest, x = 0.1"

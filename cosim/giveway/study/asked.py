@@ -1,4 +1,4 @@
-"""What a study asked of all its designs, in words: robot, plan, bumper, body region, contact, duration, objectives."""
+"""What a study asked of all its designs, in words: robot, reflex, plan, bumper, body region, contact, objectives."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from giveway.base import native
+from giveway.robot.presets import PRESETS
 from giveway.robot.variables import table
+from giveway.scenario.scenario_file import scalars
 from giveway.study.quantities import columns
 from giveway.study.search_plan import OPTIMISED
 
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["asked", "in_words"]
 
 CONTACT = ("stiffness", "damping", "friction", "nose_radius")
+SPRING = ("spring_rate", "preload", "damping", "guide_friction", "travel", "plate_mass")  # of a bumper
+LATCH = ("latch_force", "latch_gap")  # of a magnetic one
 NOSES = ("round nose", "long edge")  # contact.nose_shape
 MOUNTS = ("on the slider", "on the robot")  # bumper.mount
 VARIES = "varies"
@@ -40,21 +44,34 @@ def asked(setup: Setup) -> list[tuple[str, str]]:
 
     robot = document.get("robot")
     kind = VARIES if "testbed.bumper.kind" in varied else scenario.bumper
-    bumper = kind if kind == "none" else f"{kind}, {choice('bumper.mount', MOUNTS)}"
+    numbers = () if kind == "none" else SPRING if kind == "spring" else (*SPRING, *LATCH)
+    bumper = [kind, *([choice("bumper.mount", MOUNTS)] if numbers else [])]
+    bumper += [f"{name.replace('_', ' ')} {of(f'bumper.{name}')}" for name in numbers]
     contact = [choice("contact.nose_shape", NOSES)]
     contact += [f"{name.replace('_', ' ')} {of(f'contact.{name}')}" for name in CONTACT]
     rows = [
         ("robot", str(robot) if robot else f"{native.robot().name}, which the FMUs were built with"),
         ("plan", in_words(document["plan"]) if "plan" in document else "rest: the robot stands"),
         ("pushes", "; ".join(in_words(push) for push in document.get("push", []))),
-        ("bumper", bumper),
+        ("preset", f"{scenario.preset}: {PRESETS[scenario.preset]}"),
+        ("bumper", ", ".join(bumper)),
         ("body region", _region(scenario.body_region, scenario.judge_as)),
+        ("contact area", "{value:g} {unit}".format(**document["contact_area"]) if "contact_area" in document else ""),
         ("contact", ", ".join(contact) if setup.cases[0].hit is not None else "none"),
+        ("testbed", in_words(dict(scalars(document.get("testbed", {}))))),
+        ("controller", in_words(dict(scalars(document.get("controller", {}))))),
         ("duration", f"{scenario.duration_s:g} s"),
+        ("sensor noise", _noise(setup)),
         ("designs", _designs(setup)),
         ("objectives", "; ".join(in_words(one) for one in setup.document.get("objective", [])) or "none"),
     ]
     return [(name, words) for name, words in rows if words]
+
+
+def _noise(setup: Setup) -> str:
+    seed = setup.cases[0].scenario.seed
+    words = "the model's own seed" if seed is None else f"seed {seed}"
+    return words + (", another one in every tolerance sample" if setup.noise_seeds else "")
 
 
 def _designs(setup: Setup) -> str:

@@ -64,6 +64,7 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         asked=asked(setup),
         varied=[(one.quantity.name, _range(one)) for one in setup.varied],
         tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
+        sampled=f"{setup.tolerance_count} samples, {setup.tolerance_kind}" if setup.tolerances else "",
         collisions=[(case.name, in_words(case.document.get("collision", {}))) for case in setup.cases],
         constraints=[f"{one.goal.metric.name}: {limit_words(setup, i)}" for i, one in enumerate(setup.constraints)],
         misfit_header=tables.MISFIT_HEADER,
