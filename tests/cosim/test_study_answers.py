@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from giveway import batch
 from giveway.base.errors import GivewayError
-from giveway.study import answers
+from giveway.study import answers, first_order
 from giveway.study.answers import over_runs
 from giveway.study.chosen import simulate
 from giveway.study.designs import DesignPlan, make
@@ -209,6 +209,16 @@ def test_first_order_indices_are_those_of_salib() -> None:
         assert indices == pytest.approx(theirs["S1"], abs=1e-12)
         # The spread of 100 resamples is itself uncertain by 7 %; for two of them, 4 sigma of the difference are 40 %.
         assert intervals == pytest.approx(theirs["S1_conf"], rel=0.4)
+
+
+def test_the_first_harmonics_are_those_of_the_whole_transform(monkeypatch: pytest.MonkeyPatch) -> None:
+    series = np.random.default_rng(1).normal(size=1000)
+    whole = np.fft.rfft(series)[1 : first_order.HARMONICS + 1]
+    np.testing.assert_allclose(first_order._harmonics(series), whole, rtol=0.0, atol=1e-10)
+    first_order._waves.cache_clear()
+    monkeypatch.setattr(first_order, "BLOCK", 300)  # the last block is a short one
+    np.testing.assert_allclose(first_order._harmonics(series), whole, rtol=0.0, atol=1e-10)
+    first_order._waves.cache_clear()
 
 
 def test_elementary_effects_of_a_plane_are_its_slopes() -> None:

@@ -9,13 +9,17 @@ from giveway.base import native
 from giveway.robot.presets import PRESETS
 from giveway.robot.variables import table
 from giveway.scenario.scenario_file import scalars
+from giveway.study.limits import limit_words
+from giveway.study.part_rules import rules_in_words
+from giveway.study.parts import choices_of
 from giveway.study.quantities import columns
 from giveway.study.search_plan import OPTIMISED
 
 if TYPE_CHECKING:
-    from giveway.study.setup import Setup
+    from giveway.study.distributions import Tolerance, Varied
+    from giveway.study.setup import Goal, Setup
 
-__all__ = ["asked", "in_words"]
+__all__ = ["all_asked", "asked", "in_words"]
 
 CONTACT = ("stiffness", "damping", "friction", "nose_radius")
 SPRING = ("spring_rate", "preload", "damping", "guide_friction", "travel", "plate_mass")  # of a bumper
@@ -92,3 +96,49 @@ def _region(given: str | None, judged: str | None) -> str:
 def in_words(values: Mapping[str, Any]) -> str:
     """A table of the study file on one line."""
     return ", ".join(f"{key} = {value}" for key, value in values.items())
+
+
+def all_asked(setup: Setup) -> list[tuple[str, str]]:
+    """The same, and what varies, tolerances, collisions, constraints and method: all that defines the study."""
+    rows = asked(setup)
+    rows += [(one.quantity.name, _range(one)) for one in setup.varied]
+    rows += [(f"{choice.name} does not fit", rules_in_words(choice)) for choice in choices_of(setup.varied)]
+    if setup.tolerances:
+        rows.append(("tolerances", f"{setup.tolerance_count} samples, {setup.tolerance_kind}"))
+    rows += [(f"tolerance of {one.quantity.name}", _tolerance(one)) for one in setup.tolerances]
+    hits = [(case.name, case.document.get("collision", {})) for case in setup.cases]
+    rows += [(name, in_words(hit)) for name, hit in hits if hit]
+    rows += [
+        ("constraint", f"{one.goal.metric.name}: {limit_words(setup, index)}{_over(one.goal)}")
+        for index, one in enumerate(setup.constraints)
+    ]
+    step = "" if setup.plant_step_s is None else f", steps of {setup.plant_step_s:g} s"
+    return [*rows, ("method, seed", f"{setup.method}{step}, {setup.seed}")]
+
+
+def _over(goal: Goal) -> str:
+    """How a constraint is taken over runs, where it is not the worst of all."""
+    words = [f"{name}: {how}" for name, how in (("collisions", goal.collisions), ("tolerances", goal.tolerances))
+             if how != "worst"]  # fmt: skip
+    return f" ({', '.join(words)})" if words else ""
+
+
+def _range(one: Varied) -> str:
+    unit = f" {one.unit.shown}" if one.unit.shown else ""
+    if one.parts is not None:
+        many = f", {one.parts.count} of each" if one.parts.count > 1 else ""
+        unit = f" ({one.parts.catalogue.path.name}{many})"
+    if one.levels and one.spread is None:
+        return (
+            ", ".join(one.text(value) for value in one.levels[:12]) + (", ..." if len(one.levels) > 12 else "") + unit
+        )
+    if one.spread is None:
+        return "from the file"
+    levels = f", {len(one.levels)} levels" if one.levels else ""
+    return f"{one.unit.of(one.spread.low):g} to {one.unit.of(one.spread.high):g}{unit}, {one.spread.kind}{levels}"
+
+
+def _tolerance(one: Tolerance) -> str:
+    if one.relative:
+        return f"+-{100.0 * one.spread.high:g} %, {one.spread.kind}"
+    return f"+-{one.unit.of(one.spread.high):g} {one.unit.name}, {one.spread.kind}"

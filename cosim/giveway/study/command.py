@@ -116,6 +116,30 @@ def study_show(
     typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
 
 
+@study_app.command("compare")
+def study_compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder of a study.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another one.")],
+    as_json: Annotated[bool, typer.Option("--json", help="The comparison as JSON on stdout.")] = False,
+) -> None:
+    """Compare two studies: what was asked otherwise, the recommended designs side by side, and their margins."""
+    import json
+
+    from giveway.study import compare
+
+    found = compare.compare(_load(first), _load(second))
+    if as_json:
+        typer.echo(json.dumps({"schema_version": 1, **found.document()}, indent=2))
+        return
+    print_columns(
+        "Compared", ("", "study", ""), [(x, *rest) for x, *rest in zip("AB", found.names, found.titles, strict=True)]
+    )
+    print_columns("What was asked otherwise", compare.ASKED_HEADER, found.asked or [("nothing", "", "")])
+    print_columns("Recommended designs", compare.RECOMMENDED_HEADER, found.recommended)
+    if found.margins:
+        print_columns("Margins", compare.MARGIN_HEADER, found.margin_rows())
+
+
 @study_app.command("run")
 def study_run(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],

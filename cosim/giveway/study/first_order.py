@@ -7,6 +7,7 @@ SALib sorts every one of the samples that the interval is made of; here the orde
 
 from __future__ import annotations
 
+import functools
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ __all__ = ["first_order"]
 
 HARMONICS = 10
 RESAMPLES = 100
+BLOCK = 65_536  # values that are transformed at once
 CONFIDENCE = 0.95
 
 
@@ -47,8 +49,26 @@ def first_order(
 def _index(in_order: NDArray[np.float64]) -> float:
     """Index of the quantity by which the values (n,) are in order."""
     up_and_down = np.concatenate([in_order[::2], in_order[1::2][::-1]])
-    power = np.abs(np.fft.rfft(up_and_down)[1 : HARMONICS + 1]) ** 2
+    power = np.abs(_harmonics(up_and_down)) ** 2
     total = len(in_order) * float(((in_order - in_order.mean()) ** 2).sum())  # Parseval: of all harmonics, both sides
     share = 2.0 * float(power.sum()) / total if total > 0.0 else 0.0
     bias = 2.0 * HARMONICS / len(in_order)
     return share - bias / (1.0 - bias) * (1.0 - share)
+
+
+def _harmonics(series: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """The first ones of its Fourier transform: a product per block is faster than a transform of all."""
+    count, found = len(series), np.zeros(HARMONICS, dtype=complex)
+    waves, orders = _waves(count), np.arange(1, HARMONICS + 1)
+    for start in range(0, count, BLOCK):
+        block = series[start : start + BLOCK]
+        cosine, sine = (waves[:, : len(block)] @ block).reshape(2, HARMONICS)
+        found += (cosine - 1j * sine) * np.exp(-2j * np.pi * orders * start / count)
+    return found
+
+
+@functools.lru_cache(maxsize=2)  # all values, and half of them
+def _waves(count: int) -> NDArray[np.float64]:
+    """Cosines, then sines, of the harmonics at the first points of ``count``."""
+    angle = 2.0 * np.pi / count * np.arange(1, HARMONICS + 1)[:, None] * np.arange(min(count, BLOCK))
+    return np.concatenate([np.cos(angle), np.sin(angle)])

@@ -13,10 +13,8 @@ from typing import TYPE_CHECKING, Any
 from giveway.base.files import write_text
 from giveway.report.figures import NamedFigure
 from giveway.study.advice import MARGIN_HEADER, advice
-from giveway.study.asked import asked, in_words
-from giveway.study.limits import limit_words
-from giveway.study.part_rules import misfit, rules_in_words
-from giveway.study.parts import choices_of
+from giveway.study.asked import all_asked
+from giveway.study.part_rules import misfit
 from giveway.study.tables import search_in_words
 
 if TYPE_CHECKING:
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
 
     from giveway.simulation.result import Result
     from giveway.study.answers import Answers
-    from giveway.study.distributions import Tolerance, Varied
 
 __all__ = ["write_report"]
 
@@ -61,15 +58,9 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         sensitivity_header=tables.sensitivity_header(answers),
         sensitivities=tables.sensitivity_rows(answers),
         unknown=answers.sensitivities().reason,
-        asked=asked(setup),
-        varied=[(one.quantity.name, _range(one)) for one in setup.varied],
-        tolerances=[(one.quantity.name, _tolerance(one)) for one in setup.tolerances],
-        sampled=f"{setup.tolerance_count} samples, {setup.tolerance_kind}" if setup.tolerances else "",
-        collisions=[(case.name, in_words(case.document.get("collision", {}))) for case in setup.cases],
-        constraints=[f"{one.goal.metric.name}: {limit_words(setup, i)}" for i, one in enumerate(setup.constraints)],
+        asked=all_asked(setup),
         misfit_header=tables.MISFIT_HEADER,
         misfits=tables.misfit_rows(answers, DESIGNS_MAX),
-        judged=[(choice.name, rules_in_words(choice)) for choice in choices_of(setup.varied)],
         reasons=_reasons({design: text for design, text in answers.reason.items() if misfit(text) is None}),
         warnings=_warnings(answers.warnings),
         style=style,
@@ -160,24 +151,3 @@ def _sensitivity_caption(answers: Answers) -> str:
     if answers.setup.plan.kind == "morris":
         return "Elementary effects (Morris) in the objective's unit: mean of the absolute values, and spread."
     return "Share of the variance of each objective that a quantity alone explains, and in which it has part."
-
-
-def _range(one: Varied) -> str:
-    unit = f" {one.unit.shown}" if one.unit.shown else ""
-    if one.parts is not None:
-        many = f", {one.parts.count} of each" if one.parts.count > 1 else ""
-        unit = f" ({one.parts.catalogue.path.name}{many})"
-    if one.levels and one.spread is None:
-        return (
-            ", ".join(one.text(value) for value in one.levels[:12]) + (", ..." if len(one.levels) > 12 else "") + unit
-        )
-    if one.spread is None:
-        return "from the file"
-    levels = f", {len(one.levels)} levels" if one.levels else ""
-    return f"{one.unit.of(one.spread.low):g} to {one.unit.of(one.spread.high):g}{unit}, {one.spread.kind}{levels}"
-
-
-def _tolerance(one: Tolerance) -> str:
-    if one.relative:
-        return f"+-{100.0 * one.spread.high:g} %, {one.spread.kind}"
-    return f"+-{one.unit.of(one.spread.high):g} {one.unit.name}, {one.spread.kind}"

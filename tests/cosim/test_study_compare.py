@@ -1,0 +1,78 @@
+"""Two studies side by side: what differs in what was asked, both recommendations, and their margins."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from giveway.cli import _main
+from giveway.study import Study
+from giveway.study.answers import Answers
+from giveway.study.compare import compare
+from giveway.study.limits import margins_of
+from study_helpers import SPRING, small_study
+
+
+def limited(maximum: float, **changes: object) -> Study:
+    study = small_study(**changes).vary(SPRING, values=[0.6, 2.4], unit="N/mm")
+    study.objective("peak force of the run")
+    return study.constraint("bumper compression", maximum=maximum, unit="cm")
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Answers, Answers]:
+    folder = tmp_path_factory.mktemp("compared")
+    first = limited(6.0).run(folder / "a", progress=False)
+    second = limited(2.6, name="other").tolerance("testbed.bumper.travel", relative=0.1).tolerances(samples=1)
+    return first, second.run(folder / "b", progress=False)
+
+
+def test_only_what_was_asked_otherwise_is_told(both: tuple[Answers, Answers]) -> None:
+    asked = {name: (a, b) for name, a, b in compare(*both).asked}
+    assert asked == {
+        "constraint": ("bumper compression: at most 6 cm", "bumper compression: at most 2.6 cm"),
+        "tolerances": ("-", "1 samples, sobol"),
+        "tolerance of testbed.bumper.travel": ("-", "+-10 %, uniform"),
+    }
+    assert compare(both[0], both[0]).asked == []
+
+
+def test_designs_and_margins_are_side_by_side(
+    both: tuple[Answers, Answers], capsys: pytest.CaptureFixture[str]
+) -> None:
+    a, b = both
+    found = compare(a, b)
+    assert found.designs == (int(a.order[0]), int(b.order[0]))
+    assert _main(["study", "compare", str(a.folder), str(b.folder), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [one["design"] for one in document["studies"]] == list(found.designs)
+    margins = {one["name"]: one for one in document["margins"]}
+    for side, answers in (("A", a), ("B", b)):
+        (margin,) = margins_of(answers, int(answers.order[0]))
+        its = next(one[side] for one in margins.values() if one[side] is not None)
+        assert (its["margin"], its["limit"], its["unit"]) == (margin.room, margin.limit, "cm")
+        assert its["share"] == pytest.approx(margin.room / margin.limit)
+    assert _main(["study", "compare", str(a.folder), str(b.folder)]) == 0
+    said = capsys.readouterr().out
+    for words in ("other", "at most 6 cm", "at most 2.6 cm", f"Recommended: design {b.order[0]}"):
+        assert words in said
+    peaks = [one.values[one.order[0], 0] for one in both]
+    rows = {row[0]: row for row in compare(a, a).recommended}
+    assert rows["peak force of the run"][1:] == (f"{peaks[0]:.4g} N", f"{peaks[0]:.4g} N", "+0 %")
+    assert list(found.table().columns) == ["A", "B"]
+
+
+def test_a_study_that_allows_nothing_is_compared_by_its_nearest(both: tuple[Answers, Answers], tmp_path: Path) -> None:
+    nothing = limited(0.1).run(tmp_path / "nothing", progress=False)
+    found = compare(both[0], nothing)
+    assert found.designs[1] is None
+    assert "No design meets all constraints: design " in found.titles[1]
+    (_, _, margin), *_ = found.margins
+    assert margin is not None
+    assert margin.room < 0.0
+
+
+def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert _main(["study", "compare", str(tmp_path), str(tmp_path)]) == 2
+    assert "giveway sweep" in capsys.readouterr().err
