@@ -8,14 +8,25 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet
 from giveway.study import Study
+from giveway.study.answers import Answers
 from giveway.study.store import PARTS, list_parts, read_manifest
 
 LATCH, SPRING = "testbed.bumper.latch_force", "testbed.bumper.spring_rate"
 
 
+class SmallStudy(Study):
+    """Writes no report, unless it is asked to: most tests look at the answers only."""
+
+    def run(self, folder: Path | str, *, files: bool = False, **options: Any) -> Answers:
+        return super().run(folder, files=files, **options)
+
+    def optimise(self, folder: Path | str, *, files: bool = False, **options: Any) -> Answers:
+        return super().optimise(folder, files=files, **options)
+
+
 def small_study(**changes: Any) -> Study:
     """Four latch forces with a collision of 0.1 s each, and no objectives; ``changes`` replace tables."""
-    study = Study("small", duration=0.2, bumper="magnetic")
+    study = SmallStudy("small", duration=0.2, bumper="magnetic")
     study.collision("front", speed=0.5, mass=9.08, edge=0, time=0.12)
     study.vary(LATCH, values=[0.0, 20.0, 40.0, 60.0])
     study.document.update(changes)

@@ -321,7 +321,9 @@ class Study:
 
         return check(copy.deepcopy(self.document), Path(folder), self.document["name"])
 
-    def run(self, folder: Path | str, *, threads: int | None = None, progress: Report | bool = True) -> Answers:
+    def run(
+        self, folder: Path | str, *, threads: int | None = None, progress: Report | bool = True, files: bool = True
+    ) -> Answers:
         """Run what is missing in ``folder`` and return the answers; after Ctrl-C the same call continues.
 
         Args:
@@ -329,6 +331,7 @@ class Study:
             threads: native ones, 1 to 1024; None: all processors.
             progress: True: a bar on stderr at a terminal, else a line every few seconds; False: nothing; or a
                 function that is called now and then with a `giveway.study.engine.Progress`.
+            files: write what `giveway sweep` writes: traces of the best designs, report.html, table.csv.
 
         Raises:
             GivewayError: the study is wrong; nothing was run.
@@ -341,8 +344,8 @@ class Study:
 
         setup = self.setup()
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
-            sweep(setup, folder, threads=threads, progress=report)
-        return load(folder)
+            outcome = sweep(setup, folder, threads=threads, progress=report)
+        return _written(load(folder), files and not outcome.interrupted, progress is True)
 
     def optimise(
         self,
@@ -355,6 +358,7 @@ class Study:
         reference: Sequence[float] | None = None,
         threads: int | None = None,
         progress: Report | bool = True,
+        files: bool = True,
     ) -> Answers:
         """Search the best designs in ``folder`` and return the answers; after Ctrl-C the same call continues.
 
@@ -364,7 +368,7 @@ class Study:
             population: designs of a generation; 24 if left out.
             patience, growth: the search ends when in 10 generations the hypervolume grew by no more than 0.001 of it.
             reference: point of the hypervolume, a value of each objective; left out: from the first designs.
-            threads, progress: as in `run`.
+            threads, progress, files: as in `run`.
 
         Raises:
             MissingExtraError: pymoo is not installed.
@@ -383,12 +387,23 @@ class Study:
         changed = {"designs": {"kind": OPTIMISED}, "optimise": self.document.get("optimise", {}) | options}
         setup = check(copy.deepcopy({**self.document, **changed}), Path(), self.document["name"])
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
-            optimise(setup, folder, threads=threads, progress=report)
-        return load(folder)
+            found = optimise(setup, folder, threads=threads, progress=report)
+        return _written(load(folder), files and not found.outcome.interrupted, progress is True)
 
     def _add(self, table: str, entry: dict[str, Any]) -> Study:
         self.document.setdefault(table, []).append(entry)
         return self
+
+
+def _written(answers: Answers, files: bool, shown: bool) -> Answers:
+    """The answers, with the files that the command writes; ``shown``: with bars."""
+    if files:
+        from giveway.base.terminal import progress_bars
+        from giveway.study.messages import CHOSEN, REPORT, write_all
+
+        with progress_bars((CHOSEN, REPORT)) if shown else nullcontext(lambda name, share: None) as progress:
+            write_all(answers, progress=progress)
+    return answers
 
 
 def _given(keys: Mapping[str, Any]) -> dict[str, Any]:

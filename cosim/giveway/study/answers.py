@@ -14,6 +14,7 @@ import numpy as np
 from giveway.base.errors import GivewayError
 from giveway.base.units import WrittenUnit
 from giveway.simulation.run_warnings import SEPARATOR
+from giveway.study import frames
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Varied
 from giveway.study.engine import load_runs
@@ -24,8 +25,11 @@ from giveway.study.setup import Goal, Setup
 from giveway.study.store import PARTS, list_parts
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
     from numpy.typing import NDArray
+
+    from giveway.simulation.result import Result
 
 __all__ = [
     "Answers",
@@ -72,6 +76,10 @@ class Sensitivities(list[Sensitivity]):
 
     def __repr__(self) -> str:
         return super().__repr__() + (f" ({self.reason})" if self.reason else "")
+
+    def table(self) -> pandas.DataFrame:
+        """A line per objective and quantity."""
+        return frames.sensitivity_table(self)
 
 
 @dataclass(frozen=True)
@@ -183,6 +191,36 @@ class Answers:
         warned = [self.warning_text(design) for design in range(len(self.designs))]
         columns["warnings"] = ("design", np.array(warned, dtype=np.str_))
         return xarray.Dataset(columns, coords={"design": np.arange(len(self.designs))})
+
+    def ranking(self) -> pandas.DataFrame:
+        """The designs that are allowed, the best first, in the user's units; their goals, ``pareto`` and ``score``."""
+        return frames.ranking(self)
+
+    def recommendation(self) -> pandas.DataFrame:
+        """What to build, what limits it, what comes next: names and texts, as terminal and report begin."""
+        return frames.recommendation(self)
+
+    def margins(self, design: int | None = None) -> pandas.DataFrame:
+        """How far a design, if left out the recommended one, is from every limit."""
+        return frames.margins(self, design)
+
+    def misfits(self) -> pandas.DataFrame:
+        """The designs whose parts do not fit, and why."""
+        return frames.misfits(self)
+
+    def every_run(self, *metrics: str) -> xarray.Dataset:
+        """Metrics of all stored runs over design, tolerance sample (0: nominal) and collision; none named: all."""
+        return frames.every_run(self, metrics)
+
+    def trace(self, design: int | None = None, *, collision: str | None = None, sample: int = 0) -> Result:
+        """Simulate a design again, event-exact and with traces.
+
+        Args:
+            design: its number; left out: the recommended one.
+            collision: by name; left out: the first.
+            sample: of the tolerances; 0: nominal.
+        """
+        return frames.trace(self, design, collision, sample)
 
     def sensitivities(self) -> Sensitivities:
         """Of the objectives, where the designs allow it: Morris and Sobol indices need a value of every design."""
