@@ -9,9 +9,10 @@
 #define BANK_OF_RELEASE 2U /* decides on the end of a contact, and sets the baseline there */
 #define RELEASE_FLOOR_N2 ((gw_real_t)16.0)
 #define MODEL_TIME_S \
-    ((gw_real_t)0.012)               /* the measured acceleration alone is too noisy to say how wrong the model is \
-                                      */
-#define HELD_TIME_S ((gw_real_t)1.0) /* for which the end of an old contact is forgiven */
+    ((gw_real_t)0.012)                /* the measured acceleration alone is too noisy to say how wrong the model is \
+                                       */
+#define HELD_TIME_S ((gw_real_t)10.0) /* for which the end of an old contact is forgiven */
+#define HELD_DOUBT ((gw_real_t)1.5)   /* times what the baseline holds of it */
 /* From this low-pass on an encoder's count is one of many, and the noise nearly normal: less of its variance is enough.
  * In the shorter ones counts of several wheels fall together, which normal noise does not do. */
 #define FIRST_NORMAL 2U
@@ -151,13 +152,16 @@ static void clear_bank(gw_fast_channel_t *channel)
 void gw_fast_channel_restart(gw_fast_channel_t *channel)
 {
     static const gw_balance_t no_balance = {0};
+    static const gw_wrench_t nothing = {0};
     static const gw_vector_t no_force = {0};
     static const gw_planar_covariance_t no_doubt = {0};
     channel->baseline = no_balance;
     channel->model_n2 = no_doubt;
     channel->moment_nm2 = GW_ZERO;
     channel->moment_noise_m2 = channel->moment_per_force_m2;
-    channel->held_n = no_force;
+    channel->held = nothing;
+    channel->doubt_n = no_force;
+    channel->held_share = GW_ZERO;
     channel->sensor = GW_BY_ENCODERS;
     channel->shaking_n2 = GW_ZERO;
     channel->followed = 0U;
@@ -193,9 +197,11 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
         holds = shares_and_noise_hold(channel) && gw_balance_is_within(&channel->baseline, GW_BALANCE_MAX) &&
                 gw_model_forces_are_within(&channel->model, GW_CHANGE_MAX) &&
                 gw_planar_is_within(channel->model_n2, VARIANCE_MAX) &&
-                gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) && gw_within(channel->held_n.x, HELD_MAX_N) &&
-                gw_within(channel->held_n.y, HELD_MAX_N) && (channel->followed < GW_BANK_COUNT) &&
-                (channel->sensor < GW_SENSOR_COUNT) && gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2);
+                gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) &&
+                gw_wrench_is_within(&channel->held, HELD_MAX_N) && gw_within(channel->doubt_n.x, HELD_MAX_N) &&
+                gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_in_range(channel->held_share, GW_ZERO, GW_ONE) &&
+                (channel->followed < GW_BANK_COUNT) && (channel->sensor < GW_SENSOR_COUNT) &&
+                gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2);
         for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
             holds = holds && gw_wrench_is_within(&channel->bank[j], GW_CHANGE_MAX);
         }
@@ -280,13 +286,31 @@ void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_
                                    : channel->moment_per_force_m2;
 }
 
+/* What the baseline holds of a contact grows with a contact that lasts and grows: the baseline follows it. */
+static void hold(gw_fast_channel_t *channel, const gw_wrench_t *change, bool follows)
+{
+    gw_wrench_t *const held = &channel->held;
+    const gw_real_t keep = channel->held_keep;
+    const bool grows = (((held->force_x_n + channel->doubt_n.x) * change->force_x_n) +
+                        ((held->force_y_n + channel->doubt_n.y) * change->force_y_n)) > GW_ZERO;
+    const gw_real_t share = (follows && grows) ? (channel->held_share * channel->baseline_share) : GW_ZERO;
+    held->force_x_n = gw_limited((keep * held->force_x_n) + (share * change->force_x_n), HELD_MAX_N);
+    held->force_y_n = gw_limited((keep * held->force_y_n) + (share * change->force_y_n), HELD_MAX_N);
+    held->torque_nm = gw_limited((keep * held->torque_nm) + (share * change->torque_nm), HELD_MAX_N);
+    channel->doubt_n.x = keep * channel->doubt_n.x;
+    channel->doubt_n.y = keep * channel->doubt_n.y;
+    channel->held_share = keep * channel->held_share;
+}
+
 void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, const gw_balance_t *balance,
                           gw_regime_t regime, bool quiet, gw_fast_found_t *found)
 {
     const gw_balance_t change = gw_balance_difference(balance, &channel->baseline);
     const gw_vector_t correction = gw_follower_correction(follower, kinematics, &change.model);
-    const gw_vector_t held = channel->held_n;
+    const gw_vector_t held = {HELD_DOUBT * (channel->held.force_x_n + channel->doubt_n.x),
+                              HELD_DOUBT * (channel->held.force_y_n + channel->doubt_n.y)};
+    const gw_real_t held_nm = HELD_DOUBT * channel->held.torque_nm;
     found->change.force_x_n = change.residual.force_x_n + correction.x;
     found->change.force_y_n = change.residual.force_y_n + correction.y;
     found->change.torque_nm = change.residual.torque_nm;
@@ -294,6 +318,7 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
     gw_model_forces_approach(&channel->model, &change.model, channel->model_share, GW_CHANGE_MAX);
     const gw_planar_spread_t along = gw_planar_spread(channel->model_n2);
     const gw_planar_spread_t against = gw_planar_spread(gw_planar_widened(channel->model_n2, held));
+    const gw_real_t against_nm2 = channel->moment_nm2 + (held_nm * held_nm);
     const gw_real_t floor_n = gw_force_floor(config->fast, regime);
     const gw_real_t noise_multiple =
         (channel->sensor == GW_BY_IMU) ? config->imu_noise_multiple : config->noise_multiple;
@@ -308,9 +333,10 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
         const gw_vector_t force_n = {x->force_x_n, x->force_y_n};
         const bool ends = ((held.x * force_n.x) + (held.y * force_n.y)) < GW_ZERO;
         const gw_planar_spread_t *const spread = ends ? &against : &along;
+        const gw_real_t moment_nm2 = ends ? against_nm2 : channel->moment_nm2;
         const gw_real_t statistic = gw_planar_distance(spread, n2, force_n) +
                                     gw_planar_ratio(x->torque_nm * x->torque_nm,
-                                                    ((n2 * channel->moment_noise_m2) + channel->moment_nm2) +
+                                                    ((n2 * channel->moment_noise_m2) + moment_nm2) +
                                                         (noise_square * channel->gyro_noise_nm2[channel->sensor][j]));
         if (statistic > found->statistic) {
             found->statistic = statistic;
@@ -321,8 +347,7 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
             found->release = gw_planar_distance(spread, found->release_n2, force_n);
         }
     }
-    channel->held_n.x = channel->held_keep * held.x;
-    channel->held_n.y = channel->held_keep * held.y;
+    hold(channel, &channel->bank[GW_BANK_COUNT - 1U], quiet);
     if (quiet && (found->statistic < GW_HALF)) {
         follow_noise(channel, regime);
     }
@@ -348,9 +373,14 @@ void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *bal
     const gw_real_t left_n = gw_max((left->force_x_n * d.x) + (left->force_y_n * d.y), GW_ZERO);
     const gw_real_t unknown_n2 =
         ((((m.xx * d.x) * d.x) + ((GW_TWO * m.xy) * (d.x * d.y))) + ((m.yy * d.y) * d.y)) + found->release_n2;
-    const gw_real_t held_n = gw_min(left_n + gw_sqrt(gw_max(unknown_n2, GW_ZERO)), HELD_MAX_N);
-    channel->held_n.x = held_n * d.x;
-    channel->held_n.y = held_n * d.y;
+    const gw_real_t doubt_n = gw_min(gw_sqrt(gw_max(unknown_n2, GW_ZERO)), HELD_MAX_N);
+    gw_wrench_t *const held = &channel->held;
+    held->force_x_n = gw_limited(held->force_x_n + (left_n * d.x), HELD_MAX_N);
+    held->force_y_n = gw_limited(held->force_y_n + (left_n * d.y), HELD_MAX_N);
+    held->torque_nm = gw_limited(held->torque_nm + left->torque_nm, HELD_MAX_N);
+    channel->doubt_n.x = doubt_n * d.x;
+    channel->doubt_n.y = doubt_n * d.y;
+    channel->held_share = GW_ONE;
     /* The baseline becomes this balance, but for the change beyond what the low-pass holds: that is noise. */
     channel->baseline.model = balance->model;
     const gw_wrench_t beyond = {left->force_x_n - found->change.force_x_n, left->force_y_n - found->change.force_y_n,

@@ -7,9 +7,8 @@
  *     S = (k_n^2 noise + floor^2) I + k_m^2 M + h h^T
  *
  * where the noise of each low-pass is followed and k_n is smaller for the longer ones, M is what the follower does not
- * know of friction and mass with the forces of this tick, and h is what the baseline may still hold of the last
- * contact: its end, a change against its direction, is no hit. The moment has a variance of its own. The channel trips
- * if x^T S^-1 x > 1.
+ * know of friction and mass with the forces of this tick, and h is what the baseline holds of contacts that last: their
+ * end, a change against that, is no hit. The moment has a variance of its own. The channel trips if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
@@ -59,7 +58,11 @@ typedef struct {
     gw_planar_covariance_t model_n2; /* k_m^2 M */
     gw_real_t moment_nm2;            /* likewise of the moment */
     gw_real_t moment_noise_m2; /* variance of the moment's noise over that of the force's, as the wheels turn now */
-    gw_vector_t held_n;
+    /* What the baseline holds of contacts, how sure nobody is of that, along the last one, and the share of the
+     * baseline's motion that is put down to them. All fade after a contact. */
+    gw_wrench_t held;
+    gw_vector_t doubt_n;
+    gw_real_t held_share;
     uint32_t followed; /* the low-pass whose noise is followed in this tick */
 } gw_fast_channel_t;
 

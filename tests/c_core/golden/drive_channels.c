@@ -270,7 +270,9 @@ static void take_fast(digest_t *digest, const gw_channels_t *channels, const gw_
     digest_balance(digest, &fast->baseline);
     digest_covariance(digest, fast->model_n2);
     digest_real(digest, fast->moment_nm2);
-    digest_vector(digest, fast->held_n);
+    digest_wrench(digest, fast->held);
+    digest_vector(digest, fast->doubt_n);
+    digest_real(digest, fast->held_share);
 }
 
 static void take_slow(digest_t *digest, const gw_channels_t *channels, const gw_channels_output_t *output)

@@ -332,9 +332,9 @@ static void the_end_of_a_contact_is_no_hit(void)
         uint32_t pause; /* ticks */
         bool hit;
     } rows[] = {
-        {R(0.0), R(0.0), 0U, false},   {R(50.0), R(0.0), 0U, false},  {R(-100.0), R(0.0), 0U, true},
-        {R(200.0), R(0.0), 0U, true},  {R(100.0), R(50.0), 0U, true}, {R(90.0), R(-50.0), 0U, true},
-        {R(0.0), R(0.0), 3000U, true}, /* forgiven for a second or so */
+        {R(0.0), R(0.0), 0U, false},    {R(50.0), R(0.0), 0U, false},   {R(-100.0), R(0.0), 0U, true},
+        {R(200.0), R(0.0), 0U, true},   {R(100.0), R(50.0), 0U, true},  {R(90.0), R(-50.0), 0U, true},
+        {R(0.0), R(0.0), 3000U, false}, {R(0.0), R(0.0), 30000U, true}, /* forgiven for ten seconds or so */
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         gw_real_t largest = GW_ZERO;
@@ -352,18 +352,46 @@ static void the_end_of_a_contact_is_no_hit(void)
     }
 }
 
-/* What the third low-pass holds, and the root of its variance with a floor of 4 N besides; for a second. */
+/* What the third low-pass holds, and the root of its variance with a floor of 4 N besides; for 10 s. */
 static void what_may_be_left_of_a_contact_fades(void)
 {
     begin();
     const gw_real_t variance = threshold_n2(GW_REGIME_REST, 2U) + R(16.0);
     hold_100_n();
-    const gw_real_t held = (R(100.0) + gw_sqrt(variance)) * channel.held_keep;
-    CHECK_NEAR(channel.held_n.x, held, R(200.0) * ROUNDING);
-    CHECK_NEAR(channel.held_keep, R(0.999), ROUNDING);
-    CHECK(channel.held_n.y == GW_ZERO);
-    steps(1000U);
-    CHECK_NEAR(channel.held_n.x, held * gw_exp(R(-1.0005)), R(0.01));
+    CHECK_NEAR(channel.held_keep, R(0.9999), ROUNDING);
+    CHECK_NEAR(channel.held.force_x_n, R(100.0) * channel.held_keep, R(300.0) * ROUNDING);
+    CHECK_NEAR(channel.doubt_n.x, gw_sqrt(variance) * channel.held_keep, R(100.0) * ROUNDING);
+    CHECK_NEAR(channel.held_share, channel.held_keep, ROUNDING);
+    CHECK((channel.held.force_y_n == GW_ZERO) && (channel.doubt_n.y == GW_ZERO));
+    steps(10000U);
+    const gw_real_t left = gw_exp(R(-1.00005));
+    CHECK_NEAR(channel.held.force_x_n, R(100.0) * left, R(0.2));
+    CHECK_NEAR(channel.doubt_n.x, gw_sqrt(variance) * left, R(0.1));
+    CHECK_NEAR(channel.held_share, left, R(0.001));
+}
+
+/* The baseline follows a contact that grows, the slowest low-pass tells by how much; one that shrinks leaves what was
+ * held, and so does one whose contact is being felt. */
+static void what_is_held_of_a_contact_grows_with_it(void)
+{
+    for (uint32_t i = 0U; i < 3U; i++) {
+        begin();
+        hold_100_n();
+        const bool grows = (i == 0U);
+        channel.bank[3].force_x_n = (i == 1U) ? R(-60.0) : R(60.0);
+        channel.bank[3].force_y_n = R(30.0);
+        channel.bank[3].torque_nm = R(12.0);
+        const gw_fast_channel_t before = channel;
+        step(GW_REGIME_REST, i != 2U);
+        unit_row(i);
+        const gw_real_t share = grows ? (before.held_share * before.baseline_share) : GW_ZERO;
+        const gw_wrench_t *const slowest = &channel.bank[3];
+        CHECK_NEAR(channel.held.force_x_n, (before.held_keep * before.held.force_x_n) + (share * slowest->force_x_n),
+                   R(200.0) * ROUNDING);
+        CHECK_NEAR(channel.held.force_y_n, share * slowest->force_y_n, R(10.0) * ROUNDING);
+        CHECK_NEAR(channel.held.torque_nm, share * slowest->torque_nm, R(10.0) * ROUNDING);
+        CHECK((channel.held.force_y_n > GW_ZERO) == grows);
+    }
 }
 
 /* With a covariance of the model, along (3, 4)/5: d^T M d = (9 * 25 + 24 * 10 + 16 * 50)/25 = 50.6. A force against
@@ -389,9 +417,13 @@ static void what_the_model_does_not_know_may_be_left_of_a_contact(void)
         balance.model.friction_n.wheel[1] = R(9.0);
         gw_fast_channel_release(&channel, &balance, &found, direction);
         unit_row(i);
-        const gw_real_t held = ((i == 0U) ? R(50.0) : GW_ZERO) + R(10.0);
-        CHECK_NEAR(channel.held_n.x, R(0.6) * held, R(100.0) * ROUNDING);
-        CHECK_NEAR(channel.held_n.y, R(0.8) * held, R(100.0) * ROUNDING);
+        const gw_real_t left = (i == 0U) ? R(50.0) : GW_ZERO;
+        CHECK_NEAR(channel.held.force_x_n, R(0.6) * left, R(150.0) * ROUNDING);
+        CHECK_NEAR(channel.held.force_y_n, R(0.8) * left, R(150.0) * ROUNDING);
+        CHECK_NEAR(channel.held.torque_nm, R(5.0), R(10.0) * ROUNDING);
+        CHECK_NEAR(channel.doubt_n.x, R(6.0), R(20.0) * ROUNDING);
+        CHECK_NEAR(channel.doubt_n.y, R(8.0), R(20.0) * ROUNDING);
+        CHECK(channel.held_share == GW_ONE);
         /* The balance, but for the change beyond what the low-pass holds. */
         CHECK(channel.baseline.model.friction_n.wheel[1] == R(9.0));
         CHECK_NEAR(channel.baseline.residual.force_x_n, R(7.0) + ((sign * R(30.0)) - R(33.0)), R(100.0) * ROUNDING);
@@ -565,7 +597,8 @@ static void a_restart_keeps_what_was_learned_of_the_noise(void)
     gw_fast_channel_restart(&channel);
     CHECK(gw_fast_channel_invariant_holds(&channel));
     CHECK(channel.noise_n2[GW_BY_IMU][GW_REGIME_MOTION][1] == R(123.0));
-    CHECK((channel.held_n.x == GW_ZERO) && (channel.baseline.residual.force_x_n == GW_ZERO));
+    CHECK((channel.held.force_x_n == GW_ZERO) && (channel.held_share == GW_ZERO) &&
+          (channel.baseline.residual.force_x_n == GW_ZERO));
     CHECK((channel.sensor == GW_BY_ENCODERS) && (channel.shaking_n2 == GW_ZERO));
 }
 
@@ -639,8 +672,12 @@ static void the_invariant_sees_every_member(void)
                                   &channel.model_n2.yy,
                                   &channel.moment_nm2,
                                   &channel.moment_noise_m2,
-                                  &channel.held_n.x,
-                                  &channel.held_n.y};
+                                  &channel.held.force_x_n,
+                                  &channel.held.force_y_n,
+                                  &channel.held.torque_nm,
+                                  &channel.doubt_n.x,
+                                  &channel.doubt_n.y,
+                                  &channel.held_share};
     CHECK(!gw_fast_channel_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
         unit_row(i);
@@ -693,6 +730,7 @@ void suite_fast_channel(void)
     unit_run("an_outlier_counts_little", an_outlier_counts_little);
     unit_run("the_end_of_a_contact_is_no_hit", the_end_of_a_contact_is_no_hit);
     unit_run("what_may_be_left_of_a_contact_fades", what_may_be_left_of_a_contact_fades);
+    unit_run("what_is_held_of_a_contact_grows_with_it", what_is_held_of_a_contact_grows_with_it);
     unit_run("what_the_model_does_not_know_may_be_left_of_a_contact",
              what_the_model_does_not_know_may_be_left_of_a_contact);
     unit_run("vibration_that_an_imu_sees_counts_at_once", vibration_that_an_imu_sees_counts_at_once);
