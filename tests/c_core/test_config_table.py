@@ -67,7 +67,7 @@ def members() -> dict[str, str]:
 
 def described() -> dict[tuple[str, str], tuple[float, float]]:
     """(Module, member) to the range in the comment above it; a comment with one range applies to all members below."""
-    ranges = {}
+    ranges: dict[tuple[str, str], tuple[float, float]] = {}
     for header in sorted(HEADERS.glob("gw_*.h")):
         for structure in re.findall(r"typedef struct \{\n(.*?)\} gw_\w+_config_t;", header.read_text(), re.DOTALL):
             for comment, members in DESCRIBED.findall(structure):
