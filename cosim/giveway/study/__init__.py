@@ -243,6 +243,16 @@ class Study:
         self.document["designs"] = {"kind": kind, **_given(keys)}
         return self
 
+    def drivetrain(self, *, load: Literal["base", "wheel"] | None = None, servo_delay: int | None = None) -> Study:
+        """Show all metrics of the drivetrain: servo margins, bandwidth, resonance, inertia, smallest push.
+
+        Args:
+            load: of the linear drivetrain: the "base" in straight motion (if left out), or a lifted "wheel".
+            servo_delay: ticks of 0.5 ms from encoder to torque; 0 if left out. The runs have none.
+        """
+        self.document["drivetrain"] = _given({"load": load, "servo_delay": servo_delay})
+        return self
+
     def tolerances(
         self,
         *,

@@ -66,6 +66,7 @@ def asked(setup: Setup) -> list[tuple[str, str]]:
         ("controller", in_words(dict(scalars(document.get("controller", {}))))),
         ("duration", f"{scenario.duration_s:g} s"),
         ("sensor noise", _noise(setup)),
+        ("linear drivetrain", _drivetrain(setup)),
         ("designs", _designs(setup)),
         ("objectives", "; ".join(in_words(one) for one in setup.document.get("objective", [])) or "none"),
     ]
@@ -85,6 +86,13 @@ def _designs(setup: Setup) -> str:
         stated |= {"designs": f"at most {search.designs:,}", "population": search.population}
         stated |= {key: value for key, value in told.items() if key not in stated}
     return in_words(stated)
+
+
+def _drivetrain(setup: Setup) -> str:
+    if not setup.derived:
+        return ""
+    load = {"base": "base in straight motion", "wheel": "lifted wheel"}[setup.drivetrain.load]
+    return f"gear slides, load: {load}, servo delay: {setup.drivetrain.servo_delay} ticks"
 
 
 def _region(given: str | None, judged: str | None) -> str:

@@ -20,6 +20,7 @@ from giveway.base.words import memory
 from giveway.library.batch_library import library
 from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
+from giveway.study.drivetrain_metrics import derived
 from giveway.study.parts import choices_of
 from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
 from giveway.study.runs import RunTable
@@ -96,6 +97,7 @@ class _Prepared:
     keys: list[bytes]
     stated: Stated
     refused: dict[int, str]
+    derived: dict[str, tuple[NDArray[np.float64], str]]
 
 
 def plan_runs(setup: Setup) -> RunTable:
@@ -260,7 +262,8 @@ class Runner:
                 refused[index] = message
                 # A refused run may have the values of a possible one: its slider was never placed.
                 keys[index] = hashlib.blake2b(keys[index] + message.encode(), digest_size=len(keys[index])).digest()
-        return _Prepared(first, values, case, keys, stated, refused)
+        found = derived(table.derived, table.drivetrain, values, stated)
+        return _Prepared(first, values, case, keys, stated, refused, found)
 
     def _run_part(self, part: _Prepared, following: tuple[int, int] | None) -> _Prepared | None:
         """Run and store a part; meanwhile prepare the ``following`` one (first run, number of runs)."""
@@ -283,7 +286,8 @@ class Runner:
         where = np.array(fresh, dtype=np.int64)
         prepared = self._run_fresh(part, where, outcomes, following)
         outcomes.copy(np.array(twins, dtype=np.int64), np.array(twins_of, dtype=np.int64))
-        path = self._store.write_part(part.first, part_table(self._table, part.first, part.keys, outcomes, part.stated))
+        stored = part_table(self._table, part.first, part.keys, outcomes, part.stated, part.derived)
+        path = self._store.write_part(part.first, stored)
         keys = [b"" if s in NOT_CACHED else key for key, s in zip(part.keys, outcomes.status, strict=True)]
         self._index.add(path, keys)
         self._stored += len(part.keys)
@@ -368,6 +372,9 @@ def fingerprint_of(table: RunTable, contexts: list[bytes]) -> str:
         found.update(hashlib.sha256(part).digest())
     for case in table.cases:
         found.update(case.base.tobytes() + repr(case.case.hit).encode())
+    if table.derived:
+        told = [table.derived, table.drivetrain.load, table.drivetrain.servo_delay]
+        found.update(json.dumps(told).encode())
     for choice in choices_of(table.varied):  # a design has the number of its part, which may be another one by now
         stated = {name: (column.unit, column.cells) for name, column in choice.catalogue.columns.items()}
         found.update(json.dumps([choice.name, choice.parts, choice.count, stated]).encode())

@@ -1,8 +1,11 @@
-"""Names of what the batch library measures, as a study's objectives and constraints call them."""
+"""Names of what comes out of a run, as a study's objectives and constraints call them: what the batch library measures,
+and what follows from the drivetrain's parameters (`drivetrain_metrics`)."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,10 +16,34 @@ from giveway.simulation.metric_names import current_name
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["MASS_OF_PARTS", "PRICE_OF_PARTS", "Metric", "all_metrics", "find_metric"]
+__all__ = [
+    "DRIVETRAIN",
+    "IMPACT_FORCE",
+    "MASS_OF_PARTS",
+    "PRICE_OF_PARTS",
+    "Metric",
+    "all_metrics",
+    "find_metric",
+    "usual_sense",
+]
 
 TRUE, ERROR = " (true)", " (error)"
 PRICE_OF_PARTS, MASS_OF_PARTS = "price of parts", "mass of parts"  # of a design, not of its runs (parts.py)
+IMPACT_FORCE, SMALLEST_PUSH, INERTIA = "impact force", "smallest detectable push", "reflected inertia"
+DRIVETRAIN: Mapping[str, str] = MappingProxyType(
+    {
+        "torque bandwidth": "Hz",
+        "first resonance": "Hz",
+        "servo gain margin": "dB",
+        "servo phase margin": "deg",
+        "servo delay margin": "ms",
+        SMALLEST_PUSH: "N",
+        INERTIA: "kg",
+        IMPACT_FORCE: "N",
+    }
+)
+"""What follows from the parameters of a run, and its unit."""
+_LESS_IS_BETTER = (SMALLEST_PUSH, INERTIA, IMPACT_FORCE)
 
 
 @dataclass(frozen=True)
@@ -51,8 +78,13 @@ class Metric:
         return np.abs(results[self.column] - results[self.truth])
 
 
+def usual_sense(metric: Metric) -> int:
+    """1: less of it is better, or nobody asks; -1: more."""
+    return -1 if metric.name in DRIVETRAIN and metric.name not in _LESS_IS_BETTER else 1
+
+
 def all_metrics() -> dict[str, Metric]:
-    """Everything the library measures, by name; ``NAME (true)`` and ``NAME (error)`` where there is a truth."""
+    """Everything that comes out of a run, by name; ``NAME (true)`` and ``NAME (error)`` where there is a truth."""
     from giveway.library.batch_library import native_metrics
 
     found = {}
@@ -62,7 +94,7 @@ def all_metrics() -> dict[str, Metric]:
             truth, error = metric.name + TRUE, metric.name + ERROR
             found[truth] = Metric(truth, metric.unit, truth)
             found[error] = Metric(error, metric.unit, metric.name, truth)
-    return found
+    return found | {name: Metric(name, unit, name) for name, unit in DRIVETRAIN.items()}
 
 
 def find_metric(field: str, name: str) -> Metric:

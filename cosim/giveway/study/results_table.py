@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +84,14 @@ class Outcomes:
             self.status[index], self.message[index] = self.status[other], self.message[other]
 
 
-def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcomes, stated: Stated) -> Any:
+def part_table(
+    table: RunTable,
+    first: int,
+    keys: list[bytes],
+    outcomes: Outcomes,
+    stated: Stated,
+    derived: Mapping[str, tuple[NDArray[np.float64], str]],
+) -> Any:
     """The pyarrow table of the runs from ``first`` on, which were asked to do what is ``stated``."""
     import pyarrow
 
@@ -109,6 +117,7 @@ def part_table(table: RunTable, first: int, keys: list[bytes], outcomes: Outcome
     for j, tolerance in enumerate(table.tolerances):
         unit = "1" if tolerance.relative else tolerance.quantity.unit
         columns[f"deviation of {tolerance.quantity.name}"] = (table.deviations[sample, j], unit)
+    columns |= derived
     for j, (name, unit) in enumerate(result_columns()):
         columns[name] = (np.ascontiguousarray(outcomes.numbers[:, j]), unit)
     arrays = [pyarrow.array(values) for values, _ in columns.values()]

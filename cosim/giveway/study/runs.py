@@ -103,6 +103,7 @@ class RunTable:
         self.samples = len(deviations)
         self.per_design = self.samples * len(self.cases)
         self.count = len(designs) * self.per_design
+        self.derived, self.drivetrain = setup.derived, setup.drivetrain
         self.rules = [part_rules(choice) for choice in choices_of(setup.varied)]
         quantities = [quantity for one in setup.varied for quantity in one.sets]
         quantities += [one.quantity for one in setup.tolerances]

@@ -15,7 +15,7 @@ from giveway.study.search_plan import SearchPlan
 if TYPE_CHECKING:
     from giveway.scenario.scenario import Scenario
 
-__all__ = ["Case", "Constraint", "Goal", "Hit", "Setup"]
+__all__ = ["Case", "Constraint", "DrivetrainPlan", "Goal", "Hit", "Setup"]
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,21 @@ class Constraint:
 
 
 @dataclass(frozen=True)
+class DrivetrainPlan:
+    """The table ``[drivetrain]``.
+
+    Attributes:
+        load: what the wheels of the linear drivetrain drive: "base" in straight motion, or a lifted "wheel".
+        servo_delay: ticks of 0.5 ms from reading the encoder to the torque; the runs have none.
+        stated: the table is there, so that all metrics are shown.
+    """
+
+    load: str = "base"
+    servo_delay: int = 0
+    stated: bool = False
+
+
+@dataclass(frozen=True)
 class Setup:
     """A study, ready to run.
 
@@ -109,6 +124,7 @@ class Setup:
         chosen: how many of the best designs are simulated once more, with traces.
         part_runs: runs per file; 0: chosen from how many there are.
         search: how the best designs are searched, if they are.
+        drivetrain, derived: of the linear drivetrain, and which metrics of it are needed.
         text, path: of the study file, for messages; None: from Python.
     """
 
@@ -131,5 +147,7 @@ class Setup:
     chosen: int
     part_runs: int
     search: SearchPlan
+    drivetrain: DrivetrainPlan = DrivetrainPlan()
+    derived: tuple[str, ...] = ()
     text: str | None = field(default=None, repr=False)
     path: Path | None = None

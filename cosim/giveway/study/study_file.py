@@ -21,7 +21,8 @@ from giveway.scenario.scenario import Scenario
 from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
 from giveway.simulation.run_warnings import plan_speed
 from giveway.study.distributions import Varied
-from giveway.study.metrics import Metric, find_metric
+from giveway.study.drivetrain_metrics import drivetrain_plan_of, metrics_shown, wanted
+from giveway.study.metrics import Metric, find_metric, usual_sense
 from giveway.study.part_rules import part_rules
 from giveway.study.parts import SUMS, PartChoice, choices_of, known_sums, part_metric, parts_of
 from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns
@@ -35,7 +36,7 @@ __all__ = ["check", "read"]
 SCHEMA_VERSION = 1
 _TOP = (
     "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
-    "parts", "tolerances", "tolerance", "objective", "constraint", "optimise", "report",
+    "parts", "tolerances", "tolerance", "drivetrain", "objective", "constraint", "optimise", "report",
 )  # fmt: skip
 _SCENARIO = (
     "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "preset", "plan", "push",
@@ -119,6 +120,17 @@ def check(
     title = top.text("name", name)
     if not 1 <= len(title) <= 80:
         raise GivewayError("name", title, "1 to 80 characters")
+    constraints = tuple(
+        _constraint(f"constraint[{i}]", one, judged, choices) for i, one in enumerate(_list(top, "constraint"))
+    )
+    drivetrain = drivetrain_plan_of(top)
+    asked_for = _shown(report, choices)
+    about_drivetrain = metrics_shown(drivetrain, cases)
+    derived = wanted(
+        {"objective": objectives, "constraint": [one.goal for one in constraints], "report.metrics": asked_for,
+         "drivetrain": about_drivetrain},
+        cases,
+    )  # fmt: skip
     return Setup(
         name=title,
         document=dict(document),
@@ -134,13 +146,18 @@ def check(
         tolerance_count=count,
         noise_seeds=noise,
         objectives=objectives,
-        constraints=tuple(
-            _constraint(f"constraint[{i}]", one, judged, choices) for i, one in enumerate(_list(top, "constraint"))
+        constraints=constraints,
+        shown=(
+            *(Goal(metric, 1) for metric in known_sums(choices)),
+            *about_drivetrain,
+            *_speeds(cases),
+            *asked_for,
         ),
-        shown=(*(Goal(metric, 1) for metric in known_sums(choices)), *_speeds(cases), *_shown(report, choices)),
         chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
         part_runs=whole("part_runs", top.values.get("part_runs", 0), 0, PART_MAX),
         search=search,
+        drivetrain=drivetrain,
+        derived=derived,
         text=text,
         path=path,
     )
@@ -342,4 +359,5 @@ def _shown(report: Section, choices: Sequence[PartChoice]) -> tuple[Goal, ...]:
     names = report.values.get("metrics", [])
     if not isinstance(names, list):
         raise GivewayError("report.metrics", names, "a list of metrics")
-    return tuple(Goal(_metric(f"report.metrics[{i}]", str(name), choices), 1) for i, name in enumerate(names))
+    found = [_metric(f"report.metrics[{i}]", str(name), choices) for i, name in enumerate(names)]
+    return tuple(Goal(metric, usual_sense(metric)) for metric in found)
