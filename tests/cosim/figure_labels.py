@@ -27,7 +27,7 @@ Unit = tuple[float, str]
 OTHER_UNIT = {
     "mm": "m", "cm": "mm", "m": "mm", "N": "kN", "N m": "N", "N s": "N", "ms": "s", "s": "ms", "m/s": "mm/s",
     "rad": "deg", "deg": "rad", "%": "1", "% of true": "1", "rad/s": "deg/s", "km/h": "m/s",
-    "N m/rad": "N m/deg", "N/mm": "N/m", "1/h": "1/s",
+    "kN": "N", "N m/rad": "N m/deg", "N/mm": "N/m", "1/h": "1/s",
 }  # fmt: skip
 
 

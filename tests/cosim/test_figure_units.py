@@ -259,6 +259,7 @@ HELD = {  # module and function that make a figure: the file that holds its labe
     "report/overview.py write_overview": HERE,
     "report/push_path.py path": "test_experiment_circle.py",
     "report/pushes.py _forces": "test_push_metrics.py",
+    "study/evidence_page.py forces": "test_study_evidence.py",
     "study/figures.py _panels": "test_study_units.py",
     "study/figures.py growth": "test_study_units.py",
     "study/figures.py sensitivities": "test_study_units.py",

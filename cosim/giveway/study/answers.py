@@ -222,6 +222,17 @@ class Answers:
         """
         return frames.trace(self, design, collision, sample)
 
+    def evidence(
+        self, design: int | None = None, *, speeds: Sequence[float] | None = None, masses: Sequence[float] | None = None
+    ) -> pandas.DataFrame:
+        """Forces, pressures and travel of a design over speed (m/s), place and mass (kg), worst within tolerances.
+
+        Left out: the recommended design, and speeds and masses around those of the study.
+        """
+        from giveway.study.evidence import evidence
+
+        return evidence(self, design, speeds=speeds, masses=masses).table
+
     def sensitivities(self) -> Sensitivities:
         """Of the objectives, where the designs allow it: Morris and Sobol indices need a value of every design."""
         return self._sensitivities

@@ -140,6 +140,50 @@ def study_compare(
         print_columns("Margins", compare.MARGIN_HEADER, found.margin_rows())
 
 
+@study_app.command("evidence")
+def study_evidence(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    design: Annotated[
+        int | None, typer.Option("--design", metavar="N", help="Without it: the recommended design.")
+    ] = None,
+    speeds: Annotated[
+        str | None, typer.Option("--speeds", metavar="A,B", help="Contact speeds, m/s; without it: around the study's.")
+    ] = None,
+    masses: Annotated[
+        str | None, typer.Option("--masses", metavar="A,B", help="Test masses, kg; without it: around the study's.")
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
+    ] = None,
+) -> None:
+    """Forces, pressure and travel of a design over speed, place and mass, worst within tolerances, as HTML and CSV."""
+    from giveway.study import messages
+    from giveway.study.evidence import NOTICE, evidence
+    from giveway.study.evidence_page import summary, write_evidence
+
+    found = _load(folder)
+    wanted = {"speeds": _numbers("--speeds", speeds), "masses": _numbers("--masses", masses)}
+    try:
+        with messages.showing("evidence") as progress:
+            told = evidence(found, design, threads=threads, progress=progress, **wanted)
+    except KeyboardInterrupt:
+        _interrupted("what is stored is kept; the same command goes on from there.")
+    written = write_evidence(found, told)
+    header, *rows = summary(told)
+    print_columns(f"Design {told.design}: worst case by speed", header, rows)
+    typer.echo(NOTICE)
+    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+
+
+def _numbers(option: str, text: str | None) -> list[float] | None:
+    from giveway.base.errors import GivewayError
+
+    try:
+        return None if text is None else [float(word) for word in text.split(",")]
+    except ValueError:
+        raise GivewayError(option, text, "numbers with commas between them, such as 0.25,0.5") from None
+
+
 @study_app.command("run")
 def study_run(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
