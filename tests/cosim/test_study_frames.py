@@ -78,6 +78,9 @@ def test_every_stored_run_has_its_place(answers: Answers) -> None:
         at = {name: int(runs[column][index]) for name, column in (("design", "design"), ("sample", "tolerance sample"))}
         assert float(peak.sel(**at, collision=runs["collision"][index])) == runs["peak force of the run"][index]
     assert found["force at detection (error)"].shape == (8, 2, 2)
+    everything = answers.every_run()
+    assert {"detection time", "force at detection (true)", "lasting force"} <= set(everything)
+    assert "servo gain margin" not in everything  # this study did not ask for it
     with pytest.raises(GivewayError, match="metrics: peak forse"):
         answers.every_run("peak forse")
 
