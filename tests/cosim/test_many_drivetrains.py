@@ -174,6 +174,37 @@ def test_the_command_says_the_same() -> None:
     assert many.first_resonance_hz()[0] == pytest.approx(first.frequency_hz, rel=1e-8)
 
 
+class Given(ManyDrivetrains):
+    """Trikey with another loop: near its resonance beyond -180 degrees, or with a gain that must not fall."""
+
+    must_not_fall = False
+
+    def loop(self, frequency_hz: NDArray[np.float64], which: NDArray[np.intp]) -> NDArray[np.complex128]:
+        s = 2j * np.pi * frequency_hz
+        if self.must_not_fall:
+            return np.asarray(np.where(frequency_hz > 900.0, 1e-3, 5.0 * (s + 2.0) ** 2 / s**3))
+        return np.asarray(-0.5 / ((s / 20.0) ** 2 + 0.2 * s / 20.0 + 1.0))
+
+
+class Falling(Given):
+    must_not_fall = True
+
+
+def test_a_gain_above_1_beyond_half_a_turn_is_no_margin() -> None:
+    drivetrain, servo = read()
+    given = Given.of(np.array([[*numbers_of(drivetrain), *gains_of(servo)]]))
+    # Through 1 upwards a little beyond -180 degrees, where delay helps, then downwards after most of a turn.
+    x = np.sqrt(np.roots([1.0, 0.04 - 2.0, 0.75]).real)  # (1 - x^2)^2 + (0.2 x)^2 = 0.25
+    angles = {float(one): math.degrees(math.atan2(0.2 * one, 1.0 - one**2)) for one in x}
+    margins = given.margins()
+    assert margins.phase_deg[0] == pytest.approx(min(angles.values()), rel=EXACT)
+    later = max(x)
+    wanted = (360.0 - angles[later]) / 360.0 / (20.0 * later / (2.0 * math.pi))
+    assert margins.delay_s[0] == pytest.approx(wanted, rel=EXACT)
+    falling = Falling.of(np.array([[*numbers_of(drivetrain), *gains_of(servo)]]))
+    assert falling.margins().gain_db[0] == math.inf  # at -5 on the real axis: it may grow as it likes
+
+
 def test_what_does_not_exist_is_not_a_number_or_infinite() -> None:
     drivetrain, servo = read()
     gains = ([0.0, 0.0], [servo.kp, 60.0 * servo.kd], [servo.kp, servo.kd])
