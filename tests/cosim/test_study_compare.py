@@ -63,6 +63,14 @@ def test_designs_and_margins_are_side_by_side(
     assert list(found.table().columns) == ["A", "B"]
 
 
+def test_the_change_is_known_across_units(both: tuple[Answers, Answers], tmp_path: Path) -> None:
+    in_kn = limited(2.6).constraint("peak force of the run", maximum=1.0, unit="kN")
+    found = compare(both[0], in_kn.run(tmp_path / "kn", progress=False))
+    (name, a, b, change) = next(row for row in found.recommended if row[0] == "peak force of the run")
+    old, new = float(a.removesuffix(" N")), 1e3 * float(b.removesuffix(" kN"))
+    assert float(change.removesuffix(" %")) == pytest.approx(100.0 * (new - old) / old, abs=0.1), name
+
+
 def test_a_study_that_allows_nothing_is_compared_by_its_nearest(both: tuple[Answers, Answers], tmp_path: Path) -> None:
     nothing = limited(0.1).run(tmp_path / "nothing", progress=False)
     found = compare(both[0], nothing)

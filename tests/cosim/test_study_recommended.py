@@ -65,6 +65,16 @@ def test_where_no_limit_keeps_a_better_design_out_the_range_does(tmp_path: Path)
     said = [text for name, text in advice(found).lines if name == "limited by"]
     assert said[0].startswith("no constraint")
     assert "the lowest testbed.bumper.spring_rate of this study, 0.6 N/mm" in said
+    assert "on the front" not in said[0]  # it is alone
+
+
+def test_others_on_the_front_are_counted(tmp_path: Path) -> None:
+    study = compressing(30.0).objective("peak force of the run", goal="maximise")
+    found = study.run(tmp_path / "study", progress=False)
+    others = found.pareto.sum() - 1
+    assert others > 1
+    said = dict(advice(found).lines[::-1])["limited by"]
+    assert said.endswith(f"; {others} designs on the front are better in some of them")
 
 
 def test_the_next_best_says_what_it_loses_and_the_next_with_other_parts(tmp_path: Path) -> None:

@@ -113,7 +113,13 @@ def _limited(answers: Answers, found: Recommended) -> list[tuple[str, str]]:
         changes = "; ".join(_changes(answers, found.tempting, found.design))
         lines.append(("limited by", f"{' and '.join(limits)}: {would} design {found.tempting}: {changes}"))
     elif setup.constraints:
-        lines.append(("limited by", "no constraint: no design that breaks one is better in all objectives"))
+        others = int(answers.pareto.sum()) - 1
+        rest = (
+            f"; {counted(others, 'design')} on the front {'is' if others == 1 else 'are'} better in some of them"
+            if others > 0
+            else ""
+        )
+        lines.append(("limited by", f"no constraint: no design that breaks one is better in all objectives{rest}"))
     for index, upper in found.ends:
         one = setup.varied[index]
         value = _quantity(one, float(answers.designs[found.design, index]))

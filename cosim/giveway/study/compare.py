@@ -90,7 +90,7 @@ def compare(a: Answers, b: Answers) -> Comparison:
 
 @dataclass(frozen=True)
 class _Side:
-    """One of the studies: what `Comparison` has of it, by name; ``reached``: value and unit of its objectives."""
+    """One of the studies: what `Comparison` has of it, by name; ``reached``: value and own unit of objectives."""
 
     design: int | None
     title: str
@@ -110,7 +110,7 @@ def _side(answers: Answers) -> _Side:
         return _Side(None, title, asked, {}, {}, {})
     design = best.design if best is not None else near.design if near is not None else 0
     reached = {
-        answers.goal_name(i): (answers.goal_unit(i).of(float(answers.values[design, i])), answers.goal_unit(i).name)
+        answers.goal_name(i): (float(answers.values[design, i]), answers.goals[i].metric.unit)
         for i in range(len(answers.setup.objectives))
     }
     margins = {f"{one.name}, {one.allowed[:8]}": one for one in margins_of(answers, design)}  # at most, at least
@@ -121,7 +121,7 @@ def _side(answers: Answers) -> _Side:
 
 
 def _change(one: _Side, other: _Side, name: str) -> str:
-    """What B has more than A, in % of A, of an objective that both have in the same unit."""
+    """What B has more than A, in % of A, of an objective that both have."""
     (old, unit), (new, its) = (side.reached.get(name, (math.nan, "")) for side in (one, other))
     return f"{100.0 * (new - old) / abs(old):+.3g} %" if unit == its and old and math.isfinite(new - old) else ""
 

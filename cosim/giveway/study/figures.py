@@ -126,7 +126,10 @@ def _panels(
         wspace=between_in[0] / panel,
         hspace=between_in[1] / height_in,
     )
-    return figure, figure.subplots(rows, columns, squeeze=False, **shared)
+    grid = figure.subplots(rows, columns, squeeze=False, **shared)
+    for axes in grid.flat:
+        axes.ticklabel_format(useOffset=False)  # "+1.256e1" in a corner is overlooked
+    return figure, grid
 
 
 def _points(
