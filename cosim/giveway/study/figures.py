@@ -36,7 +36,7 @@ QUANTITIES_MAX = 5
 CHOICES_LEVEL = 3  # so many names stand side by side under a panel; more are turned
 CHOICE_IN = 0.11  # width of a turned name
 BEFORE_MS, AFTER_MS = 20.0, 250.0
-WIDTH_IN, LEFT_IN, RIGHT_IN, BOTTOM_IN = 9.6, 0.75, 0.15, 0.5
+WIDTH_IN, LEFT_IN, RIGHT_IN, BOTTOM_IN = 9.6, 0.95, 0.15, 0.5
 LEGEND_COLUMNS, LEGEND_IN = 5, 0.24  # entries in a line, and its height
 PAIRS_BESIDE = 3  # panels of the trade-off side by side
 MARKERS = "D^svPX*"
@@ -77,7 +77,7 @@ def trade_off(answers: Answers) -> Figure:
     rows = math.ceil(len(wanted) / columns)
     best = answers.order[: max(1, answers.setup.chosen)].tolist()
     height = 3.6 if columns == 1 else 2.7
-    figure, grid = _panels(rows, columns, height, 3 + len(best), (0.62, 0.75), bottom_in=0.7)
+    figure, grid = _panels(rows, columns, height, 3 + len(best), (0.8, 0.75), bottom_in=0.7)
     shown = drawn(answers, len(wanted))
     on_front = np.flatnonzero(answers.pareto)
     on_front = on_front[:: 1 + len(on_front) // POINTS_MAX]
