@@ -7,8 +7,8 @@ the gear slides, the load is the base in straight motion or a lifted wheel) and 
     impact force       max(latch, sqrt(F_0^2 + k v^2 m m_s/(m + m_s)))   m: the former, m_s: slider
 
 The impact force is that of two masses and a spring k without loss, hit in line with the middle of the base: the contact
-without a bumper, contact and spring in series with one, whose preload is F_0; v is the speed at which they meet. It
-is an upper bound, since torque sensors give way and bumpers end.
+without a bumper, contact and spring in series with one, whose preload is F_0; v is the speed at which they meet. Runs
+stay below, since torque sensors give way, unless a bumper reaches its stop or a rope goes on pulling: neither is in it.
 """
 
 from __future__ import annotations
