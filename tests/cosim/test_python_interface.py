@@ -101,6 +101,7 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
         "parts",
         "tolerances",
         "tolerance",
+        "drivetrain",
         "objective",
         "constraint",
         "optimise",
