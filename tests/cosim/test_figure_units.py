@@ -259,6 +259,7 @@ HELD = {  # module and function that make a figure: the file that holds its labe
     "report/push_path.py path": "test_experiment_circle.py",
     "report/pushes.py _forces": "test_push_metrics.py",
     "study/figures.py effects": "test_study_units.py",
+    "study/figures.py growth": "test_study_units.py",
     "study/figures.py sensitivities": "test_study_units.py",
     "study/figures.py traces": HERE,
     "study/figures.py trade_off": "test_study_units.py",

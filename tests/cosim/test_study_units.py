@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import html
 from pathlib import Path
 
@@ -78,6 +79,14 @@ def test_the_figures_labels_say_what_they_draw(answers: Answers) -> None:
             x = answers.designs[:, column]
             panels.append([curve(x[some], x_unit, values[some], unit) for some in (good, bad)])
     check_planted(figure, lambda: check_panels(figure, panels))
+
+
+def test_the_growth_of_a_search_is_in_shares_of_its_end(answers: Answers) -> None:
+    told = {"designs": [24, 48, 72], "hypervolume": [2.0, 3.0, 4.0], "reference": None, "reason": "enough"}
+    figure = figures.growth(dataclasses.replace(answers, manifest=answers.manifest | {"optimum": told}))
+    assert figure is not None
+    wanted = curve([24.0, 48.0, 72.0], "1", [0.5, 0.75, 1.0], "1")
+    check_planted(figure, lambda: check_panels(figure, [[wanted]]))
 
 
 def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> None:

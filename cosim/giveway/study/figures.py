@@ -86,7 +86,7 @@ def growth(answers: Answers) -> Figure | None:
     share = 100.0 * np.array(told["hypervolume"]) / told["hypervolume"][-1]
     axes.plot(told["designs"], share, "o-", color=FRONT_COLOUR, ms=3, lw=1.2)
     axes.set_xlabel("designs")
-    axes.set_ylabel("hypervolume (% of the last)")
+    axes.set_ylabel("hypervolume, share of the last (%)")
     return figure
 
 
