@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from giveway.base.options import ThreadsOption
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, working
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="controller.NAME=VALUE", help="Set a parameter of the controller."),
 ]
-ThreadsOption = Annotated[int | None, typer.Option("--threads", help="Native threads; without it: all processors.")]
 
 
 @crowd_app.callback(invoke_without_command=True)
