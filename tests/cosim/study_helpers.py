@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +16,21 @@ from giveway.study.answers import Answers
 from giveway.study.store import PARTS, list_parts, read_manifest
 
 LATCH, SPRING = "testbed.bumper.latch_force", "testbed.bumper.spring_rate"
+LATCH_STUDY = """\
+[scenario]
+duration = 0.2
+bumper = "magnetic"
+[[collision]]
+speed = 0.5
+mass = 9.08
+edge = 0
+time = 0.12
+[[vary]]
+quantity = "testbed.bumper.latch_force"
+low = 0.0
+high = 60.0
+"""
+"""Lines of a study file: a collision of 0.1 s with latches of any force."""
 
 
 class SmallStudy(Study):
@@ -44,3 +63,19 @@ def stored_runs(folder: Path) -> dict[str, np.ndarray]:
     tables = [pyarrow.parquet.read_table(path) for _, _, path in parts]
     names = tables[0].column_names
     return {name: np.concatenate([np.array(table[name].to_pylist()) for table in tables]) for name in names}
+
+
+def interrupt(cwd: Path, command: list[str], parts: int) -> tuple[str, str]:
+    """Run ``giveway COMMAND --out NAME`` in ``cwd``, press Ctrl-C when so many parts are stored; output and errors."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "giveway", *command], cwd=cwd, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        for _ in range(1200):
+            if len(part_files(cwd / command[-1])) >= parts:
+                break
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        out, said = process.communicate(timeout=60)
+    assert process.returncode == 130, out + said
+    assert "Traceback" not in said
+    return out, said

@@ -11,23 +11,12 @@ from giveway.bench.optimum import Comparison, compare, shares_in_words
 from giveway.cli import _main
 from giveway.study.answers import load
 from giveway.study.hypervolume import hypervolume
+from study_helpers import LATCH_STUDY
 
-STUDY = """\
+STUDY = f"""\
 schema_version = 1
 method = "fixed-step"
-[scenario]
-duration = 0.2
-bumper = "magnetic"
-[[collision]]
-speed = 0.5
-mass = 9.08
-edge = 0
-time = 0.12
-[[vary]]
-quantity = "testbed.bumper.latch_force"
-low = 0.0
-high = 60.0
-[[vary]]
+{LATCH_STUDY}[[vary]]
 quantity = "testbed.bumper.spring_rate"
 low = 500.0
 high = 3000.0

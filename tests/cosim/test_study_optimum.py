@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -30,7 +29,7 @@ from giveway.study.report import write_report
 from giveway.study.search_plan import SearchPlan
 from giveway.study.setup import Constraint, Goal, Metric, Setup
 from giveway.study.store import PARTS, read_designs, read_manifest
-from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
+from study_helpers import LATCH, LATCH_STUDY, SPRING, interrupt, part_files, small_study, stored_runs
 
 TRAVEL = "testbed.bumper.travel"
 
@@ -270,21 +269,9 @@ def test_a_python_study_is_optimised_in_one_call(tmp_path: Path) -> None:
     assert answers.manifest["optimum"]["reason"].startswith("16 designs")
 
 
-STUDY = """\
+STUDY = f"""\
 schema_version = 1
-[scenario]
-duration = 0.2
-bumper = "magnetic"
-[[collision]]
-speed = 0.5
-mass = 9.08
-edge = 0
-time = 0.12
-[[vary]]
-quantity = "testbed.bumper.latch_force"
-low = 0.0
-high = 60.0
-[[objective]]
+{LATCH_STUDY}[[objective]]
 metric = "peak force of the run"
 [optimise]
 designs = 3000
@@ -359,16 +346,7 @@ def test_what_an_extra_lacks_itself_is_not_taken_for_the_extra(tmp_path: Path, m
 
 def test_ctrl_c_keeps_what_is_stored_and_the_same_command_goes_on(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text("part_runs = 5\n" + STUDY, encoding="utf-8")
-    command = [sys.executable, "-m", "giveway", "optimise", "s.toml", "--out", "s"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
-        for _ in range(1200):
-            if (tmp_path / "s").exists() and len(part_files(tmp_path / "s")) >= 8:
-                break
-            time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        out, said = process.communicate(timeout=60)
-    assert process.returncode == 130, out + said
-    assert "Traceback" not in said
+    _, said = interrupt(tmp_path, ["optimise", "s.toml", "--out", "s"], parts=8)
     assert "`giveway optimise s.toml --out s` goes on from there" in said
     assert len(stored_runs(tmp_path / "s")["run"]) >= 40
     assert not read_manifest(tmp_path / "s")["complete"]

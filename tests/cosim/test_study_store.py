@@ -19,7 +19,7 @@ from giveway.study.engine import Outcome, plan_runs, sweep
 from giveway.study.native_part import NativePart
 from giveway.study.results_table import read_part
 from giveway.study.store import KeyIndex, Store, read_manifest
-from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
+from study_helpers import LATCH, SPRING, interrupt, part_files, small_study, stored_runs
 
 KILLS = 20
 
@@ -257,16 +257,7 @@ high = 90.0
 levels = 3000
 """
     (tmp_path / "long.toml").write_text(text, encoding="utf-8")
-    command = [sys.executable, "-m", "giveway", "sweep", "long.toml", "--out", "long"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
-        for _ in range(600):
-            if len(part_files(tmp_path / "long")) >= 2:
-                break
-            time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        out, said = process.communicate(timeout=60)
-    assert process.returncode == 130, out + said
-    assert "Traceback" not in said
+    out, said = interrupt(tmp_path, ["sweep", "long.toml", "--out", "long"], parts=2)
     assert "`giveway sweep long.toml --out long` goes on from there" in said
     stored = stored_runs(tmp_path / "long")["run"]
     assert len(stored) >= 8

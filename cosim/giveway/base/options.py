@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["FmiOption", "RobotOption"]
+__all__ = ["FmiOption", "RobotOption", "ThreadsOption"]
 
 FmiOption = Annotated[int, typer.Option("--fmi", help="FMI version of the FMUs: 3 or 2.")]
+ThreadsOption = Annotated[int | None, typer.Option("--threads", help="Native threads; without it: all processors.")]
 RobotOption = Annotated[Path | None, typer.Option("--robot", metavar="FILE", help="Robot file (TOML).")]

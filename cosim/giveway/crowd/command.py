@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from giveway.base.options import ThreadsOption
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, working
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ SetOption = Annotated[
     typer.Option("--set", metavar="controller.NAME=VALUE", help="Set a parameter of the controller."),
 ]
 ImuOption = Annotated[bool, typer.Option("--imu", help="Of robots with accelerometer and gyro.")]
-ThreadsOption = Annotated[int | None, typer.Option("--threads", help="Native threads; without it: all processors.")]
 
 
 @crowd_app.callback(invoke_without_command=True)

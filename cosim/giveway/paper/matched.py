@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from giveway.paper.printed import printed
+from giveway.paper.printed import ERRORS_OF_PUSHES, printed
 
 __all__ = ["QUANTITIES", "SET_BY_HAND", "Quantity", "matched"]
 
@@ -116,17 +116,7 @@ SET_BY_HAND: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "admittance.escape_impulse": ("escape",),
         "moving.SPEED_MPS": ("robot speed",),
         # The fit's estimate and range are those that reproduce the errors of 5.1.
-        "roller.presliding_stiffness": tuple(
-            f"{error} of four pushes"
-            for error in (
-                "magnitude error, weakest",
-                "magnitude error, strongest",
-                "direction error, largest",
-                "direction error, mean",
-                "location error, largest",
-                "location error, mean",
-            )
-        ),
+        "roller.presliding_stiffness": ERRORS_OF_PUSHES,
         # The scatter from wheel to wheel is the least that brings these within reach.
         "static_push_study.robots.SCATTER": (
             "magnitude error, weakest of four pushes",

@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 from giveway.base.errors import UnknownNameError
 
-__all__ = ["NOT_JUDGED", "RESULTS", "Printed", "printed"]
+__all__ = ["ERRORS_OF_PUSHES", "NOT_JUDGED", "RESULTS", "Printed", "printed"]
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,9 @@ _ALL = (
 
 RESULTS: Mapping[str, Printed] = MappingProxyType({one.name: one for one in _ALL})
 """By name, in the order of the paper."""
+
+ERRORS_OF_PUSHES = tuple(name for name in RESULTS if name.endswith(" of four pushes"))
+"""The six of 5.1, by name: 5.5 to 10 N of 10 N; 12 deg at most, 2 % of the full circle in the mean; 11 cm, 4.5 cm."""
 
 NOT_JUDGED: Mapping[str, str] = MappingProxyType(
     {

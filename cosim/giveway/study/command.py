@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from giveway.base.options import ThreadsOption
 from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, working
 
 if TYPE_CHECKING:
@@ -27,9 +28,7 @@ def sweep_designs(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
     ] = None,
-    threads: Annotated[
-        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
-    ] = None,
+    threads: ThreadsOption = None,
     check: Annotated[
         bool, typer.Option("--check", help="Check the study and say how many runs it has; run nothing.")
     ] = False,
@@ -79,9 +78,7 @@ def optimise_designs(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the search. Without it: out/optima/STUDY.")
     ] = None,
-    threads: Annotated[
-        int | None, typer.Option("--threads", help="Native threads; without it: all processors.")
-    ] = None,
+    threads: ThreadsOption = None,
     check: Annotated[bool, typer.Option("--check", help="Check the study and say how many runs it may take.")] = False,
 ) -> None:
     """Search the best designs of a study, or go on with it; then what `giveway sweep` gives, too (needs pymoo)."""

@@ -66,10 +66,11 @@ def optimise(setup: Setup, folder: Path | str, *, threads: int | None = None, pr
     contexts = [case.context(shared) for case in table.cases]
     decides = {key: setup.document.get(key) for key in _DECIDES}
     told = json.dumps([engine.fingerprint_of(table, contexts), version, decides], sort_keys=True)
-    store = Store(folder, hashlib.sha256(told.encode()).hexdigest())
+    fingerprint = hashlib.sha256(told.encode()).hexdigest()
+    store = Store(folder, fingerprint)
     try:
         search = _Search(setup, store, deviations, Runner(setup, contexts, store, threads, progress))
-        search.manifest = {"shared": shared, "fingerprint": hashlib.sha256(told.encode()).hexdigest()}
+        search.manifest = {"shared": shared, "fingerprint": fingerprint}
         return search.run(version)
     finally:
         store.close()

@@ -78,7 +78,7 @@ def part_rules(choice: PartChoice) -> list[PartRule]:
             rules += _spring(choice, setting)
         if setting.quantity.name == LATCH_FORCE and MAX_TEMPERATURE in choice.catalogue.columns:
             limit, unit = _stated(choice, MAX_TEMPERATURE, "degC")
-            rules.append(PartRule(TOO_HOT, lambda of: of("temperature"), limit, 1, unit, "temperature", ("magnetic",)))
+            rules.append(PartRule(TOO_HOT, _value_of("temperature"), limit, 1, unit, "temperature", ("magnetic",)))
     for limit_ in choice.limits:
         name = limit_.quantity.name
         unit = WrittenUnit(*_written(choice, limit_.column, limit_.quantity.unit))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.paper.printed import printed
+from giveway.paper.printed import ERRORS_OF_PUSHES, printed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,19 +18,7 @@ __all__ = ["GROUP", "PRINTED", "group_values", "percentile_of"]
 GROUP = 4
 PAPER_FORCE_N = 10.0  # the paper's value for the weight of 1 kg, used in its comparisons
 
-
-# 5.1: 5.5 to 10 N of 10 N; 12 deg at most, "mean value of 2 %" of the full circle; 11 cm at most, 4.5 cm in the mean.
-PRINTED = tuple(
-    printed(f"{error} of four pushes")
-    for error in (
-        "magnitude error, weakest",
-        "magnitude error, strongest",
-        "direction error, largest",
-        "direction error, mean",
-        "location error, largest",
-        "location error, mean",
-    )
-)
+PRINTED = tuple(printed(name) for name in ERRORS_OF_PUSHES)
 
 
 def group_values(readings: Readings) -> NDArray[np.float64]:
