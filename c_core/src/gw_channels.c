@@ -29,7 +29,7 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->slow_s = (gw_real_t)0.05;
     config->slow_baseline_s = (gw_real_t)3.0;
     config->friction_shape = (gw_real_t)0.12;
-    config->presliding = (gw_real_t)0.5; /* it may be anywhere up to sliding: 0.58, but for what the model knows */
+    config->presliding = (gw_real_t)0.3; /* 0.58 if the model knew nothing: anywhere up to sliding; it knows half */
     config->yaw_inertia = (gw_real_t)0.2;
     config->centre_of_mass_m = (gw_real_t)0.03;
     config->lever_m = (gw_real_t)0.01;

@@ -32,7 +32,7 @@ static void choose_channels(gw_controller_config_t *config)
     config->estimator.acceleration_source = GW_SOURCE_MEASURED;
     config->estimator.friction_model = GW_FRICTION_BRISTLE;
     config->estimator.aligned = 1U;
-    config->estimator.creep_speed_mps = (gw_real_t)0.06;
+    config->estimator.creep_speed_mps = (gw_real_t)0.04;
     config->detector.kind = GW_DETECTOR_CHANNELS;
 }
 #else

@@ -38,7 +38,7 @@ FULL: Mapping[str, Value] = MappingProxyType(
         "estimator.velocity_source": 1,
         "estimator.rate_cutoff": 200.0,
         "estimator.aligned": 1,
-        "estimator.creep_speed": 0.06,
+        "estimator.creep_speed": 0.04,
     }
 )
 """The estimator of the two channels."""
