@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from giveway.bench.known_fronts import PROBLEMS
+from giveway.bench.known_fronts import PROBLEMS, binh_korn
 from giveway.bench.optimum import Comparison, compare, shares_in_words
 from giveway.cli import _main
 from giveway.study.answers import load
@@ -59,6 +59,13 @@ def test_a_search_is_compared_with_an_even_sample(
     stored = sorted(path.name for path in tmp_path.rglob("*.parquet"))
     assert _main(command) == 0
     assert sorted(path.name for path in tmp_path.rglob("*.parquet")) == stored
+
+
+def test_binh_and_korn_is_as_published() -> None:
+    """Also outside the box of its quantities, in which the second constraint is never reached."""
+    costs, constraints = binh_korn(np.array([[8.0, -3.0], [5.0, 5.0]]))
+    np.testing.assert_allclose(costs, [[292.0, 73.0], [200.0, 0.0]], rtol=1e-15)
+    np.testing.assert_allclose(constraints, [[-7.0, 7.7], [0.0, -65.3]], rtol=1e-15)
 
 
 def test_the_median_is_said_with_its_range() -> None:

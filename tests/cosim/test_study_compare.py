@@ -55,6 +55,9 @@ def test_designs_and_margins_are_side_by_side(
         assert its["share"] == pytest.approx(margin.room / margin.limit)
     assert _main(["study", "compare", str(a.folder), str(b.folder)]) == 0
     said = capsys.readouterr().out
+    for answers in both:
+        (margin,) = margins_of(answers, int(answers.order[0]))
+        assert f"{100.0 * margin.room / margin.limit:.3g}" in said.split()
     for words in ("other", "at most 6 cm", "at most 2.6 cm", f"Recommended: design {b.order[0]}"):
         assert words in said
     peaks = [one.values[one.order[0], 0] for one in both]
