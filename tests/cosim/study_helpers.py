@@ -77,5 +77,5 @@ def interrupt(cwd: Path, command: list[str], parts: int) -> tuple[str, str]:
         process.send_signal(signal.SIGINT)
         out, said = process.communicate(timeout=60)
     assert process.returncode == 130, out + said
-    assert "Traceback" not in said
+    assert "Traceback" not in said, said
     return out, said
