@@ -19,7 +19,7 @@ from typing import Annotated, TextIO
 import typer
 
 from giveway import __version__
-from giveway.base.errors import GivewayError, SimulationError, WriteError, one_line
+from giveway.base.errors import ClusterError, GivewayError, SimulationError, WriteError, one_line
 from giveway.base.failures import DEBUG_VARIABLE, unforeseen
 from giveway.base.terminal import FAILED, INTERRUPTED, WRONG_INPUT
 from giveway.bench.command import bench
@@ -101,7 +101,8 @@ def _main(arguments: list[str]) -> int:
             code = app(args=arguments, standalone_mode=False, obj=settings)
         sys.stdout.flush()
     except GivewayError as error:
-        on_its_way = isinstance(error, WriteError) or (isinstance(error, SimulationError) and error.time_s > 0.0)
+        simulated = isinstance(error, SimulationError) and error.time_s > 0.0
+        on_its_way = simulated or isinstance(error, ClusterError | WriteError)
         return _fail(str(error), FAILED if on_its_way else WRONG_INPUT)
     except (KeyboardInterrupt, typer.Abort):
         typer.echo("giveway: interrupted; nothing was written", err=True)

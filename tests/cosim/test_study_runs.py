@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from giveway import batch
+from giveway.library.work import result_columns, run_work
 from giveway.robot.variables import table
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
 from giveway.scenario.plan import Rest, Straight
@@ -15,7 +16,6 @@ from giveway.study import Study
 from giveway.study.chosen import scenario_of_run
 from giveway.study.designs import deviations
 from giveway.study.engine import plan_runs
-from giveway.study.native_part import NativePart
 from giveway.study.runs import RunTable
 from study_helpers import LATCH, small_study
 
@@ -45,7 +45,7 @@ def varied_table(count: int = 6) -> tuple[RunTable, object]:
     return plan_runs(setup), setup
 
 
-def run_natively(runs: RunTable, which: np.ndarray) -> np.ndarray:
+def run_natively(runs: RunTable, which: np.ndarray) -> dict[str, np.ndarray]:
     design, sample, case = runs.split(which)
     values = np.empty((len(which), len(runs.columns.names)))
     for number in range(len(runs.cases)):
@@ -53,25 +53,21 @@ def run_natively(runs: RunTable, which: np.ndarray) -> np.ndarray:
         rows = runs.rows(design[mine], sample[mine], number)
         assert not rows.refused
         values[mine] = rows.values
-    part = NativePart(runs, values, case)
-    part.start(2, "event-exact", None)
-    while not part.wait(0.1)[0]:
-        pass
-    part.finish()
-    return part.results
+    done = run_work(runs.work(values, case, "event-exact", None), threads=2)
+    assert (done.status == 0).all(), done.messages
+    return {name: done.numbers[:, j] for j, (name, _) in enumerate(result_columns())}
 
 
 def test_a_row_runs_as_its_scenario_does() -> None:
     runs, setup = varied_table()
     which = np.arange(0, runs.count, 7)
     results = run_natively(runs, which)
-    assert (results["status"] == 0).all(), results["message"]
     scenarios = [
         scenario_of_run(setup, runs, *(int(i) for i in index)) for index in zip(*runs.split(which), strict=True)
     ]  # type: ignore[arg-type]
     expected = batch.run_many(scenarios, threads=2)
-    for index, metric in enumerate(batch.native_metrics()):
-        np.testing.assert_array_equal(results["metric"][:, index], expected[metric.name].values, metric.name)
+    for metric in batch.native_metrics():
+        np.testing.assert_array_equal(results[metric.name], expected[metric.name].values, metric.name)
 
 
 def test_values_end_up_where_they_belong() -> None:
@@ -134,14 +130,11 @@ def test_a_hit_anywhere_around_comes_straight_in() -> None:
     study = small_study(vary=[]).vary("collision.around", values=[0.05, 0.3, 0.45, 0.7, 0.95])
     study.document["scenario"] = {"duration": 0.3, "bumper": "none"}
     runs = plan_runs(study.setup())
-    results = run_natively(runs, np.arange(5))
-    metrics = {metric.name: results["metric"][:, i] for i, metric in enumerate(batch.native_metrics())}
-    truth = {metric.name: results["truth"][:, i] for i, metric in enumerate(batch.native_metrics())}
-    assert (results["status"] == 0).all()
+    metrics = run_natively(runs, np.arange(5))
     # 0.5 m/s at the contact, less a step of friction.
     assert metrics["contact speed"] == pytest.approx(np.full(5, 0.5), abs=5e-3)
     rows = runs.rows(np.arange(5), np.zeros(5, dtype=int), 0)
-    found = 1e-3 * np.stack([truth["contact point x"], truth["contact point y"]], axis=1)
+    found = 1e-3 * np.stack([metrics["contact point x (true)"], metrics["contact point y (true)"]], axis=1)
     expected = np.stack([rows.hit["point_x"], rows.hit["point_y"]], axis=1)
     np.testing.assert_allclose(found, expected, atol=2e-3)  # the base gives way under the nose until detection
 
@@ -151,9 +144,8 @@ def test_a_moving_robot_is_met_in_time_however_long_the_tare_holds_it() -> None:
     study = Study("tares", duration=1.7, bumper="none", plan=plan).collision("head-on", speed=0.0, edge=0, time=1.6)
     study.vary("controller.estimator.tare_ticks", values=[0, 50, 400])
     results = run_natively(plan_runs(study.setup()), np.arange(3))
-    names = [metric.name for metric in batch.native_metrics()]
     # The robot lags its plan by up to 5 mm (see test_approach.py); 50 ms of tare are 10 mm.
-    late_s = results["metric"][:, names.index("contact time")] - 1.6
+    late_s = results["contact time"] - 1.6
     assert ((late_s > 0.0) & (late_s < 5e-3 / 0.2)).all(), late_s
 
 

@@ -14,9 +14,9 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from giveway.base.errors import FileError
+from giveway.library.work import RunningWork
 from giveway.study import Study
 from giveway.study.engine import Outcome, plan_runs, sweep
-from giveway.study.native_part import NativePart
 from giveway.study.results_table import read_part
 from giveway.study.store import KeyIndex, Store, read_manifest
 from study_helpers import LATCH, SPRING, interrupt, part_files, small_study, stored_runs
@@ -150,13 +150,13 @@ def test_what_cannot_be_is_not_taken_for_what_can(tmp_path: Path) -> None:
 
 
 def test_an_interrupted_batch_is_freed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[NativePart] = []
+    started: list[RunningWork] = []
 
-    def interrupted(part: NativePart, _timeout_s: float) -> tuple[bool, int]:
+    def interrupted(part: RunningWork, _timeout_s: float) -> tuple[bool, int]:
         started.append(part)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(NativePart, "wait", interrupted)
+    monkeypatch.setattr(RunningWork, "wait", interrupted)
     outcome = swept(small_study(), tmp_path / "study")
     assert outcome.interrupted
     assert (outcome.stored, outcome.ran) == (0, 0)

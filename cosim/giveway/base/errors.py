@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 __all__ = [
+    "ClusterError",
     "FileError",
     "GivewayError",
     "InputFileError",
@@ -78,6 +79,10 @@ class WriteError(FileError):
     def __init__(self, path: Path | str, cause: OSError, hint: str = "") -> None:
         super().__init__(path, f"cannot be written: {system_words(cause)}", hint)
         self.path, self.cause = Path(path), cause
+
+
+class ClusterError(FileError):
+    """Machines that should help cannot do so any more."""
 
 
 class InputFileError(GivewayError):

@@ -74,6 +74,7 @@ FORMER_NAMES = MappingProxyType({
     "ssp": "fmu_tools.ssp",
     "stated_contact": "scenario.stated_contact",
     "static_pushes": "experiments.static_push_study",
+    "study.native_part": "library.work",
     "summary": "simulation.summary",
     "sweep": "drivetrain.frequency_response",
     "table_files": "robot.table_files",

@@ -7,8 +7,16 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["FmiOption", "RobotOption", "ThreadsOption"]
+__all__ = ["DaskOption", "FmiOption", "RobotOption", "ThreadsOption"]
 
 FmiOption = Annotated[int, typer.Option("--fmi", help="FMI version of the FMUs: 3 or 2.")]
 ThreadsOption = Annotated[int | None, typer.Option("--threads", help="Native threads; without it: all processors.")]
+DaskOption = Annotated[
+    str | None,
+    typer.Option(
+        "--dask",
+        metavar="ADDRESS",
+        help='Runs go to the workers of this Dask scheduler; "local": to processes of this machine.',
+    ),
+]
 RobotOption = Annotated[Path | None, typer.Option("--robot", metavar="FILE", help="Robot file (TOML).")]

@@ -86,7 +86,7 @@ def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
 def _threads(threads: int | None) -> int:
     from giveway.base.checks import whole
     from giveway.library.batch_library import THREADS_MAX
-    from giveway.study.native_part import default_threads
+    from giveway.library.work import default_threads
 
     return default_threads() if threads is None else whole("--threads", threads, 1, THREADS_MAX)
 

@@ -332,13 +332,21 @@ class Study:
         return check(copy.deepcopy(self.document), Path(folder), self.document["name"])
 
     def run(
-        self, folder: Path | str, *, threads: int | None = None, progress: Report | bool = True, files: bool = True
+        self,
+        folder: Path | str,
+        *,
+        threads: int | None = None,
+        dask: str | None = None,
+        progress: Report | bool = True,
+        files: bool = True,
     ) -> Answers:
         """Run what is missing in ``folder`` and return the answers; after Ctrl-C the same call continues.
 
         Args:
             folder: where results are stored; made if it is not there.
             threads: native ones, 1 to 1024; None: all processors.
+            dask: address of a Dask scheduler, to whose workers the runs go; "local": to ``threads`` processes here (a
+                script needs its work below ``if __name__ == "__main__"``).
             progress: True: a bar on stderr at a terminal, else a line every few seconds; False: nothing; or a
                 function that is called now and then with a `giveway.study.engine.Progress`.
             files: write what `giveway sweep` writes: traces of the best designs, report.html, table.csv.
@@ -347,6 +355,7 @@ class Study:
             GivewayError: the study is wrong; nothing was run.
             FileError: the folder holds something else, is in use, or cannot be written.
             WriteError: writing failed; the parts written before are kept.
+            MissingExtraError, ClusterError: ``dask`` is not installed; no worker is left.
         """
         from giveway.study.answers import load
         from giveway.study.engine import sweep
@@ -354,7 +363,7 @@ class Study:
 
         setup = self.setup()
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
-            outcome = sweep(setup, folder, threads=threads, progress=report)
+            outcome = sweep(setup, folder, threads=threads, progress=report, dask=dask)
         return _written(load(folder), files and not outcome.interrupted, progress is True)
 
     def optimise(
@@ -367,6 +376,7 @@ class Study:
         growth: float | None = None,
         reference: Sequence[float] | None = None,
         threads: int | None = None,
+        dask: str | None = None,
         progress: Report | bool = True,
         files: bool = True,
     ) -> Answers:
@@ -378,10 +388,10 @@ class Study:
             population: designs of a generation; 24 if left out.
             patience, growth: the search ends when in 10 generations the hypervolume grew by no more than 0.001 of it.
             reference: point of the hypervolume, a value of each objective; left out: from the first designs.
-            threads, progress, files: as in `run`.
+            threads, dask, progress, files: as in `run`.
 
         Raises:
-            MissingExtraError: pymoo is not installed.
+            MissingExtraError: pymoo, or what ``dask`` needs, is not installed.
             GivewayError: the study is wrong; nothing was run.
             FileError: the folder holds something else, is in use, or cannot be written.
             WriteError: writing failed; the parts written before are kept.
@@ -397,7 +407,7 @@ class Study:
         changed = {"designs": {"kind": OPTIMISED}, "optimise": self.document.get("optimise", {}) | options}
         setup = check(copy.deepcopy({**self.document, **changed}), Path(), self.document["name"])
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
-            found = optimise(setup, folder, threads=threads, progress=report)
+            found = optimise(setup, folder, threads=threads, progress=report, dask=dask)
         return _written(load(folder), files and not found.outcome.interrupted, progress is True)
 
     def _add(self, table: str, entry: dict[str, Any]) -> Study:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from giveway.base.options import ThreadsOption
+from giveway.base.options import DaskOption, ThreadsOption
 from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, working
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def sweep_designs(
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study. Without it: out/studies/STUDY.")
     ] = None,
     threads: ThreadsOption = None,
+    dask: DaskOption = None,
     check: Annotated[
         bool, typer.Option("--check", help="Check the study and say how many runs it has; run nothing.")
     ] = False,
@@ -44,12 +45,18 @@ def sweep_designs(
         typer.echo(messages.sizes(setup, plan_runs(setup)))
         return
     with messages.showing(setup.name) as progress:
-        outcome = run_study(setup, folder, threads=threads, progress=progress)
+        outcome = run_study(setup, folder, threads=threads, progress=progress, dask=dask)
     typer.echo(messages.overview(setup, outcome))
     if outcome.interrupted:
-        again = f"giveway sweep {study}" + ("" if out is None else f" --out {out}")
+        again = _again("sweep", study, out, dask)
         _interrupted(f"what is stored is kept. `{again}` goes on from there.")
     _write_and_print(folder)
+
+
+def _again(command: str, study: Path, out: Path | None, dask: str | None) -> str:
+    """The command that goes on."""
+    options = ("" if out is None else f" --out {out}") + ("" if dask is None else f" --dask {dask}")
+    return f"giveway {command} {study}{options}"
 
 
 def _interrupted(words: str) -> NoReturn:
@@ -79,6 +86,7 @@ def optimise_designs(
         Path | None, typer.Option("--out", metavar="DIR", help="Folder of the search. Without it: out/optima/STUDY.")
     ] = None,
     threads: ThreadsOption = None,
+    dask: DaskOption = None,
     check: Annotated[bool, typer.Option("--check", help="Check the study and say how many runs it may take.")] = False,
 ) -> None:
     """Search the best designs of a study, or go on with it; then what `giveway sweep` gives, too (needs pymoo)."""
@@ -91,10 +99,10 @@ def optimise_designs(
         typer.echo(messages.search_sizes(setup))
         return
     with messages.showing(setup.name) as progress:
-        found = optimum.optimise(setup, folder, threads=threads, progress=progress)
+        found = optimum.optimise(setup, folder, threads=threads, progress=progress, dask=dask)
     typer.echo(messages.overview(setup, found.outcome))
     if found.outcome.interrupted:
-        again = f"giveway optimise {study}" + ("" if out is None else f" --out {out}")
+        again = _again("optimise", study, out, dask)
         _interrupted(f"what is stored is kept. `{again}` goes on from there.")
     _write_and_print(folder)
 

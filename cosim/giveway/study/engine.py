@@ -7,22 +7,25 @@ import json
 import platform
 import shutil
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.base.errors import ClusterError, FileError, GivewayError, InputFileError
 from giveway.base.version import VERSION
 from giveway.base.words import memory
-from giveway.library.batch_library import library
+from giveway.library.batch_library import THREADS_MAX, library
+from giveway.library.work import RunningWork, Work, default_threads, result_columns
 from giveway.simulation.run_warnings import Stated
 from giveway.study import designs as design_module
 from giveway.study.drivetrain_metrics import derived
 from giveway.study.parts import choices_of
-from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part, result_columns
+from giveway.study.results_table import NOT_CACHED, Outcomes, part_table, read_part
 from giveway.study.runs import RunTable
 from giveway.study.search_plan import OPTIMISED
 from giveway.study.setup import Setup
@@ -30,6 +33,8 @@ from giveway.study.store import INPUT_FILES, KeyIndex, Store, catalogue_copy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from giveway.cluster.pool import Pool
 
 __all__ = [
     "Outcome",
@@ -45,6 +50,7 @@ __all__ = [
     "plan_runs",
     "shared_facts",
     "sweep",
+    "workforce",
 ]
 
 PART_S = 5.0  # of work in one part: what a kill may lose
@@ -100,6 +106,18 @@ class _Prepared:
     derived: dict[str, tuple[NDArray[np.float64], str]]
 
 
+@dataclass
+class _Begun:
+    """A part that runs: ``fresh`` are computed as ``work``; ``copies`` (their own, whose) have what equal runs have."""
+
+    part: _Prepared
+    outcomes: Outcomes
+    fresh: NDArray[np.int64]
+    copies: NDArray[np.int64]
+    reused: int
+    work: Work | None
+
+
 def plan_runs(setup: Setup) -> RunTable:
     """The table of all runs of ``setup``."""
     if setup.plan.kind == OPTIMISED:
@@ -138,20 +156,26 @@ def _with_line(setup: Setup, error: GivewayError) -> GivewayError:
     return InputFileError(setup.path, line_of(setup.text, error.field), error)
 
 
-def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progress: Report | None = None) -> Outcome:
+def sweep(
+    setup: Setup,
+    folder: Path | str,
+    *,
+    threads: int | None = None,
+    progress: Report | None = None,
+    dask: str | None = None,
+) -> Outcome:
     """Run what is missing of ``setup`` in ``folder``.
 
-    Ctrl-C ends it cleanly: all parts but the one under way are kept, and the same call goes on from there.
+    Ctrl-C ends it cleanly: all parts but those under way are kept, and the same call goes on from there. ``dask`` is
+    the address of a scheduler whose workers run the parts, or "local": ``threads`` processes on this machine.
 
     Raises:
+        MissingExtraError: ``dask`` needs a package that is not installed.
         GivewayError: the study cannot be run as it is; nothing was run.
         FileError: the folder holds something else, is in use, or cannot be written.
         WriteError: writing failed; the parts written before are kept.
+        ClusterError: no worker is left, or the scheduler is lost; the parts written before are kept.
     """
-    from giveway.base.checks import whole
-    from giveway.study.native_part import default_threads
-
-    threads = default_threads() if threads is None else whole("threads", threads, 1, 1024)
     folder = Path(folder)
     Store.check(folder)
     design_count = setup.plan.size(setup.varied)
@@ -161,19 +185,38 @@ def sweep(setup: Setup, folder: Path | str, *, threads: int | None = None, progr
     shared = shared_facts(setup)
     contexts = [case.context(shared) for case in table.cases]
     fingerprint = fingerprint_of(table, contexts)
-    store = Store(folder, fingerprint)
-    try:
+    with workforce(threads, dask) as workers, closing(Store(folder, fingerprint)) as store:
         manifest = manifest_of(setup, table, shared, fingerprint)
         store.write_designs(table.designs, table.deviations)
         # First the manifest: without one, a folder with files in it is taken for somebody else's.
         store.write_manifest({**manifest, "complete": not store.missing(table.count)})
         keep_inputs(setup, store.folder)
-        outcome = Runner(setup, contexts, store, threads, progress).run(table)
+        outcome = Runner(setup, contexts, store, workers, progress).run(table)
         if not outcome.interrupted:
             store.write_manifest({**manifest, "complete": True})
         return outcome
-    finally:
-        store.close()
+
+
+@contextmanager
+def workforce(threads: int | None, dask: str | None) -> Iterator[int | Pool]:
+    """Who runs the parts: native threads of this process, or the workers of a Dask scheduler."""
+    from giveway.base.checks import whole
+
+    if threads is not None:
+        whole("threads", threads, 1, THREADS_MAX)
+    if dask is None:
+        yield default_threads() if threads is None else threads
+        return
+    from giveway.cluster.pool import joined
+    from giveway.study.golden import golden_works
+
+    with joined(dask, threads, golden_works()) as pool:
+        yield pool
+
+
+def shared_out(size: int, runs: int) -> int:
+    """About ``size``, so that ``runs`` are cut into parts as long as each other."""
+    return -(-runs // max(1, runs // size))
 
 
 class Runner:
@@ -184,11 +227,12 @@ class Runner:
         setup: Setup,
         contexts: list[bytes],
         store: Store,
-        threads: int,
+        workers: int | Pool,
         progress: Report | None,
     ) -> None:
+        """``workers``: native threads here, or those of a cluster."""
         self._setup, self._contexts, self._store = setup, contexts, store
-        self._threads, self._progress = threads, progress
+        self._workers, self._progress = workers, progress
         self._index: KeyIndex | None = None
         self._stored = self._ran = self._reused = self._failed = 0
         self._started = time.perf_counter()
@@ -207,15 +251,10 @@ class Runner:
             if self._index is None:
                 self._index = self._load_keys()
                 self._before, self._started = self._stored, time.perf_counter()
-            prepared = None
-            for first, end in gaps:
-                while first < end:
-                    size = min(self._part_size(), end - first)
-                    if prepared is None or prepared.first != first:
-                        prepared = self._prepare(first, size)
-                    first += len(prepared.keys)
-                    following = (first, min(self._part_size(), end - first)) if first < end else None
-                    prepared = self._run_part(prepared, following)
+            if isinstance(self._workers, int):
+                self._run_here(gaps, self._workers)
+            else:
+                self._run_there(deque(gaps), self._workers)
         except KeyboardInterrupt:
             interrupted = True
         wall_s = time.perf_counter() - self._started
@@ -223,6 +262,62 @@ class Runner:
         self._stored = self._table.count - sum(end - first for first, end in self._store.missing(self._table.count))
         found = (self._table.count, self._stored, self._ran, self._reused, self._failed)
         return Outcome(self._store.folder, *found, wall_s, interrupted)
+
+    def _run_here(self, gaps: list[tuple[int, int]], threads: int) -> None:
+        """Part by part; while one runs, the following one is prepared."""
+        prepared = None
+        for first, end in gaps:
+            while first < end:
+                size = min(self._part_size(), end - first)
+                if prepared is None or prepared.first != first:
+                    prepared = self._prepare(first, size)
+                first += len(prepared.keys)
+                following = (first, min(self._part_size(), end - first)) if first < end else None
+                begun = self._begin(prepared)
+                prepared = self._run_fresh(begun, threads, following)
+                self._end(begun)
+
+    def _run_there(self, gaps: deque[tuple[int, int]], pool: Pool) -> None:
+        """As many parts at once as the workers can have; stored in the order in which they come back."""
+        under_way: dict[int, _Begun] = {}
+        stored: dict[int, tuple[Path, _Begun]] = {}
+        while gaps or under_way:
+            left = sum(end - first for first, end in gaps)
+            while gaps and (size := pool.wants(left)):
+                first, end = gaps.popleft()
+                size = min(self._setup.part_runs or shared_out(size, end - first), end - first)
+                if first + size < end:
+                    gaps.appendleft((first + size, end))
+                left -= size
+                begun = self._begin(self._prepare(first, size))
+                if begun.work is None:
+                    self._end(begun)
+                else:
+                    pool.submit(first, begun.work)
+                    begun.work = None  # the pool has it
+                    under_way[first] = begun
+            for first, done in pool.wait(WAIT_S):
+                if done is not None:
+                    begun = under_way.pop(first)
+                    begun.outcomes.take(begun.fresh, done)
+                    stored[first] = (self._end(begun), begun)
+                elif first in stored:
+                    gaps.append(self._withdraw(*stored.pop(first)))
+                else:  # of an earlier call, whose results have been used
+                    raise ClusterError(
+                        self._store.parts_folder,
+                        f"has results of a worker that computes otherwise, from run {first} on",
+                        "delete it; the same command begins anew",
+                    )
+            self._say(0)
+
+    def _withdraw(self, path: Path, begun: _Begun) -> tuple[int, int]:
+        """Take a stored part back; returns its runs."""
+        assert self._index is not None
+        path.unlink()
+        self._index.discard(path)
+        self._count(begun, -1)
+        return begun.part.first, begun.part.first + len(begun.part.keys)
 
     def _load_keys(self) -> KeyIndex:
         index = KeyIndex()
@@ -265,9 +360,8 @@ class Runner:
         found = derived(table.derived, table.drivetrain, values, stated)
         return _Prepared(first, values, case, keys, stated, refused, found)
 
-    def _run_part(self, part: _Prepared, following: tuple[int, int] | None) -> _Prepared | None:
-        """Run and store a part; meanwhile prepare the ``following`` one (first run, number of runs)."""
-        assert self._index is not None
+    def _begin(self, part: _Prepared) -> _Begun:
+        """What of a part has to be run, and what is known of the rest."""
         outcomes = Outcomes(len(part.keys))
         for index, message in part.refused.items():
             outcomes.refuse(index, message)
@@ -284,18 +378,32 @@ class Runner:
                 first_of[key] = index
                 fresh.append(index)
         where = np.array(fresh, dtype=np.int64)
-        prepared = self._run_fresh(part, where, outcomes, following)
-        outcomes.copy(np.array(twins, dtype=np.int64), np.array(twins_of, dtype=np.int64))
+        work = None
+        if fresh:
+            setup = self._setup
+            work = self._table.work(part.values[where], part.case[where], setup.method, setup.plant_step_s)
+        part.values = np.empty((0, 0))  # large, and not needed any more
+        copies = np.array([twins, twins_of], dtype=np.int64)
+        return _Begun(part, outcomes, where, copies, len(reused) + len(twins), work)
+
+    def _end(self, begun: _Begun) -> Path:
+        """Store a part whose runs are done."""
+        assert self._index is not None
+        part, outcomes = begun.part, begun.outcomes
+        outcomes.copy(*begun.copies)
         stored = part_table(self._table, part.first, part.keys, outcomes, part.stated, part.derived)
         path = self._store.write_part(part.first, stored)
         keys = [b"" if s in NOT_CACHED else key for key, s in zip(part.keys, outcomes.status, strict=True)]
         self._index.add(path, keys)
-        self._stored += len(part.keys)
-        self._ran += len(fresh)
-        self._reused += len(reused) + len(twins)
-        self._failed += sum(status != "ok" for status in outcomes.status)
+        self._count(begun, 1)
         self._say(0, force=True)
-        return prepared
+        return path
+
+    def _count(self, begun: _Begun, sign: int) -> None:
+        self._stored += sign * len(begun.part.keys)
+        self._ran += sign * len(begun.fresh)
+        self._reused += sign * begun.reused
+        self._failed += sign * sum(status != "ok" for status in begun.outcomes.status)
 
     def _take_stored(self, part: _Prepared, outcomes: Outcomes) -> set[int]:
         """Results that are there already, from whichever part."""
@@ -318,17 +426,14 @@ class Runner:
             taken.update(where[same].tolist())
         return taken
 
-    def _run_fresh(
-        self, part: _Prepared, where: NDArray[np.int64], outcomes: Outcomes, following: tuple[int, int] | None
-    ) -> _Prepared | None:
-        from giveway.study.native_part import NativePart
-
-        if not where.size:
+    def _run_fresh(self, begun: _Begun, threads: int, following: tuple[int, int] | None) -> _Prepared | None:
+        """Run a part; meanwhile prepare the ``following`` one (first run, number of runs)."""
+        if begun.work is None:
             return None
         started = time.perf_counter()
-        running = NativePart(self._table, part.values[where], part.case[where])
+        running = RunningWork(begun.work)
         try:
-            running.start(self._threads, self._setup.method, self._setup.plant_step_s)
+            running.start(threads)
             prepared = self._prepare(*following) if following is not None else None
             done = False
             while not done:
@@ -336,8 +441,8 @@ class Runner:
                 self._say(runs_done)
         finally:
             running.finish()
-        self._rate = len(where) / max(time.perf_counter() - started, 1e-6)
-        outcomes.take_native(where, running.results)
+        self._rate = len(begun.work) / max(time.perf_counter() - started, 1e-6)
+        begun.outcomes.take(begun.fresh, running.done())
         return prepared
 
     def _say(self, under_way: int, force: bool = False) -> None:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.base.checks import whole
 from giveway.base.errors import GivewayError
 from giveway.study import engine
 from giveway.study.answers import blocks_of, costs_of, goals_of
@@ -42,21 +42,27 @@ class Found:
     reason: str
 
 
-def optimise(setup: Setup, folder: Path | str, *, threads: int | None = None, progress: Report | None = None) -> Found:
+def optimise(
+    setup: Setup,
+    folder: Path | str,
+    *,
+    threads: int | None = None,
+    progress: Report | None = None,
+    dask: str | None = None,
+) -> Found:
     """Search the best designs of ``setup`` in ``folder``, or go on with it.
 
-    Ctrl-C ends it cleanly: all parts but the one under way are kept, and the same call goes on from there.
+    Ctrl-C ends it cleanly: all parts but those under way are kept, and the same call goes on from there. ``dask`` as in
+    `engine.sweep`.
 
     Raises:
-        MissingExtraError: pymoo is not installed.
+        MissingExtraError: pymoo, or what ``dask`` needs, is not installed.
         GivewayError: the study cannot be optimised as it is; nothing was run.
         FileError: the folder holds something else, is in use, or cannot be written.
         WriteError: writing failed; the parts written before are kept.
+        ClusterError: no worker is left, or the scheduler is lost; the parts written before are kept.
     """
-    from giveway.study.native_part import default_threads
-
     version = check_search(setup)
-    threads = default_threads() if threads is None else whole("threads", threads, 1, 1024)
     folder = Path(folder)
     Store.check(folder)
     engine.check_disk(setup, setup.plan.count * max(1, setup.tolerance_count) * len(setup.cases), folder)
@@ -67,13 +73,10 @@ def optimise(setup: Setup, folder: Path | str, *, threads: int | None = None, pr
     decides = {key: setup.document.get(key) for key in _DECIDES}
     told = json.dumps([engine.fingerprint_of(table, contexts), version, decides], sort_keys=True)
     fingerprint = hashlib.sha256(told.encode()).hexdigest()
-    store = Store(folder, fingerprint)
-    try:
-        search = _Search(setup, store, deviations, Runner(setup, contexts, store, threads, progress))
+    with engine.workforce(threads, dask) as workers, closing(Store(folder, fingerprint)) as store:
+        search = _Search(setup, store, deviations, Runner(setup, contexts, store, workers, progress))
         search.manifest = {"shared": shared, "fingerprint": fingerprint}
         return search.run(version)
-    finally:
-        store.close()
 
 
 def check_search(setup: Setup) -> str:

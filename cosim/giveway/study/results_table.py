@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import FileError
-from giveway.library.batch_library import STATUSES, native_metrics
+from giveway.library.batch_library import STATUSES
+from giveway.library.work import result_columns
 from giveway.simulation.metric_names import former_name
 from giveway.simulation.run_warnings import codes_of
 from giveway.study.parts import part_sums
@@ -17,25 +18,13 @@ from giveway.study.parts import part_sums
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from giveway.library.work import Done
     from giveway.simulation.run_warnings import Stated
     from giveway.study.runs import RunTable
 
-__all__ = ["Outcomes", "part_table", "read_part", "read_runs", "result_columns"]
+__all__ = ["Outcomes", "part_table", "read_part", "read_runs"]
 
 NOT_CACHED = ("no memory", "cancelled")
-
-
-def result_columns() -> list[tuple[str, str]]:
-    """Name and unit of every number that the library gives back per run, in the order of a part.
-
-    A plant step of 0: that run was done event-exact, whatever the study's method.
-    """
-    found = [("simulated", "s"), ("plant step", "s")]
-    for metric in native_metrics():
-        found.append((metric.name, metric.unit))
-        if metric.has_truth:
-            found.append((f"{metric.name} (true)", metric.unit))
-    return found
 
 
 class Outcomes:
@@ -57,16 +46,11 @@ class Outcomes:
         self.status[index], self.message[index] = "refused", message
         self.numbers[index, :2] = 0.0
 
-    def take_native(self, where: NDArray[np.int64], results: NDArray[Any]) -> None:
-        """Enter the library's results for the runs ``where``."""
-        columns = [results["time_s"], results["plant_step_s"]]
-        for index, metric in enumerate(native_metrics()):
-            columns.append(results["metric"][:, index])
-            if metric.has_truth:
-                columns.append(results["truth"][:, index])
-        self.numbers[where] = np.stack(columns, axis=1)
-        for index, status, message in zip(where, results["status"].tolist(), results["message"].tolist(), strict=True):
-            self.status[index], self.message[index] = STATUSES[status], message.decode()
+    def take(self, where: NDArray[np.int64], done: Done) -> None:
+        """Enter what the library made of the runs ``where``."""
+        self.numbers[where] = done.numbers
+        for at, (index, status) in enumerate(zip(where.tolist(), done.status.tolist(), strict=True)):
+            self.status[index], self.message[index] = STATUSES[status], done.messages.get(at, "")
 
     def take_stored(self, where: NDArray[np.int64], path: Path, rows: NDArray[np.int64]) -> None:
         """Enter the rows of a stored part for the runs ``where``."""

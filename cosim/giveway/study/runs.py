@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import GivewayError
+from giveway.library.work import CaseWork, Work
 from giveway.scenario.approach import Approaches, edge_middle, meet_many, outline_of
 from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan, limits_of
 from giveway.scenario.scenario_file import PLAN_KEYS
@@ -78,6 +79,12 @@ class _CaseTable:
         self.push = push_table(scenario)
         self.outline = outline_of({name: float(v[0]) for name, v in columns_.testbed(self.base[None, :]).items()})
 
+    def work(self) -> CaseWork:
+        """What its runs share, for the library."""
+        scenario, judged = self.case.scenario, self.case.scenario.judged
+        limits = (0.0, 0.0) if judged is None else (judged.peak_limit_n, judged.lasting_limit_n)
+        return CaseWork(scenario.step_s, scenario.steps, *limits, self.plan, self.push)
+
     def context(self, shared: dict[str, Any]) -> bytes:
         """Hash of all that decides a run besides its row."""
         scenario = self.case.scenario
@@ -118,6 +125,7 @@ class RunTable:
         used[[*touched, *met]] = True
         self.used = np.flatnonzero(used)
         """Columns that are not at their start in some run."""
+        self._case_works = tuple(one.work() for one in self.cases)
 
     def split(self, run: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
         """Design, tolerance sample and collision of runs."""
@@ -221,6 +229,24 @@ class RunTable:
             allowed = f"before the end of the run at {duration_s:g} s"
             refused.setdefault(run, str(GivewayError("collision.time", f"{met.time_s[run]:g}", allowed)))
         return met.contact_speed_mps, refused
+
+    def work(
+        self, values: NDArray[np.float64], case: NDArray[np.int64], method: str, plant_step_s: float | None
+    ) -> Work:
+        """Runs with parameters ``values`` (n, columns) of the collisions ``case`` (n,), for the library."""
+        used = values[:, self.used]
+        differing = np.flatnonzero((used != used[:1]).any(axis=0))
+        return Work(
+            self._case_works,
+            case,
+            self.columns.model[self.used],
+            self.columns.reference[self.used],
+            used[0].copy() if len(used) else np.zeros(len(self.used)),
+            differing,
+            used[:, differing],
+            method,
+            plant_step_s,
+        )
 
     def keys(self, contexts: list[bytes], rows: Rows, case: int) -> list[bytes]:
         """The key of each row: equal keys are equal runs."""

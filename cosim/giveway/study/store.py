@@ -235,6 +235,12 @@ class KeyIndex:
             self._merged = joined[np.argsort(joined["half"], kind="stable")]
             self._recent = []
 
+    def discard(self, path: Path) -> None:
+        """Forget the runs of the part ``path``."""
+        number = self.files.index(path)
+        self._merged = self._merged[self._merged["file"] != number]
+        self._recent = [entries[entries["file"] != number] for entries in self._recent]
+
     def find(self, keys: Sequence[bytes]) -> NDArray[np.int64]:
         """File and row of each key, shape (n, 2); -1 where there is none. Only half of the key is compared."""
         wanted = _halves(keys)
