@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import pickle
+import signal
 import socket
 import sys
 import time
@@ -17,6 +18,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +42,7 @@ GRACE_S = 5.0  # with refused ones only
 LOOK_EVERY_S = 0.5
 POLL_S = 0.01
 FETCH_S = 30.0
+CLOSE_S = 2.0
 PART_S, PART_LEAST_S = 5.0, 2.0  # of work in a task
 FIRST, MOST = 32, 32768  # runs in it
 CHECKED_RUNS, CHECKED_SHARE = 4, 0.01  # of a part that are computed here, too; of the time of all parts
@@ -88,6 +91,7 @@ class Pool:
         self._name = uuid.uuid4().hex
         self._facts = worker.facts(golden)
         self._members: dict[str, _Member] = {}
+        self._futures: set[Any] = set()
         self._refused: dict[str, str] = {}
         self._waiting: deque[_Ticket] = deque()
         self._packed: tuple[tuple[CaseWork, ...], bytes] | None = None
@@ -157,19 +161,24 @@ class Pool:
 
     def close(self) -> None:
         """Forget all that is under way."""
-        for member in self._members.values():
-            for future in [*member.running, member.asked]:
-                if future is not None:
-                    _quietly(future.release)
+        for future in list(self._futures):
+            self._drop(future)
         self._members = {}
 
     def _task(self, address: str, *call: Any) -> Any:
         payload = pickle.dumps(_Call(*call), protocol=5)
+        key = f"giveway-{uuid.uuid4().hex}"
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that it is large
-            return self._client.submit(
-                pickle.loads, payload, key=f"giveway-{uuid.uuid4().hex}", workers=[address], allow_other_workers=False
-            )
+            future = self._client.submit(pickle.loads, payload, key=key, workers=[address], allow_other_workers=False)
+        self._futures.add(future)
+        return future
+
+    def _drop(self, future: Any) -> None:
+        """One that is left over complains when its client is gone, even if nobody but a traceback knows it."""
+        self._futures.discard(future)
+        with contextlib.suppress(Exception):  # on the way out, or when the other side is gone
+            future.release()
 
     def _look(self) -> None:
         """Who is there?"""
@@ -219,6 +228,7 @@ class Pool:
             if facts.get(name) != ours:
                 self._refuse(member, f"{name}: {facts.get(name)}, here {ours}")
                 return
+        self._drop(member.asked)
         member.asked = None
 
     def _refuse(self, member: _Member, reason: str) -> None:
@@ -231,8 +241,10 @@ class Pool:
     def _lose(self, address: str) -> None:
         """A worker is away: what it had is for others."""
         member = self._members.pop(address)
+        if member.asked is not None:
+            self._drop(member.asked)
         for future, ticket in member.running.items():
-            _quietly(future.release)
+            self._drop(future)
             self._again(ticket)
 
     def _again(self, ticket: _Ticket) -> None:
@@ -262,12 +274,12 @@ class Pool:
             answer = future.result(timeout=FETCH_S)
         except Exception as error:
             ended = future.status
-            _quietly(future.release)
+            self._drop(future)
             self._again(ticket)
             if ended == "error" and type(error).__name__ != "KilledWorker":
                 self._refuse(member, f"{type(error).__name__}: {error}")
             return []
-        _quietly(future.release)
+        self._drop(future)
         if answer is None:  # another process has its address
             self._again(ticket)
             self._lose(member.address)
@@ -300,12 +312,6 @@ class Pool:
         return f"{name} of a run: {its.numbers[row, column]!r}, here {ours.numbers[row, column]!r}"
 
 
-def _quietly(release: Callable[[], None]) -> None:
-    """On the way out, or when the other side is gone."""
-    with contextlib.suppress(Exception):
-        release()
-
-
 def _tell(words: str) -> None:
     print(f"giveway: {words}", file=sys.stderr, flush=True)
 
@@ -326,31 +332,44 @@ def joined(
             raise GivewayError("threads", processes, "nothing beside an address: its workers have their own")
         _check_reached(address)
     with _silence():
-        cluster = None
-        if address == LOCAL:
-            cluster = distributed.LocalCluster(
-                n_workers=default_threads() if processes is None else processes,
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                dashboard_address=None,
-                memory_limit=0,
-                silence_logs=logging.CRITICAL,
-            )
+        cluster = client = None
         try:
-            client = distributed.Client(
-                address if cluster is None else cluster, timeout=CONNECT_S, set_as_default=False
-            )
-        except (OSError, ValueError) as error:
-            raise _unreachable(address, error) from None
-        pool = Pool(client, address, golden, say)
-        try:
-            yield pool
+            if address == LOCAL:
+                with _interrupts_held():
+                    cluster = distributed.LocalCluster(
+                        n_workers=default_threads() if processes is None else processes,
+                        threads_per_worker=1,
+                        processes=True,
+                        host="127.0.0.1",
+                        dashboard_address=None,
+                        memory_limit=0,
+                        silence_logs=logging.CRITICAL,
+                    )
+            try:
+                client = distributed.Client(cluster or address, timeout=CONNECT_S, set_as_default=False)
+            except (OSError, ValueError) as error:
+                raise _unreachable(address, error) from None
+            pool = Pool(client, address, golden, say)
+            try:
+                yield pool
+            finally:
+                pool.close()
         finally:
-            pool.close()
-            _quietly(lambda: client.close(timeout=2.0))
-            if cluster is not None:
-                _quietly(lambda: cluster.close(timeout=2.0))
+            for one in (client, cluster):
+                if one is not None:
+                    with contextlib.suppress(Exception):
+                        one.close(timeout=CLOSE_S)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Ctrl-C comes afterwards; never to threads that begin meanwhile, nor to the processes that these start."""
+    resource_tracker.ensure_running()  # else the first process of a thread starts it, and unblocks Ctrl-C there
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
 def _check_reached(address: str) -> None:
