@@ -52,7 +52,7 @@ bench: build build/bench/tools-installed build/importers/tools-installed ## how 
 endurance: product ## false alarms: 300 h of motion without contact, 20 h with tipping, 20 h with single rollers; goes on where it stopped
 	$(BIN)/giveway crowd endurance --threads $(JOBS)
 
-bench-scale: product ## does the cost of a batch grow with its designs, up to a million? (minutes)
+bench-scale: product .venv/test-packages-installed ## what studies and --dask cost beside the runs, and batches up to a million (minutes)
 	$(BIN)/giveway bench --scale
 
 fit: product ## fit the open parameters of robots/trikey.toml to the paper's results; residuals in robots/trikey.fit.json

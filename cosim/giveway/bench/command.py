@@ -17,7 +17,7 @@ def bench(
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,
     scale: Annotated[
-        bool, typer.Option("--scale", help="Only: does the cost grow with the designs, to a million?")
+        bool, typer.Option("--scale", help="Only: what a study and Dask cost beside the runs, and a million designs.")
     ] = False,
     optimum: Annotated[
         Path | None,
@@ -38,6 +38,7 @@ def bench(
 
     whole("--repeats", repeats, 1, 100)
     if scale:
+        _measure_sweeps()
         title = "Random collisions of 0.6 s over fixed steps, all threads"
         counts, found_rows = collisions.SCALE_COUNTS, []
         try:
@@ -68,6 +69,18 @@ def bench(
     with working("integration methods"):
         cells = [measurement.cells for measurement in measure_solvers(repeats, fmi)]
     print_columns(title, HEADER, cells)
+
+
+def _measure_sweeps() -> None:
+    from giveway.bench import sweeps
+    from giveway.library.work import default_threads
+
+    threads = default_threads()
+    with progress_bars(sweeps.names(threads)) as progress:
+        found = sweeps.measure(progress=progress)
+    title = f"{sweeps.DESIGNS:,} bumpers, runs of 0.6 s over fixed steps, median of {sweeps.ROUNDS}"
+    print_columns(title, sweeps.HEADER, found.rows())
+    typer.echo("\n".join(found.in_words(threads)))
 
 
 def _compare_searches(study: Path, out: Path, sample: int, runs: int, seeds: int) -> None:
