@@ -30,7 +30,7 @@ distributed = pytest.importorskip("distributed")
 
 STUDY = """\
 schema_version = 1
-part_runs = 20
+part_runs = 10
 [scenario]
 duration = 0.25
 bumper = "magnetic"
@@ -48,7 +48,7 @@ levels = 50
 quantity = "testbed.bumper.spring_rate"
 low = 500.0
 high = 2500.0
-levels = 40
+levels = 20
 """
 
 
@@ -103,7 +103,7 @@ def sweep_while_workers_die(cluster: Any, study: Study, kills: int, folder: Path
 
 
 def test_workers_die_and_the_bits_are_those_of_one_machine(cluster: Any, tmp_path: Path) -> None:
-    sweep_while_workers_die(cluster, many(120), 2, tmp_path)
+    sweep_while_workers_die(cluster, many(90), 2, tmp_path)
 
 
 @pytest.mark.deep
@@ -266,7 +266,7 @@ def test_ctrl_c_ends_it_cleanly_and_it_goes_on(tmp_path: Path) -> None:
         assert time.monotonic() < end, "left behind"
         time.sleep(0.05)
     again = subprocess.run(sweep_it, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert "2,000 of 2,000 runs are stored" in again.stdout
+    assert "1,000 of 1,000 runs are stored" in again.stdout
 
 
 @pytest.mark.parametrize(
