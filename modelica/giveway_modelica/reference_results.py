@@ -20,6 +20,7 @@ DIGITS = 9
 _POSE = ("base.body.x", "base.body.y", "base.body.theta")
 _TORQUES = ("tau_s[1]", "tau_s[2]", "tau_s[3]")
 _DUMMY = ("slider.s", "slider.bumper.c", "contact.f_normal")
+_BENCH = ("slider.s", "slider.bumper.c", "slider.bumper.f")
 
 
 def _of(prefix: str, *names: str) -> tuple[str, ...]:
@@ -38,13 +39,14 @@ SIGNALS = {
     "MovingCollision": (*_of("robot", *_POSE[:2], *_TORQUES), *_of("dummy", *_DUMMY), "detection_time"),
     "CirclePushed": (*_of("robot", *_POSE[:2], *_TORQUES), "position.distance"),
     "CircleRound": (*_of("robot", *_POSE[:2], "controller.mode"), "position.distance"),
-    "BumperDrop": ("slider.s", "slider.bumper.c", "slider.bumper.f", "floor.nose.f"),
+    "BumperDrop": (*_BENCH, "floor.nose.f"),
     "LatchRelease": (
         *_of("robot", *_POSE[:2]),
         *_of("dummy", *_DUMMY),
         *_of("dummy.slider.bumper", "t_release", "t_latch"),
     ),
     "BumperSweep": ("slider.s", "slider.bumper.c", "peak.peak"),
+    **{f"Bumper{law}": (*_BENCH, "energy.lost") for law in ("Foam", "Gas", "Damper", "Series", "Lever", "Table")},
 }
 
 

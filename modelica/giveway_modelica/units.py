@@ -272,4 +272,4 @@ def findings(compiler: Compiler, name: str) -> Iterator[str]:
 
 def _numbers(node: Node) -> bool:
     """A table of numbers, which have the unit of what they are given to."""
-    return "Array" in node and all(_is_number(one) for one in node["Array"]["elements"])
+    return "Array" in node and all(_is_number(one) or _numbers(one) for one in node["Array"]["elements"])

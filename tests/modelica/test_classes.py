@@ -66,5 +66,5 @@ def test_a_class_with_a_mistake_is_refused(modelica_library: Path, tmp_path: Pat
 
 def test_every_example_is_closed_and_has_an_experiment() -> None:
     found: list[ModelicaClass] = [ALL[name] for name in ALL if name.startswith(("GiveWay.Examples.", "GiveWay.Tests."))]
-    assert len(found) == 19
+    assert len(found) == 25
     assert all(example.experiment for example in found)

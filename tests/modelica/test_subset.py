@@ -19,7 +19,7 @@ COPIES = {
     },
     "Bumper": {
         "f_spring": "Interfaces/PartialSpringBumper",
-        "f_bottom": "Interfaces/PartialSpringBumper",
+        "f_bottom": "Interfaces/PartialGuidedBumper",
         "f_end": "Components/MagneticBumper",
         "f_magnet": "Components/MagneticBumper",
     },

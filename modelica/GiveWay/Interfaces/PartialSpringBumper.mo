@@ -1,20 +1,12 @@
 within GiveWay.Interfaces;
-partial model PartialSpringBumper "Spring, guide and bottom stop that all bumpers with a plate share"
+partial model PartialSpringBumper "Spring on a guide with a bottom stop"
   import Modelica.Units.SI;
-  extends PartialBumper;
+  extends PartialGuidedBumper;
   parameter SI.TranslationalSpringConstant k=robot.bumper_spring_rate "Rate of the spring";
   parameter SI.Force f_pre=robot.bumper_preload "Preload of the spring at full extension";
-  parameter SI.TranslationalDampingConstant d=robot.bumper_damping "Damping";
-  parameter SI.Force f_guide=robot.bumper_guide_friction "Coulomb friction of the guide";
-  parameter SI.Velocity u_guide=0.005 "Speed over which the guide's friction changes sign";
-  parameter SI.Length travel=robot.bumper_travel "Compression at which it bottoms";
-  parameter SI.TranslationalSpringConstant k_stop=2e5 "Stiffness of the stops";
-  parameter Real e_stop(unit="s/m")=1 "Damping of the stops (Hunt and Crossley)";
   SI.Force f_spring "Spring, damping and friction of the guide";
-  SI.Force f_bottom "Force of the bottom stop";
 equation
   f_spring = f_pre + k*c + d*u + f_guide*tanh(u/u_guide);
-  f_bottom = if c > travel then max(0, k_stop*(c - travel)*(1 + e_stop*u)) else 0;
   annotation (
     Icon(coordinateSystem(preserveAspectRatio=true, extent={{-100,-100},{100,100}}), graphics={
       Rectangle(extent={{-90,60},{-70,-60}}, lineColor={64,64,64}, fillColor={128,128,128},
@@ -26,6 +18,5 @@ equation
     Documentation(info="<html>
 <p>The spring bumper of 3.5 of the paper, without the part that holds the plate at full extension:</p>
 <p>f<sub>spring</sub> = F<sub>pre</sub> + k c + d c&#775; + F<sub>g</sub> tanh(c&#775;/v<sub>g</sub>)</p>
-<p>f<sub>bottom</sub> = max(0, k<sub>t</sub>(c &minus; c<sub>max</sub>)(1 + e c&#775;)) beyond the travel, else 0.</p>
 </html>"));
 end PartialSpringBumper;

@@ -19,6 +19,8 @@ q&#775;<sub>w</sub>).</p>
 bristle that carries load elastically.</p>
 <p><b>Contact</b>: N = max(0, k&delta;(1 + e&delta;&#775;)). <b>Rope</b>: max(0, k e + d e&#775;). <b>Latch</b>:
 F<sub>L</sub>/(1 + c/g<sub>0</sub>)<sup>2</sup>, or held and released.</p>
+<p><b>Other bumpers</b>, not in the paper: foam, gas spring, damper, two springs in series, lever, table
+(<code>Interfaces.PartialLawBumper</code> and what extends it).</p>
 <p><b>Estimate</b> (38), (40): F<sub>ext</sub> = J<sub>w</sub><sup>T</sup>(T|<sub>0</sub> &minus; T<sub>s</sub>).
 <b>Reaction</b> (2), (47): x(&infin;) = x<sub>0</sub> + p/B with an impulse p = 0.8 N s and B = 1.6 N s/m, which the
 paper prints as N and N/m<sup>2</sup>.</p>
