@@ -46,7 +46,8 @@ void slider(Stiffest &s, const plant::Parameters<double> &p, double v) {
         const double guided = together(p.bumper_plate_mass, p.plate_on_robot() ? p.base_mass : carriage);
         s.vibration(plant::with_bumper_law(p, [&](auto law) { return law.greatest_stiffness(p); }), guided);
         s.vibration(p.bumper_stop_stiffness, guided);
-        s.decay(p.bumper_damping + p.bumper_guide_friction / p.bumper_guide_friction_speed, guided);
+        const double drag = plant::with_bumper_law(p, [&](auto law) { return law.greatest_damping(p, v); });
+        s.decay(p.bumper_damping + drag + p.bumper_guide_friction / p.bumper_guide_friction_speed, guided);
         s.decay(p.bumper_stop_stiffness * p.bumper_stop_damping * v * std::sqrt(guided / p.bumper_stop_stiffness),
                 guided);
     }

@@ -97,6 +97,7 @@ template <int N> Dual<N> expm1(const Dual<N> &a) {
     const double e = expm1(a.value);
     return detail::chain(e, detail::exp_minimum < a.value && a.value < detail::exp_maximum ? e + 1.0 : 0.0, a);
 }
+template <int N> Dual<N> log(const Dual<N> &a) { return detail::chain(log(a.value), 1.0 / a.value, a); }
 template <int N> Dual<N> tanh(const Dual<N> &a) {
     const double t = tanh(a.value);
     return detail::chain(t, (1.0 - t) * (1.0 + t), a);

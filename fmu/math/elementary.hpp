@@ -1,4 +1,4 @@
-// exp, expm1, tanh, sin and cos from arithmetic alone, so that every platform and every lane gives the same bits.
+// exp, expm1, log, tanh, sin and cos from arithmetic alone, so that every platform and every lane gives the same bits.
 // Errors: a few units in the last place (tests/fmu/math compares them with long double libm).
 #pragma once
 
@@ -51,6 +51,24 @@ template <class T> T expm1(T a) {
     const T r = (x - k * T(detail::ln2_high)) - k * T(detail::ln2_low);
     const T scale = exp2_integer(k);
     return detail::expm1_reduced(r) * scale + (scale - T(1.0));
+}
+
+// Natural logarithm of a normal number in (0, 1e300]: a = 2^k m, ln m by the atanh series.
+template <class T> T log(T a) {
+    const Split<T> parts = split(a);
+    const auto high = less(T(1.4142135623730951), parts.mantissa);
+    const T m = select(high, T(0.5) * parts.mantissa, parts.mantissa);
+    const T k = parts.exponent + select(high, T(1.0), T(0.0));
+    const T s = (m - T(1.0)) / (m + T(1.0)); // |s| < 0.1716
+    const T s2 = s * s;
+    // 1/n as constants: the loop would divide.
+    constexpr double inverse[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0,
+                                  1.0 / 9.0,  1.0 / 7.0,  1.0 / 5.0,  1.0 / 3.0,  1.0};
+    T p(1.0 / 21.0);
+    for (const double coefficient : inverse) {
+        p = p * s2 + T(coefficient);
+    }
+    return k * T(detail::ln2_high) + (k * T(detail::ln2_low) + T(2.0) * s * p);
 }
 
 // Odd, and exactly +-1 beyond |a| = 20.

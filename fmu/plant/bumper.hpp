@@ -25,9 +25,11 @@ template <class T> StopForce<T> stop_force(T engaged, T stiffness, T damping, T 
 template <class T, int Wheels>
 BumperForce<T> bumper_force(const Parameters<T, Wheels> &p, const Modes<T, Wheels> &m, T c, T rate) {
     return with_bumper_law(p, [&](auto law) {
-        const LawForce<T> spring = law.spring(p, c, rate);
-        const T loss =
-            p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
+        const LawForce<T> spring = law.spring(p, c);
+        T loss = p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
+        if constexpr (decltype(law)::has_drag) {
+            loss = loss + law.drag(p, c, rate);
+        }
         const auto end =
             stop_force(m.end_stop, p.bumper_stop_stiffness, p.bumper_stop_damping, T(-1.0) * c, T(-1.0) * rate);
         const auto bottom =
@@ -43,10 +45,11 @@ BumperForce<T> bumper_force(const Parameters<T, Wheels> &p, const Modes<T, Wheel
     });
 }
 
-// Rest position of a free bumper's plate against its end stop.
+// Rest position of a free bumper's plate against its end stop. Without any force on it, too, the plate begins on that
+// side: exactly at zero the end stop's event would not be seen.
 template <class T, int Wheels> T resting_compression(const Parameters<T, Wheels> &p) {
     return with_bumper_law(p, [&](auto law) -> T {
-        return T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness);
+        return math::min(T(-1.0) * law.rest_force(p) / (law.rest_stiffness(p) + p.bumper_stop_stiffness), T(-1e-9));
     });
 }
 

@@ -48,6 +48,9 @@ T slider_energy(T energy, const std::array<T, N> &x, const Evaluation<T, Wheels,
         if (p.has_plate() && !p.plate_on_robot()) {
             energy = energy + half * p.bumper_plate_mass * math::square(x[At::slider_speed] - x[At::compression_rate]);
         }
+        if (p.bumper_kind == BumperKind::lever) {
+            energy = energy + half * bumper_inertance(p) * math::square(x[At::compression_rate]);
+        }
         if (p.rope_attached != 0) {
             energy = energy + half * p.rope_hanging_mass * math::square(x[At::weight_speed]);
         }

@@ -43,6 +43,19 @@ template <class T, int Wheels> T locked(const Parameters<T, Wheels> &p, const Mo
     return bumper_holds(p) ? m.latched : T(0.0);
 }
 
+// The share of the accelerations of a locked plate; the rest are those of a free one. An inertance between plate and
+// carrier is in between: exactly this mean of both.
+template <class T, int Wheels> T locked_share(const Parameters<T, Wheels> &p, const Modes<T, Wheels> &m) {
+    if (p.bumper_kind == BumperKind::lever && p.slider_present != 0) {
+        const T inertance = bumper_inertance(p);
+        const T plate = p.bumper_plate_mass;
+        const T slider = p.slider_mass;
+        const T guided = p.plate_on_robot() ? plate : plate * (slider - plate) / slider;
+        return inertance / (guided + inertance);
+    }
+    return locked(p, m);
+}
+
 template <class T, int Wheels, std::size_t N>
 std::array<Rolling<T>, Wheels> all_rolling(const Parameters<T, Wheels> &p, const Derived<T> &d,
                                            const Modes<T, Wheels> &m, const std::array<T, N> &x) {
@@ -76,7 +89,7 @@ template <class T, int Wheels, std::size_t N>
 void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const Modes<T, Wheels> &m,
                   const Parameters<T, Wheels> &p, const Derived<T> &d, T decelerating, T &loss) {
     using At = Layout<Wheels>;
-    const T lock = locked(p, m);
+    const T lock = locked_share(p, m);
     const T free = T(1.0) - lock;
     if (p.slider_present != 0) {
         e.rope =
@@ -103,7 +116,7 @@ void slider_rates(Evaluation<T, Wheels, N> &e, const std::array<T, N> &x, const 
             e.rate[At::compression_rate] = free * (alone - (e.bumper.force - decelerating) / p.bumper_plate_mass);
             e.internal_force = free * e.bumper.force + lock * (decelerating + p.bumper_plate_mass * whole);
         }
-        e.rate[At::compression] = free * x[At::compression_rate];
+        e.rate[At::compression] = (T(1.0) - locked(p, m)) * x[At::compression_rate];
         if (p.rope_attached != 0) {
             e.rate[At::weight_drop] = x[At::weight_speed];
             e.rate[At::weight_speed] = T(gravity_mps2) - (e.rope.tension + e.rope.floor) / p.rope_hanging_mass;
@@ -207,7 +220,7 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
     const T decelerating = force_world.x * d.rail_x + force_world.y * d.rail_y;
 
     slider_rates(e, x, m, p, d, decelerating, loss);
-    const T lock = locked(p, m);
+    const T lock = locked_share(p, m);
     const T free = T(1.0) - lock;
 
     Planar3<T> acceleration;
@@ -222,8 +235,8 @@ void evaluate_into(Evaluation<T, Wheels> &e, const StateVector<T, Wheels> &x, co
         Inertia3<T> inertia = one_by_one ? base_inertia(p, e.rollers) : base_inertia(p);
         inertia.add(p.bumper_plate_mass, across);
         inertia.add(lock * p.bumper_plate_mass, along);
-        const T across_turning =
-            T(-1.0) * centripetal * dot(plate, turned(outward)) - T(2.0) * omega * free * x[At::compression_rate];
+        const T across_turning = T(-1.0) * centripetal * dot(plate, turned(outward)) -
+                                 T(2.0) * omega * (T(1.0) - locked(p, m)) * x[At::compression_rate];
         const T along_turning = T(-1.0) * centripetal * dot(plate, outward);
         const Vector2<T> weight = p.bumper_plate_mass * downhill;
         const T pull = dot(force + weight, outward);
@@ -351,7 +364,7 @@ Inertia3<T> inertia_with_plate(const StateVector<T, Wheels> &x, const Modes<T, W
         const Vector2<T> plate =
             Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[Layout<Wheels>::compression] * outward;
         inertia.add(p.bumper_plate_mass, wrench_direction(turned(outward), plate));
-        inertia.add(locked(p, m) * p.bumper_plate_mass, wrench_direction(outward, plate));
+        inertia.add(locked_share(p, m) * p.bumper_plate_mass, wrench_direction(outward, plate));
     }
     return inertia;
 }
@@ -398,7 +411,7 @@ void hand_over(const Evaluation<T, Wheels> &e, StateVector<T, Wheels> &x, Modes<
         // A free plate keeps its velocity along its guide.
         const Vector2<T> outward{d.plate_x, d.plate_y};
         const Vector2<T> plate = Vector2<T>{p.bumper_mount_x, p.bumper_mount_y} - x[At::compression] * outward;
-        const T free = T(1.0) - locked(p, m);
+        const T free = T(1.0) - locked_share(p, m);
         x[At::compression_rate] = x[At::compression_rate] + free * dot(wrench_direction(outward, plate), change);
     }
     x[At::dissipated] = x[At::dissipated] + loss;

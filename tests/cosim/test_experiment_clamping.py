@@ -13,7 +13,7 @@ from giveway import batch, experiments
 from giveway.experiments.clamping import GAPS_M, REGION, SPEED_MPS, Clamped, _own_row, _safe_speed, scenario
 from giveway.experiments.reproduction.findings import Effort, Findings
 from giveway.scenario.body_regions import NOTICE, body_region
-from giveway.scenario.scenario import BUMPERS
+from giveway.scenario.scenario import ROBOT_BUMPERS
 from giveway.simulation.result import Result
 
 
@@ -78,7 +78,7 @@ def test_contact_is_as_stiff_as_leg_and_cover_in_series() -> None:
 def test_rows(findings: Findings) -> None:
     rows = {row.quantity: row for row in findings.rows}
     for place in GAPS_M:
-        for bumper in BUMPERS:
+        for bumper in ROBOT_BUMPERS:
             assert rows[f"detection time, {bumper}, {place}"].met
             assert rows[f"lasting force, {bumper}, {place}"].met
         soft, hard = (rows[f"peak force, {bumper}, {place}"].ours for bumper in ("magnetic", "none"))

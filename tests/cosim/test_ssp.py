@@ -20,7 +20,7 @@ from giveway.robot.changes import NewValue, changed_robot
 from giveway.robot.presets import preset_values
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
-from giveway.scenario.scenario import BUMPERS
+from giveway.scenario.scenario import ROBOT_BUMPERS
 from giveway.simulation.fmu import Instance, open_fmu
 from giveway.simulation.master import COMMANDS, KINDS, SENSORS, simulate
 from lxml import etree
@@ -54,7 +54,7 @@ def test_every_document_is_valid(package: Path) -> None:
             assert schema_faults(content.replace(b'version="1.0"', b'version="x"'), schemas[name[-4:]]), (
                 "the planted fault"
             )
-    assert {f"resources/{bumper}.ssv" for bumper in BUMPERS} <= set(documents)
+    assert {f"resources/{bumper}.ssv" for bumper in ROBOT_BUMPERS} <= set(documents)
     assert {"SystemStructure.ssd", "none.ssd", "spring.ssd"} <= set(documents)
 
 
@@ -113,7 +113,7 @@ def run_between_steps(bumper: str, sequential: bool = False, preset: str = "defa
     return rows
 
 
-@pytest.mark.parametrize("bumper", BUMPERS)
+@pytest.mark.parametrize("bumper", ROBOT_BUMPERS)
 def test_fmpy_runs_it_as_the_fmus_run_by_themselves(package: Path, bumper: str) -> None:
     """Bit for bit with a loop of the same order; and our own order differs by what the first cycle lacks.
 

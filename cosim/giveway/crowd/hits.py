@@ -25,7 +25,7 @@ from giveway.crowd.population import DRAWS, GROUP_PATTERN, Robot, controller_of,
 from giveway.robot.variables import Value
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
 from giveway.scenario.plan import Plan, Pushes, Rest, TimedPush
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import BUMPERS, ROBOT_BUMPERS, Scenario
 from giveway.scenario.stated_contact import StatedContact
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ class _Draw:
         self._rng = np.random.default_rng((DRAWS[draw], 1, number))
         self._number, self._robot, self._situation, self._kind = number, whose, situation, kind
         self._outline = _outline()
-        self._bumper = str(self._rng.choice(list(BUMPERS)))
+        self._bumper = str(self._rng.choice(list(ROBOT_BUMPERS)))
         self._seed = int(self._rng.integers(2**31))
         self._stated = int(self._rng.integers(STATED_EVERY)) == 0
 

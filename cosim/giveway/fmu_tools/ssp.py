@@ -26,7 +26,7 @@ from giveway.experiments.placement import pulled_by_weight
 from giveway.fmu_tools.description import Description, VariableEntry, effective, read_description
 from giveway.robot.presets import PAPER, preset_values
 from giveway.robot.variables import Value, table
-from giveway.scenario.scenario import BUMPERS
+from giveway.scenario.scenario import BUMPERS, ROBOT_BUMPERS
 from giveway.simulation.master import COMMANDS, KINDS, SENSORS
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def write_ssp(out: Path, robot: Robot | None = None, *, sequential: bool = False
     files: dict[str, bytes] = {}
     for model in native.MODELS:
         files[f"resources/giveway_{model}.fmu"] = native.fmu(model, FMI_VERSION).read_bytes()
-    for bumper in BUMPERS:
+    for bumper in ROBOT_BUMPERS:
         values = parameter_set(bumper, robot, sequential=sequential)
         files[f"resources/{bumper}.ssv"] = _text(_parameter_values(bumper, values, descriptions))
         for model in _bound(values):

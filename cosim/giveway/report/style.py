@@ -9,6 +9,12 @@ _BUMPERS = {
     "none": ("no bumper", "#c8500a"),
     "spring": ("spring bumper", "#0b64a8"),
     "magnetic": ("magnetic spring bumper", "#0a8a63"),
+    "foam": ("foam bumper", "#8a5a9e"),
+    "gas": ("gas spring bumper", "#2a9d9a"),
+    "damper": ("damper bumper", "#a8324a"),
+    "series": ("bumper of two springs in series", "#5c6f1f"),
+    "lever": ("bumper with a lever", "#b08400"),
+    "table": ("bumper as measured", "#4a5568"),
 }
 BUMPER_LABELS = {bumper: label for bumper, (label, _) in _BUMPERS.items()}
 COLOURS = dict(_BUMPERS.values())

@@ -19,7 +19,7 @@ from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.approach import Approach, edge_middle, meet, outline_of
 from giveway.scenario.plan import Rest
-from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario import BUMPERS, ROBOT_BUMPERS, Scenario
 
 __all__ = ["DURATION_S", "FACTORS", "random_collisions"]
 
@@ -82,7 +82,7 @@ def _scenario(
         name = f"roller.presliding_stiffness[{wheel}]"
         values[name] = float(start[name]) * _factor(rng, PRESLIDING_FACTOR)
     values["contact.friction"] = rng.uniform(0.0, 0.4)
-    bumper = str(rng.choice(list(BUMPERS)))
+    bumper = str(rng.choice(list(ROBOT_BUMPERS)))
     values["bumper.latch_model"] = int(rng.integers(2))
     values["electronics.seed"] = int(rng.integers(2**31))
     values |= _approach(rng, {**start, **values, "bumper.kind": BUMPERS[bumper]})

@@ -16,9 +16,11 @@ from giveway.scenario.body_regions import BodyRegion, body_region, body_regions,
 from giveway.scenario.plan import Plan, Push, Rest
 from giveway.scenario.stated_contact import StatedContact
 
-__all__ = ["BUMPERS", "FMI_VERSIONS", "Scenario"]
+__all__ = ["BUMPERS", "FMI_VERSIONS", "ROBOT_BUMPERS", "Scenario"]
 
 BUMPERS = Choices("testbed", "bumper.kind")
+# Those with numbers in the robot file. Random hits are drawn from them: a further law leaves every draw as it was.
+ROBOT_BUMPERS = ("none", "spring", "magnetic")
 FMI_VERSIONS = (3, 2)
 MAXIMUM_DURATION_S = 3600.0
 MINIMUM_STEP_S, MAXIMUM_STEP_S = 1e-4, 0.1
@@ -37,7 +39,7 @@ class Scenario:
         name: a short name, for manifests and figures.
         duration_s: simulated time in s, above 0 and at most 3600.
         step_s: communication step in s.
-        bumper: "none", "spring" or "magnetic".
+        bumper: "none", "spring", "magnetic", "foam", "gas", "damper", "series", "lever" or "table".
         testbed, controller: parameter overrides, names as in the variable tables, values in their units.
         plan: the planned motion (world frame).
         push: an external push on the robot over time, or None.

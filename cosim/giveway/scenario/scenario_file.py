@@ -19,6 +19,7 @@ from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
 from giveway.scenario.plan_limits import check_plan_of
 from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.stated_bumper import law_of, stated_bumper
 from giveway.scenario.stated_contact import StatedContact
 
 __all__ = ["PLAN_KEYS", "SET_BY", "read_scenario", "scalars", "scenario_of"]
@@ -98,19 +99,24 @@ def scenario_of(
         if not robot.is_file():
             raise GivewayError("robot", top.values["robot"], "a robot file, its path seen from this file")
     collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
-    if collision is None and top.values.get("bumper", "none") != "none":
-        raise GivewayError("bumper", top.values["bumper"], "none without [collision]: the bumper is on what collides")
+    if collision is None and law_of(top.values.get("bumper", "none")) != "none":
+        allowed = "none without [collision]: the bumper is on what collides"
+        raise GivewayError("bumper", law_of(top.values["bumper"]), allowed)
     for key in ("body_region", "judge_as"):
         if collision is None and key in top.values:
             raise GivewayError(key, top.values[key], "nothing without [collision]: it is about a contact")
     plan = _plan(top)
     overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
+    kind, numbers = _bumper(top, path.parent, bumper)
+    for name in numbers:
+        if name in overrides["testbed"]:
+            raise GivewayError(f"testbed.{name}", overrides["testbed"][name], "one place to set it: bumper")
     with renamed("", duration_s="duration", contact_area_m2="contact_area"):
         bare = Scenario(
             name=top.text("name", path.stem),
             duration_s=top.number("duration"),
-            bumper=bumper or top.choice("bumper", BUMPERS, "none"),
-            testbed={**overrides["testbed"], **start_values(plan), "slider.present": collision is not None},
+            bumper=kind,
+            testbed={**overrides["testbed"], **numbers, **start_values(plan), "slider.present": collision is not None},
             controller=overrides["controller"],
             plan=plan,
             push=pushes,
@@ -137,6 +143,14 @@ def scenario_of(
             allowed = f"above {time_s:.3g} s, when the weight has pulled the slider to the robot"
         raise GivewayError(field, found, allowed)
     return dataclasses.replace(bare, testbed={**bare.testbed, **met}, contact=contact)
+
+
+def _bumper(top: Section, folder: Path, instead: str | None) -> tuple[str, dict[str, Value]]:
+    """Its law, and the numbers that its table states; ``instead``: another law, without these numbers."""
+    if not isinstance(top.values.get("bumper"), Mapping):
+        return instead or top.choice("bumper", BUMPERS, "none"), {}
+    law, numbers = stated_bumper(top.values["bumper"], folder)
+    return (law, numbers) if instead in (None, law) else (str(instead), {})
 
 
 def _plan(top: Section) -> Plan:

@@ -47,7 +47,9 @@ class Study:
         name: str,
         *,
         duration: float,
-        bumper: Literal["none", "spring", "magnetic"] | None = None,
+        bumper: Literal["none", "spring", "magnetic", "foam", "gas", "damper", "series", "lever", "table"]
+        | Mapping[str, Any]
+        | None = None,
         robot: Path | str | None = None,
         plan: Keys | None = None,
         push: Sequence[Keys] | None = None,
@@ -68,7 +70,8 @@ class Study:
         Args:
             name: 1 to 80 characters.
             duration: simulated time of a run, s.
-            bumper: on what collides; "none" if left out.
+            bumper: on what collides; "none" if left out. A law and its numbers: ``{"law": "foam", "travel": 0.05,
+                "thickness": {"value": 60, "unit": "mm"}, ...}``.
             robot: file (TOML); left out: the robot that the FMUs were built with.
             plan: where the robot goes: ``{"kind": "straight", "speed": 0.3, ...}``; at rest if left out.
             push: external pushes, each with force (N), direction (deg), point (m), start (s), duration (s), ramp (s).
@@ -85,7 +88,7 @@ class Study:
         """
         scenario = {
             "duration": duration,
-            "bumper": bumper,
+            "bumper": bumper if bumper is None or isinstance(bumper, str) else _table(bumper),
             "robot": None if robot is None else str(robot),
             "plan": _table(plan),
             "push": None if push is None else [_table(one) for one in push],

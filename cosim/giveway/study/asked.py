@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 from giveway.base import native
 from giveway.robot.presets import PRESETS
 from giveway.robot.variables import table
+from giveway.scenario.scenario import ROBOT_BUMPERS
 from giveway.scenario.scenario_file import scalars
+from giveway.scenario.stated_bumper import COMMON, NUMBERS
 from giveway.study.limits import limit_words
 from giveway.study.part_rules import rules_in_words
 from giveway.study.parts import choices_of
@@ -24,6 +26,7 @@ __all__ = ["all_asked", "asked", "in_words"]
 CONTACT = ("stiffness", "damping", "friction", "nose_radius")
 SPRING = ("spring_rate", "preload", "damping", "guide_friction", "travel", "plate_mass")  # of a bumper
 LATCH = ("latch_force", "latch_gap")  # of a magnetic one
+SOLID = ("damping", "guide_friction", "travel", "plate_mass")  # of one with another law
 NOSES = ("round nose", "long edge")  # contact.nose_shape
 MOUNTS = ("on the slider", "on the robot")  # bumper.mount
 VARIES = "varies"
@@ -48,9 +51,15 @@ def asked(setup: Setup) -> list[tuple[str, str]]:
 
     robot = document.get("robot")
     kind = VARIES if "testbed.bumper.kind" in varied else scenario.bumper
-    numbers = () if kind == "none" else SPRING if kind == "spring" else (*SPRING, *LATCH)
+    numbers: tuple[str, ...] = () if kind == "none" else SPRING if kind == "spring" else (*SPRING, *LATCH)
+    if kind not in (*ROBOT_BUMPERS, VARIES):
+        numbers = (*(name for name in NUMBERS[kind] if name not in COMMON), *SOLID)
     bumper = [kind, *([choice("bumper.mount", MOUNTS)] if numbers else [])]
     bumper += [f"{name.replace('_', ' ')} {of(f'bumper.{name}')}" for name in numbers]
+    if kind == "table":
+        stated = document["bumper"]
+        points = f"{of('bumper.table_rows')} travels, {of('bumper.table_columns')} speeds"
+        bumper.insert(1, f"{stated['file']}: {points}" if isinstance(stated, dict) else points)
     contact = [choice("contact.nose_shape", NOSES)]
     contact += [f"{name.replace('_', ' ')} {of(f'contact.{name}')}" for name in CONTACT]
     rows = [

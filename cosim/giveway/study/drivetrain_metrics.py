@@ -145,7 +145,8 @@ def _impact_force(values: Real, inertia: Real, stated: Stated) -> Real:
 
     kind = testbed("bumper.kind")
     contact, spring = testbed("contact.stiffness"), testbed("bumper.spring_rate")
-    bumper = kind != list(BUMPERS).index("none")
+    # Of other bumpers none is assumed: their force may be anything below that of the cover alone.
+    bumper = np.isin(kind, [list(BUMPERS).index(name) for name in ("spring", "magnetic")])
     stiffness = np.where(bumper, contact * spring / (contact + spring), contact)
     preload = np.where(bumper, testbed("bumper.preload"), 0.0)
     latch = np.where(kind == list(BUMPERS).index("magnetic"), testbed("bumper.latch_force"), 0.0)

@@ -519,12 +519,20 @@ def _portable(setup: Setup) -> dict[str, Any]:
     document = json.loads(json.dumps(setup.document))
     if "robot" in document.get("scenario", {}):
         document["scenario"]["robot"] = INPUT_FILES[0]
+    if _measured_bumper(document.get("scenario", {})):
+        document["scenario"]["bumper"]["file"] = INPUT_FILES[2]
     if document.get("designs", {}).get("kind") == "csv":
         document["designs"]["file"] = INPUT_FILES[1]
     for index, parts in enumerate(document.get("parts", [])):
         parts["catalogue"] = catalogue_copy(index, parts["catalogue"])
     assert isinstance(document, dict)
     return document
+
+
+def _measured_bumper(scenario: dict[str, Any]) -> str | None:
+    """The path of the table that the bumper's law is, as written."""
+    bumper = scenario.get("bumper")
+    return bumper.get("file") if isinstance(bumper, dict) else None
 
 
 def keep_inputs(setup: Setup, folder: Path) -> None:
@@ -541,6 +549,9 @@ def _input_files(setup: Setup) -> Iterator[tuple[Path, str]]:
     robot = setup.cases[0].scenario.robot
     if robot is not None:
         yield Path(robot), INPUT_FILES[0]
+    measured = _measured_bumper(setup.document["scenario"])
+    if measured is not None:
+        yield setup.folder / measured, INPUT_FILES[2]
     if setup.plan.kind == "csv":
         yield setup.folder / setup.document["designs"]["file"], INPUT_FILES[1]
     for index, parts in enumerate(setup.document.get("parts", [])):

@@ -137,10 +137,18 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
     if "body_region" in document and COVER in changed:  # the design states the stiffness of cover and body together
         document["judge_as"] = document.pop("body_region")
         document["collision"]["mass"] = settings["testbed"]["slider.mass"]
+    bumper = document.get("bumper")
+    numbers: dict[str, Value] = {}
+    if isinstance(bumper, dict):  # what it states are parameters here, beside those of the design
+        from giveway.scenario.stated_bumper import stated_bumper
+
+        bumper, numbers = stated_bumper(bumper, answers.setup.folder)
     if any(one.name == "bumper" for one in quantities):
         from giveway.scenario.scenario import BUMPERS
 
-        document["bumper"] = list(BUMPERS)[int(settings["testbed"]["bumper.kind"])]
+        bumper = list(BUMPERS)[int(settings["testbed"]["bumper.kind"])]
+    if bumper is not None:
+        document["bumper"] = bumper
     if "robot" in document:
         document["robot"] = str((answers.folder / "robot.toml").resolve())
     if "temperature" in [one.name for one in quantities]:
@@ -153,7 +161,7 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
         if key not in ("testbed", "controller"):
             text[key] = value
     for model in ("testbed", "controller"):
-        values = _flat(document.get(model, {}))
+        values = _flat(document.get(model, {})) | (numbers if model == "testbed" else {})
         for name in sorted(changed):
             owner, _, variable = name.partition(".")
             if owner == model and variable not in ("bumper.kind", "slider.mass", "contact.height", "electronics.seed"):

@@ -8,7 +8,8 @@
 | | any column that `at_most` or `at_least` names | if the quantity is beyond it |
 
 Lengths and forces are those of one spring: several side by side (`rate * count`) share the force, several behind each
-other (`rate / count`) the way. Every run is judged with its own values, so a tolerance counts, too.
+other (`rate / count`) the way. Springs are judged where the plate moves them, and them alone: of bumpers with the law
+spring, magnetic or damper. Every run is judged with its own values, so a tolerance counts, too.
 """
 
 from __future__ import annotations
@@ -105,7 +106,7 @@ def _spring(choice: PartChoice, setting: PartSetting) -> Iterator[PartRule]:
     """Of compression springs."""
     columns, share = choice.catalogue.columns, setting.share
     force, way = min(share, 1.0), min(1.0 / share, 1.0)  # of one of them
-    springs = tuple(name for name in BUMPERS if name != "none")
+    springs = ("spring", "magnetic", "damper")  # where the plate moves the spring, and that alone
     preload, travel = "testbed.bumper.preload", "testbed.bumper.travel"
 
     if (FREE in columns) != (SOLID in columns):

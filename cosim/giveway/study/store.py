@@ -3,7 +3,7 @@
     DIR/manifest.json                what was asked for, versions, hashes, seeds
     DIR/parts/HASH/designs.npz       values of all designs, deviations of all tolerance samples
     DIR/parts/HASH/part-A-B.parquet  the results of runs A to B - 1
-    DIR/robot.toml, designs.csv, catalogue-N-NAME.csv  copies of what the study file named
+    DIR/robot.toml, designs.csv, bumper.csv, catalogue-N-NAME.csv  copies of what the study file named
 
 HASH stands for everything that decides the results; a study that was changed since has another one, and what is the
 same in both is taken from the old parts. Studies whose folders lie side by side share their results in the same way.
@@ -43,7 +43,7 @@ __all__ = [
 SCHEMA_VERSION = 1
 KIND = "giveway study"
 MANIFEST_FILE, LOCK_FILE, PARTS, DESIGNS_FILE = "manifest.json", ".lock", "parts", "designs.npz"
-INPUT_FILES, CATALOGUE = ("robot.toml", "designs.csv"), "catalogue-"
+INPUT_FILES, CATALOGUE = ("robot.toml", "designs.csv", "bumper.csv"), "catalogue-"
 HINT = "give a folder that `giveway sweep` wrote"
 _PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
 MERGED_AT = 16

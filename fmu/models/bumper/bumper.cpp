@@ -9,6 +9,7 @@
 
 #include "bumper_system.hpp"
 #include "bumper_plant_parameters.hpp"
+#include "bumper_relations.hpp"
 #include "bumper_variables.hpp"
 #include "exchange.hpp"
 #include "hybrid_integrator.hpp"
@@ -67,6 +68,9 @@ public:
         now_s_ = 0.0;
         events_ = {};
         exchanging_ = false;
+        if (!check_bumper(parameters(), message)) {
+            return Status::error;
+        }
         system_.start(parameters());
         system_.set_faces(faces(), 0.0);
         stored_at_start_j_ = system_.force(0.0).stored;

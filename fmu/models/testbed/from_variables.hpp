@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "bumper_relations.hpp"
 #include "drives.hpp"
 #include "imu.hpp"
 #include "initial_state.hpp"
@@ -114,7 +115,9 @@ inline bool check_relations(const Variables &v, Message &message) {
     if (v.base_tipping && v.bumper_kind != 0 && v.bumper_mount != 0) {
         return refuse("bumper.mount", v.bumper_mount, "0, on the slider, where the base can tip: base.tipping =", 1.0);
     }
-    if (!check_mass_centre(v, message)) {
+    plant::Parameters<double> p{};
+    read_plant_parameters(v, p);
+    if (!check_bumper(p, message) || !check_mass_centre(v, message)) {
         return false;
     }
     const double wheels_tilt_inertia = 0.5 * wheel_count * v.wheel_inertia;

@@ -10,6 +10,8 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from bumper_law_reference import KINDS as LAW_KINDS
+from bumper_law_reference import LAWS
 from component_run import co_simulate
 from drivetrain_reference import Parameters
 from fmpy import fmi2, fmi3
@@ -17,6 +19,7 @@ from fmpy.sundials import CVodeSolver
 from fmu_driver import OK, Fmu, fmu_path
 from test_bumper import KINDS, moved, triangle
 from test_bumper import parameters as bumper_parameters
+from test_bumper_laws import parameters as law_parameters
 from test_drivetrain import shove
 
 SIGNALS = 1e-4  # of the peak
@@ -81,7 +84,24 @@ CASES = {
         )
         for kind in KINDS
     },
+    **{
+        f"bumper, {name}": Case(
+            "bumper", law_parameters(name), moved(triangle(0.25, 0.05435, -0.00065)), 0.44, 1e-3, moving_inputs=True
+        )
+        for name in LAWS
+    },
     "testbed": Case("testbed", SMOOTH),
+    **{
+        f"testbed, {name}": Case("testbed", {**SMOOTH, "bumper.kind": number}, importer_tolerance=1e-10)
+        for name, number in LAW_KINDS.items()
+        if name != "table"
+    },
+    "testbed, lever with inertia on the robot": Case(
+        "testbed",
+        {**SMOOTH, **ON_THE_ROBOT, "bumper.kind": LAW_KINDS["lever"], "bumper.lever_mass": 0.3},
+        stop=0.3,
+        importer_tolerance=1e-10,
+    ),
     "testbed, pushed": Case("testbed", SMOOTH, pushed, stop=0.3),
     "testbed, spring": Case("testbed", {**SMOOTH, "bumper.kind": 1}),
     "testbed, ideal latch": Case("testbed", {**SMOOTH, "bumper.latch_model": 1}),

@@ -26,6 +26,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
 import numpy as np
+from bumper_law_reference import KINDS, law_force, stored_energy
 from scipy.integrate import DOP853, DenseOutput, quad
 from scipy.optimize import brentq
 
@@ -150,6 +151,31 @@ class Parameters:
     imu_y: float = 0.0
     imu_height: float = 0.2
     imu_azimuth: float = 0.0
+    # Laws of bumpers beside spring and magnet.
+    bumper_foam_thickness: float = 0.15
+    bumper_foam_force_25: float = 25.0
+    bumper_foam_force_50: float = 45.0
+    bumper_foam_force_75: float = 110.0
+    bumper_foam_hysteresis: float = 0.3
+    bumper_foam_hysteresis_speed: float = 0.02
+    bumper_foam_rate_gain: float = 0.3
+    bumper_gas_force: float = 50.0
+    bumper_gas_length: float = 0.2
+    bumper_gas_exponent: float = 1.2
+    bumper_gas_ambient_force: float = 0.0
+    bumper_damper_rate: float = 100.0
+    bumper_damper_square: float = 0.0
+    bumper_damper_rebound: float = 1.0
+    bumper_second_rate: float = 4000.0
+    bumper_second_preload: float = 0.0
+    bumper_first_travel: float = 0.03
+    bumper_lever_ratio: float = 1.5
+    bumper_lever_mass: float = 0.0
+    bumper_table_rows: int = 2
+    bumper_table_columns: int = 1
+    bumper_table_travel: list[float] = field(default_factory=lambda: [0.0, 0.2, *[0.0] * 10])
+    bumper_table_speed: list[float] = field(default_factory=lambda: [0.0] * 6)
+    bumper_table_force: list[float] = field(default_factory=lambda: [0.0] * 72)
     outline: list[tuple[float, float]] = field(
         default_factory=lambda: [(0.352184, 0.0), (-0.176092, 0.305), (-0.176092, -0.305)]
     )
@@ -262,6 +288,8 @@ class Reference:
         self.ex, self.ey = math.cos(p.slider_direction), math.sin(p.slider_direction)
         self.on_robot = p.bumper_mount == MOUNT_ROBOT and p.bumper_kind != KIND_NONE
         self.has_latch = p.bumper_kind == KIND_MAGNETIC
+        self.law = {number: name for name, number in KINDS.items()}.get(p.bumper_kind)
+        self.law_numbers = {f.name.removeprefix("bumper_"): getattr(p, f.name) for f in fields(p)}
         self.ideal = self.has_latch and p.bumper_latch_model == LATCH_IDEALISED
         self.carriage_mass = p.slider_mass - (0.0 if self.on_robot else p.bumper_plate_mass)
         self.aim = (
@@ -575,7 +603,12 @@ class Reference:
             load[self.LOCK] = -centrifugal
         else:
             c, cdot = x[22], x[23]
-            force = p.bumper_preload + p.bumper_spring_rate * c + p.bumper_damping * cdot + self.latch(c)
+            if self.law is None:
+                force = p.bumper_preload + p.bumper_spring_rate * c + self.latch(c)
+            else:
+                force = law_force(self.law, self.law_numbers, c, cdot)
+                dissipated += (force - law_force(self.law, self.law_numbers, c, 0.0)) * cdot
+            force += p.bumper_damping * cdot
             slide = p.bumper_guide_friction * math.tanh(cdot / p.bumper_guide_friction_speed)
             force += slide
             dissipated += (p.bumper_damping * cdot + slide) * cdot
@@ -589,8 +622,11 @@ class Reference:
                 force += stop
                 dissipated += (stop - p.bumper_stop_stiffness * depth) * cdot
             matrix[self.LOCK, self.LOCK] = 1.0
+            inertance = p.bumper_lever_mass if self.law == "lever" else 0.0
             for column, value in extension.items():
-                load[column] += force * value
+                load[column] += (force - inertance * centrifugal) * value
+                for other, moved in extension.items():
+                    matrix[column, other] += inertance * value * moved
 
         # Contact: force on the robot, its reaction on the nose.
         cfx = cfy = 0.0
@@ -622,6 +658,8 @@ class Reference:
                 qx, qy = total[1] / normal, total[2] / normal
 
         solution = np.linalg.solve(matrix, load).tolist()
+        if not locked:
+            force -= inertance * (centrifugal + sum(value * solution[k] for k, value in extension.items()))
         rate[0:3] = [vx, vy, omega]
         rate[3] = solution[0] + solution[2] * my + omega**2 * mx
         rate[4] = solution[1] - solution[2] * mx + omega**2 * my
@@ -694,7 +732,12 @@ class Reference:
                 energy += 0.5 * p.rope_floor_stiffness * (x[20] - p.rope_drop_height) ** 2
         if p.bumper_kind != KIND_NONE:
             c = x[22]
-            energy += p.bumper_preload * c + 0.5 * p.bumper_spring_rate * c**2
+            if self.law is None:
+                energy += p.bumper_preload * c + 0.5 * p.bumper_spring_rate * c**2
+            else:
+                energy += stored_energy(self.law, self.law_numbers, c)
+            if self.law == "lever":
+                energy += 0.5 * p.bumper_lever_mass * x[23] ** 2
             if self.has_latch and not self.ideal:
                 energy += p.bumper_latch_force * (c if c < 0.0 else p.bumper_latch_gap * c / (p.bumper_latch_gap + c))
             if modes.end_stop and not self.ideal:

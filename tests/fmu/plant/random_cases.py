@@ -36,12 +36,18 @@ _NOT_SCALED = {
     "imu_y",
     "imu_azimuth",
 }
+_OF_LAWS = tuple(f"bumper_{what}_" for what in ("foam", "gas", "damper", "second", "first", "lever", "table"))
 
 
 def parameters(rng: np.random.Generator, kind: int, mount: int, latch: int, roller: int) -> Parameters:
     p = Parameters(bumper_kind=kind, bumper_mount=mount, bumper_latch_model=latch, roller_model=roller)
     for f in fields(p):
-        if f.type == "float" and f.name not in _NOT_SCALED and not f.name.startswith("fault"):
+        if (
+            f.type == "float"
+            and f.name not in _NOT_SCALED
+            and not f.name.startswith(_OF_LAWS)
+            and not f.name.startswith("fault")
+        ):
             setattr(p, f.name, getattr(p, f.name) * rng.uniform(0.5, 2.0))
     p.roller_elastic_fraction = rng.uniform(0.1, 0.9)
     p.slider_damping = rng.uniform(0.0, 3.0)

@@ -122,6 +122,41 @@ template <class T, int Wheels = table_wheels> Parameters<T, Wheels> random_param
     for (auto &phase : p.roller_phase) {
         phase = draw(-0.5, 0.5);
     }
+    if (seed / 5U % 3U == 2U) {
+        p.bumper_kind = static_cast<BumperKind>(3U + seed % 6U);
+    }
+    p.bumper_foam_thickness = draw(0.1, 0.3);
+    p.bumper_foam_force_25 = draw(10.0, 20.0);
+    p.bumper_foam_force_50 = draw(25.0, 40.0);
+    p.bumper_foam_force_75 = draw(70.0, 120.0);
+    p.bumper_foam_hysteresis = draw(0.0, 0.6);
+    p.bumper_foam_hysteresis_speed = draw(0.005, 0.05);
+    p.bumper_foam_rate_gain = draw(0.0, 2.0);
+    p.bumper_gas_force = draw(10.0, 100.0);
+    p.bumper_gas_length = draw(0.15, 0.4);
+    p.bumper_gas_exponent = seed % 12U == 3U ? T(1.0) : draw(1.0, 1.6);
+    p.bumper_gas_ambient_force = draw(0.0, 100.0);
+    p.bumper_damper_rate = draw(10.0, 200.0);
+    p.bumper_damper_square = draw(0.0, 100.0);
+    p.bumper_damper_rebound = draw(0.0, 2.0);
+    p.bumper_second_rate = draw(300.0, 4000.0);
+    p.bumper_second_preload = draw(0.0, 10.0);
+    p.bumper_first_travel = draw(0.02, 0.1);
+    p.bumper_lever_ratio = draw(0.5, 2.0);
+    p.bumper_lever_mass = draw(0.0, 1.0);
+    p.bumper_table_rows = 4;
+    p.bumper_table_columns = 3;
+    T travel(0.0);
+    for (std::size_t i = 0; i < 4U; ++i) {
+        p.bumper_table_travel[i] = travel;
+        travel = travel + draw(0.02, 0.08);
+        T force = draw(0.0, 100.0);
+        for (std::size_t j = 0; j < 3U; ++j) {
+            p.bumper_table_force[p.bumper_table_speed.size() * i + j] = force;
+            force = force + draw(1.0, 20.0);
+        }
+    }
+    p.bumper_table_speed = {draw(-0.15, -0.05), T(0.0), draw(0.05, 0.15)};
     return p;
 }
 

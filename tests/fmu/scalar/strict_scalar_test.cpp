@@ -30,6 +30,10 @@ inline Strict abs(Strict a) { return Strict(abs(a.value)); }
 inline Strict sqrt(Strict a) { return Strict(sqrt(a.value)); }
 inline Strict round(Strict a) { return Strict(round(a.value)); }
 inline Strict exp2_integer(Strict a) { return Strict(exp2_integer(a.value)); }
+inline Split<Strict> split(Strict a) {
+    const auto parts = split(a.value);
+    return {Strict(parts.exponent), Strict(parts.mantissa)};
+}
 
 } // namespace giveway::math
 
