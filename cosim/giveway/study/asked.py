@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from giveway.base import native
@@ -59,7 +60,7 @@ def asked(setup: Setup) -> list[tuple[str, str]]:
     if kind == "table":
         stated = document["bumper"]
         points = f"{of('bumper.table_rows')} travels, {of('bumper.table_columns')} speeds"
-        bumper.insert(1, f"{stated['file']}: {points}" if isinstance(stated, dict) else points)
+        bumper.insert(1, f"{Path(stated['file']).name}: {points}" if isinstance(stated, dict) else points)
     contact = [choice("contact.nose_shape", NOSES)]
     contact += [f"{name.replace('_', ' ')} {of(f'contact.{name}')}" for name in CONTACT]
     rows = [
