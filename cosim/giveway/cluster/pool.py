@@ -41,7 +41,7 @@ WORKERS_WAIT_S = 60.0  # without any worker
 GRACE_S = 5.0  # with refused ones only
 LOOK_EVERY_S = 0.5
 POLL_S = 0.01
-FETCH_S = 30.0
+FETCH_S = (1.0, 2.0, 4.0, 8.0, 16.0)  # tries to get a result whose worker may have died with it
 CLOSE_S = 2.0
 PART_S, PART_LEAST_S = 5.0, 2.0  # of work in a task
 FIRST, MOST = 32, 32768  # runs in it
@@ -217,7 +217,7 @@ class Pool:
         if member.asked.status == "pending":
             return
         try:
-            facts, member.said = member.asked.result(timeout=FETCH_S)
+            facts, member.said = _fetched(member.asked)
         except Exception as error:
             if member.asked.status == "error":  # the worker's, not that of the way there
                 self._refuse(member, f"{type(error).__name__}: {error}")
@@ -271,7 +271,7 @@ class Pool:
         """What became of a task that has ended."""
         ticket = member.running.pop(future)
         try:
-            answer = future.result(timeout=FETCH_S)
+            answer = _fetched(future)
         except Exception as error:
             ended = future.status
             self._drop(future)
@@ -310,6 +310,17 @@ class Pool:
         row, column = np.argwhere((ours.numbers != its.numbers) & ~(np.isnan(ours.numbers) & np.isnan(its.numbers)))[0]
         name = result_columns()[column][0]
         return f"{name} of a run: {its.numbers[row, column]!r}, here {ours.numbers[row, column]!r}"
+
+
+def _fetched(future: Any) -> Any:
+    """The result of a task that has ended, or what it raised; TimeoutError: it is gone with its worker."""
+    for timeout_s in FETCH_S:
+        try:
+            return future.result(timeout=timeout_s)
+        except TimeoutError:
+            if future.status != "finished":
+                break
+    raise TimeoutError
 
 
 def _tell(words: str) -> None:
