@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import csv
 import math
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import fmpy.ssp
 import giveway
 import numpy as np
+import pyarrow
 import pytest
 from giveway import batch
 from giveway.base import native
@@ -17,7 +20,7 @@ from giveway.base.errors import GivewayError
 from giveway.robot.changes import NewValue, changed_robot
 from giveway.study.answers import Answers, load
 from giveway.study.engine import sweep
-from giveway.study.export import SSV, _powers, export_design, export_table
+from giveway.study.export import SSV, _powers, arrow_array, export_design, export_table
 from lxml import etree
 from study_helpers import LATCH, SPRING, small_study, stored_runs
 
@@ -181,3 +184,31 @@ def test_what_cannot_be_exported_is_said(
 )
 def test_a_unit_is_told_in_base_units(unit: str, powers: dict[str, int]) -> None:
     assert _powers(unit) == powers
+
+
+def test_a_column_is_what_pyarrow_would_make_of_it() -> None:
+    columns = (
+        np.array([1.5, np.nan, -np.inf, 1e-300]),
+        np.arange(9, dtype=np.float64)[::2],
+        np.array([True, False] * 9),
+        np.array([], dtype=np.bool_),
+        np.array([3, -4], dtype=np.int32),
+        np.array(["", "straße", "a,b"], dtype=object),
+        ["none", "spring"],
+        [],
+    )
+    for values in columns:
+        made = arrow_array(values)
+        made.validate(full=True)
+        expected = pyarrow.array(np.asarray(values), from_pandas=True)
+        assert made.to_pylist() == expected.to_pylist()
+        assert str(made.type) == {"int32": "int64", "null": "double"}.get(str(expected.type), str(expected.type))
+
+
+def test_showing_a_study_imports_no_pandas(tmp_path: Path) -> None:
+    small_study().run(tmp_path / "study")
+    code = (
+        "import sys; from giveway.cli import _main; _main(['study', 'show', 'study']); print('pandas' in sys.modules)"
+    )
+    found = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert found.stdout.splitlines()[-1] == "False"

@@ -19,7 +19,7 @@ from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Varied
 from giveway.study.engine import load_runs
 from giveway.study.pareto import front, scores
-from giveway.study.results_table import read_part
+from giveway.study.results_table import column_of, read_part
 from giveway.study.runs import RunTable
 from giveway.study.setup import Goal, Setup
 from giveway.study.store import PARTS, list_parts
@@ -164,8 +164,10 @@ class Answers:
 
     def warning_text(self, design: int) -> str:
         """What happened otherwise than asked in the runs of ``design``: "bumper bottomed (3 runs)"; empty: nothing."""
+        found = self.warnings.get(design)
+        if not found:
+            return ""
         many = self.manifest["runs"] > len(self.designs)
-        found = self.warnings.get(design, {})
         counted = ((code, f" ({runs} run{'s' if runs != 1 else ''})" if many else "") for code, runs in found.items())
         return SEPARATOR.join(f"{code}{runs}" for code, runs in counted)
 
@@ -323,7 +325,7 @@ def blocks_of(parts_folder: Path, table: RunTable, goals: tuple[Goal, ...], firs
         if begin < first_design * table.per_design:
             continue
         part = read_part(path, ["run", "status", "message", "warnings", *names])
-        found: dict[str, Any] = {name: part[name].to_numpy() for name in ("run", *names)}
+        found: dict[str, Any] = {name: column_of(part, name) for name in ("run", *names)}
         found["ok"] = np.array(part["status"].to_pylist()) == "ok"
         found["message"] = np.array(part["message"].to_pylist(), dtype=object)
         found["warnings"] = np.array(part["warnings"].to_pylist(), dtype=object)

@@ -93,9 +93,38 @@ def export_table(answers: Answers, path: Path) -> None:
         reasons[design] = reason
     columns["reason"] = reasons
     with replace_file(path) as temporary, temporary.open("wb") as file:
-        # NaN (it did not happen) becomes an empty cell.
-        arrays = {name: pyarrow.array(values, from_pandas=True) for name, values in columns.items()}
+        arrays = {name: arrow_array(values) for name, values in columns.items()}
         pyarrow.csv.write_csv(pyarrow.table(arrays), file)
+
+
+def arrow_array(values: Any) -> Any:
+    """A pyarrow array of numbers, in which NaN (it did not happen) is nothing, of truths or of texts.
+
+    Made of its buffers: `pyarrow.array` imports pandas, which takes longer than all that is written.
+    """
+    import pyarrow
+
+    found = np.asarray(values)
+    count = len(found)
+    if found.dtype.kind == "f":
+        there = ~np.isnan(found)
+        buffers = [None if there.all() else _bits(there), pyarrow.py_buffer(np.ascontiguousarray(found, np.float64))]
+        return pyarrow.Array.from_buffers(pyarrow.float64(), count, buffers)
+    if found.dtype.kind == "b":
+        return pyarrow.Array.from_buffers(pyarrow.bool_(), count, [None, _bits(found)])
+    if found.dtype.kind == "i":
+        number = np.ascontiguousarray(found, np.int64)
+        return pyarrow.Array.from_buffers(pyarrow.int64(), count, [None, pyarrow.py_buffer(number)])
+    texts = [str(text).encode() for text in found.tolist()]
+    ends = np.concatenate([[0], np.cumsum([len(text) for text in texts])]).astype(np.int32)
+    buffers = [None, pyarrow.py_buffer(ends), pyarrow.py_buffer(b"".join(texts))]
+    return pyarrow.Array.from_buffers(pyarrow.string(), count, buffers)
+
+
+def _bits(truths: NDArray[np.bool_]) -> Any:
+    import pyarrow
+
+    return pyarrow.py_buffer(np.packbits(truths, bitorder="little"))
 
 
 def _named(name: str, unit: str) -> str:
