@@ -101,7 +101,7 @@ def signals(example: str) -> list[Signal]:
     if example == "DrivetrainStep":
         return list(_DRIVETRAIN)
     if isinstance(RUNS[example], Bench):
-        floor = "obstacle" if example == "BumperSweep" else "floor"
+        floor = "floor" if example == "BumperDrop" else "obstacle"
         return [*_BENCH, Signal(f"{floor}.nose.f", "floor.force", "floor force")]
     inside = "testbed." if example.startswith("Motionless") else ""
     truth = "truth" if isinstance(RUNS[example], Alone) else "testbed.truth"

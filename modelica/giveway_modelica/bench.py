@@ -1,4 +1,4 @@
-"""The bench of `BumperDrop` and `BumperSweep` beside Modelica: two masses and a floor around the bumper FMU.
+"""The bench of the bumper examples beside Modelica: two masses and a floor around the bumper FMU.
 
 The FMU has the bumper and nothing else: it gives the force at every evaluation of an integration in double precision.
 The masses are those of the plant (fmu/plant/README.md): carriage m - m_p and plate m_p on one rail. The floor's cover
@@ -7,9 +7,9 @@ is that of Hunt and Crossley.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 ROBOT = Path(__file__).parents[2] / "robots" / "trikey.toml"
 FACES = ("carrier.position", "carrier.velocity", "plate.position", "plate.velocity")
 FMU_STEP_S = 1e-6  # the FMU moves its faces on by one step: they start behind where they shall be
-TOLERANCE = 1e-8
+TOLERANCE = 1e-9
 CLOSED_M = 1e-3  # the magnet and the preload rest on an end stop that is much stiffer than this asks
 
 
@@ -37,15 +37,18 @@ class Force(Protocol):
     def __call__(self, carrier_m: float, carrier_mps: float, plate_m: float, plate_mps: float) -> float: ...
 
 
+MAGNETIC: Mapping[str, Value] = {"bumper.kind": 2, "bumper.latch_model": 0}
+"""Spring and magnet by its continuous law."""
+
+
 @contextmanager
-def bumper_force() -> Iterator[Force]:
-    """The force law of the bumper FMU: spring and magnet by its continuous law."""
+def bumper_force(parameters: Mapping[str, Value] = MAGNETIC) -> Iterator[Force]:
+    """The force law of the bumper FMU with these ``parameters``."""
     variables = table("bumper")
-    parameters: dict[str, Value] = {"bumper.kind": 2, "bumper.latch_model": 0}
     faces, force = np.zeros(4), np.zeros(1)
     calls = 0
     with Instance(open_fmu(native.fmu("bumper", 3)), "bumper") as instance:
-        instance.initialise(parameters, variables)
+        instance.initialise(dict(parameters), variables)
         put = instance.setter("real", [variables[name].reference for name in FACES])
         get = instance.getter("real", [variables["plate.force"].reference])
         step = instance.stepper()
@@ -68,11 +71,14 @@ class Bench:
 
     Attributes:
         floor_m: where that begins; v_mps: speed at the start; weight: the rail is vertical.
+        bumper: parameters of the FMU; between_kg: inertance between plate and carriage, which the FMU does not have.
     """
 
     floor_m: float
     v_mps: float = 0.0
     weight: bool = False
+    bumper: Mapping[str, Value] = field(default_factory=lambda: MAGNETIC)
+    between_kg: float = 0.0
 
     def run(self, stop_s: float, step_s: float = 1e-3) -> dict[str, NDArray[np.float64]]:
         """Traces, and under "closing" and "opening" the times in s at which the magnet's gap passes g_0."""
@@ -92,11 +98,22 @@ class Bench:
         def gap(_t: float, y: Any) -> float:
             return float(y[0] - y[2] - known["bumper_latch_gap"])
 
-        with bumper_force() as law:
+        with bumper_force(self.bumper) as law:
+
+            def pushed(y: Any) -> tuple[float, float]:
+                """What the FMU's force leaves of the drive's, and the floor's of that, N."""
+                force_n = law(*y)
+                return drive_n - force_n, force_n - floor_n(y[2], y[3])
+
+            def between(carriage_n: float, plate_n: float) -> float:
+                """The inertance's force, N: it resists the acceleration between carriage and plate."""
+                apart = carriage_n / carriage_kg - plate_n / plate_kg
+                return self.between_kg * apart / (1.0 + self.between_kg * (1.0 / carriage_kg + 1.0 / plate_kg))
 
             def rates(_t: float, y: Any) -> list[float]:
-                force_n = law(*y)
-                return [y[1], (drive_n - force_n) / carriage_kg, y[3], (force_n - floor_n(y[2], y[3])) / plate_kg]
+                on = pushed(y)
+                inner_n = between(*on)
+                return [y[1], (on[0] - inner_n) / carriage_kg, y[3], (on[1] + inner_n) / plate_kg]
 
             closed_m = brentq(lambda c: law(c, 0.0, 0.0, 0.0), -CLOSED_M, 0.0, xtol=1e-16)
             start = [0.0, self.v_mps, -closed_m, self.v_mps]
@@ -104,7 +121,7 @@ class Bench:
             found = solve_ivp(
                 rates, (0.0, times[-1]), start, "DOP853", times, rtol=TOLERANCE, atol=1e-11, events=gap, max_step=step_s
             )
-            force = [law(*row) for row in found.y.T]
+            force = [law(*row) + between(*pushed(row)) for row in found.y.T]
         carrier, carrier_mps, plate, plate_mps = found.y
         passing = [float(y[1] - y[3]) for y in found.y_events[0]]
         return {

@@ -66,17 +66,21 @@ class Compiler:
 
     def load(self, name: str, changes: str = "") -> Any:
         """The compiled class; ``changes`` is a modification such as "robot(counts=1000000)"."""
-        import rumoca
-
         if not changes:
             if name not in self._loaded:
                 self._loaded[name] = self._session.load(self._package / "package.mo", model=name)
             return self._loaded[name]
-        # rumoca only reads libraries whose names it meets in the file: hence the icon.
-        text = f"model Variant\n  extends Modelica.Icons.Example;\n  extends {name}({changes});\nend Variant;\n"
-        folder = self._scratch / re.sub(r"\W", "_", f"{name} {changes}")
+        return self.load_text(f"  extends {name}({changes});\n", f"{name} {changes}")
+
+    def load_text(self, text: str, label: str) -> Any:
+        """A compiled model of its own with this ``text`` inside."""
+        import rumoca
+
+        folder = self._scratch / re.sub(r"\W", "_", label)
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "Variant.mo").write_text(text)
+        # rumoca only reads libraries whose names it meets in the file: hence the icon.
+        whole = f"model Variant\n  extends Modelica.Icons.Example;\n{text}end Variant;\n"
+        (folder / "Variant.mo").write_text(whole)
         session = rumoca.Session(roots=[str(self._library), str(self._package)])
         return session.load(folder / "Variant.mo", model="Variant")
 
@@ -84,13 +88,17 @@ class Compiler:
         self, name: str, changes: str = "", tolerance: float | None = None, interval_s: float | None = None
     ) -> Any:
         """The result of an example with its own experiment settings, or another tolerance and output interval."""
-        import rumoca
-
         settings = next(found for found in classes(self._package) if found.name == name).experiment
         if settings is None:
             raise ValueError(f"{name} has no experiment annotation")
         stop_s, relative, interval = settings
-        relative = tolerance or relative
-        # Explicit steps: stiff ones restart too slowly at two thousand samples per second.
-        config = rumoca.SimConfig(solver="rk-like", rtol=relative, atol=1e-2 * relative, dt=interval_s or interval)
-        return self.load(name, changes).simulate(t=(0.0, stop_s), config=config)
+        return simulated(self.load(name, changes), stop_s, tolerance or relative, interval_s or interval)
+
+
+def simulated(loaded: Any, stop_s: float, tolerance: float, interval_s: float = 1e-3) -> Any:
+    """The result of what `Compiler` has loaded."""
+    import rumoca
+
+    # Explicit steps: stiff ones restart too slowly at two thousand samples per second.
+    config = rumoca.SimConfig(solver="rk-like", rtol=tolerance, atol=1e-2 * tolerance, dt=interval_s)
+    return loaded.simulate(t=(0.0, stop_s), config=config)

@@ -55,6 +55,13 @@ CIRCLE = Circle(1.5, 0.16, centre_y_m=0.75, start_rad=-0.5 * math.pi, accelerati
 MOVING_WAY_M = 0.22 * (0.5 * 0.5 * math.pi * 0.22 / 0.6 + 0.3)
 
 
+TABLE: tuple[Sequence[float], Sequence[float], Sequence[Sequence[float]]] = (
+    (0.0, 0.02, 0.05, 0.09, 0.13),
+    (-0.5, 0.0, 0.5),
+    ((0.0, 4.0, 7.0), (5.0, 15.0, 22.0), (12.0, 30.0, 44.0), (30.0, 60.0, 85.0), (90.0, 150.0, 200.0)),
+)
+"""Travels, speeds and forces of `BumperTable`."""
+
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", Path(__file__).parents[2] / "build"))
 
 
@@ -183,9 +190,60 @@ def _truth(*names: str) -> tuple[str, ...]:
 
 _BASE = ("x", "y", "theta", "wheel_torque[0]", "wheel_torque[1]", "wheel_torque[2]")
 
+# What the examples of the other bumpers have, as parameters of the FMUs; 7 has a lever's inertia besides.
+LAWS: Mapping[str, Mapping[str, Value]] = {
+    "Foam": {
+        "bumper.kind": 3,
+        "bumper.foam_thickness": 0.15,
+        "bumper.foam_force_25": 25.0,
+        "bumper.foam_force_50": 45.0,
+        "bumper.foam_force_75": 110.0,
+        "bumper.foam_hysteresis": 0.3,
+        "bumper.foam_rate_gain": 0.3,
+    },
+    "Gas": {
+        "bumper.kind": 4,
+        "bumper.gas_force": 20.0,
+        "bumper.gas_length": 0.2,
+        "bumper.gas_exponent": 1.3,
+        "bumper.gas_ambient_force": 100.0,
+    },
+    "Damper": {
+        "bumper.kind": 5,
+        "bumper.spring_rate": 200.0,
+        "bumper.preload": 4.0,
+        "bumper.damper_rate": 60.0,
+        "bumper.damper_square": 40.0,
+        "bumper.damper_rebound": 3.0,
+    },
+    "Series": {
+        "bumper.kind": 6,
+        "bumper.spring_rate": 600.0,
+        "bumper.preload": 2.0,
+        "bumper.first_travel": 0.03,
+        "bumper.second_rate": 2500.0,
+        "bumper.second_preload": 15.0,
+    },
+    "Lever": {"bumper.kind": 7, "bumper.spring_rate": 400.0, "bumper.preload": 2.0, "bumper.lever_ratio": 1.5},
+    "Table": {
+        "bumper.kind": 8,
+        "bumper.table_rows": len(TABLE[0]),
+        "bumper.table_columns": len(TABLE[1]),
+        **{f"bumper.table_travel[{i}]": travel for i, travel in enumerate(TABLE[0])},
+        **{f"bumper.table_speed[{j}]": speed for j, speed in enumerate(TABLE[1])},
+        **{f"bumper.table_force[{6 * i + j}]": force for i, row in enumerate(TABLE[2]) for j, force in enumerate(row)},
+    },
+}
+LEVER_KG = 0.3
+SPEEDS_MPS = {"Foam": 0.8, "Gas": 0.8, "Damper": 0.8, "Series": 0.6, "Lever": 0.6, "Table": 0.9}
+
 RUNS: Mapping[str, Alone | Pair | Bench] = {
     "BumperDrop": Bench(floor_m=0.02, weight=True),
     "BumperSweep": Bench(floor_m=0.005, v_mps=0.5),
+    **{
+        f"Bumper{law}": Bench(0.005, SPEEDS_MPS[law], bumper=values, between_kg=LEVER_KG if law == "Lever" else 0.0)
+        for law, values in LAWS.items()
+    },
     "DrivetrainStep": Alone(
         "drivetrain",
         {**TIGHT, "load.inertia": 0.15, "load.coulomb": 0.2, "load.viscous": 0.02},

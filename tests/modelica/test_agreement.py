@@ -71,6 +71,12 @@ def test_gears_stick_and_slide_at_the_same_time(compiler: Compiler) -> None:
         pytest.param("MovingCollision", "dummy(contact(e=0.301))", marks=pytest.mark.deep),
         ("BumperDrop", "floor(e=0.301)"),
         ("BumperSweep", "g_0=0.00100002"),
+        ("BumperFoam", "h=0.15001"),
+        ("BumperGas", "n=1.3001"),
+        ("BumperDamper", "rebound=3.001"),
+        ("BumperSeries", "travel_1=0.030005"),
+        ("BumperLever", "m_lever=0.3005"),
+        ("BumperTable", "travels={0, 0.02, 0.05001, 0.09, 0.13}"),
         pytest.param("CirclePushed", "first(f_y=-34.05)", marks=pytest.mark.deep),
     ],
 )

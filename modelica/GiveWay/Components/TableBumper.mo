@@ -2,10 +2,9 @@ within GiveWay.Components;
 model TableBumper "Force from a table over travel and speed"
   import Modelica.Units.SI;
   extends Interfaces.PartialLawBumper;
-  parameter SI.Position travels[:]={0, 0.02, 0.05, 0.09, 0.13} "Travels of the rows, rising from 0";
-  parameter SI.Velocity speeds[:]={-0.5, 0, 0.5} "Speeds of the columns, rising; one is 0; compressing is positive";
-  parameter SI.Force forces[:, :]={{0, 4, 7}, {5, 15, 22}, {12, 30, 44}, {30, 60, 85}, {90, 150, 200}}
-    "Forces, rising along each row";
+  parameter SI.Position travels[:]={0, 0.05, 0.1, 0.2} "Travels of the rows, rising from 0";
+  parameter SI.Velocity speeds[:]={0, 1} "Speeds of the columns, rising; one is 0; compressing is positive";
+  parameter SI.Force forces[:, :]={{0, 0}, {40, 60}, {60, 90}, {200, 300}} "Forces, rising along each row";
 equation
   f_rest = Functions.tableForce(travels, speeds, forces, c, 0);
   f_rate = Functions.tableForce(travels, speeds, forces, c, u) - f_rest;

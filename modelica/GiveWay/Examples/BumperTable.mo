@@ -6,7 +6,11 @@ model BumperTable "A mass with a bumper of measured forces ahead hits a rigid ob
   parameter SI.Velocity v=0.9 "Speed of the impact";
   parameter SI.Mass m=9.08 "Sliding mass";
   parameter SI.Length travel=0.12 "Compression at which it bottoms";
-  Components.TableSlider slider(robot=robot, m=m, coulomb=0, v_start=v, bumper(travel=travel))
+  parameter SI.Position travels[:]={0, 0.02, 0.05, 0.09, 0.13} "Travels of the rows";
+  parameter SI.Velocity speeds[:]={-0.5, 0, 0.5} "Speeds of the columns";
+  parameter SI.Force forces[:, :]={{0, 4, 7}, {5, 15, 22}, {12, 30, 44}, {30, 60, 85}, {90, 150, 200}} "Forces";
+  Components.TableSlider slider(robot=robot, m=m, coulomb=0, v_start=v, bumper(travel=travel, travels=travels,
+    speeds=speeds, forces=forces))
     "Moving mass"
     annotation (Placement(transformation(extent={{-80,40},{-40,80}})));
   Components.Floor obstacle(k=robot.contact_stiffness, e=robot.contact_damping, s_0=0.005)

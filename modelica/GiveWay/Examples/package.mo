@@ -17,8 +17,8 @@ testbed.robot.tau_s</td></tr>
 <tr><td>CircleRound</td><td>5.4, Fig. 12</td><td>the full circle with a push, the escape and the return: the same,
 robot.controller.mode</td></tr>
 <tr><td>DrivetrainStep, BumperDrop, LatchRelease, BumperSweep</td><td>3.2, 3.5</td><td>components on a bench</td></tr>
-<tr><td>BumperFoam, BumperGas, BumperDamper, BumperSeries, BumperLever, BumperTable</td><td></td><td>other bumpers that a
-designer may choose, each in a collision: slider.bumper.f over slider.bumper.c, energy</td></tr>
+<tr><td>BumperFoam, BumperGas, BumperDamper, BumperSeries, BumperLever, BumperTable</td><td></td><td>other bumpers:
+slider.bumper.f over slider.bumper.c, energy</td></tr>
 </table>
 </html>"));
 end Examples;
