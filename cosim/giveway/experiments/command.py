@@ -48,7 +48,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for traces, manifest and report.")],
     bumper: Annotated[
         str | None,
-        typer.Option("--bumper", help="none, spring or magnetic. Without it: magnetic, or what the scenario has."),
+        typer.Option("--bumper", help="none, spring, magnetic, foam ...; left out: magnetic, or the scenario's."),
     ] = None,
     assignments: SetOption = None,
     fmi: FmiOption = 3,
