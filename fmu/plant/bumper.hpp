@@ -24,7 +24,7 @@ template <class T> StopForce<T> stop_force(T engaged, T stiffness, T damping, T 
 
 template <class T, int Wheels>
 BumperForce<T> bumper_force(const Parameters<T, Wheels> &p, const Modes<T, Wheels> &m, T c, T rate) {
-    return with_bumper_law(p, [&](auto law) {
+    return with_bumper_forces(p, [&](auto law) {
         const LawForce<T> spring = law.spring(p, c);
         T loss = p.bumper_damping * rate + p.bumper_guide_friction * math::tanh(rate / p.bumper_guide_friction_speed);
         if constexpr (decltype(law)::has_drag) {

@@ -12,12 +12,11 @@
 
 namespace giveway::plant {
 
-// use(law) for the present bumper, which has to have a plate.
-template <class T, int Wheels, class Use> auto with_bumper_law(const Parameters<T, Wheels> &p, Use &&use) {
+namespace detail {
+
+template <class T, int Wheels, class Use> auto with_further_law(const Parameters<T, Wheels> &p, Use &&use) {
     const auto checked = [&use]<BumperLaw Law>(Law law) { return use(law); };
     switch (p.bumper_kind) {
-    case BumperKind::magnetic:
-        return p.bumper_latch_model == LatchModel::ideal ? checked(IdealLatch{}) : checked(MagneticLatch{});
     case BumperKind::foam:
         return checked(Foam{});
     case BumperKind::gas:
@@ -28,13 +27,51 @@ template <class T, int Wheels, class Use> auto with_bumper_law(const Parameters<
         return checked(SpringsInSeries{});
     case BumperKind::lever:
         return checked(Lever{});
-    case BumperKind::table:
+    default:
         return checked(ForceTable{});
-    case BumperKind::none:
-    case BumperKind::spring:
-        break;
+    }
+}
+
+template <class T, int Wheels, class Use> auto with_first_law(const Parameters<T, Wheels> &p, Use &&use) {
+    const auto checked = [&use]<BumperLaw Law>(Law law) { return use(law); };
+    if (p.bumper_kind == BumperKind::magnetic) {
+        return p.bumper_latch_model == LatchModel::ideal ? checked(IdealLatch{}) : checked(MagneticLatch{});
     }
     return checked(PreloadedSpring{});
+}
+
+} // namespace detail
+
+// The laws beside spring and magnet as one, whose forces are computed apart from the equations that call it: they are
+// large, and few bumpers have them.
+struct FurtherLaw : PlainLaw {
+    static constexpr bool has_drag = true;
+    template <class T, int Wheels> [[gnu::noinline]] static LawForce<T> spring(const Parameters<T, Wheels> &p, T c) {
+        return detail::with_further_law(p, [&](auto law) { return law.spring(p, c); });
+    }
+    template <class T, int Wheels> [[gnu::noinline]] static T drag(const Parameters<T, Wheels> &p, T c, T rate) {
+        return detail::with_further_law(p, [&](auto law) -> T {
+            if constexpr (decltype(law)::has_drag) {
+                return law.drag(p, c, rate);
+            } else {
+                return T(0.0);
+            }
+        });
+    }
+};
+
+template <class T, int Wheels> bool has_further_law(const Parameters<T, Wheels> &p) {
+    return p.bumper_kind > BumperKind::magnetic;
+}
+
+// use(law) for the forces of the present bumper, which has to have a plate.
+template <class T, int Wheels, class Use> auto with_bumper_forces(const Parameters<T, Wheels> &p, Use &&use) {
+    return has_further_law(p) ? use(FurtherLaw{}) : detail::with_first_law(p, use);
+}
+
+// use(law) for all else that a law says.
+template <class T, int Wheels, class Use> auto with_bumper_law(const Parameters<T, Wheels> &p, Use &&use) {
+    return has_further_law(p) ? detail::with_further_law(p, use) : detail::with_first_law(p, use);
 }
 
 template <class T, int Wheels> bool bumper_holds(const Parameters<T, Wheels> &p) {

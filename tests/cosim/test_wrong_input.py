@@ -12,7 +12,7 @@ from giveway.cli import main as cli_main
 RUN = ("run", "motionless", "--out", "out/run")
 WRONG = {
     "unknown experiment": (("run", "motionles", "--out", "out/run"), ("motionles", "did you mean motionless?")),
-    "unknown bumper": ((*RUN, "--bumper", "magnetc"), ("--bumper", "magnetc", "none, spring", "magnetic")),
+    "unknown bumper": ((*RUN, "--bumper", "magnetc"), ("--bumper", "magnetc", "foam, gas", "did you mean magnetic?")),
     "negative mass": ((*RUN, "--set", "testbed.base.mass=-3"), ("testbed.base.mass", "-3", "kg")),
     "unknown variable": ((*RUN, "--set", "testbed.base.mas=3"), ("base.mas", "did you mean base.mass")),
     "plan too fast for a limit that is set": (

@@ -65,6 +65,12 @@ _REALS: dict[str, tuple[str, tuple[str, str], tuple[str, str], float]] = {
         ("Damping", "Damping"),
         10.0,
     ),
+    "N.s2/m2": (
+        "QuadraticDampingConstant",
+        ("SignedQuadraticDamping", "Force per squared speed"),
+        ("QuadraticDamping", "Force per squared speed"),
+        10.0,
+    ),
     "N/m": (
         "TranslationalSpringConstant",
         ("SignedStiffness", "Stiffness"),
