@@ -16,7 +16,7 @@ import giveway
 
 PACKAGE = Path(giveway.__file__).parent
 HOST = "127.0.0.1"
-START_S = 60.0
+START_S = 120.0
 # A package that is installed in place is found before all paths, unless its finder is taken out.
 START = """
 import runpy, sys

@@ -20,7 +20,7 @@ from study_helpers import small_study, stored_runs
 pytest.importorskip("distributed")
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "cluster"
-START_S = 60.0
+START_S = 120.0
 # SLURM is not here: these take its commands' place, and run the job script in the background.
 SBATCH = """\
 #!/bin/sh

@@ -21,7 +21,7 @@ from cluster_processes import HOST, free_port, other_giveway, scheduler, worker
 from giveway.base.errors import ClusterError, GivewayError
 from giveway.cli import _main
 from giveway.cluster import pool
-from giveway.study import Study
+from giveway.study import Study, study_file
 from giveway.study.engine import sweep
 from giveway.study.golden import golden_works
 from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
@@ -43,7 +43,7 @@ time = 0.12
 quantity = "testbed.bumper.latch_force"
 low = 0.0
 high = 60.0
-levels = 50
+levels = 30
 [[vary]]
 quantity = "testbed.bumper.spring_rate"
 low = 500.0
@@ -246,8 +246,8 @@ def runs(pid: int) -> bool:
 
 def test_ctrl_c_ends_it_cleanly_and_it_goes_on(tmp_path: Path) -> None:
     (tmp_path / "latch.toml").write_text(STUDY, encoding="utf-8")
-    sweep_it = [sys.executable, "-m", "giveway", "sweep", "latch.toml", "--out", "b/x", "--threads", "2"]
-    command = [*sweep_it, "--dask", "local"]
+    options = ["--out", "b/x", "--threads", "2", "--dask", "local"]
+    command = [sys.executable, "-m", "giveway", "sweep", "latch.toml", *options]
     with subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as process:
@@ -257,7 +257,7 @@ def test_ctrl_c_ends_it_cleanly_and_it_goes_on(tmp_path: Path) -> None:
         helpers = children(process.pid)
         assert len(helpers) >= 2
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does: all processes of the command get it
-        out, said = process.communicate(timeout=60)
+        out, said = process.communicate(timeout=120)
     assert process.returncode == 130, out + said
     assert "Traceback" not in said
     assert "`giveway sweep latch.toml --out b/x --dask local` goes on from there" in said
@@ -265,8 +265,10 @@ def test_ctrl_c_ends_it_cleanly_and_it_goes_on(tmp_path: Path) -> None:
     while any(map(runs, helpers)):
         assert time.monotonic() < end, "left behind"
         time.sleep(0.05)
-    again = subprocess.run(sweep_it, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert "1,000 of 1,000 runs are stored" in again.stdout
+    setup, stored = study_file.read(tmp_path / "latch.toml"), len(part_files(tmp_path / "b" / "x"))
+    assert sweep(setup, tmp_path / "b" / "x", threads=2).ran == 600 - 10 * stored
+    sweep(setup, tmp_path / "a" / "x", threads=2)
+    same_runs(tmp_path / "a" / "x", tmp_path / "b" / "x")
 
 
 @pytest.mark.parametrize(
