@@ -66,7 +66,7 @@ def same_runs(one: Path, other: Path) -> None:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    options = {"host": HOST, "dashboard_address": None, "memory_limit": 0, "silence_logs": 60}
+    options = {"host": HOST, "dashboard_address": f"{HOST}:0", "memory_limit": 0, "silence_logs": 60}
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, **options) as found:
         yield found
 

@@ -103,7 +103,7 @@ def measure(
                 at: list[tuple[int, float]] = []
 
                 def note(state: Progress, at: list[tuple[int, float]] = at) -> None:
-                    at.append((state.done, time.process_time()))
+                    at.append((state.done, time.thread_time()))
 
                 outcome = sweep(setup, where, threads=threads, dask="local" if way == 2 else None, progress=note)
                 found.rates[name].append(outcome.runs / outcome.wall_s)

@@ -352,7 +352,7 @@ def joined(
                         threads_per_worker=1,
                         processes=True,
                         host="127.0.0.1",
-                        dashboard_address=None,
+                        dashboard_address="127.0.0.1:0",  # nobody else's, and reached from here only
                         memory_limit=0,
                         silence_logs=logging.CRITICAL,
                     )
