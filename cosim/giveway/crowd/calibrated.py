@@ -41,7 +41,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # small matr
 def calibrations(draw: str, robots: int) -> Work:
     """The work of calibrating the first ``robots`` robots of ``draw``."""
     asked = {"draw": draw, "seed": DRAWS[draw]}
-    code = ("population.py", "calibrated.py", "parts.py")
+    code = ("population.py", "../robot/population.py", "calibrated.py", "parts.py")
     return Work(f"calibration, {draw} draw", asked, robots, PART, functools.partial(compute, draw), code)
 
 

@@ -29,7 +29,17 @@ PART_ROBOTS = 32  # 300 MB of traces
 Beliefs = Mapping[int, Mapping[str, Value]]
 """By robot: parameters of its controller that a calibration found."""
 
-CODE = ("population.py", "hits.py", "blow.py", "drive.py", "judged.py", "lifts.py", "crowd.py", "parts.py")
+CODE = (
+    "population.py",
+    "../robot/population.py",
+    "hits.py",
+    "blow.py",
+    "drive.py",
+    "judged.py",
+    "lifts.py",
+    "crowd.py",
+    "parts.py",
+)
 
 
 def crowd(

@@ -58,7 +58,7 @@ def endurance(draw: str, group: str, hours: float, controller: Mapping[str, Valu
     asked = {"draw": draw, "seed": DRAWS[draw], "group": group, "imu": imu, "controller": dict(controller)}
     count = math.ceil(hours * 3600.0 / RUN_S)
     part = PART if group != "tipping" else PART // 8
-    code = ("population.py", "drive.py", "endurance.py", "parts.py")
+    code = ("population.py", "../robot/population.py", "drive.py", "endurance.py", "parts.py")
     return Work(
         f"endurance, {group}", asked, count, part, functools.partial(compute, draw, group, controller, imu=imu), code
     )

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from giveway.base import native
+from giveway.base.units import WrittenUnit
 from giveway.robot.presets import PRESETS
 from giveway.robot.variables import table
 from giveway.scenario.scenario import ROBOT_BUMPERS
 from giveway.scenario.scenario_file import scalars
 from giveway.scenario.stated_bumper import COMMON, NUMBERS
+from giveway.study.distributions import DISTRIBUTIONS
 from giveway.study.limits import limit_words
 from giveway.study.part_rules import rules_in_words
 from giveway.study.parts import choices_of
@@ -157,6 +160,14 @@ def _range(one: Varied) -> str:
 
 
 def _tolerance(one: Tolerance) -> str:
-    if one.relative:
-        return f"+-{100.0 * one.spread.high:g} %, {one.spread.kind}"
-    return f"+-{one.unit.of(one.spread.high):g} {one.unit.name}, {one.spread.kind}"
+    spread = one.spread
+    if not one.replaces and spread.low == -spread.high and not math.isinf(spread.high):
+        if one.relative:
+            return f"+-{100.0 * spread.high:g} %, {spread.kind}"
+        return f"+-{one.unit.of(spread.high):g} {one.unit.name}, {spread.kind}"
+    needed, _ = DISTRIBUTIONS[spread.kind]
+    unit = WrittenUnit("%", 0.01) if one.relative else one.unit
+    numbers = [f"{key} {unit.of(getattr(spread, key)):g}" for key in needed]
+    ends = [f"{unit.of(end):g}" for end in (spread.low, spread.high)]
+    words = f"{spread.kind}, {', '.join([*numbers, f'from {ends[0]} to {ends[1]}'])}"
+    return ("" if one.replaces else "deviation ") + words + (f" {unit.shown}" if unit.shown else "")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from giveway.study.search_plan import OPTIMISED
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["KINDS", "DesignPlan", "deviations", "make", "problem", "shares"]
+__all__ = ["KINDS", "DesignPlan", "deviations", "deviations_at", "make", "problem", "shares"]
 
 KINDS = ("factorial", "latin-hypercube", "sobol", "one-at-a-time", "morris", "sobol-indices", "csv", OPTIMISED)
 COUNT_MAX = 20_000_000
@@ -131,17 +132,26 @@ def _filled(kind: str, count: int, dimensions: int, seed: int) -> NDArray[np.flo
         return np.asarray(qmc.Sobol(dimensions, rng=np.random.default_rng(seed)).random(count))
 
 
-def deviations(tolerances: Sequence[Tolerance], kind: str, count: int, seed: int) -> NDArray[np.float64]:
-    """Deviations from the design, shape (1 + n, tolerances): first none at all, then the tolerance samples.
+def deviations(
+    tolerances: Sequence[Tolerance], kind: str, count: int, seed: int, further: int = 0
+) -> NDArray[np.float64]:
+    """Deviations from the design, shape (1 + n, tolerances + further): first none at all, then the tolerance samples.
 
     Every design gets the same ones, so that designs differ by what they are and not by their luck. ``kind``
-    "corners": every combination of both ends, whatever ``count``.
+    "corners": every combination of both ends, whatever ``count``. ``further``: so many shares besides.
     """
-    none = np.zeros((1, len(tolerances)))
-    if not tolerances:
-        return none
+    none = np.array([[math.nan if one.replaces else 0.0 for one in tolerances] + [math.nan] * further])
+    if not tolerances and not further:
+        return np.zeros((1, 0))
     if kind == "corners":
         ends = [(one.spread.low, one.spread.high) for one in tolerances]
         return np.concatenate([none, np.array(list(itertools.product(*ends)))])
-    shares = _filled(kind, count, len(tolerances), seed)
-    return np.concatenate([none, np.stack([one.spread.at(shares[:, j]) for j, one in enumerate(tolerances)], axis=1)])
+    return np.concatenate([none, deviations_at(tolerances, _filled(kind, count, len(tolerances) + further, seed))])
+
+
+def deviations_at(tolerances: Sequence[Tolerance], shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The deviations whose shares (n, tolerances + further), 0 to 1, are these; further ones stay as they are."""
+    found = shares.copy()
+    for j, one in enumerate(tolerances):
+        found[:, j] = one.spread.at(shares[:, j])
+    return found

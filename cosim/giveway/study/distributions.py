@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -27,12 +28,14 @@ DISTRIBUTIONS: Mapping[str, tuple[tuple[str, ...], bool]] = {
     "loguniform": ((), True),
     "triangular": (("mode",), True),
     "normal": (("mean", "sigma"), False),
+    "lognormal": (("mean", "sigma"), False),
 }
+SHARE_MIN = 2.0**-53  # what has no end is not asked for its end
 
 
 @dataclass(frozen=True)
 class Spread:
-    """A distribution between ``low`` and ``high``; ``mode``, ``mean``, ``sigma`` where it has them."""
+    """A distribution between ``low`` and ``high``, or without end; ``mode``, ``mean``, ``sigma`` where it has them."""
 
     kind: str
     low: float
@@ -54,10 +57,25 @@ class Spread:
         elif self.kind == "triangular":
             distribution = stats.triang((self.mode - self.low) / width, self.low, width)
         else:
+            if not self.bounded:
+                share = np.clip(share, SHARE_MIN, 1.0 - SHARE_MIN)
+            if self.kind == "lognormal":
+                return np.asarray(np.clip(np.exp(self._logarithm().at(share)), self.low, self.high))
             cut = (self.low - self.mean) / self.sigma, (self.high - self.mean) / self.sigma
             distribution = stats.truncnorm(*cut, self.mean, self.sigma)
         # The inverse of a truncated distribution may leave its range by a rounding error.
         return np.asarray(np.clip(distribution.ppf(share), self.low, self.high))
+
+    @property
+    def bounded(self) -> bool:
+        """Both ends are finite."""
+        return math.isfinite(self.low) and math.isfinite(self.high)
+
+    def _logarithm(self) -> Spread:
+        """The normal distribution of the logarithm of a lognormal one."""
+        variance = math.log1p((self.sigma / self.mean) ** 2)
+        mean, low = math.log(self.mean) - 0.5 * variance, -math.inf if self.low <= 0.0 else math.log(self.low)
+        return Spread("normal", low, math.log(self.high), mean=mean, sigma=math.sqrt(variance))
 
 
 @dataclass(frozen=True)
@@ -108,12 +126,16 @@ class Varied:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How a quantity deviates from what the design says: ``value (1 + d)`` if ``relative``, else ``value + d``."""
+    """How a quantity deviates from what the design says: ``value (1 + d)`` if ``relative``, else ``value + d``.
+
+    If it ``replaces`` the value, ``spread`` is that of the quantity itself; NaN stands for the design's own value.
+    """
 
     quantity: Quantity
     relative: bool
     spread: Spread
     written: WrittenUnit | None = None
+    replaces: bool = False
 
     @property
     def unit(self) -> WrittenUnit:
@@ -121,23 +143,31 @@ class Tolerance:
         return self.written or WrittenUnit(self.quantity.unit)
 
 
-def check_spread(field: str, quantity: Quantity, kind: str, values: Mapping[str, float]) -> Spread:
-    """The spread of ``kind`` with the checked ``values`` (low, high, mode, mean, sigma), errors named ``field.key``."""
+def check_spread(
+    field: str, quantity: Quantity, kind: str, values: Mapping[str, float], ends: tuple[float, float] | None = None
+) -> Spread:
+    """The spread of ``kind`` with the checked ``values`` (low, high, mode, mean, sigma), errors named ``field.key``.
+
+    ``ends``: where a normal or lognormal one ends that states no low and high; None: three sigma from its mean.
+    """
     if kind not in DISTRIBUTIONS:
         raise UnknownNameError(f"{field}.distribution", kind, DISTRIBUTIONS)
-    needed, ends = DISTRIBUTIONS[kind]
-    for key in (*needed, *(("low", "high") if ends else ())):
+    needed, ends_needed = DISTRIBUTIONS[kind]
+    for key in (*needed, *(("low", "high") if ends_needed else ())):
         if key not in values:
             raise GivewayError(f"{field}.{key}", "nothing", f"a finite number; {kind} needs it")
     for key in values:
         if key not in (*needed, "low", "high"):
             raise GivewayError(f"{field}.{key}", values[key], f"nothing: {kind} has no {key}")
     given = dict(values)
-    if kind == "normal":
+    if not ends_needed:
         if given["sigma"] <= 0.0:
             raise GivewayError(f"{field}.sigma", given["sigma"], "above 0")
-        given.setdefault("low", given["mean"] - SIGMAS * given["sigma"])
-        given.setdefault("high", given["mean"] + SIGMAS * given["sigma"])
+        if kind == "lognormal" and given["mean"] <= 0.0:
+            raise GivewayError(f"{field}.mean", given["mean"], "above 0: of a lognormal distribution")
+        low, high = ends or (given["mean"] - SIGMAS * given["sigma"], given["mean"] + SIGMAS * given["sigma"])
+        given.setdefault("low", max(low, 0.0) if kind == "lognormal" else low)
+        given.setdefault("high", high)
     if not given["low"] < given["high"]:
         raise GivewayError(f"{field}.high", given["high"], f"above low, {given['low']:g}: the range is empty")
     if kind == "loguniform" and given["low"] <= 0.0:

@@ -127,14 +127,17 @@ def plan_runs(setup: Setup) -> RunTable:
 
 def deviations_of(setup: Setup) -> NDArray[np.float64]:
     """The tolerance samples of every design, the nominal one first."""
-    if setup.noise_seeds and not setup.tolerances:
+    draws = sum(quantity.draws for quantity in setup.crowd)
+    if setup.noise_seeds and not setup.tolerances and not draws:
         return np.zeros((1 + setup.tolerance_count, 0))
-    return design_module.deviations(setup.tolerances, setup.tolerance_kind, setup.tolerance_count, setup.seed + 1)
+    sampled = (setup.tolerances, setup.tolerance_kind, setup.tolerance_count, setup.seed + 1)
+    return design_module.deviations(*sampled, draws)
 
 
 def check_disk(setup: Setup, count: int, folder: Path) -> None:
     """Refuse a study whose results would not fit, before anything is run."""
     columns = len(result_columns()) + len(setup.varied) + len(setup.tolerances) + 6
+    columns += sum(quantity.draws for quantity in setup.crowd)
     needed = count * columns * BYTES_PER_NUMBER
     parent = folder.absolute()
     while not parent.exists():
@@ -472,6 +475,9 @@ def fingerprint_of(table: RunTable, contexts: list[bytes]) -> str:
     """Hash of everything that decides the results of the study, and in which order they lie."""
     found = hashlib.sha256()
     names = [one.quantity.name for one in table.varied] + [one.quantity.name for one in table.tolerances]
+    names += [name for name, _ in table.robot_draws()] + [
+        f"{one.quantity.name} itself" for one in table.tolerances if one.replaces
+    ]
     found.update(json.dumps([names, [case.case.name for case in table.cases], table.noise_seeds]).encode())
     for part in (*contexts, table.designs.tobytes(), table.deviations.tobytes()):
         found.update(hashlib.sha256(part).digest())

@@ -121,10 +121,14 @@ def evidence_setup(
         added.append({"quantity": _AROUND, "values": _places(answers)})
     names = [one["quantity"] for one in added]
     document["vary"] = [one for one in document.get("vary", []) if one["quantity"] not in names] + added
+    kept = [one for one in setup.tolerances if not (one.replaces and one.quantity.name in names)]
+    stated = [one.quantity.name for one in kept]  # the table says speed, mass and place itself
+    document["tolerance"] = [one for one in document.get("tolerance", []) if one["quantity"] in stated]
     document["designs"] = {"kind": "factorial"}
     document["report"] = {"chosen": 0}
     document["name"] = f"design {design} of {setup.name}"[:80]
     document.pop("optimise", None)
+    document.pop("sure", None)
     last = max((hit.time_s for hit in hits if hit.time_s is not None), default=0.0)
     document["scenario"]["duration"] = max(float(document["scenario"]["duration"]), last + AFTER_S)
     return check(document, answers.folder, document["name"])

@@ -100,7 +100,10 @@ def part_table(
         columns[name] = (totals, unit)
     for j, tolerance in enumerate(table.tolerances):
         unit = "1" if tolerance.relative else tolerance.quantity.unit
-        columns[f"deviation of {tolerance.quantity.name}"] = (table.deviations[sample, j], unit)
+        name = tolerance.quantity.name if tolerance.replaces else f"deviation of {tolerance.quantity.name}"
+        columns[name] = (table.deviations[sample, j], unit)
+    for name, j in table.robot_draws():
+        columns[f"robot: {name}"] = (table.deviations[sample, j], "1")
     columns |= derived
     for j, (name, unit) in enumerate(result_columns()):
         columns[name] = (np.ascontiguousarray(outcomes.numbers[:, j]), unit)

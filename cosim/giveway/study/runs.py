@@ -6,6 +6,7 @@ is all that decides a run besides its collision's plan, pushes and duration: its
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import hashlib
 import json
@@ -106,6 +107,8 @@ class RunTable:
         self.designs, self.deviations = designs, deviations
         self.varied, self.tolerances = setup.varied, setup.tolerances
         self.noise_seeds = setup.noise_seeds
+        self.noise_offsets: NDArray[np.float64] | None = None
+        """Per sample, what its noise seed is greater by; None: the sample's number."""
         self.cases = [_CaseTable(case, self.columns) for case in setup.cases]
         self.samples = len(deviations)
         self.per_design = self.samples * len(self.cases)
@@ -114,7 +117,9 @@ class RunTable:
         self.rules = [part_rules(choice) for choice in choices_of(setup.varied)]
         quantities = [quantity for one in setup.varied for quantity in one.sets]
         quantities += [one.quantity for one in setup.tolerances]
-        touched = [column for quantity in quantities for column in quantity.columns]
+        self.crowd = setup.crowd
+        touched = [self.columns.index[f"testbed.{name}"] for one in setup.crowd for name in one.parameters]
+        touched += [column for quantity in quantities for column in quantity.columns]
         met = [self.columns.index[f"testbed.{name}"] for name in SLIDER] if setup.cases[0].hit is not None else []
         named = {quantity.name for quantity in quantities}
         if "temperature" in named:
@@ -126,6 +131,21 @@ class RunTable:
         self.used = np.flatnonzero(used)
         """Columns that are not at their start in some run."""
         self._case_works = tuple(one.work() for one in self.cases)
+
+    def with_deviations(self, deviations: NDArray[np.float64]) -> RunTable:
+        """The same designs with other samples of the tolerances."""
+        found = copy.copy(self)
+        found.deviations, found.samples = deviations, len(deviations)
+        found.per_design = found.samples * len(found.cases)
+        found.count = len(found.designs) * found.per_design
+        return found
+
+    def robot_draws(self) -> list[tuple[str, int]]:
+        """Of robots that differ: name and column of the deviations of every draw."""
+        named = [
+            f"{one.what} {draw + 1}" if one.draws > 1 else one.what for one in self.crowd for draw in range(one.draws)
+        ]
+        return [(name, len(self.tolerances) + j) for j, name in enumerate(named)]
 
     def split(self, run: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
         """Design, tolerance sample and collision of runs."""
@@ -144,8 +164,11 @@ class RunTable:
             _write(values, free, one, self.designs[design, j])
         for j, tolerance in enumerate(self.tolerances):
             _deviate(values, free, tolerance, self.deviations[sample, j])
+        self._draw_robots(values, sample)
         if self.noise_seeds:
-            values[:, self.columns.index["testbed.electronics.seed"]] += sample
+            values[:, self.columns.index["testbed.electronics.seed"]] += (
+                sample if self.noise_offsets is None else self.noise_offsets[sample]
+            )
         latch = self.columns.index["testbed.bumper.latch_force"]
         unfit = self._misfits(design, values, free)
         warmer = free.pop("temperature") - REFERENCE_TEMPERATURE
@@ -161,6 +184,18 @@ class RunTable:
         refused |= unfit
         values += 0.0  # no negative zeros: equal runs have equal rows
         return Rows(values, free, _stated(table.case, free, speed_mps), refused)
+
+    def _draw_robots(self, values: NDArray[np.float64], sample: NDArray[np.int64]) -> None:
+        """Write what robots of their own differ in; the nominal sample has the file's."""
+        first = len(self.tolerances)
+        for one in self.crowd:
+            shares = self.deviations[sample, first : first + one.draws]
+            first += one.draws
+            drawn = ~np.isnan(shares).any(axis=1)
+            for name, found in one.at(shares[drawn]):
+                column = self.columns.index[f"testbed.{name}"]
+                its = found * values[drawn, column] if one.scales else found
+                values[drawn, column] = np.floor(its) if self.columns.whole[column] else its
 
     def _misfits(
         self, design: NDArray[np.int64], values: NDArray[np.float64], free: dict[str, NDArray[np.float64]]
@@ -308,6 +343,8 @@ def _deviate(
     values: NDArray[np.float64], free: dict[str, NDArray[np.float64]], one: Tolerance, by: NDArray[np.float64]
 ) -> None:
     def deviated(nominal: NDArray[np.float64]) -> NDArray[np.float64]:
+        if one.replaces:
+            return np.where(np.isnan(by), nominal, by)
         return nominal * (1.0 + by) if one.relative else nominal + by
 
     for column in one.quantity.columns:

@@ -11,8 +11,10 @@ from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.metrics import Metric
 from giveway.study.search_plan import SearchPlan
+from giveway.study.sure_plan import SurePlan
 
 if TYPE_CHECKING:
+    from giveway.robot.population import Quantity as RobotQuantity
     from giveway.scenario.scenario import Scenario
 
 __all__ = ["Case", "Constraint", "DrivetrainPlan", "Goal", "Hit", "Setup"]
@@ -119,6 +121,8 @@ class Setup:
         plan: which designs.
         tolerances, tolerance_kind, tolerance_count: and how they are sampled.
         noise_seeds: every tolerance sample has sensor noise of its own.
+        crowd: in which every tolerance sample has a robot of its own, as drawn by `robot.population`; none: the file's.
+        sure: how sure the recommendation is made.
         objectives, constraints: what is asked for.
         shown: further metrics of the table.
         chosen: how many of the best designs are simulated once more, with traces.
@@ -147,6 +151,8 @@ class Setup:
     chosen: int
     part_runs: int
     search: SearchPlan
+    crowd: tuple[RobotQuantity, ...] = ()
+    sure: SurePlan = field(default_factory=SurePlan)
     drivetrain: DrivetrainPlan = DrivetrainPlan()
     derived: tuple[str, ...] = ()
     text: str | None = field(default=None, repr=False)

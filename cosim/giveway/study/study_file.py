@@ -29,14 +29,25 @@ from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns
 from giveway.study.runs import COVER
 from giveway.study.search_plan import OPTIMISED, search_plan_of
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
-from giveway.study.variations import TOLERANCE, VARY, designs_of, refuse_twice, tolerance_of, varied_of, written_unit
+from giveway.study.sure_plan import sure_plan_of
+from giveway.study.variations import (
+    TOLERANCE,
+    VARY,
+    crowd_of,
+    designs_of,
+    refuse_replaced,
+    refuse_twice,
+    tolerance_of,
+    varied_of,
+    written_unit,
+)
 
 __all__ = ["check", "read"]
 
 SCHEMA_VERSION = 1
 _TOP = (
     "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
-    "parts", "tolerances", "tolerance", "drivetrain", "objective", "constraint", "optimise", "report",
+    "parts", "tolerances", "tolerance", "sure", "drivetrain", "objective", "constraint", "optimise", "report",
 )  # fmt: skip
 _SCENARIO = (
     "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "preset", "plan", "push",
@@ -105,16 +116,24 @@ def check(
                 _fits_cases(f"{choice.field}.{key}.{limit.quantity.name}", limit.quantity, cases, set_by_design)
     for i, tolerance in enumerate(tolerances):
         _fits_cases(f"tolerance[{i}].quantity", tolerance.quantity, cases, set_by_design)
+        if tolerance.replaces:
+            refuse_replaced(f"tolerance[{i}]", tolerance, varied)
     quantities = [quantity for one in varied for quantity in one.sets]
     _check_plans(cases, [*quantities, *(one.quantity for one in tolerances)])
     if plan.kind == "one-at-a-time":
         varied = tuple(_with_nominal(one, cases) for one in varied)
-    drawn = top.table("tolerances", ("kind", "samples", "noise_seeds")) or Section("tolerances", {}, None)
+    drawn = top.table("tolerances", ("kind", "samples", "noise_seeds", "robot")) or Section("tolerances", {}, None)
     kind = drawn.choice("kind", TOLERANCE_KINDS, "sobol")
     noise = drawn.flag("noise_seeds", False)
     if kind == "corners" and len(tolerances) > CORNERS_MAX:
         raise GivewayError("tolerances.kind", kind, f"at most {CORNERS_MAX} tolerances with corners, or sobol")
-    count = whole("tolerances.samples", drawn.values.get("samples", 16), 1, SAMPLES_MAX) if tolerances or noise else 0
+    if kind == "corners":
+        for tolerance in tolerances:
+            if not tolerance.spread.bounded:
+                raise GivewayError("tolerances.kind", kind, f"sobol: {tolerance.quantity.name} has no ends")
+    crowd = crowd_of(drawn, cases, varied, tolerances)
+    spread = bool(tolerances or noise or crowd)
+    count = whole("tolerances.samples", drawn.values.get("samples", 16), 1, SAMPLES_MAX) if spread else 0
     report = top.table("report", ("chosen", "metrics")) or Section("report", {}, None)
     judged = cases[0].scenario
     title = top.text("name", name)
@@ -145,6 +164,8 @@ def check(
         tolerance_kind=kind,
         tolerance_count=count,
         noise_seeds=noise,
+        crowd=crowd,
+        sure=sure_plan_of(top),
         objectives=objectives,
         constraints=constraints,
         shown=(

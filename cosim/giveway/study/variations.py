@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -14,18 +15,34 @@ from giveway.base.checks import finite, whole
 from giveway.base.errors import FileError, GivewayError, InputFileError
 from giveway.base.toml_sections import Section
 from giveway.base.units import WrittenUnit, factor
+from giveway.robot.population import Quantity as RobotQuantity
+from giveway.robot.population import group_of_plant, quantities_of
+from giveway.robot.variables import table
 from giveway.study import designs as design_module
 from giveway.study.designs import DesignPlan
-from giveway.study.distributions import Spread, Tolerance, Varied, check_spread
-from giveway.study.quantities import Quantity, find, value_of
+from giveway.study.distributions import DISTRIBUTIONS, Spread, Tolerance, Varied, check_spread
+from giveway.study.quantities import Quantity, columns, find, value_of
+from giveway.study.setup import Case
 
-__all__ = ["TOLERANCE", "VARY", "designs_of", "refuse_twice", "tolerance_of", "varied_of", "written_unit"]
+__all__ = [
+    "TOLERANCE",
+    "VARY",
+    "crowd_of",
+    "designs_of",
+    "refuse_replaced",
+    "refuse_twice",
+    "tolerance_of",
+    "varied_of",
+    "written_unit",
+]
 
 # Keys of the tables.
 _SPREAD = ("low", "high", "mode", "mean", "sigma")
 VARY = ("quantity", "also", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
-TOLERANCE = ("quantity", "also", "unit", "relative", "absolute", "distribution")
+TOLERANCE = ("quantity", "also", "unit", "relative", "absolute", "deviation", "distribution", *_SPREAD)
+SYMMETRIC = ("uniform", "normal", "triangular")  # distributions between two ends alone
 LEVELS_MAX = 100_000
+ROBOTS = ("file", "crowd")  # whose robot a tolerance sample has
 
 
 def refuse_twice(table: str, names: Sequence[str]) -> None:
@@ -110,22 +127,92 @@ def tolerance_of(section: Section) -> Tolerance:
     if quantity.kind != "real":
         raise GivewayError(section.full("quantity"), quantity.name, "a quantity of real numbers")
     keys = [key for key in ("relative", "absolute") if key in section.values]
+    if not keys and any(key in section.values for key in ("deviation", *_SPREAD)):
+        return _stated_spread(section, quantity)
     if len(keys) != 1:
         found = "both" if keys else "nothing"
-        raise GivewayError(section.full("relative"), found, "one of relative and absolute")
+        allowed = "one of relative and absolute, or a distribution with its numbers"
+        raise GivewayError(section.full("relative"), found, allowed)
+    for key in ("deviation", *_SPREAD):
+        if key in section.values:
+            raise GivewayError(section.full(key), section.values[key], f"nothing beside {keys[0]}")
     relative = keys[0] == "relative"
-    scale, written = 1.0, None
-    if "unit" in section.values:
-        unit = section.text("unit")
-        scale = factor(section.full("unit"), "degC" if unit == "K" else unit, "1" if relative else quantity.unit)
-        written = WrittenUnit(unit, scale)
+    scale, written = _tolerance_unit(section, quantity, relative)
     half = finite(section.full(keys[0]), section.values[keys[0]] * scale if _is_number(section, keys[0]) else None)
     if half <= 0.0 or (relative and half >= 1.0):
         allowed = "above 0 and below 1 (0.3: by 30 %)" if relative else f"above 0 {quantity.unit}"
         raise GivewayError(section.full(keys[0]), section.values[keys[0]], allowed)
-    kind = section.choice("distribution", ("uniform", "normal", "triangular"), "uniform")
+    kind = section.choice("distribution", SYMMETRIC, "uniform")
     # Of a normal distribution, the stated ends are three standard deviations away.
     return Tolerance(quantity, relative, Spread(kind, -half, half, 0.0, 0.0, half / 3.0), written)
+
+
+def _tolerance_unit(section: Section, quantity: Quantity, relative: bool) -> tuple[float, WrittenUnit | None]:
+    if "unit" not in section.values:
+        return 1.0, None
+    unit = section.text("unit")
+    scale = factor(section.full("unit"), "degC" if unit == "K" else unit, "1" if relative else quantity.unit)
+    return scale, WrittenUnit(unit, scale)
+
+
+def _stated_spread(section: Section, quantity: Quantity) -> Tolerance:
+    """A tolerance whose distribution is stated: of the quantity itself, or of its ``deviation``."""
+    of = section.choice("deviation", ("none", "relative", "absolute"), "none")
+    kind = section.choice("distribution", tuple(DISTRIBUTIONS))
+    relative, replaces = of == "relative", of == "none"
+    scale, written = _tolerance_unit(section, quantity, relative)
+    given = {key: section.number(key) * scale for key in _SPREAD if key in section.values}
+    ends = (quantity.minimum, quantity.maximum) if replaces else (-1.0 if relative else -math.inf, math.inf)
+    spread = check_spread(section.name, quantity, kind, given, ends)
+    if relative and spread.low < -1.0:
+        raise GivewayError(section.full("low"), section.values["low"], "a share of the value, -1 or more")
+    if replaces:
+        for key, value in (("low", spread.low), ("high", spread.high)):
+            if key in given:
+                value_of(section.full(key), value, quantity)
+        middle = {"mean": spread.mean, "mode": spread.mode}
+        for key in ("mean", "mode"):
+            if key in given:
+                value_of(section.full(key), middle[key], quantity)
+    return Tolerance(quantity, relative, spread, written, replaces)
+
+
+def refuse_replaced(field: str, tolerance: Tolerance, varied: Sequence[Varied]) -> None:
+    """What designs choose cannot have a distribution of its own: it only deviates."""
+    for one in varied:
+        for quantity in one.sets:
+            same = quantity.name == tolerance.quantity.name or set(quantity.columns) & set(tolerance.quantity.columns)
+            if same:
+                allowed = f'relative, absolute, or deviation = "relative": {one.field} gives it its value'
+                raise GivewayError(f"{field}.distribution", tolerance.spread.kind, allowed)
+
+
+def crowd_of(
+    section: Section, cases: Sequence[Case], varied: Sequence[Varied], tolerances: Sequence[Tolerance]
+) -> tuple[RobotQuantity, ...]:
+    """In what the robots of ``robot = "crowd"`` differ: in that of the plant that the scenario has."""
+    if section.choice("robot", ROBOTS, ROBOTS[0]) == ROBOTS[0]:
+        return ()
+    if section.values.get("kind") == "corners":
+        raise GivewayError(section.full("kind"), "corners", 'sobol or latin-hypercube with robot = "crowd"')
+    testbed = {variable.name: variable.start for variable in table("testbed").select("parameter")}
+    testbed |= cases[0].scenario.parameters("testbed")
+    found = quantities_of(group_of_plant(bool(testbed["base.tipping"]), testbed["roller.arrangement"] == 1))
+    if testbed["roller.arrangement"] == 1:
+        found = (*found, RobotQuantity("rollers of each wheel", ("roller.seed",), 0.0, 2.0**31))
+    all_columns = columns()
+    drawn = {all_columns.index[f"testbed.{name}"]: one for one in found for name in one.parameters}
+    for i, tolerance in enumerate(tolerances):
+        if twice := set(tolerance.quantity.columns) & set(drawn):
+            what = drawn[twice.pop()].what
+            raise GivewayError(
+                f"tolerance[{i}].quantity", tolerance.quantity.name, f"what robots do not differ in: {what}"
+            )
+    for one in varied:
+        for column in set(one.columns) & set(drawn):
+            if not drawn[column].scales:
+                raise GivewayError(one.field, one.quantity.name, f"what robots do not differ in: {drawn[column].what}")
+    return found
 
 
 def _is_number(section: Section, key: str) -> bool:

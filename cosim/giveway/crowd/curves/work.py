@@ -48,7 +48,7 @@ HIT_KINDS = tuple(
 """Places in `PATTERN` of the hits that are counted."""
 
 CODE = (
-    *("population.py", "hits.py", "drive.py", "judged.py", "endurance.py", "parts.py"),
+    *("population.py", "../robot/population.py", "hits.py", "drive.py", "judged.py", "endurance.py", "parts.py"),
     *(
         f"curves/{name}.py"
         for name in (
