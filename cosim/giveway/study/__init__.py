@@ -209,21 +209,31 @@ class Study:
         relative: float | None = None,
         absolute: float | None = None,
         unit: str | None = None,
-        distribution: Literal["uniform", "triangular", "normal"] | None = None,
+        distribution: Distribution | Literal["lognormal"] | None = None,
+        deviation: Literal["relative", "absolute"] | None = None,
+        low: float | None = None,
+        high: float | None = None,
+        mode: float | None = None,
+        mean: float | None = None,
+        sigma: float | None = None,
         also: Sequence[str] | None = None,
     ) -> Study:
-        """A quantity that deviates from its design.
+        """A quantity that deviates from its design, or has a distribution of its own.
 
         Args:
             quantity: as in `vary`.
             relative: by this share (0.3: 30 % more or less); or
-            absolute: by so much, in ``unit``.
-            unit: of it; left out: the quantity's own.
-            distribution: "uniform" (if left out), "triangular" or "normal" (the ends are 3 sigma).
+            absolute: by so much, in ``unit``; or the distribution with its numbers.
+            unit: of all numbers here; left out: the quantity's own.
+            distribution: between the ends "uniform" (if left out), "triangular" or "normal" (the ends are 3 sigma).
+            deviation: what the numbers are about: left out: the quantity itself; else its deviation.
+            low, high: ends; a normal or lognormal one needs none.
+            mode: of a triangular one; mean, sigma: of a normal or lognormal one.
             also: other quantities that deviate alike.
         """
         keys = {"relative": relative, "absolute": absolute, "unit": unit, "distribution": distribution}
-        return self._add("tolerance", {"quantity": quantity, **_given({**keys, "also": _list(also)})})
+        numbers = {"deviation": deviation, "low": low, "high": high, "mode": mode, "mean": mean, "sigma": sigma}
+        return self._add("tolerance", {"quantity": quantity, **_given({**keys, **numbers, "also": _list(also)})})
 
     def designs(
         self,
@@ -262,6 +272,7 @@ class Study:
         samples: int | None = None,
         kind: Literal["sobol", "latin-hypercube", "corners"] | None = None,
         noise_seeds: bool | None = None,
+        robot: Literal["file", "crowd"] | None = None,
     ) -> Study:
         """How tolerances are sampled.
 
@@ -269,8 +280,32 @@ class Study:
             samples: how many for each design; 16 if left out.
             kind: "corners": every combination of both ends.
             noise_seeds: different sensor noise in every sample.
+            robot: "crowd": another robot in every sample, drawn as for `giveway crowd`; its controller keeps the file.
         """
-        self.document["tolerances"] = _given({"samples": samples, "kind": kind, "noise_seeds": noise_seeds})
+        keys = {"samples": samples, "kind": kind, "noise_seeds": noise_seeds, "robot": robot}
+        self.document["tolerances"] = _given(keys)
+        return self
+
+    def sure(
+        self,
+        *,
+        probability: bool | None = None,
+        method: Literal["subset", "plain"] | None = None,
+        runs: int | None = None,
+        designs: int | None = None,
+        indices: int | None = None,
+    ) -> Study:
+        """How sure the recommendation is made.
+
+        Args:
+            probability: that a limit is exceeded within the tolerances; True if left out.
+            method: "subset" simulation (if left out) or "plain" sampling.
+            runs: at most so many samples for each design; 20,000 if left out.
+            designs: how many of the best; 2 if left out.
+            indices: base samples of the Sobol' indices of the recommended design; 512 if left out, 0: none.
+        """
+        keys = {"probability": probability, "method": method, "runs": runs, "designs": designs, "indices": indices}
+        self.document["sure"] = _given(keys)
         return self
 
     def objective(
@@ -367,7 +402,7 @@ class Study:
         setup = self.setup()
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
             outcome = sweep(setup, folder, threads=threads, progress=report, dask=dask)
-        return _written(load(folder), files and not outcome.interrupted, progress is True)
+        return _written(load(folder), files and not outcome.interrupted, progress is True, threads)
 
     def optimise(
         self,
@@ -411,19 +446,24 @@ class Study:
         setup = check(copy.deepcopy({**self.document, **changed}), Path(), self.document["name"])
         with showing(setup.name) if progress is True else nullcontext(progress or None) as report:
             found = optimise(setup, folder, threads=threads, progress=report, dask=dask)
-        return _written(load(folder), files and not found.outcome.interrupted, progress is True)
+        return _written(load(folder), files and not found.outcome.interrupted, progress is True, threads)
 
     def _add(self, table: str, entry: dict[str, Any]) -> Study:
         self.document.setdefault(table, []).append(entry)
         return self
 
 
-def _written(answers: Answers, files: bool, shown: bool) -> Answers:
+def _written(answers: Answers, files: bool, shown: bool, threads: int | None) -> Answers:
     """The answers, with the files that the command writes; ``shown``: with bars."""
     if files:
         from giveway.base.terminal import progress_bars
-        from giveway.study.messages import CHOSEN, REPORT, write_all
+        from giveway.study.certainty import make_sure
+        from giveway.study.messages import CHOSEN, REPORT, SURE, showing, write_all
+        from giveway.study.sure import wanted
 
+        if wanted(answers):
+            with showing(SURE) if shown else nullcontext() as report:
+                make_sure(answers, threads, report)
         with progress_bars((CHOSEN, REPORT)) if shown else nullcontext(lambda name, share: None) as progress:
             write_all(answers, progress=progress)
     return answers

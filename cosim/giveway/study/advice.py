@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from giveway.base.words import counted
+from giveway.study.certainty import probability_lines
 from giveway.study.limits import Margin, limit_words, margins_of
 from giveway.study.recommended import Recommended, nearest, recommended
 from giveway.study.tables import number
@@ -42,7 +43,8 @@ def advice(answers: Answers) -> Advice:
         words = "the study has no objective, so no design is better than another one"
         return Advice("No design is recommended", [("why", words)], [])
     if (found := recommended(answers)) is not None:
-        lines = [*design_lines(answers, found.design), *_limited(answers, found), *_following(answers, found)]
+        sure = probability_lines(answers, found.design)
+        lines = [*design_lines(answers, found.design), *sure, *_limited(answers, found), *_following(answers, found)]
         return Advice(f"Recommended{so_far}: design {found.design}", lines, _margin_rows(answers, found.design))
     title = f"No design meets all constraints{so_far}"
     if (near := nearest(answers)) is None:
@@ -140,6 +142,8 @@ def _following(answers: Answers, found: Recommended) -> list[tuple[str, str]]:
         if answers.pareto[design] and changes:
             far = f"{number(float(answers.score[design]))} instead of {number(float(answers.score[found.design]))}"
             words += f"; farther from the best of all objectives, {far} widths of the front"
+        for _, sure in probability_lines(answers, design)[:1]:
+            words += f"; a limit is exceeded with P {sure}"
         lines.append((name, words))
     return lines
 

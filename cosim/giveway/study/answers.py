@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -223,6 +223,43 @@ class Answers:
             sample: of the tolerances; 0: nominal.
         """
         return frames.trace(self, design, collision, sample)
+
+    def probability(
+        self,
+        design: int | None = None,
+        *,
+        runs: int | None = None,
+        method: Literal["subset", "plain"] | None = None,
+        threads: int | None = None,
+    ) -> pandas.DataFrame:
+        """How probable it is, within the tolerances, that a design exceeds any limit, and each, with a 95 % interval.
+
+        Args:
+            design: its number; left out: the recommended one.
+            runs, method: at most so many samples, and how they are drawn; left out: as the study says.
+            threads: native ones; None: all processors.
+        """
+        from giveway.study import certainty, sure
+
+        number = frames.best_design(self) if design is None else self.check_design(design)
+        plan = sure.plan_with(self.setup.sure, runs, method)
+        return certainty.probability_frame(sure.probability(self, number, plan, threads=threads))
+
+    def tolerance_indices(
+        self, design: int | None = None, *, count: int | None = None, threads: int | None = None
+    ) -> pandas.DataFrame:
+        """Sobol' indices of limits and objectives within the tolerances of a design, with 95 % intervals.
+
+        Args:
+            design: its number; left out: the recommended one.
+            count: base samples, times quantities + 2 runs; left out: as the study says.
+            threads: native ones; None: all processors.
+        """
+        from giveway.study.certainty import index_frame
+        from giveway.study.tolerance_indices import indices
+
+        number = frames.best_design(self) if design is None else self.check_design(design)
+        return index_frame(indices(self, number, count, threads=threads))
 
     def evidence(
         self, design: int | None = None, *, speeds: Sequence[float] | None = None, masses: Sequence[float] | None = None

@@ -124,15 +124,19 @@ def all_asked(setup: Setup) -> list[tuple[str, str]]:
     rows = asked(setup)
     rows += [(one.quantity.name, _range(one)) for one in setup.varied]
     rows += [(f"{choice.name} does not fit", rules_in_words(choice)) for choice in choices_of(setup.varied)]
-    if setup.tolerances:
+    if setup.tolerances or setup.crowd:
         rows.append(("tolerances", f"{setup.tolerance_count} samples, {setup.tolerance_kind}"))
     rows += [(f"tolerance of {one.quantity.name}", _tolerance(one)) for one in setup.tolerances]
+    if setup.crowd:
+        rows.append(("robots", "one of its own in every tolerance sample, drawn as for `giveway crowd`"))
     hits = [(case.name, case.document.get("collision", {})) for case in setup.cases]
     rows += [(name, in_words(hit)) for name, hit in hits if hit]
     rows += [
         ("constraint", f"{one.goal.metric.name}: {limit_words(setup, index)}{_over(one.goal)}")
         for index, one in enumerate(setup.constraints)
     ]
+    if "sure" in setup.document:
+        rows.append(("how sure", in_words(setup.document["sure"])))
     step = "" if setup.plant_step_s is None else f", steps of {setup.plant_step_s:g} s"
     return [*rows, ("method, seed", f"{setup.method}{step}, {setup.seed}")]
 

@@ -13,6 +13,7 @@ from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, wor
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
+    from giveway.study.tolerance_indices import Indices
 
 __all__ = ["optimise_designs", "study_app", "sweep_designs"]
 
@@ -50,7 +51,7 @@ def sweep_designs(
     if outcome.interrupted:
         again = _again("sweep", study, out, dask)
         _interrupted(f"what is stored is kept. `{again}` goes on from there.")
-    _write_and_print(folder)
+    _write_and_print(folder, threads)
 
 
 def _again(command: str, study: Path, out: Path | None, dask: str | None) -> str:
@@ -64,12 +65,17 @@ def _interrupted(words: str) -> NoReturn:
     raise typer.Exit(INTERRUPTED)
 
 
-def _write_and_print(folder: Path) -> None:
-    """Traces of the best, report and tables of a study whose runs are all there."""
+def _write_and_print(folder: Path, threads: int | None) -> None:
+    """How sure, traces of the best, report and tables of a study whose runs are all there."""
     from giveway.study import messages
+    from giveway.study.certainty import make_sure
+    from giveway.study.sure import wanted
 
     try:
         found = _load(folder)
+        if wanted(found):
+            with messages.showing(messages.SURE) as progress:
+                make_sure(found, threads, progress)
         with progress_bars((messages.CHOSEN, messages.REPORT)) as report_progress:
             written = messages.write_all(found, progress=report_progress)
     except KeyboardInterrupt:
@@ -104,7 +110,7 @@ def optimise_designs(
     if found.outcome.interrupted:
         again = _again("optimise", study, out, dask)
         _interrupted(f"what is stored is kept. `{again}` goes on from there.")
-    _write_and_print(folder)
+    _write_and_print(folder, threads)
 
 
 @study_app.command("show")
@@ -189,6 +195,56 @@ def _numbers(option: str, text: str | None) -> list[float] | None:
         raise GivewayError(option, text, "numbers with commas between them, such as 0.25,0.5") from None
 
 
+@study_app.command("sure")
+def study_sure(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
+    design: Annotated[
+        int | None, typer.Option("--design", metavar="N", help="Without it: the recommended design.")
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option("--method", help="subset or plain sampling; without it: as the study says.")
+    ] = None,
+    runs: Annotated[
+        int | None, typer.Option("--runs", help="At most so many samples; without it: as the study says.")
+    ] = None,
+    indices: Annotated[
+        int | None, typer.Option("--indices", help="Base samples of the Sobol' indices; 0: none; as the study says.")
+    ] = None,
+    threads: ThreadsOption = None,
+) -> None:
+    """How probable it is, within the tolerances, that a design exceeds a limit, and what decides it."""
+    from giveway.base.checks import whole
+    from giveway.study import certainty, messages, sure, tolerance_indices
+    from giveway.study.frames import best_design
+    from giveway.study.sure_plan import INDICES_MAX
+
+    found = _load(folder)
+    number = best_design(found) if design is None else found.check_design(design)
+    plan = sure.plan_with(found.setup.sure, runs, method)
+    count = plan.indices if indices is None else whole("--indices", indices, 0, INDICES_MAX)
+    told = None
+    try:
+        with messages.showing(messages.SURE) as progress:
+            sure.probability(found, number, plan, threads=threads, progress=progress)
+            if count and len(set(tolerance_indices.inputs_of(found.setup))) > 1:
+                told = tolerance_indices.indices(found, number, count, threads=threads, progress=progress)
+    except KeyboardInterrupt:
+        _interrupted("what is stored is kept; the same command goes on from there.")
+    print_columns(f"Design {number}", (found.setup.name, ""), certainty.probability_lines(found, number))
+    if told is not None:
+        _print_indices(told)
+
+
+def _print_indices(told: Indices) -> None:
+    from giveway.study import certainty
+
+    if told.found:
+        print_columns(certainty.index_title(told), certainty.INDEX_HEADER, certainty.index_rows(told))
+        typer.echo(certainty.INDEX_NOTE)
+    if told.reason:
+        typer.echo(f"What decides is not known of all: {told.reason}.")
+
+
 @study_app.command("run")
 def study_run(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
@@ -266,7 +322,7 @@ def _load(folder: Path) -> Answers:
 
 
 def _print_answers(found: Answers) -> None:
-    from giveway.study import tables
+    from giveway.study import certainty, tables
     from giveway.study.advice import MARGIN_HEADER, advice
 
     first = advice(found)
@@ -276,6 +332,8 @@ def _print_answers(found: Answers) -> None:
     print_columns(f"{found.setup.name}: {tables.counts(found)}", tables.goal_header(found), tables.design_rows(found))
     if told := tables.search_in_words(found):
         typer.echo(told)
+    if (shares := certainty.recommended_indices(found)) is not None:
+        _print_indices(shares)
     if misfits := tables.misfit_rows(found):
         print_columns("Parts that do not fit", tables.MISFIT_HEADER, misfits)
     rows = tables.sensitivity_rows(found)

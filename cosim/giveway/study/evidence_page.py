@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from giveway.base.files import replace_files
 from giveway.study.advice import design_lines
 from giveway.study.asked import all_asked
+from giveway.study.certainty import probability_lines
 from giveway.study.evidence import NOTICE, Evidence, unit_of
 from giveway.study.limit_lines import draw_limits, limits_of_metrics
 from giveway.study.limits import limit_words
@@ -48,7 +49,7 @@ def write_evidence(answers: Answers, found: Evidence) -> list[Path]:
         notice=NOTICE,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         manifest=found.answers.manifest,
-        design=design_lines(answers, found.design),
+        design=[*design_lines(answers, found.design), *probability_lines(answers, found.design)],
         limits=[(one.goal.metric.name, limit_words(setup, i)) for i, one in enumerate(setup.constraints)],
         summary=summary(found),
         picture=picture,

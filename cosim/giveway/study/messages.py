@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from giveway.study.runs import RunTable
     from giveway.study.setup import Setup
 
-__all__ = ["CHOSEN", "REPORT", "duration", "overview", "search_sizes", "showing", "sizes", "write_all"]
+__all__ = ["CHOSEN", "REPORT", "SURE", "duration", "overview", "search_sizes", "showing", "sizes", "write_all"]
 
 SAY_EVERY_S = 5.0  # without a terminal
 CHOSEN, REPORT = "chosen designs", "report"  # what `write_all` does
+SURE = "how sure"  # what `certainty.make_sure` does
 
 
 @contextmanager

@@ -35,13 +35,13 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
     import jinja2
 
     from giveway.simulation.metrics import definitions
-    from giveway.study import tables
+    from giveway.study import certainty, tables
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
     style = (files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8")
-    setup = answers.setup
+    setup, told = answers.setup, certainty.recommended_indices(answers)
     text = environment.get_template("study.html.j2").render(
         title=setup.name,
         counts=tables.counts(answers),
@@ -59,6 +59,11 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         sensitivities=tables.sensitivity_rows(answers),
         unknown=answers.sensitivities().reason,
         asked=all_asked(setup),
+        index_title="" if told is None else certainty.index_title(told),
+        index_header=certainty.INDEX_HEADER,
+        index_note=certainty.INDEX_NOTE,
+        index_rows=[] if told is None else certainty.index_rows(told),
+        index_reason="" if told is None else told.reason,
         misfit_header=tables.MISFIT_HEADER,
         misfits=tables.misfit_rows(answers, DESIGNS_MAX),
         reasons=_reasons({design: text for design, text in answers.reason.items() if misfit(text) is None}),

@@ -132,10 +132,10 @@ class RunTable:
         """Columns that are not at their start in some run."""
         self._case_works = tuple(one.work() for one in self.cases)
 
-    def with_deviations(self, deviations: NDArray[np.float64]) -> RunTable:
-        """The same designs with other samples of the tolerances."""
+    def with_deviations(self, deviations: NDArray[np.float64], noise: NDArray[np.float64] | None = None) -> RunTable:
+        """The same designs with other samples of the tolerances, and other `noise_offsets`."""
         found = copy.copy(self)
-        found.deviations, found.samples = deviations, len(deviations)
+        found.deviations, found.samples, found.noise_offsets = deviations, len(deviations), noise
         found.per_design = found.samples * len(found.cases)
         found.count = len(found.designs) * found.per_design
         return found

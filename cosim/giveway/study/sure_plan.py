@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from giveway.base.checks import whole
 from giveway.base.toml_sections import Section
 
-__all__ = ["METHODS", "SURE", "SurePlan", "sure_plan_of"]
+__all__ = ["METHODS", "SURE", "SurePlan", "checked_runs", "sure_plan_of"]
 
 SURE = ("probability", "method", "runs", "designs", "indices")
 METHODS = ("subset", "plain")
@@ -30,7 +30,12 @@ class SurePlan:
     method: str = METHODS[0]
     runs: int = 20_000
     designs: int = 2
-    indices: int = 256
+    indices: int = 512
+
+
+def checked_runs(field: str, value: object) -> int:
+    """A number of samples."""
+    return whole(field, value, RUNS_MIN, RUNS_MAX)
 
 
 def sure_plan_of(top: Section) -> SurePlan:
@@ -44,7 +49,7 @@ def sure_plan_of(top: Section) -> SurePlan:
     return SurePlan(
         section.flag("probability", default.probability),
         section.choice("method", METHODS, default.method),
-        number("runs", RUNS_MIN, RUNS_MAX),
+        checked_runs(section.full("runs"), values.get("runs", default.runs)),
         number("designs", 1, DESIGNS_MAX),
         number("indices", 0, INDICES_MAX),
     )
