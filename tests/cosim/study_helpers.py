@@ -65,13 +65,16 @@ def stored_runs(folder: Path) -> dict[str, np.ndarray]:
     return {name: np.concatenate([np.array(table[name].to_pylist()) for table in tables]) for name in names}
 
 
-def interrupt(cwd: Path, command: list[str], parts: int) -> tuple[str, str]:
-    """Run ``giveway COMMAND --out NAME`` in ``cwd``, press Ctrl-C when so many parts are stored; output and errors."""
+def interrupt(cwd: Path, command: list[str], parts: int, folder: str | None = None) -> tuple[str, str]:
+    """Run ``giveway COMMAND`` in ``cwd``, press Ctrl-C when so many parts are stored; output and errors.
+
+    The parts are looked for in ``folder``; without it the command ends in its name.
+    """
     with subprocess.Popen(
         [sys.executable, "-m", "giveway", *command], cwd=cwd, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as process:
         for _ in range(1200):
-            if len(part_files(cwd / command[-1])) >= parts:
+            if len(part_files(cwd / (folder or command[-1]))) >= parts:
                 break
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)

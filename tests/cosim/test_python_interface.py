@@ -12,7 +12,7 @@ import giveway
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
-from giveway.study import Study, parts, search_plan, study_file, variations
+from giveway.study import Study, parts, search_plan, study_file, sure_plan, variations
 from giveway.study.designs import OPTIONS
 
 USER_FILE = """
@@ -89,6 +89,7 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
     assert keywords(Study.parts) == set(parts.PARTS)
     assert keywords(Study.optimise) == {*search_plan.OPTIMISE, *keywords(Study.run)}
     assert keywords(Study.tolerance) == set(variations.TOLERANCE)
+    assert keywords(Study.sure) == set(sure_plan.SURE)
     assert keywords(Study.designs) == {"kind", *(option for options in OPTIONS.values() for option in options)}
     goal = set(study_file._GOAL)
     assert keywords(Study.objective) == goal | {"goal", "weight"}
@@ -101,6 +102,7 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
         "parts",
         "tolerances",
         "tolerance",
+        "sure",
         "drivetrain",
         "objective",
         "constraint",

@@ -19,6 +19,9 @@ def bench(
     scale: Annotated[
         bool, typer.Option("--scale", help="Only: what a study and Dask cost beside the runs, and a million designs.")
     ] = False,
+    probability: Annotated[
+        bool, typer.Option("--probability", help="Only: do intervals of rare probabilities hold what is known?")
+    ] = False,
     optimum: Annotated[
         Path | None,
         typer.Option("--optimum", metavar="STUDY.toml", help="Only: what a search finds, against an even sample."),
@@ -49,6 +52,9 @@ def bench(
             raise typer.Abort from None
         finally:
             print_columns(title, collisions.SCALE_HEADER, found_rows)
+        return
+    if probability:
+        _measure_probabilities()
         return
     if optimum is not None:
         _compare_searches(optimum, out, sample, runs, seeds)
@@ -81,6 +87,22 @@ def _measure_sweeps() -> None:
     title = f"{sweeps.DESIGNS:,} bumpers, runs of 0.6 s over fixed steps, median of {sweeps.ROUNDS}"
     print_columns(title, sweeps.HEADER, found.rows())
     typer.echo("\n".join(found.in_words(threads)))
+
+
+def _measure_probabilities() -> None:
+    from giveway.bench import known_probabilities as known
+
+    ours, theirs = "subset simulation", "OpenTURNS"
+    rows: list[tuple[str, ...]] = []
+    try:
+        with progress_bars((ours, theirs)) as progress:
+            rows += known.measure(known.REPEATS, lambda share: progress(ours, share))
+            rows += known.openturns_rows(known.REPEATS, lambda share: progress(theirs, share))
+    except KeyboardInterrupt:
+        raise typer.Abort from None
+    print_columns(
+        f"Limits that are exceeded with P = {known.PROBABILITY:g}, {known.REPEATS} repeats", known.HEADER, rows
+    )
 
 
 def _compare_searches(study: Path, out: Path, sample: int, runs: int, seeds: int) -> None:

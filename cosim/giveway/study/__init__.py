@@ -300,7 +300,7 @@ class Study:
         Args:
             probability: that a limit is exceeded within the tolerances; True if left out.
             method: "subset" simulation (if left out) or "plain" sampling.
-            runs: at most so many samples for each design; 20,000 if left out.
+            runs: at most so many samples for each design; 5000 if left out.
             designs: how many of the best; 2 if left out.
             indices: base samples of the Sobol' indices of the recommended design; 512 if left out, 0: none.
         """

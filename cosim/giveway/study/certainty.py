@@ -120,9 +120,9 @@ def probability_frame(found: Probability) -> pandas.DataFrame:
     import pandas
 
     told = {"method": found.method, "samples": found.samples, "runs": found.runs, "failed": found.failed}
-    first = {"limit": "any", "allowed": "", "probability": found.value, "low": found.low, "high": found.high, **told}
+    first = {"limit": "any", "allowed": "", "probability": found.value, "low": found.low, "high": found.high}
     each = [{"limit": one.limit, "allowed": one.allowed, "probability": one.value} for one in found.limits]
-    return pandas.DataFrame([first, *each])
+    return pandas.DataFrame([{**row, **told} for row in (first, *each)])
 
 
 def index_frame(found: Indices) -> pandas.DataFrame:

@@ -28,7 +28,7 @@ class SurePlan:
 
     probability: bool = True
     method: str = METHODS[0]
-    runs: int = 20_000
+    runs: int = 5000
     designs: int = 2
     indices: int = 512
 
