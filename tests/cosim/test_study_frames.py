@@ -66,7 +66,8 @@ def test_margins_recommendation_and_misfits_are_frames(answers: Answers) -> None
     assert answers.margins(worst).loc[0, "margin"] < 0.0
     assert answers.recommendation().loc[0, "text"] == f"Recommended: design {answers.order[0]}"
     assert answers.misfits().empty
-    assert list(answers.sensitivities().table().columns) == ["goal", "quantity", "main", "total", "interval"]
+    columns = ["goal", "quantity", "main", "total", "interval", "total_interval", "telling"]
+    assert list(answers.sensitivities().table().columns) == columns
 
 
 def test_every_stored_run_has_its_place(answers: Answers) -> None:

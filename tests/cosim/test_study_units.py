@@ -173,7 +173,7 @@ def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> No
     rows = {row[1]: row for row in sensitivity_rows(answers)}
     for one in effects:
         assert rows[one.quantity][0] == "bumper compression, cm"
-        assert float(rows[one.quantity][2]) == pytest.approx(0.1 * one.main, rel=5e-3)  # three digits
+        assert float(rows[one.quantity][3]) == pytest.approx(0.1 * one.main, rel=5e-3)  # three digits
 
 
 def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:

@@ -58,6 +58,7 @@ class Sensitivity:
         main: share of the variance that is its alone (S1); Morris: mean of the absolute elementary effects (mu*).
         total: share that it has part in (ST); Morris: their standard deviation; None: not known from these designs.
         interval: half width of the 95 % interval of ``main``.
+        total_interval: half width of that of ``total``, where it is a share; None: not known.
     """
 
     goal: str
@@ -65,6 +66,13 @@ class Sensitivity:
     main: float
     total: float | None
     interval: float
+    total_interval: float | None = None
+
+    @property
+    def telling(self) -> bool:
+        """An interval does not hold 0: the quantity decides something, and has a place in the ranking."""
+        of_total = self.total is not None and self.total_interval is not None and self.total > self.total_interval
+        return self.main > self.interval or of_total
 
 
 class Sensitivities(list[Sensitivity]):
@@ -430,6 +438,7 @@ def sensitivities_of(
     names = [one.quantity.name for one in varied]
     described = problem(varied)
     total: list[float | None]
+    widths: list[float | None] = [None] * len(names)
     if plan.kind == "morris":
         from SALib.analyze import morris
 
@@ -441,13 +450,16 @@ def sensitivities_of(
 
         found = sobol.analyze(described, values, calc_second_order=False, seed=seed)
         main, interval, total = found["S1"], found["S1_conf"], list(found["ST"])
+        widths = [_finite(float(width)) for width in found["ST_conf"]]
     else:
         from giveway.study.first_order import first_order
 
         main, interval = first_order(designs, values, seed)
         total = [None] * len(names)
     return [
-        Sensitivity(goal, name, float(main[j]), None if one is None else float(one), _finite(float(interval[j])))
+        Sensitivity(
+            goal, name, float(main[j]), None if one is None else float(one), _finite(float(interval[j])), widths[j]
+        )
         for j, (name, one) in enumerate(zip(names, total, strict=True))
     ]
 

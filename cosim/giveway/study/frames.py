@@ -90,7 +90,7 @@ def sensitivity_table(found: Sensitivities) -> pandas.DataFrame:
     """A line per objective and quantity."""
     import pandas
 
-    names = ["goal", "quantity", "main", "total", "interval"]
+    names = ["goal", "quantity", "main", "total", "interval", "total_interval", "telling"]
     return pandas.DataFrame([[getattr(one, name) for name in names] for one in found], columns=names)
 
 

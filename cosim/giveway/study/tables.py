@@ -55,25 +55,29 @@ def design_rows(answers: Answers, count: int = SHOWN) -> list[tuple[str, ...]]:
 
 
 def sensitivity_rows(answers: Answers) -> list[tuple[str, ...]]:
-    """Every quantity's part in every objective, the largest first."""
-    found = sorted(answers.sensitivities(), key=lambda one: (one.goal, -one.main))
+    """Every quantity's part in every objective, the largest first; last those whose intervals hold nothing but 0."""
+    found = sorted(answers.sensitivities(), key=lambda one: (one.goal, not one.telling, -one.main))
+    goals = [one.goal for one in found]
     units = {one.goal: answers.effect_unit(one.goal) for one in found}
+    effects = answers.setup.plan.kind == "morris"
     return [
         (
             one.goal + _unit(units[one.goal].shown),
             one.quantity,
+            str(place - goals.index(one.goal)) if one.telling else "-",
             f"{units[one.goal].of(one.main):.3g}",
             f"{units[one.goal].of(one.interval):.2g}",
             "-" if one.total is None else f"{units[one.goal].of(one.total):.3g}",
+            *([] if effects else ["-" if one.total_interval is None else f"{one.total_interval:.2g}"]),
         )
-        for one in found
+        for place, one in enumerate(found, 1)
     ]
 
 
 def sensitivity_header(answers: Answers) -> tuple[str, ...]:
     """The first line of `sensitivity_rows`."""
     effects = answers.setup.plan.kind == "morris"
-    return ("objective", "quantity", *(("mu*", "+-", "sigma") if effects else ("S1", "+-", "ST")))
+    return ("objective", "quantity", "rank", *(("mu*", "+-", "sigma") if effects else ("S1", "+-", "ST", "+-")))
 
 
 def search_in_words(answers: Answers) -> str:
