@@ -75,7 +75,7 @@ def test_draws_are_of_their_own_and_within_what_is_stated() -> None:
 
 def test_a_parameter_that_the_testbed_does_not_have_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     unknown = Quantity("nothing", ("roller.colour",), 0.0, 1.0, scales=True)
-    monkeypatch.setattr("giveway.crowd.population.POPULATION", (*POPULATION, unknown))
+    monkeypatch.setattr("giveway.robot.population.POPULATION", (*POPULATION, unknown))
     with pytest.raises(GivewayError, match=r"roller\.colour"):
         robot(DRAW, 0)
 
