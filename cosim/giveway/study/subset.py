@@ -33,7 +33,6 @@ STEPS = 10  # states of a chain: a tenth of the samples begins one
 LEVELS = 4  # at most, after the first: down to 1e-4 by levels, and about 1e-6 within the last one
 ACCEPTED = 0.44  # share of a chain's steps that the width of the steps aims at
 WIDTH_MIN = 0.05
-WIDE = 0.3  # an interval that ends so far above its value is worth more runs
 BLOCK = 65_536  # plain samples at once
 
 Excess = Callable[["NDArray[np.float64]"], "NDArray[np.float64]"]
@@ -120,7 +119,7 @@ def subset(excess: Excess, dimensions: int, runs: int, seed: int) -> Sampled:
         begin = inside if len(inside) == chains else np.sort(rng.choice(inside, chains, replace=False))
         state = (points[begin], values[begin], numbers[begin])
         ancestors, kept = ancestors[begin], [state]
-        while len(kept) < STEPS or _worth(kept, ancestors, level, runs - judged):
+        while len(kept) < STEPS:
             moved = math.sqrt(1.0 - width**2) * state[0] + width * rng.standard_normal((chains, dimensions))
             found = excess(moved)
             taken = found >= near
@@ -134,7 +133,7 @@ def subset(excess: Excess, dimensions: int, runs: int, seed: int) -> Sampled:
             width = min(1.0, max(WIDTH_MIN, width * math.exp(change)))
             kept.append(state)
         points, values, numbers = (np.concatenate([one[part] for one in kept]) for part in range(3))
-        ancestors = np.tile(ancestors, len(kept))
+        ancestors = np.tile(ancestors, STEPS)
         if level == LEVELS or int((values > 0.0).sum()) >= len(values) / STEPS:
             break
     beyond = numbers[values > 0.0]
@@ -148,27 +147,13 @@ def subset(excess: Excess, dimensions: int, runs: int, seed: int) -> Sampled:
     )
 
 
-def _worth(kept: list[State], ancestors: NDArray[np.int64], level: int, left: int) -> bool:
-    """Whether longer chains of a level that reached the limit are worth what is ``left`` of the runs."""
-    values = np.concatenate([values for _, values, _ in kept])
-    exceeded = values > 0.0
-    reached = level == LEVELS or int(exceeded.sum()) >= len(values) / STEPS
-    if left < len(ancestors) or not reached or not exceeded.any():
-        return False
-    _, high = _interval(1.0, np.tile(ancestors, len(kept))[exceeded], STEPS * len(ancestors), level)
-    return high > 1.0 + WIDE
-
-
 def _interval(value: float, ancestors: NDArray[np.int64], size: int, level: int) -> tuple[float, float]:
-    """Both ends, from the ancestors of the samples beyond the limit; a level has ``size`` samples.
-
-    The square root of the estimate is taken for normal.
-    """
+    """Both ends, from the ancestors of the samples beyond the limit; a level has ``size`` samples."""
     from scipy.stats import t
 
     together = float(((np.bincount(ancestors) / len(ancestors)) ** 2).sum())
     variance = 1.0 - (size / (size - 1.0)) ** (level + 1) * (1.0 - together)
     variance = max(variance, 1.0 / len(ancestors) - 1.0 / size)  # never less than if they were independent
     quantile = float(t.isf(0.5 * (1.0 - CONFIDENCE), max(1.0, 1.0 / together - 1.0)))  # few ancestors tell less
-    half = 0.5 * quantile * math.sqrt(variance)
+    half = 0.5 * quantile * math.sqrt(variance)  # of the estimate's square root, which is nearly normal
     return value * max(0.0, 1.0 - half) ** 2, min(1.0, value * (1.0 + half) ** 2)

@@ -138,7 +138,7 @@ class Samples:
         progress: Report | None,
     ) -> None:
         """Open ``folder``; ``decides``: what the samples depend on besides; ``samples``: so many are expected."""
-        from giveway.study.native_part import default_threads
+        from giveway.library.work import default_threads
 
         setup = self._setup = answers.setup
         width = answers.runs.deviations.shape[1]
