@@ -193,7 +193,7 @@ def test_sensitivities_are_the_known_ones_of_a_known_function(kind: str, count: 
     assert [one.main for one in found] == pytest.approx(ISHIGAMI["first"], abs=within)
     if kind == "sobol-indices":
         assert [one.total for one in found] == pytest.approx(ISHIGAMI["total"], abs=within)
-        assert all(one.total_interval is not None and 0.0 < one.total_interval < 2.0 * within for one in found)
+        assert all(one.total_interval is not None and 0.0 < one.total_interval < 3.0 * within for one in found)
         # Alone, the last one decides nothing; it has part in much.
         assert [one.main > one.interval for one in found] == [True, True, False]
         assert all(one.telling for one in found)

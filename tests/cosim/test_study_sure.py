@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
+from giveway.bench import known_probabilities
 from giveway.bench.known_probabilities import KNOWN, cover
 from giveway.cli import _main
 from giveway.crowd import population
@@ -63,6 +64,31 @@ def test_a_rare_probability_is_found_with_its_interval(make) -> None:
     assert -0.31 < found.low < -0.22
     assert 0.25 < found.high < 0.34
     assert found.samples <= 20_000
+
+
+def test_the_bench_prints_what_it_measures(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(known_probabilities, "REPEATS", 3)
+    monkeypatch.setattr(known_probabilities, "RUNS", (2000,))
+    monkeypatch.setenv("COLUMNS", "200")
+    assert _main(["bench", "--probability"]) == 0
+    said = capsys.readouterr().out
+    limit = KNOWN[3](30)
+    found = cover(limit, 2000, 3)
+    row = next(line.split() for line in said.splitlines() if line.split()[:2] == ["parabola", "30"])
+    assert row[2:4] == ["2,000", f"{found.holds:.3f}"]
+    assert row[-2] == f"{stats.norm.sf(limit.distance):.1e}"
+
+
+@pytest.mark.parametrize("make", KNOWN, ids=lambda one: one.__name__.strip("_"))
+def test_the_known_limits_have_their_probability_and_their_nearest_point(make) -> None:
+    limit = make(5)
+    rng = np.random.default_rng(1)
+    points = 2.0 * rng.standard_normal((400_000, 5))  # of a wider distribution: weights make up for it
+    weights = 2.0**5 * np.exp(-0.375 * (points**2).sum(axis=1))
+    beyond = limit.excess(points) > 0.0
+    each = np.where(beyond, weights, 0.0)
+    assert each.mean() == pytest.approx(1e-4, abs=4.0 * each.std() / math.sqrt(len(each)))
+    assert np.sqrt((points[beyond] ** 2).sum(axis=1)).min() >= limit.distance
 
 
 @pytest.mark.deep
@@ -405,6 +431,11 @@ def test_terminal_report_and_evidence_say_how_sure(
     assert "plain sampling, 1,000 samples" in " ".join(capsys.readouterr().out.split())
     assert _main(["study", "evidence", "out/s", "--speeds", "0.5"]) == 0
     assert words in Path(f"out/s/evidence/design-{best}/evidence.html").read_text(encoding="utf-8")
+    lines = Path(f"out/s/evidence/design-{best}/evidence.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[1] == f"# P(a limit is exceeded): {words}"
+    capsys.readouterr()
+    assert _main(["sweep", "s.toml", "--out", "out/s", "--check"]) == 0
+    assert capsys.readouterr().out.endswith("; how sure: at most 1,000 runs for each of 2\n")
     assert _main(["study", "sure", "out/s", "--method", "form"]) == 2
     assert "--method" in capsys.readouterr().err
 

@@ -61,7 +61,8 @@ def write_evidence(answers: Answers, found: Evidence) -> list[Path]:
     page, listed = found.folder / "evidence.html", found.folder / "evidence.csv"
     with replace_files(page, listed) as (html, csv):
         html.write_text(text, encoding="utf-8")
-        csv.write_text(f"# {NOTICE}\n{table.to_csv(index=False)}", encoding="utf-8")
+        told = "".join(f"# {name}: {text}\n" for name, text in probability_lines(answers, found.design))
+        csv.write_text(f"# {NOTICE}\n{told}{table.to_csv(index=False)}", encoding="utf-8")
     return [page, listed]
 
 

@@ -83,7 +83,7 @@ def sizes(setup: Setup, table: RunTable) -> str:
     """One line about a study that has not been run."""
     return (
         f"{setup.name}: {counted(len(table.designs), 'design')}, {counted(len(table.cases), 'collision')}, "
-        f"{counted(table.samples, 'sample')} with the nominal one: {counted(table.count, 'run')}"
+        f"{counted(table.samples, 'sample')} with the nominal one: {counted(table.count, 'run')}{_sure(setup)}"
     )
 
 
@@ -92,8 +92,17 @@ def search_sizes(setup: Setup) -> str:
     per_design = len(setup.cases) * (1 + setup.tolerance_count)
     return (
         f"{setup.name}: at most {counted(setup.search.designs, 'design')}, {setup.search.population} in a generation, "
-        f"{counted(per_design, 'run')} each"
+        f"{counted(per_design, 'run')} each{_sure(setup)}"
     )
+
+
+def _sure(setup: Setup) -> str:
+    """What it takes besides to say how sure the recommendation is."""
+    from giveway.study.sure import uncertain
+
+    if not setup.sure.probability or uncertain(setup):
+        return ""
+    return f"; how sure: at most {counted(setup.sure.runs * len(setup.cases), 'run')} for each of {setup.sure.designs}"
 
 
 def write_all(

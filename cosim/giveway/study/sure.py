@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from giveway.study.answers import Answers
     from giveway.study.metrics import Metric
-    from giveway.study.setup import Constraint
+    from giveway.study.setup import Constraint, Setup
 
 __all__ = [
     "KIND",
@@ -46,7 +46,7 @@ __all__ = [
     "plan_with",
     "probability",
     "stored",
-    "unsure",
+    "uncertain",
     "wanted",
 ]
 
@@ -92,15 +92,14 @@ class Probability:
     limits: tuple[LimitShare, ...]
 
 
-def judged_limits(answers: Answers) -> list[tuple[int, Constraint]]:
+def judged_limits(setup: Setup) -> list[tuple[int, Constraint]]:
     """The limits that depend on runs, with their numbers among the constraints."""
-    return [(i, one) for i, one in enumerate(answers.setup.constraints) if not one.goal.metric.of_design]
+    return [(i, one) for i, one in enumerate(setup.constraints) if not one.goal.metric.of_design]
 
 
-def unsure(answers: Answers) -> str:
+def uncertain(setup: Setup) -> str:
     """Why there is nothing to be unsure of; "" if there is."""
-    setup = answers.setup
-    if not judged_limits(answers):
+    if not judged_limits(setup):
         return "the study has no [[constraint]] on what happens in a run"
     if not (setup.tolerances or setup.crowd or setup.noise_seeds):
         return "nothing differs from sample to sample: the study has no [[tolerance]]"
@@ -109,7 +108,7 @@ def unsure(answers: Answers) -> str:
 
 def wanted(answers: Answers) -> bool:
     """The study asks for it, or does not say no."""
-    return answers.setup.sure.probability and not unsure(answers) and answers.complete
+    return answers.setup.sure.probability and not uncertain(answers.setup) and answers.complete
 
 
 def best_designs(answers: Answers) -> list[int]:
@@ -240,9 +239,9 @@ def probability(
         KeyboardInterrupt: after Ctrl-C; what is stored is kept.
     """
     plan = answers.setup.sure if plan is None else plan
-    if reason := unsure(answers):
+    if reason := uncertain(answers.setup):
         raise GivewayError("constraint" if "constraint" in reason else "tolerance", "nothing", reason)
-    limits = judged_limits(answers)
+    limits = judged_limits(answers.setup)
     dimensions = answers.runs.deviations.shape[1]
     method = plan.method if dimensions else METHODS[1]  # noise alone has no direction towards a limit
     decides = {"sampler": SAMPLER, "method": method, "samples": plan.runs, "about": about(answers, design)}
