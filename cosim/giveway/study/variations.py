@@ -194,7 +194,7 @@ def crowd_of(
     if section.choice("robot", ROBOTS, ROBOTS[0]) == ROBOTS[0]:
         return ()
     if section.values.get("kind") == "corners":
-        raise GivewayError(section.full("kind"), "corners", 'sobol or latin-hypercube with robot = "crowd"')
+        raise GivewayError(section.full("kind"), "corners", 'sobol, with robot = "crowd"')
     testbed = {variable.name: variable.start for variable in table("testbed").select("parameter")}
     testbed |= cases[0].scenario.parameters("testbed")
     found = quantities_of(group_of_plant(bool(testbed["base.tipping"]), testbed["roller.arrangement"] == 1))
