@@ -246,7 +246,7 @@ static void test_wrong_settings(void) {
     setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "truth.x").reference, 0.0};
     CHECK(refused(&spec, "settings[0]: testbed.truth.x is an output, not a parameter"));
     setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "bumper.kind").reference, 0.5};
-    CHECK(refused(&spec, "testbed.bumper.kind = 0.5 is not allowed: a whole number and in [0, 2]"));
+    CHECK(refused(&spec, "testbed.bumper.kind = 0.5 is not allowed: a whole number and in [0, 8]"));
     setting = (gwb_setting_t){GWB_TESTBED, variable(GWB_TESTBED, "slider.present").reference, 2.0};
     CHECK(refused(&spec, "testbed.slider.present = 2 is not allowed: a whole number and in [0, 1]"));
 
