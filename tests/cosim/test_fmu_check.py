@@ -211,7 +211,7 @@ FAULTS: list[tuple[str, int, Plant, str, bool]] = [
         True,
     ),
     ("start values", 3, lambda d: d.edit(START, 'start="stiff"'), "'stiff' is not a value", True),
-    ("start values", 3, lambda d: d.edit('max="2" start="2"', 'start="4294967296"'), "does not fit into Int32", True),
+    ("start values", 3, lambda d: d.edit('max="8" start="2"', 'start="4294967296"'), "does not fit into Int32", True),
     ("start values", 3, lambda d: d.edit('start="0.0"', 'start="INF"'), "is outside its bounds", True),
     ("start presence", 3, lambda d: d.edit(START, ""), "has no start value", True),
     (
@@ -324,7 +324,7 @@ FAULTS: list[tuple[str, int, Plant, str, bool]] = [
         "9999 among the clocked states is no variable",
         True,
     ),
-    ("model structure", 2, lambda d: d.edit('derivative="35"', 'derivative="990"'), "is the derivative of 990", True),
+    ("model structure", 2, lambda d: d.edit('derivative="145"', 'derivative="990"'), "is the derivative of 990", True),
     (
         "event indicators",
         2,

@@ -416,7 +416,7 @@ def test_every_kind_of_design_takes_parts(shop: Path) -> None:
 def test_example_catalogues_say_that_they_are_made_up(path: Path) -> None:
     assert path.stem.endswith("_made_up")
     assert "Made up: neither makers nor parts exist." in path.read_text(encoding="utf-8").partition("\n")[0]
-    assert len(read_catalogue(path).lines) > 8
+    assert len(read_catalogue(path).lines) >= 8
 
 
 def test_example_springs_are_what_their_wire_makes_them() -> None:
