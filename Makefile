@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms
+.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm
 .PHONY: product compile-product compile-all native-tests
 .DEFAULT_GOAL := help
 
@@ -68,6 +68,10 @@ endif
 	@$(BIN)/giveway ssp --out out/fmus/giveway.ssp
 	@ls -l out/fmus/*.fmu
 
+wasm: build/CMakeCache.txt ## the batch library for browsers and Node: build/platforms/wasm32-wasi/binaries/giveway_batch.wasm
+	@$(COMPILE) --target wasm
+	@ls -l build/platforms/wasm32-wasi/binaries/giveway_batch.wasm
+
 platforms: product ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	bash fmu/platforms/system_packages.sh
@@ -88,7 +92,7 @@ INSTALL = $(BIN)/cmake --install build --component native --prefix cosim > build
 CONFIGURE = log=build/configure.log; $(BIN)/cmake -B build > $$log 2>&1
 
 compile-product:
-	@$(COMPILE) --target fmus giveway_batch
+	@$(COMPILE) --target fmus giveway_batch wasm
 
 compile-all:
 	@grep -q '^GIVEWAY_BUILD_TESTS:BOOL=ON' build/CMakeCache.txt || { $(CONFIGURE) -DGIVEWAY_BUILD_TESTS=ON || { cat $$log; exit 1; } }

@@ -63,6 +63,9 @@ function(giveway_add_fmu)
                                                      "${CMAKE_CURRENT_SOURCE_DIR}")
   target_link_libraries(${_module}_model PUBLIC ${ARG_LIBRARIES})
 
+  if(GIVEWAY_PLATFORM MATCHES "wasi$") # no FMUs, only the batch library
+    return()
+  endif()
   if(GIVEWAY_NATIVE_FMUS OR ARG_OUTPUT)
     add_library(${_module} MODULE "${PROJECT_SOURCE_DIR}/fmu/shell/heap.cpp")
     giveway_compile_options(${_module})

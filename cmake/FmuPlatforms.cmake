@@ -27,33 +27,38 @@ endfunction()
 
 # The build trees, as targets platform_PLATFORM; one is built when a file from it is wanted. MODULE...: all FMUs.
 function(giveway_add_platforms)
-  set(_folder "${CMAKE_BINARY_DIR}/platforms")
   foreach(_platform IN LISTS GIVEWAY_PLATFORMS)
     set(_libraries "")
     foreach(_module IN LISTS ARGN)
       giveway_platform_library(${_module} ${_platform} _library)
       list(APPEND _libraries "${_library}")
     endforeach()
-    ExternalProject_Add(
-      platform_${_platform}
-      EXCLUDE_FROM_ALL ON
-      PREFIX "${_folder}/steps"
-      SOURCE_DIR "${PROJECT_SOURCE_DIR}"
-      BINARY_DIR "${_folder}/${_platform}"
-      CMAKE_ARGS --fresh # a tree keeps its first compiler, which may be gone
-                 "-DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/cmake/Platform.cmake" "-DGIVEWAY_PLATFORM=${_platform}"
-                 "-DGIVEWAY_ZIG=${GIVEWAY_ZIG}" "-DGIVEWAY_SUNDIALS_VENDOR=${GIVEWAY_SUNDIALS_VENDOR}"
-                 "-DPython3_EXECUTABLE=${Python3_EXECUTABLE}" "-DCMAKE_MAKE_PROGRAM=${CMAKE_MAKE_PROGRAM}"
-                 # One link at a time: with an empty cache two that make zig's run-time routines can wait for each
-                 # other's lock for ever.
-                 -DCMAKE_JOB_POOLS=linking=1 -DCMAKE_JOB_POOL_LINK=linking
-      BUILD_COMMAND "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_folder}/zig-cache" "ZIG_LOCAL_CACHE_DIR=${_folder}/zig-cache"
-                    "NINJA_STATUS=[FMUs %f/%t] " "${CMAKE_COMMAND}" --build <BINARY_DIR> --target fmu_binaries
-      BUILD_ALWAYS ON # that tree knows what has changed
-      USES_TERMINAL_BUILD ON # one after the other: each takes all processors
-      BUILD_BYPRODUCTS ${_libraries}
-      INSTALL_COMMAND ""
-      LOG_CONFIGURE ON
-      LOG_OUTPUT_ON_FAILURE ON)
+    giveway_add_platform(${_platform} fmu_binaries ${_libraries})
   endforeach()
+endfunction()
+
+# The tree of a platform, which makes TARGET and with it the files.
+function(giveway_add_platform PLATFORM TARGET)
+  set(_folder "${CMAKE_BINARY_DIR}/platforms")
+  ExternalProject_Add(
+    platform_${PLATFORM}
+    EXCLUDE_FROM_ALL ON
+    PREFIX "${_folder}/steps"
+    SOURCE_DIR "${PROJECT_SOURCE_DIR}"
+    BINARY_DIR "${_folder}/${PLATFORM}"
+    CMAKE_ARGS --fresh # a tree keeps its first compiler, which may be gone
+               "-DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/cmake/Platform.cmake" "-DGIVEWAY_PLATFORM=${PLATFORM}"
+               "-DGIVEWAY_ZIG=${GIVEWAY_ZIG}" "-DGIVEWAY_SUNDIALS_VENDOR=${GIVEWAY_SUNDIALS_VENDOR}"
+               "-DPython3_EXECUTABLE=${Python3_EXECUTABLE}" "-DCMAKE_MAKE_PROGRAM=${CMAKE_MAKE_PROGRAM}"
+               # One link at a time: with an empty cache two that make zig's run-time routines can wait for each
+               # other's lock for ever.
+               -DCMAKE_JOB_POOLS=linking=1 -DCMAKE_JOB_POOL_LINK=linking
+    BUILD_COMMAND "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_folder}/zig-cache" "ZIG_LOCAL_CACHE_DIR=${_folder}/zig-cache"
+                  "NINJA_STATUS=[FMUs %f/%t] " "${CMAKE_COMMAND}" --build <BINARY_DIR> --target ${TARGET}
+    BUILD_ALWAYS ON # that tree knows what has changed
+    USES_TERMINAL_BUILD ON # one after the other: each takes all processors
+    BUILD_BYPRODUCTS ${ARGN}
+    INSTALL_COMMAND ""
+    LOG_CONFIGURE ON
+    LOG_OUTPUT_ON_FAILURE ON)
 endfunction()

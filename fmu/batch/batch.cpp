@@ -161,6 +161,14 @@ struct gwb_batch final : batch::RunDone {
 
     // Fewer threads than wanted are enough; false if there is none.
     bool start(std::uint32_t wanted) {
+#ifdef __wasi__ // has no threads: the calling one does the work
+        thread_count = 0;
+        working = std::min(wanted, 1U);
+        if (working > 0) {
+            work();
+        }
+        return true;
+#endif
         pthread_mutex_lock(&mutex);
         while (thread_count < wanted && pthread_create(&threads[thread_count], nullptr, thread, this) == 0) {
             ++thread_count;

@@ -282,10 +282,12 @@ struct Width {
 };
 Width width_of(int lanes) {
     switch (lanes) {
+#ifdef __x86_64__
     case 8:
         return {new_lane_plant_8, lane_noise_8};
     case 4:
         return {new_lane_plant_4, lane_noise_4};
+#endif
     default:
         return {new_lane_plant_1, lane_noise_1};
     }
@@ -294,11 +296,15 @@ Width width_of(int lanes) {
 } // namespace
 
 int widest_lanes() {
+#ifdef __x86_64__
     if (__builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
         __builtin_cpu_supports("avx512vl") != 0) {
         return 8;
     }
     return __builtin_cpu_supports("avx2") != 0 ? 4 : 1;
+#else
+    return 1;
+#endif
 }
 
 void run_fixed_step(const gwb_spec_t *specs, std::size_t count, const FixedStep &how, Monitor &monitor,

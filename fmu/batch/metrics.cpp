@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "arctangent.hpp"
 #include "elementary.hpp"
 #include "gravity.hpp"
 #include "scalar.hpp"
@@ -369,7 +370,7 @@ private:
         set(GWB_DETECTION_TIME, 1e3 * (s.time_s - contact_s_));
 
         const Vector impulse = true_impulse();
-        const double true_deg = degrees(std::atan2(impulse.y, impulse.x));
+        const double true_deg = degrees(math::angle_of(impulse.y, impulse.x));
         const double direction_deg = true_deg + wrapped(degrees(s.detection_direction) - true_deg);
         set(GWB_FORCE_DIRECTION, direction_deg, true_deg);
         set(GWB_DIRECTION_ERROR, wrapped(direction_deg - true_deg), 0.0);
