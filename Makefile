@@ -48,6 +48,7 @@ bench: build build/bench/tools-installed build/importers/tools-installed ## how 
 	GIVEWAY_BENCH_TOOLS=$(CURDIR)/bench $(BIN)/giveway bench
 	$(BIN)/python -m verify.step_cost
 	$(BIN)/python -m importers.bench
+	$(BIN)/python -m web.bench
 
 endurance: product ## false alarms: 300 h of motion without contact, 20 h with tipping, 20 h with single rollers; goes on where it stopped
 	$(BIN)/giveway crowd endurance --threads $(JOBS)
@@ -100,12 +101,13 @@ compile-all:
 
 C_SOURCES = $$(git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 
-lint: .venv/test-packages-installed ## ruff, mypy, clang-format, width of texts and files they cite
+lint: .venv/test-packages-installed build/web/tools-installed ## ruff, mypy, clang-format, types of JavaScript, width of texts and files they cite
 	$(BIN)/ruff check --quiet .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/python tests/lint_text.py
 	$(BIN)/clang-format --dry-run -Werror $(C_SOURCES)
+	build/web/node_modules/.bin/tsc --project web
 
 format: .venv/test-packages-installed ## format C, C++ and Python in place
 	$(BIN)/ruff format --quiet .
@@ -166,6 +168,13 @@ PIP_INSTALL = $(BIN)/pip install --quiet --no-compile
 .venv/test-packages-installed: tests/requirements.lock .venv/package-installed
 	@echo "installing Python packages: $$(grep -c == tests/requirements.lock) of tests/requirements.lock"
 	@$(PIP_INSTALL) --require-hashes -r tests/requirements.lock
+	@touch $@
+
+# What checks the JavaScript of web/.
+build/web/tools-installed: web/package.json web/package-lock.json .venv/test-system-packages
+	@mkdir -p $(@D)
+	@cp web/package.json web/package-lock.json $(@D)
+	@npm ci --prefix $(@D) --silent --ignore-scripts --no-audit --no-fund
 	@touch $@
 
 build/bench/tools-installed: bench/requirements.lock bench/system_packages.sh cmake/packages.sh

@@ -17,13 +17,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 COLUMNS = 120
 WHOLE = {".py", ".c", ".h", ".cpp", ".hpp", ".inc", ".mo", ".rs"}  # every line counts
-COMMENTS = {".toml", ".cmake", ".sh", ".in", ".mk"}  # only lines that are comments count
+COMMENTS = {".js", ".toml", ".cmake", ".sh", ".in", ".mk"}  # only lines that are comments count
 GENERATED = ("modelica/GiveWay/Parameters/Trikey.mo",)
 # A cited file: a name with an ending of ours. Names in capitals (NAME.cpp, STUDY.toml) stand for any file.
 CITED = re.compile(r"(?<![\w./<{*$-])((?:[\w.-]+/)*[a-z][a-z0-9_-]*\.(?:md|py|toml|cpp|hpp|cmake|mo))(?![\w/(*])")
 COMMENT = {
     ".py": re.compile(r"(?:^|\s)#(?P<text>.*)"),
-    **dict.fromkeys((".c", ".h", ".cpp", ".hpp"), re.compile(r"(?://|/\*|^\s*\*\s)(?P<text>.*)")),
+    **dict.fromkeys((".c", ".h", ".cpp", ".hpp", ".js"), re.compile(r"(?://|/\*|^\s*\*\s)(?P<text>.*)")),
     **dict.fromkeys((".toml", ".cmake", ".sh", ".txt"), re.compile(r"^\s*#(?P<text>.*)")),
 }
 PRAGMA = re.compile(r"  # (?:type: ignore|noqa|fmt: skip).*$")

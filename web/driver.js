@@ -30,11 +30,13 @@ function spec_of(sent) {
 }
 
 /** @param {any} run */
-const told = (run) => ({ ...run, metrics: numbers(run.metrics), truths: numbers(run.truths), traces: all_bits(run.traces) });
+const told = (run) => {
+  return { ...run, metrics: numbers(run.metrics), truths: numbers(run.truths), traces: all_bits(run.traces) };
+};
 
 /**
  * @param {any} batch giveway_batch.js
- * @param {Uint8Array} bytes giveway_batch.wasm
+ * @param {Uint8Array<ArrayBuffer>} bytes giveway_batch.wasm
  * @param {string} code of giveway_batch.js
  * @param {any[]} specs
  */
@@ -52,21 +54,24 @@ export async function compute(batch, bytes, code, specs) {
       return null;
     }
     const { metrics, truths } = library.evaluate({
-      time_s: Float64Array.from({ length: sent.step_count + 1 }, (_, k) => k * sent.step_s), ...sent, traces: run.traces,
+      ...sent,
+      time_s: Float64Array.from({ length: sent.step_count + 1 }, (_, k) => k * sent.step_s),
+      traces: run.traces,
     });
     return { ...told(run), evaluated: { metrics: numbers(metrics), truths: numbers(truths) } };
   });
-  const { version, gravity, variables, metrics } = library;
+  const { version, gravity, metrics } = library;
+  // Infinity is no number of JSON.
+  const variables = library.variables.map((/** @type {any} */ v) => ({ ...v, minimum: `${v.minimum}`, maximum: `${v.maximum}` }));
   const tokens = [library.token("controller"), library.token("testbed")];
   const tables = { version, gravity, tokens, windows: library.windows(), metrics };
-  // Infinity is no number of JSON.
-  return { runs, again, workers: count, ...tables, variables: variables.map((v) => ({ ...v, minimum: `${v.minimum}`, maximum: `${v.maximum}` })) };
+  return { runs, again, workers: count, ...tables, variables };
 }
 
 /**
  * Milliseconds of each of `times` runs.
  * @param {any} batch
- * @param {Uint8Array} bytes
+ * @param {Uint8Array<ArrayBuffer>} bytes
  * @param {any} spec
  * @param {number} times
  */
@@ -86,6 +91,8 @@ if (typeof document === "undefined") {
   const { library, wasm, call, given } = JSON.parse(readFileSync(0, "utf8"));
   const batch = await import(library);
   const bytes = new Uint8Array(readFileSync(wasm));
-  const answer = await (call === "time" ? time(batch, bytes, given[0], given[1]) : compute(batch, bytes, library, given[0]));
-  globalThis.process.stdout.write(JSON.stringify(answer));
+  const [first, times] = given;
+  const answer = await (call === "time" ? time(batch, bytes, first, times) : compute(batch, bytes, library, first));
+  const { process } = /** @type {any} */ (globalThis);
+  process.stdout.write(JSON.stringify(answer));
 }

@@ -1,11 +1,11 @@
 // giveway_batch.wasm for JavaScript: the functions of giveway_batch.h, in a page, a worker or Node.
 //
-//     const module = await WebAssembly.compile(bytes);          // of giveway_batch.wasm
-//     const library = Library.of(module);                       // on this thread
+//     const module = await WebAssembly.compile(bytes); // of giveway_batch.wasm
+//     const library = Library.of(module); // on this thread
 //     const run = library.run({ step_s: 0.001, step_count: 600, settings: { "testbed.slider.mass": 13.62 } });
 //     run.metrics["peak force of the run"];
 //
-//     const workers = await Workers.start(module, import.meta.url);   // the same, beside this thread
+//     const workers = await Workers.start(module, url_of_this_file); // the same, beside this thread
 //     const run = await workers.run(spec);
 //
 // Units are SI; names of variables are "testbed.slider.mass". What cannot be used is refused with an error that has the
@@ -286,8 +286,9 @@ export class Library {
       if (!this._wasm.gwb_judge_force(time.at, force.at, time.rows, touch_n, at)) {
         throw new GivewayError("time_s or force_n", "such rows", "finite, times ascending, forces not negative");
       }
-      const [transient_n = NaN, transient_time_s = NaN, lasting_n = NaN, lasting_time_s = NaN, longest_contact_s = NaN] =
-        this._reals(at, 5);
+      const found = this._reals(at, 5);
+      const [transient_n = NaN, transient_time_s = NaN, lasting_n = NaN, lasting_time_s = NaN] = found;
+      const longest_contact_s = found[4] ?? NaN;
       const lasting_known = this._view().getUint32(at + 40, true) !== 0;
       return { transient_n, transient_time_s, lasting_n, lasting_time_s, longest_contact_s, lasting_known };
     });
@@ -559,7 +560,8 @@ export function serve(port, listen) {
         port.postMessage({ id });
       } else if (library) {
         const run = library.run(spec);
-        port.postMessage({ id, run }, Object.values(run.traces).map((trace) => /** @type {ArrayBuffer} */ (trace.buffer)));
+        const moved = Object.values(run.traces).map((trace) => /** @type {ArrayBuffer} */ (trace.buffer));
+        port.postMessage({ id, run }, moved);
       }
     } catch (error) {
       const thrown = /** @type {Error} */ (error);
@@ -581,7 +583,8 @@ export function serve(port, listen) {
 async function start_worker(code, heard, failed) {
   const here = typeof Worker === "undefined" ? SERVE_IN_NODE : SERVE_IN_PAGE;
   const is_url = /^[a-z]+:\S*$/.test(code);
-  const source = is_url ? `import(${JSON.stringify(code)}).then(({ serve }) => {${here}});` : code.replace(/^export /gm, "") + here;
+  const imported = `import(${JSON.stringify(code)}).then(({ serve }) => {${here}});`;
+  const source = is_url ? imported : code.replace(/^export /gm, "") + here;
   if (typeof Worker === "undefined") {
     const node = "node:worker_threads"; // not for a bundler to find
     const { Worker: NodeWorker } = await import(node);
@@ -673,7 +676,12 @@ export class Workers {
     await new Promise((done, failed) => this._ask(worker, { module }, done, failed));
   }
 
-  /** @param {Started} worker @param {object} data @param {(run: any) => void} done @param {(e: Error) => void} failed */
+  /**
+   * @param {Started} worker
+   * @param {object} data
+   * @param {(run: any) => void} done
+   * @param {(error: Error) => void} failed
+   */
   _ask(worker, data, done, failed) {
     const id = this._next++;
     this._asked.set(id, { worker, done, failed });

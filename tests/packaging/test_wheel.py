@@ -25,8 +25,13 @@ NATIVE = {
     "controller.variables.toml",
     "drivetrain.variables.toml",
     "giveway_batch.h",
+    "giveway_batch.js",
     "giveway_batch.so",
     "giveway_batch.sundials.txt",
+    "giveway_batch.wasm",
+    "giveway_batch.wasm.musl.txt",
+    "giveway_batch.wasm.wasi.txt",
+    "giveway_batch.wasm.zig.txt",
     "testbed.variables.toml",
     "trikey.toml",
 }
