@@ -377,7 +377,7 @@ GWB_API uint32_t gwb_widest_lanes(void);
 /* Starts threads on `count` runs; results[i] is that of specs[i]. All arguments except the options, which are copied,
  * must stay unchanged until gwb_finish returns. A run that is not possible is reported in its result and does not stop
  * the others. 1 if the batch was started; else 0, *batch is null, and message (GWB_MESSAGE_SIZE bytes, or null) says
- * why. */
+ * why. WebAssembly has no threads: there all runs are done when it returns. */
 GWB_API int gwb_start(const gwb_spec_t *specs, size_t count, const gwb_options_t *options, gwb_result_t *results,
                       gwb_batch_t **batch, char *message);
 
