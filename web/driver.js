@@ -46,7 +46,13 @@ export async function compute(batch, bytes, code, specs) {
   const failed = (/** @type {any} */ e) => ({ ...e, name: e.name, message: e.message });
   const runs = await Promise.all(specs.map((sent) => workers.run(spec_of(sent)).then(told, failed)));
   const count = workers.count;
+  const [plain, signal] = [{ step_s: 0.001, step_count: 10 }, AbortSignal.abort()];
+  const all = Array.from({ length: 4 }, () => workers.run(plain));
+  const taken_back = await workers.run(plain, signal).then(told, failed);
+  await Promise.all(all);
+  const running = workers.run({ ...plain, step_count: 1000000 }).then(told, failed);
   workers.end();
+  const ended = await Promise.all([running, workers.run(plain).then(told, failed)]);
   const library = batch.Library.of(module);
   const again = specs.map((sent, i) => {
     const run = "name" in runs[i] ? null : library.run(spec_of(sent)); // an error has been compared
@@ -65,7 +71,7 @@ export async function compute(batch, bytes, code, specs) {
   const variables = library.variables.map((/** @type {any} */ v) => ({ ...v, minimum: `${v.minimum}`, maximum: `${v.maximum}` }));
   const tokens = [library.token("controller"), library.token("testbed")];
   const tables = { version, gravity, tokens, windows: library.windows(), metrics };
-  return { runs, again, workers: count, ...tables, variables };
+  return { runs, again, workers: count, taken_back, ended, ...tables, variables };
 }
 
 /**

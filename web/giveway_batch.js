@@ -553,18 +553,25 @@ const LISTENING = -1; // the first thing that a worker says
 export function serve(port, listen) {
   /** @type {Library | undefined} */
   let library;
+  /** @type {WebAssembly.Module} */
+  let compiled;
   listen(({ id, module, spec }) => {
     try {
       if (module) {
-        library = Library.of(module);
+        compiled = module;
+        library = Library.of(compiled);
         port.postMessage({ id });
-      } else if (library) {
+      } else {
+        library ??= Library.of(compiled);
         const run = library.run(spec);
         const moved = Object.values(run.traces).map((trace) => /** @type {ArrayBuffer} */ (trace.buffer));
         port.postMessage({ id, run }, moved);
       }
     } catch (error) {
       const thrown = /** @type {Error} */ (error);
+      if (!(thrown instanceof GivewayError || thrown instanceof SimulationError)) {
+        library = undefined; // its memory may be in any state: the next run has a new one
+      }
       port.postMessage({ id, error: { ...thrown, name: thrown.name, message: thrown.message } });
     }
   });
@@ -636,6 +643,8 @@ export class Workers {
     /** @type {Map<number, {worker: Started, done: (run: any) => void, failed: (error: Error) => void}>} */
     this._asked = new Map();
     this._next = 0;
+    /** @type {Error | undefined} why nothing is computed any more */
+    this._ended = undefined;
   }
 
   /** How many there are. */
@@ -651,6 +660,9 @@ export class Workers {
    */
   run(spec, signal) {
     return new Promise((done, failed) => {
+      if (this._ended) {
+        throw this._ended;
+      }
       this._waiting.push({ data: { spec }, done, failed, signal });
       this._go_on();
     });
@@ -710,8 +722,9 @@ export class Workers {
     }
   }
 
-  /** @param {Error} error that ended a worker: no answer can be relied on */
+  /** @param {Error} error that ended a worker: there is no use in the others */
   _fail(error) {
+    this._ended ??= error;
     for (const { failed } of [...this._asked.values(), ...this._waiting]) {
       failed(error);
     }

@@ -154,3 +154,11 @@ def test_variables_and_metrics_are_those_of_the_tables(answer: Any) -> None:
 
 def test_two_workers_where_there_are_cores(answer: Any) -> None:
     assert answer["workers"] in (1, 2)
+
+
+def test_a_run_that_waits_can_be_taken_back(answer: Any) -> None:
+    assert answer["taken_back"]["name"] == "AbortError"
+
+
+def test_workers_that_were_ended_say_so(answer: Any) -> None:
+    assert [thrown["message"] for thrown in answer["ended"]] == ["the workers were ended"] * 2
