@@ -24,26 +24,14 @@ from giveway.cluster import pool
 from giveway.study import Study, study_file
 from giveway.study.engine import sweep
 from giveway.study.golden import golden_works
-from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
+from study_helpers import LATCH, LATCH_STUDY, SPRING, part_files, small_study, stored_runs
 
 distributed = pytest.importorskip("distributed")
 
-STUDY = """\
+STUDY = f"""\
 schema_version = 1
 part_runs = 10
-[scenario]
-duration = 0.25
-bumper = "magnetic"
-[[collision]]
-speed = 0.5
-mass = 9.08
-edge = 0
-time = 0.12
-[[vary]]
-quantity = "testbed.bumper.latch_force"
-low = 0.0
-high = 60.0
-levels = 30
+{LATCH_STUDY}levels = 30
 [[vary]]
 quantity = "testbed.bumper.spring_rate"
 low = 500.0

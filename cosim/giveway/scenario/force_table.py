@@ -12,16 +12,14 @@ what is stored. If it was not measured, it is between both slowest directions, o
 
 from __future__ import annotations
 
-import csv
 import itertools
-import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.base.csv_rows import check_widths, head_parts, number_of, read_rows, title_of
+from giveway.base.errors import GivewayError, InputFileError
 from giveway.base.units import factor
 from giveway.robot.variables import table
 
@@ -31,7 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["THINNED", "ForceTable", "read_force_table"]
 
 _COLUMNS = {"travel": "m", "speed": "m/s", "force": "N"}
-_HEAD = re.compile(r"([a-z]+)\s*\[\s*([^\[\]]+?)\s*\]")
 LINES_MAX = 100_000
 THINNED = 0.02  # of the greatest force: how far a table with fewer points may be off
 
@@ -84,20 +81,7 @@ def read_force_table(path: Path) -> ForceTable:
         FileError: it cannot be read.
         InputFileError: something in it is wrong, or such a bumper would create energy; names line and column.
     """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            lines = [
-                (number, [cell.strip() for cell in row])
-                for number, text in enumerate(stream, 1)
-                if text.strip() and not text.lstrip().startswith("#")
-                for row in csv.reader([text], strict=True)
-            ]
-    except FileNotFoundError:
-        raise FileError(
-            path, "no such file", "give the path of a table (CSV), seen from the file that names it"
-        ) from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
+    lines = read_rows(path, "a table")
     if not 3 <= len(lines) <= LINES_MAX:
         raise InputFileError(
             path, lines[0][0] if lines else 1, GivewayError("lines", max(0, len(lines) - 1), "2 or more")
@@ -106,12 +90,11 @@ def read_force_table(path: Path) -> ForceTable:
         where, titles, scales = _columns(lines[0][1])
     except GivewayError as error:
         raise InputFileError(path, lines[0][0], error) from None
+    check_widths(path, lines)
     forces: dict[tuple[float, float], _Cell] = {}
     for line, row in lines[1:]:
         try:
-            if len(row) != len(lines[0][1]):
-                raise GivewayError("columns", len(row), f"{len(lines[0][1])}, as in line {lines[0][0]}")
-            travel, speed, force = (_number(titles[name], row[where[name]], scales[name]) for name in _COLUMNS)
+            travel, speed, force = (number_of(titles[name], row[where[name]]) * scales[name] for name in _COLUMNS)
             if travel < 0.0:
                 raise GivewayError(titles["travel"], row[where["travel"]], "0, full extension, or more")
             if force < 0.0:
@@ -131,28 +114,17 @@ def _columns(head: Sequence[str]) -> tuple[dict[str, int], dict[str, str], dict[
     titles: dict[str, str] = {}
     scales: dict[str, float] = {}
     for position, cell in enumerate(head, 1):
-        found = _HEAD.fullmatch(cell)
-        if found is None or found[1] not in _COLUMNS or found[1] in where:
+        name, unit = head_parts(cell) or ("", None)
+        if unit is None or name not in _COLUMNS or name in where:
             raise GivewayError(
                 f"column {position}", cell or "nothing", "travel [mm], speed [mm/s] and force [N], once each"
             )
-        name = found[1]
-        where[name], titles[name] = position - 1, f"column {position}, {cell}"
-        scales[name] = factor(titles[name], found[2], _COLUMNS[name])
+        where[name], titles[name] = position - 1, title_of(position, name, unit)
+        scales[name] = factor(titles[name], unit, _COLUMNS[name])
     for name, unit in _COLUMNS.items():
         if name not in where:
             raise GivewayError("columns", ", ".join(head), f"a column {name} [{unit}], too")
     return where, titles, scales
-
-
-def _number(title: str, cell: str, scale: float) -> float:
-    try:
-        found = math.nan if "_" in cell else float(cell)
-    except ValueError:
-        found = math.nan
-    if not math.isfinite(found):
-        raise GivewayError(title, cell or "nothing", "a finite number")
-    return found * scale
 
 
 def _table(path: Path, head: int, titles: Mapping[str, str], forces: Mapping[tuple[float, float], _Cell]) -> ForceTable:

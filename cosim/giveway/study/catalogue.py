@@ -11,10 +11,9 @@ it is needed. Lines that begin with # are comments.
 
 from __future__ import annotations
 
-import csv
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -22,7 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.base.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.base.csv_rows import check_widths, head_parts, number_of, read_rows, title_of
+from giveway.base.errors import GivewayError, InputFileError, UnknownNameError
 from giveway.base.units import check_unit, factor
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ __all__ = ["MAKER", "MASS", "NAME", "PRICE", "Catalogue", "Column", "read_catalo
 
 NAME, MAKER, PRICE, MASS = "name", "maker", "price", "mass"
 NAME_MAX, PARTS_MAX = 60, 100_000
-_HEAD = re.compile(r"([^\[\]]*[^\[\]\s])\s*(?:\[\s*([^\[\]]*?)\s*\])?")
 _CURRENCY = re.compile(r"[A-Z]{3}")
 A_UNIT = "1 or a unit, such as N/mm"
 A_CURRENCY = "a currency of three capital letters, such as EUR"
@@ -59,7 +58,7 @@ class Column:
     @property
     def title(self) -> str:
         """What messages call it."""
-        return f"column {self.position}, {_title(self.name, self.unit)}"
+        return title_of(self.position, self.name, self.unit)
 
 
 @dataclass(frozen=True)
@@ -112,13 +111,7 @@ def read_catalogue(path: Path) -> Catalogue:
         FileError: it cannot be read.
         InputFileError: something in it is wrong; names line and column.
     """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            rows = [(line, row) for line, row in _rows(stream) if any(row)]
-    except FileNotFoundError:
-        raise FileError(path, "no such file", "give the path of a catalogue (CSV), seen from the study file") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise FileError(path, f"cannot be read: {error}") from None
+    rows = read_rows(path, "a catalogue")
     if not 2 <= len(rows) <= PARTS_MAX + 1:
         wrong = GivewayError("parts", max(0, len(rows) - 1), f"1 to {PARTS_MAX}, below a line of column names")
         raise InputFileError(path, rows[0][0] if rows else 1, wrong)
@@ -133,10 +126,7 @@ def read_catalogue(path: Path) -> Catalogue:
             raise GivewayError("columns", ", ".join(head), f"a column {NAME!r} and others, divided by commas")
     except GivewayError as error:
         raise InputFileError(path, head_line, error) from None
-    for line, row in parts:
-        if len(row) != len(head):
-            wrong = GivewayError("columns", len(row), f"{len(head)}, as in line {head_line}")
-            raise InputFileError(path, line, wrong)
+    check_widths(path, rows)
     columns = {}
     for j, (name, unit) in enumerate(units.items()):
         cells = tuple(row[j] for _, row in parts)
@@ -151,26 +141,12 @@ def read_catalogue(path: Path) -> Catalogue:
     return Catalogue(path, head_line, lines, MappingProxyType(columns))
 
 
-def _rows(stream: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
-    """Line and cells of each row, comments as empty rows."""
-    reader = csv.reader(("\n" if text.lstrip().startswith("#") else text for text in stream), strict=True,
-                        skipinitialspace=True)  # fmt: skip
-    line = 1
-    for row in reader:
-        yield line, [cell.strip() for cell in row]
-        line = reader.line_num + 1
-
-
-def _title(name: str, unit: str | None) -> str:
-    return name if unit is None else f"{name} [{unit}]"
-
-
 def _head(field: str, cell: str, known: Mapping[str, str | None]) -> tuple[str, str | None]:
     """Name and unit of a column."""
-    found = _HEAD.fullmatch(cell)
+    found = head_parts(cell)
     if found is None:
         raise GivewayError(field, cell or "nothing", "a name, and for numbers a unit: rate [N/mm]")
-    name, unit = found[1], found[2]
+    name, unit = found
     if name in known:
         raise GivewayError(field, name, "a name of its own")
     if name in (NAME, MAKER) and unit is not None:
@@ -189,12 +165,7 @@ def _number(column: Column, cell: str) -> float:
     """A cell as a number; NaN if it is empty."""
     if not cell:
         return math.nan
-    try:
-        found = math.nan if "_" in cell else float(cell)
-    except ValueError:
-        found = math.nan
-    if not math.isfinite(found):
-        raise GivewayError(column.title, cell, "a finite number")
+    found = number_of(column.title, cell)
     if found < 0.0 and column.name in (PRICE, MASS):
         raise GivewayError(column.title, cell, "0 or more")
     return found

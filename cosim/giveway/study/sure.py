@@ -29,6 +29,7 @@ from giveway.study.subset import SAMPLER, Sampled, plain, subset
 from giveway.study.sure_plan import METHODS, SurePlan
 
 if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
     from numpy.typing import NDArray
 
     from giveway.study.answers import Answers
@@ -36,13 +37,13 @@ if TYPE_CHECKING:
     from giveway.study.setup import Constraint, Setup
 
 __all__ = [
-    "KIND",
     "SURE",
     "LimitShare",
     "Probability",
     "Samples",
     "about",
     "best_designs",
+    "concluded",
     "plan_with",
     "probability",
     "stored",
@@ -52,6 +53,7 @@ __all__ = [
 
 SURE = "sure"  # folder in that of the study
 KIND = "giveway sure"
+RESULT = "result"  # in the manifest
 
 
 @dataclass(frozen=True)
@@ -123,20 +125,24 @@ def best_designs(answers: Answers) -> list[int]:
 
 
 class Samples:
-    """Runs of one design with tolerance samples that are asked for block by block, each stored before the next."""
+    """Runs of one design with tolerance samples that are asked for block by block, each stored before the next.
+
+    Their folder is that of what they are for: as ``with`` begins, its manifest says what was asked, and `conclude`
+    writes the result into it.
+    """
 
     def __init__(
         self,
         answers: Answers,
         design: int,
-        folder: Path,
+        purpose: str,
         decides: dict[str, Any],
         metrics: Sequence[Metric],
         samples: int,
         threads: int | None,
         progress: Report | None,
     ) -> None:
-        """Open ``folder``; ``decides``: what the samples depend on besides; ``samples``: so many are expected."""
+        """``decides``: what the samples depend on besides; ``samples``: so many are expected."""
         from giveway.library.work import default_threads
 
         setup = self._setup = answers.setup
@@ -148,12 +154,20 @@ class Samples:
         fingerprint = hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
         self._metrics, self._expected = metrics, samples * len(setup.cases)
         self._names = sorted({name for one in metrics for name in one.columns})
-        self.store = Store(folder, fingerprint, KIND)
-        self._runner = Runner(setup, contexts, self.store, threads or default_threads(), progress)
+        self._told = {"name": f"design {design} of {setup.name}", "asked": decides, "seed": setup.seed}
+        self._store = Store(_folder(answers, design, purpose), fingerprint, KIND)
+        self._runner = Runner(setup, contexts, self._store, threads or default_threads(), progress)
 
-    def close(self) -> None:
-        """Release the folder."""
-        self.store.close()
+    def __enter__(self) -> Samples:
+        self._store.write_manifest({**self._told, "complete": False, RESULT: None})
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._store.close()
+
+    def conclude(self, result: DataclassInstance) -> None:
+        """Store what the samples were for."""
+        self._store.write_manifest({**self._told, "complete": True, RESULT: asdict(result)})
 
     def run(
         self, deviations: NDArray[np.float64], noise: NDArray[np.float64] | None = None
@@ -169,7 +183,7 @@ class Samples:
             raise KeyboardInterrupt
         parts = [
             read_part(path, ["status", *self._names])
-            for first, end, path in list_parts(self.store.parts_folder)
+            for first, end, path in list_parts(self._store.parts_folder)
             if before <= first and end <= self.table.count
         ]
         found = {name: np.concatenate([part[name].to_numpy() for part in parts]) for name in self._names}
@@ -246,25 +260,15 @@ def probability(
     method = plan.method if dimensions else METHODS[1]  # noise alone has no direction towards a limit
     decides = {"sampler": SAMPLER, "method": method, "samples": plan.runs, "about": about(answers, design)}
     metrics = [one.goal.metric for _, one in limits]
-    folder = _folder(answers, design, method)
     if (known := _stored(answers, design, method, decides)) is not None:
         return known
-    samples = Samples(answers, design, folder, decides, metrics, plan.runs, threads, progress)
-    try:
-        told = {
-            "name": f"design {design} of {answers.setup.name}",
-            "asked": decides,
-            "seed": answers.setup.seed,
-        }
-        samples.store.write_manifest({**told, "complete": False, "probability": None})
+    with Samples(answers, design, method, decides, metrics, plan.runs, threads, progress) as samples:
         judge = _Judge([one for _, one in limits], samples)
         sampler = plain if method == METHODS[1] else subset
         found = sampler(judge.excess, dimensions, plan.runs, answers.setup.seed)
         result = _result(answers, design, method, found, judge, [number for number, _ in limits])
-        samples.store.write_manifest({**told, "complete": True, "probability": asdict(result)})
+        samples.conclude(result)
         return result
-    finally:
-        samples.close()
 
 
 def _result(
@@ -282,8 +286,8 @@ def _result(
     )
 
 
-def _folder(answers: Answers, design: int, method: str) -> Path:
-    return answers.folder / SURE / f"design-{design}-{method}"
+def _folder(answers: Answers, design: int, purpose: str) -> Path:
+    return answers.folder / SURE / f"design-{design}-{purpose}"
 
 
 def about(answers: Answers, design: int) -> str:
@@ -301,15 +305,22 @@ def stored(answers: Answers, design: int) -> list[Probability]:
 
 
 def _stored(answers: Answers, design: int, method: str, decides: dict[str, Any] | None) -> Probability | None:
-    """What is known of a design; ``decides``: only if it was found in this way."""
-    try:
-        manifest = read_manifest(_folder(answers, design, method), KIND)
-    except FileError:
-        return None
-    asked, told = manifest.get("asked", {}), manifest.get("probability")
-    if told is None or asked.get("about") != about(answers, design) or decides not in (None, asked):
+    told = concluded(answers, design, method, decides)
+    if told is None:
         return None
     return Probability(**{**told, "limits": tuple(LimitShare(**one) for one in told["limits"])})
+
+
+def concluded(answers: Answers, design: int, purpose: str, decides: dict[str, Any] | None) -> dict[str, Any] | None:
+    """The result of a design's samples that are stored; ``decides``: only if it was found in this way."""
+    try:
+        manifest = read_manifest(_folder(answers, design, purpose), KIND)
+    except FileError:
+        return None
+    asked, told = manifest.get("asked", {}), manifest.get(RESULT)
+    if told is None or asked.get("about") != about(answers, design) or decides not in (None, asked):
+        return None
+    return dict(told)
 
 
 def plan_with(plan: SurePlan, runs: int | None, method: str | None) -> SurePlan:

@@ -10,16 +10,15 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.base.errors import FileError, GivewayError
+from giveway.base.errors import GivewayError
 from giveway.study.designs import deviations_at
 from giveway.study.engine import Report
-from giveway.study.store import read_manifest
-from giveway.study.sure import KIND, SURE, Samples, about
+from giveway.study.sure import Samples, about, concluded
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,6 +32,7 @@ RESAMPLES = 1000
 TELLING = 0.01  # of the variance: what may have a smaller part in it decides nothing
 NOISE_SEEDS = 2.0**30
 NOISE = "sensor noise"
+PURPOSE = "indices"
 
 
 @dataclass(frozen=True)
@@ -141,19 +141,13 @@ def indices(
         return known
     points = points_of(groups, count, setup.seed)
     metrics = [goal.metric for goal in goals]
-    folder = answers.folder / SURE / f"design-{design}-indices"
-    samples = Samples(answers, design, folder, decides, metrics, len(points), threads, progress)
-    try:
-        told = {"name": f"design {design} of {setup.name}", "asked": decides, "seed": setup.seed}
-        samples.store.write_manifest({**told, "complete": False, "indices": None})
+    with Samples(answers, design, PURPOSE, decides, metrics, len(points), threads, progress) as samples:
         noise = np.floor(points[:, -1] * NOISE_SEEDS) if setup.noise_seeds else None
         width = len(groups) - setup.noise_seeds
         found, _ = samples.run(deviations_at(setup.tolerances, points[:, :width]), noise)
         result = _judged(design, groups, goals, found, setup.seed)
-        samples.store.write_manifest({**told, "complete": True, "indices": asdict(result)})
+        samples.conclude(result)
         return result
-    finally:
-        samples.close()
 
 
 def _goals(setup: Setup) -> list[Goal]:
@@ -182,11 +176,7 @@ def _judged(
 
 def stored_indices(answers: Answers, design: int, decides: dict[str, Any] | None = None) -> Indices | None:
     """What is known of a design; ``decides``: only if they were found in this way."""
-    try:
-        manifest = read_manifest(answers.folder / SURE / f"design-{design}-indices", KIND)
-    except FileError:
-        return None
-    asked, told = manifest.get("asked", {}), manifest.get("indices")
-    if told is None or asked.get("about") != about(answers, design) or decides not in (None, asked):
+    told = concluded(answers, design, PURPOSE, decides)
+    if told is None:
         return None
     return Indices(told["design"], tuple(Index(**one) for one in told["found"]), told["reason"])
