@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from giveway.cli import _main
-from giveway.study import Study
+from giveway.study import Study, certainty, sure
 from giveway.study.answers import Answers
 from giveway.study.compare import compare
 from giveway.study.limits import margins_of
@@ -87,3 +87,11 @@ def test_a_study_that_allows_nothing_is_compared_by_its_nearest(both: tuple[Answ
 def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert _main(["study", "compare", str(tmp_path), str(tmp_path)]) == 2
     assert "giveway sweep" in capsys.readouterr().err
+
+
+def test_what_is_known_of_the_probability_is_side_by_side(both: tuple[Answers, Answers]) -> None:
+    a, b = both
+    design = int(b.order[0])
+    found = sure.probability(b, design, sure.plan_with(b.setup.sure, 1000, "plain"))
+    rows = {name: texts for name, *texts in compare(a, b).recommended}
+    assert rows["P(a limit is exceeded)"] == ["-", certainty.probability_words(found), ""]

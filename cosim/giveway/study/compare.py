@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.study.advice import advice, design_lines
 from giveway.study.asked import all_asked
+from giveway.study.certainty import probability_lines
 from giveway.study.limits import Margin, margins_of
 from giveway.study.recommended import nearest, recommended
 from giveway.study.tables import number
@@ -34,7 +35,8 @@ class Comparison:
         designs: which design each recommends; None: none, and the nearest one is compared.
         titles: the recommendation of each in a line.
         asked: what differs in what was asked: name, text of A, text of B.
-        recommended: what both designs are made of and reach: name, text of A, text of B, B against A.
+        recommended: what both designs are made of and reach, and what is known of their P(a limit is exceeded): name,
+            text of A, text of B, B against A.
         margins: by limit, of A and of B; None: not limited there.
     """
 
@@ -115,9 +117,8 @@ def _side(answers: Answers) -> _Side:
     }
     margins = {f"{one.name}, {one.allowed[:8]}": one for one in margins_of(answers, design)}  # at most, at least
     title += f": design {design}" if best is None else ""
-    return _Side(
-        design if best is not None else None, title, asked, dict(design_lines(answers, design)), margins, reached
-    )
+    lines = dict([*design_lines(answers, design), *probability_lines(answers, design)[:1]])
+    return _Side(design if best is not None else None, title, asked, lines, margins, reached)
 
 
 def _change(one: _Side, other: _Side, name: str) -> str:
