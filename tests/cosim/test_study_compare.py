@@ -34,6 +34,10 @@ def test_only_what_was_asked_otherwise_is_told(both: tuple[Answers, Answers]) ->
         "constraint": ("bumper compression: at most 6 cm", "bumper compression: at most 2.6 cm"),
         "tolerances": ("-", "1 samples, sobol"),
         "tolerance of testbed.bumper.travel": ("-", "+-10 %, uniform"),
+        "robots": (
+            "-",
+            "one of its own in every tolerance sample, drawn as for `giveway crowd`; its controller keeps the file",
+        ),
     }
     assert compare(both[0], both[0]).asked == []
 

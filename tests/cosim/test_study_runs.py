@@ -40,7 +40,7 @@ def varied_table(count: int = 6) -> tuple[RunTable, object]:
     for quantity, keys in VARIED.items():
         study.vary(quantity, **keys)
     study.tolerance(LATCH, relative=0.3).tolerance("testbed.base.mass", absolute=2.0, distribution="normal")
-    study.tolerances(samples=2, noise_seeds=True).designs("latin-hypercube", count=count)
+    study.tolerances(samples=2, noise_seeds=True, robot="file").designs("latin-hypercube", count=count)
     setup = study.setup()
     return plan_runs(setup), setup
 
@@ -171,7 +171,8 @@ def test_the_hit_has_its_tolerances() -> None:
 def test_tolerance_samples_are_those_of_the_study_s_next_seed() -> None:
     """The designs take the seed itself; with samples of another seed a stored study could not be continued."""
     study = small_study(vary=[], seed=5).vary(LATCH, low=0.0, high=60.0).tolerance("testbed.base.mass", absolute=2.0)
-    setup = study.tolerances(samples=16, kind="latin-hypercube").designs("latin-hypercube", count=16).setup()
+    study.tolerances(samples=16, kind="latin-hypercube", robot="file")
+    setup = study.designs("latin-hypercube", count=16).setup()
     found = plan_runs(setup)
     expected = deviations(setup.tolerances, "latin-hypercube", 16, 6)
     np.testing.assert_array_equal(found.deviations, expected)

@@ -34,7 +34,7 @@ def uncertain_study(limit_n: float = 60.0) -> Study:
     """Two springs; latch, speed and temperature differ, and the peak force is limited."""
     study = small_study(method="fixed-step").tolerance(LATCH, relative=0.3).tolerance("temperature", absolute=30.0)
     study.tolerance("collision.speed", distribution="normal", mean=0.5, sigma=0.05, low=0.2, high=0.8)
-    study.tolerances(samples=2).objective("peak force of the run")
+    study.tolerances(samples=2, robot="file").objective("peak force of the run")
     return study.constraint("peak force of the run", maximum=limit_n)
 
 
@@ -230,8 +230,9 @@ WRONG = {
         f'[[tolerance]]\nquantity = "{SPRING}"\ndistribution = "uniform"\nlow = -3\nhigh = 1', "tolerance[0].low"
     ),
     "what robots differ in": (
-        '[tolerances]\nrobot = "crowd"\n[[tolerance]]\nquantity = "testbed.base.mass"\nrelative = 0.1',
-        "tolerance[0].quantity: testbed.base.mass is not allowed; allowed: what robots do not differ in: payload",
+        '[[tolerance]]\nquantity = "testbed.base.mass"\nrelative = 0.1',
+        "tolerance[0].quantity: testbed.base.mass is not allowed; allowed: what robots of the crowd do not differ in "
+        '(payload), or robot = "file" in [tolerances]',
     ),
 }  # fmt: skip
 
@@ -248,6 +249,16 @@ def test_a_wrong_table_is_refused_with_line_and_key(name: str, tmp_path: Path) -
 
 
 # ---- robots of the crowd
+
+
+def test_samples_have_robots_of_their_own_unless_the_study_says_no() -> None:
+    def crowd_of(**tolerances: object) -> bool:
+        study = small_study(**({"tolerances": tolerances} if tolerances else {}))
+        return bool(study.tolerance(LATCH, relative=0.3).setup().crowd)
+
+    assert crowd_of() and crowd_of(kind="latin-hypercube")
+    assert not crowd_of(robot="file") and not crowd_of(kind="corners")
+    assert not small_study().setup().crowd, "nothing is drawn"
 
 
 @pytest.mark.parametrize("group", population.GROUPS)

@@ -281,6 +281,7 @@ class Study:
             kind: "corners": every combination of both ends.
             noise_seeds: different sensor noise in every sample.
             robot: "crowd": another robot in every sample, drawn as for `giveway crowd`; its controller keeps the file.
+                "file": always the file's. If left out, "crowd", and with corners "file".
         """
         keys = {"samples": samples, "kind": kind, "noise_seeds": noise_seeds, "robot": robot}
         self.document["tolerances"] = _given(keys)

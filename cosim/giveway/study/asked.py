@@ -124,11 +124,11 @@ def all_asked(setup: Setup) -> list[tuple[str, str]]:
     rows = asked(setup)
     rows += [(one.quantity.name, _range(one)) for one in setup.varied]
     rows += [(f"{choice.name} does not fit", rules_in_words(choice)) for choice in choices_of(setup.varied)]
-    if setup.tolerances or setup.crowd:
+    if setup.tolerance_count:
         rows.append(("tolerances", f"{setup.tolerance_count} samples, {setup.tolerance_kind}"))
-    rows += [(f"tolerance of {one.quantity.name}", _tolerance(one)) for one in setup.tolerances]
-    if setup.crowd:
-        rows.append(("robots", "one of its own in every tolerance sample, drawn as for `giveway crowd`"))
+        rows += [(f"tolerance of {one.quantity.name}", _tolerance(one)) for one in setup.tolerances]
+        crowd = "one of its own in every tolerance sample, drawn as for `giveway crowd`; its controller keeps the file"
+        rows.append(("robots", crowd if setup.crowd else "the file's in every tolerance sample"))
     hits = [(case.name, case.document.get("collision", {})) for case in setup.cases]
     rows += [(name, in_words(hit)) for name, hit in hits if hit]
     rows += [

@@ -131,7 +131,7 @@ def check(
         for tolerance in tolerances:
             if not tolerance.spread.bounded:
                 raise GivewayError("tolerances.kind", kind, f"sobol: {tolerance.quantity.name} has no ends")
-    crowd = crowd_of(drawn, cases, varied, tolerances)
+    crowd = crowd_of(drawn, cases, varied, tolerances, bool(tolerances or noise))
     spread = bool(tolerances or noise or crowd)
     count = whole("tolerances.samples", drawn.values.get("samples", 16), 1, SAMPLES_MAX) if spread else 0
     report = top.table("report", ("chosen", "metrics")) or Section("report", {}, None)

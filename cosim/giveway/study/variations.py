@@ -188,12 +188,17 @@ def refuse_replaced(field: str, tolerance: Tolerance, varied: Sequence[Varied]) 
 
 
 def crowd_of(
-    section: Section, cases: Sequence[Case], varied: Sequence[Varied], tolerances: Sequence[Tolerance]
+    section: Section, cases: Sequence[Case], varied: Sequence[Varied], tolerances: Sequence[Tolerance], drawn: bool
 ) -> tuple[RobotQuantity, ...]:
-    """In what the robots of ``robot = "crowd"`` differ: in that of the plant that the scenario has."""
-    if section.choice("robot", ROBOTS, ROBOTS[0]) == ROBOTS[0]:
+    """In what the robots of the tolerance samples differ: in that of the plant that the scenario has.
+
+    A study says with ``robot`` whose robots they are. If it does not, samples that are ``drawn`` have robots of the
+    crowd: no robot is its file. Corners are no draw, and have the file's.
+    """
+    corners = section.values.get("kind") == "corners"
+    if section.choice("robot", ROBOTS, "crowd" if drawn and not corners else "file") == "file":
         return ()
-    if section.values.get("kind") == "corners":
+    if corners:
         raise GivewayError(section.full("kind"), "corners", 'sobol, with robot = "crowd"')
     testbed = {variable.name: variable.start for variable in table("testbed").select("parameter")}
     testbed |= cases[0].scenario.parameters("testbed")
@@ -205,14 +210,16 @@ def crowd_of(
     for i, tolerance in enumerate(tolerances):
         if twice := set(tolerance.quantity.columns) & set(drawn):
             what = drawn[twice.pop()].what
-            raise GivewayError(
-                f"tolerance[{i}].quantity", tolerance.quantity.name, f"what robots do not differ in: {what}"
-            )
+            raise GivewayError(f"tolerance[{i}].quantity", tolerance.quantity.name, _not_drawn(what))
     for one in varied:
         for column in set(one.columns) & set(drawn):
             if not drawn[column].scales:
-                raise GivewayError(one.field, one.quantity.name, f"what robots do not differ in: {drawn[column].what}")
+                raise GivewayError(one.field, one.quantity.name, _not_drawn(drawn[column].what))
     return found
+
+
+def _not_drawn(what: str) -> str:
+    return f'what robots of the crowd do not differ in ({what}), or robot = "file" in [tolerances]'
 
 
 def _is_number(section: Section, key: str) -> bool:
