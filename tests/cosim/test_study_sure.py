@@ -256,8 +256,10 @@ def test_samples_have_robots_of_their_own_unless_the_study_says_no() -> None:
         study = small_study(**({"tolerances": tolerances} if tolerances else {}))
         return bool(study.tolerance(LATCH, relative=0.3).setup().crowd)
 
-    assert crowd_of() and crowd_of(kind="latin-hypercube")
-    assert not crowd_of(robot="file") and not crowd_of(kind="corners")
+    assert crowd_of()
+    assert crowd_of(kind="latin-hypercube")
+    assert not crowd_of(robot="file")
+    assert not crowd_of(kind="corners")
     assert not small_study().setup().crowd, "nothing is drawn"
 
 

@@ -188,15 +188,15 @@ def refuse_replaced(field: str, tolerance: Tolerance, varied: Sequence[Varied]) 
 
 
 def crowd_of(
-    section: Section, cases: Sequence[Case], varied: Sequence[Varied], tolerances: Sequence[Tolerance], drawn: bool
+    section: Section, cases: Sequence[Case], varied: Sequence[Varied], tolerances: Sequence[Tolerance], sampled: bool
 ) -> tuple[RobotQuantity, ...]:
     """In what the robots of the tolerance samples differ: in that of the plant that the scenario has.
 
-    A study says with ``robot`` whose robots they are. If it does not, samples that are ``drawn`` have robots of the
-    crowd: no robot is its file. Corners are no draw, and have the file's.
+    A study says with ``robot`` whose robots they are. If it does not, samples that are ``sampled`` have robots of
+    the crowd: no robot is its file. Corners are no draw, and have the file's.
     """
     corners = section.values.get("kind") == "corners"
-    if section.choice("robot", ROBOTS, "crowd" if drawn and not corners else "file") == "file":
+    if section.choice("robot", ROBOTS, "crowd" if sampled and not corners else "file") == "file":
         return ()
     if corners:
         raise GivewayError(section.full("kind"), "corners", 'sobol, with robot = "crowd"')
