@@ -101,6 +101,13 @@ def test_a_warm_magnet_is_exported_as_weak_as_it_is(tmp_path: Path) -> None:
     assert scenario.testbed["bumper.latch_force"] == pytest.approx(45.8 * (1.0 - 0.0024 * 50.0), rel=1e-12)
 
 
+def test_another_gear_is_exported_as_what_it_changes(tmp_path: Path) -> None:
+    answers = small_study(vary=[]).vary("gear_ratio", values=[2.0]).run(tmp_path / "study", threads=2)
+    export_design(answers, 0, tmp_path / "geared.toml")
+    result = batch.run(giveway.read_scenario(tmp_path / "geared.toml"))
+    assert result.metric("peak force of the run").value == stored_runs(answers.folder)["peak force of the run"][0]
+
+
 def test_a_design_with_a_body_region_is_exported_with_its_mass_and_stiffness(tmp_path: Path) -> None:
     study = small_study(vary=[{"quantity": "robot.contact.stiffness", "values": [5000.0, 20000.0]}])
     del study.document["collision"][0]["mass"]

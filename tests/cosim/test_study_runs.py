@@ -168,6 +168,24 @@ def test_the_hit_has_its_tolerances() -> None:
     np.testing.assert_allclose(rows.values[:, runs.columns.index["testbed.slider.mass"]], 9.08 * (1.0 + by[:, 3]))
 
 
+def test_a_gear_s_ratio_changes_what_is_seen_at_the_wheel() -> None:
+    study = (
+        small_study(vary=[])
+        .vary("gear_ratio", values=[1.0, 1.5])
+        .vary("robot.drivetrain.encoder_counts", values=[1001])
+    )
+    study.vary("testbed.drivetrain.motor_inertia", values=[0.08])
+    runs = plan_runs(study.setup())
+    rows = runs.rows(np.array([0, 1]), np.array([0, 0]), 0).values
+    own, geared = ({name: row[i] for name, i in runs.columns.index.items()} for row in rows)
+    assert own["testbed.drivetrain.motor_inertia"] == 0.08
+    factors = {name: geared[name] / own[name] for name in own if geared[name] != own[name]}
+    squared = dict.fromkeys(("testbed.drivetrain.motor_inertia", "testbed.drivetrain.gear_viscous"), 2.25)
+    once = ("testbed.drivetrain.gear_coulomb", "testbed.drivetrain.gear_stiction", "testbed.drivetrain.torque_limit")
+    counts = dict.fromkeys(("testbed.electronics.encoder_counts", "controller.estimator.encoder_counts"), 1502 / 1001)
+    assert factors == pytest.approx(squared | dict.fromkeys(once, 1.5) | counts, rel=1e-15)
+
+
 def test_tolerance_samples_are_those_of_the_study_s_next_seed() -> None:
     """The designs take the seed itself; with samples of another seed a stored study could not be continued."""
     study = small_study(vary=[], seed=5).vary(LATCH, low=0.0, high=60.0).tolerance("testbed.base.mass", absolute=2.0)

@@ -15,6 +15,7 @@ from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.base.files import check_file, replace_file, write_text
 from giveway.robot.variables import table as variable_table
 from giveway.study.chosen import hit_of, settings_of_run
+from giveway.study.influences import INFLUENCES
 from giveway.study.parts import part_lines
 from giveway.study.runs import COVER
 
@@ -180,8 +181,9 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
         document["bumper"] = bumper
     if "robot" in document:
         document["robot"] = str((answers.folder / "robot.toml").resolve())
-    if "temperature" in [one.name for one in quantities]:
-        changed.add("testbed.bumper.latch_force")
+    for one in quantities:
+        if one.name in INFLUENCES:
+            changed |= INFLUENCES[one.name].factors.keys()
     text = tomlkit.document()
     text.add(tomlkit.comment(f"Design {design} of the study {answers.setup.name!r}. Run it with `giveway run`."))
     for line in part_lines(answers.setup.varied, answers.designs[design]):

@@ -1,7 +1,8 @@
-"""What a study can vary: parameters of both models, numbers of the robot file, the hit, the bumper, the temperature.
+"""What a study can vary: parameters of both models, numbers of the robot file, the hit, the bumper, causes.
 
 A run is a row of a table with one column per parameter of the controller and the testbed. Most quantities are some of
-its columns; those of the hit (speed, place, direction) are turned into the slider's start by `scenario.approach`.
+its columns; those of the hit (speed, place, direction) are turned into the slider's start by `scenario.approach`, and
+the causes of `study.influences` (temperature, gear ratio) multiply several columns.
 """
 
 from __future__ import annotations
@@ -20,13 +21,12 @@ from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.variables import Variable, table
 from giveway.scenario.scenario import BUMPERS
 from giveway.scenario.scenario_file import SET_BY
+from giveway.study.influences import INFLUENCES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HIT", "REFERENCE_TEMPERATURE", "Columns", "Quantity", "columns", "find", "value_of"]
-
-REFERENCE_TEMPERATURE = 20.0  # degC, at which a magnet's force is stated
+__all__ = ["HIT", "Columns", "Quantity", "columns", "find", "value_of"]
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,6 @@ HIT: Mapping[str, Quantity] = MappingProxyType(
 )
 """Of the hit; ``around`` is the share of the outline's length from corner 0 on, ``angle`` is from straight into it."""
 
-_TEMPERATURE = Quantity("temperature", "degC", "real", -100.0, 200.0)
 _ALIASES = {"collision.mass": "testbed.slider.mass", "collision.height": "testbed.contact.height"}
 
 
@@ -130,8 +129,9 @@ def find(field: str, name: str) -> Quantity:
     """The quantity ``name``; errors name ``field`` and offer the nearest names."""
     if name in HIT:
         return HIT[name]
-    if name == "temperature":
-        return _TEMPERATURE
+    if name in INFLUENCES:
+        cause = INFLUENCES[name]
+        return Quantity(name, cause.unit, "real", cause.minimum, cause.maximum)
     all_columns = columns()
     if name == "bumper":
         where = (all_columns.index["testbed.bumper.kind"],)
@@ -195,5 +195,5 @@ def _all_names() -> tuple[str, ...]:
         *_ALIASES,
         *sorted(f"robot.{path}" for path in paths),
         "bumper",
-        "temperature",
+        *INFLUENCES,
     )

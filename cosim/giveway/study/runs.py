@@ -24,18 +24,18 @@ from giveway.scenario.scenario_file import PLAN_KEYS
 from giveway.simulation.master import plan_table, push_table
 from giveway.simulation.run_warnings import Stated, plan_speed
 from giveway.study.distributions import Tolerance, Varied
+from giveway.study.influences import INFLUENCES
 from giveway.study.part_rules import part_rules, refusals
 from giveway.study.parts import choices_of
-from giveway.study.quantities import REFERENCE_TEMPERATURE, Columns, columns, find
+from giveway.study.quantities import Columns, columns, find
 from giveway.study.setup import Case, Hit, Setup
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["KEY_SIZE", "MAGNET_PER_KELVIN", "Rows", "RunTable"]
+__all__ = ["KEY_SIZE", "Rows", "RunTable"]
 
 KEY_SIZE = 16
-MAGNET_PER_KELVIN = -0.0024  # change of a magnet's force (robots/trikey.toml, bumper.latch_force)
 COVER = "testbed.contact.stiffness"
 SLIDER = ("slider.direction", "slider.target_x", "slider.target_y", "slider.run_up", "slider.speed")
 
@@ -122,8 +122,8 @@ class RunTable:
         touched += [column for quantity in quantities for column in quantity.columns]
         met = [self.columns.index[f"testbed.{name}"] for name in SLIDER] if setup.cases[0].hit is not None else []
         named = {quantity.name for quantity in quantities}
-        if "temperature" in named:
-            touched.append(self.columns.index["testbed.bumper.latch_force"])
+        for cause in named & INFLUENCES.keys():
+            touched += [self.columns.index[name] for name in INFLUENCES[cause].factors]
         if setup.noise_seeds:
             touched.append(self.columns.index["testbed.electronics.seed"])
         used = np.any([case.set for case in self.cases], axis=0)
@@ -158,8 +158,7 @@ class RunTable:
         table = self.cases[case]
         values = np.repeat(table.base[None, :], len(design), axis=0)
         hit = _nominal_hit(table.case.hit, len(design))
-        temperature = np.full(len(design), REFERENCE_TEMPERATURE)
-        free = hit | {"temperature": temperature}
+        free = hit | {name: np.full(len(design), cause.nominal) for name, cause in INFLUENCES.items()}
         for j, one in enumerate(self.varied):
             _write(values, free, one, self.designs[design, j])
         for j, tolerance in enumerate(self.tolerances):
@@ -169,11 +168,8 @@ class RunTable:
             values[:, self.columns.index["testbed.electronics.seed"]] += (
                 sample if self.noise_offsets is None else self.noise_offsets[sample]
             )
-        latch = self.columns.index["testbed.bumper.latch_force"]
         unfit = self._misfits(design, values, free)
-        warmer = free.pop("temperature") - REFERENCE_TEMPERATURE
-        if warmer.any():
-            values[:, latch] *= 1.0 + MAGNET_PER_KELVIN * warmer
+        self._influence(values, {name: free.pop(name) for name in INFLUENCES})
         if table.body is not None:
             values[:, self.columns.index[COVER]] = table.body.stiffness_with(values[:, self.columns.index[COVER]])
         refused = self._beyond_limits(table, values)
@@ -196,6 +192,16 @@ class RunTable:
                 column = self.columns.index[f"testbed.{name}"]
                 its = found * values[drawn, column] if one.scales else found
                 values[drawn, column] = np.floor(its) if self.columns.whole[column] else its
+
+    def _influence(self, values: NDArray[np.float64], causes: dict[str, NDArray[np.float64]]) -> None:
+        """Multiply the parameters that causes change."""
+        for name, its in causes.items():
+            if (its == INFLUENCES[name].nominal).all():
+                continue
+            for parameter, factor in INFLUENCES[name].factors.items():
+                column = self.columns.index[parameter]
+                found = values[:, column] * factor(its)
+                values[:, column] = np.rint(found) if self.columns.whole[column] else found
 
     def _misfits(
         self, design: NDArray[np.int64], values: NDArray[np.float64], free: dict[str, NDArray[np.float64]]

@@ -22,10 +22,11 @@ from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
 from giveway.simulation.run_warnings import plan_speed
 from giveway.study.distributions import Varied
 from giveway.study.drivetrain_metrics import drivetrain_plan_of, metrics_shown, wanted
+from giveway.study.influences import INFLUENCES
 from giveway.study.metrics import Metric, find_metric, usual_sense
 from giveway.study.part_rules import part_rules
 from giveway.study.parts import SUMS, PartChoice, choices_of, known_sums, part_metric, parts_of
-from giveway.study.quantities import REFERENCE_TEMPERATURE, Quantity, columns
+from giveway.study.quantities import Quantity, columns
 from giveway.study.runs import COVER
 from giveway.study.search_plan import OPTIMISED, search_plan_of
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
@@ -308,8 +309,8 @@ def _with_nominal(one: Varied, cases: Sequence[Case]) -> Varied:
 
 
 def _nominal(quantity: Quantity, case: Case) -> float | None:
-    if quantity.name == "temperature":
-        return REFERENCE_TEMPERATURE
+    if quantity.name in INFLUENCES:
+        return INFLUENCES[quantity.name].nominal
     if quantity.columns:
         name = columns().names[quantity.columns[0]]
         model, _, variable = name.partition(".")
