@@ -30,6 +30,7 @@ from giveway.fitting.command import fit
 from giveway.fmu_tools.command import fmu_app, ssp
 from giveway.identification.command import calibrate
 from giveway.robot.command import variables
+from giveway.starters.command import new_app
 from giveway.study.command import optimise_designs, study_app, sweep_designs
 
 __all__ = ["app", "main"]
@@ -38,7 +39,7 @@ app = typer.Typer(
     name="giveway",
     help="Collision reflexes for omnidirectional robot bases: run experiments, look at variables, measure speed.",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -54,6 +55,7 @@ for name, command in COMMANDS.items():
 app.add_typer(study_app)
 app.add_typer(crowd_app)
 app.add_typer(fmu_app)
+app.add_typer(new_app)
 
 
 @dataclass

@@ -1,0 +1,1 @@
+"""Commented files to start from: `giveway new scenario | study`."""
