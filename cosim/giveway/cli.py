@@ -24,6 +24,7 @@ from giveway.base.failures import DEBUG_VARIABLE, unforeseen
 from giveway.base.terminal import FAILED, INTERRUPTED, WRONG_INPUT
 from giveway.bench.command import bench
 from giveway.crowd.command import crowd_app
+from giveway.doctor.command import doctor
 from giveway.drivetrain.command import drivetrain
 from giveway.experiments.command import demo, list_experiments, reproduce, run
 from giveway.fitting.command import fit
@@ -49,6 +50,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     **{"drivetrain": drivetrain, "fit": fit, "calibrate": calibrate, "bench": bench, "ssp": ssp},
     "sweep": sweep_designs,
     "optimise": optimise_designs,
+    "doctor": doctor,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

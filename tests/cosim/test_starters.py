@@ -52,7 +52,7 @@ def test_each_option_can_be_taken(kind: str, tmp_path: Path) -> None:
     taken = options(kind)
     assert len(taken) > 6
     trikey = Path(__file__).parents[2] / "robots/trikey.toml"
-    (tmp_path / "my_robot.toml").write_bytes(trikey.read_bytes())
+    (tmp_path / "ROBOT.toml").write_bytes(trikey.read_bytes())
     for text in taken:
         path = tmp_path / f"{kind}.toml"
         path.write_text(text, encoding="utf-8")

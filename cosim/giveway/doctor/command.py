@@ -1,0 +1,30 @@
+"""The command `giveway doctor`."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from typing import Annotated
+
+import typer
+
+from giveway.base.terminal import FAILED, print_columns
+
+__all__ = ["doctor"]
+
+SCHEMA_VERSION = 1  # of `giveway doctor --json`
+
+
+def doctor(as_json: Annotated[bool, typer.Option("--json", help="The findings as JSON on stdout.")] = False) -> None:
+    """Say what is installed here, and whether a run has the bits it should have; exit code 1 if something is wrong."""
+    from giveway.doctor.findings import WRONG, examine
+
+    found = list(examine())
+    if as_json:
+        findings = [dataclasses.asdict(one) for one in found]
+        typer.echo(json.dumps({"schema_version": SCHEMA_VERSION, "findings": findings}, indent=2))
+    else:
+        rows = [(one.about, one.state, one.found, one.advice) for one in found]
+        print_columns("giveway on this machine", ("", "state", "found", "what to do"), rows)
+    if any(one.state == WRONG for one in found):
+        raise typer.Exit(FAILED)
