@@ -32,6 +32,7 @@ from giveway.fmu_tools.command import fmu_app, ssp
 from giveway.identification.command import calibrate
 from giveway.robot.command import variables
 from giveway.starters.command import new_app
+from giveway.studio.command import studio
 from giveway.study.command import optimise_designs, study_app, sweep_designs
 
 __all__ = ["app", "main"]
@@ -48,6 +49,7 @@ app = typer.Typer(
 COMMANDS: dict[str, Callable[..., None]] = {
     **{"run": run, "demo": demo, "reproduce": reproduce, "list": list_experiments, "variables": variables},
     **{"drivetrain": drivetrain, "fit": fit, "calibrate": calibrate, "bench": bench, "ssp": ssp},
+    "studio": studio,
     "sweep": sweep_designs,
     "optimise": optimise_designs,
     "doctor": doctor,

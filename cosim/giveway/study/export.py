@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from giveway.robot.variables import Value
     from giveway.study.answers import Answers
 
-__all__ = ["MODELS", "export_design", "export_table"]
+__all__ = ["MODELS", "export_design", "export_table", "powers"]
 
 MODELS = ("testbed", "controller", "bumper")
 SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
@@ -281,13 +281,13 @@ def _ssv(answers: Answers, design: int, case: int, model: str) -> str:
         listed = ElementTree.SubElement(root, f"{{{SSV}}}Units")
         for unit in sorted(units):
             entry = ElementTree.SubElement(listed, f"{{{SSC}}}Unit", {"name": unit})
-            powers = {key: str(power) for key, power in _powers(unit).items() if power}
-            ElementTree.SubElement(entry, f"{{{SSC}}}BaseUnit", powers)
+            exponents = {key: str(power) for key, power in powers(unit).items() if power}
+            ElementTree.SubElement(entry, f"{{{SSC}}}BaseUnit", exponents)
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _powers(unit: str) -> dict[str, int]:
+def powers(unit: str) -> dict[str, int]:
     """Exponents of the base units in ``N.m.s/rad``."""
     found: dict[str, int] = {}
     above, _, below = unit.partition("/")
