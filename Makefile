@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm
+.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm pages studio film
 .PHONY: product compile-product compile-all native-tests
 .DEFAULT_GOAL := help
 
@@ -73,6 +73,16 @@ wasm: build/CMakeCache.txt ## the batch library for browsers and Node: build/pla
 	@$(COMPILE) --target wasm
 	@ls -l build/platforms/wasm32-wasi/binaries/giveway_batch.wasm
 
+pages: build/CMakeCache.txt ## what the HTML pages are made of: bundles of web/src, beside the native parts
+	@$(COMPILE) --target pages
+	@$(INSTALL)
+
+studio: product ## the studio: collisions computed in the browser while you drag; out/studio.html
+	$(BIN)/giveway studio --out out/studio.html --no-browser
+
+film: product .venv/test-packages-installed ## the README's moving picture of the studio, docs/studio.webp
+	$(BIN)/python -m web.film
+
 platforms: product ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	bash fmu/platforms/system_packages.sh
@@ -93,7 +103,7 @@ INSTALL = $(BIN)/cmake --install build --component native --prefix cosim > build
 CONFIGURE = log=build/configure.log; $(BIN)/cmake -B build > $$log 2>&1
 
 compile-product:
-	@$(COMPILE) --target fmus giveway_batch wasm
+	@$(COMPILE) --target fmus giveway_batch wasm pages
 
 compile-all:
 	@grep -q '^GIVEWAY_BUILD_TESTS:BOOL=ON' build/CMakeCache.txt || { $(CONFIGURE) -DGIVEWAY_BUILD_TESTS=ON || { cat $$log; exit 1; } }
@@ -170,12 +180,9 @@ PIP_INSTALL = $(BIN)/pip install --quiet --no-compile
 	@$(PIP_INSTALL) --require-hashes -r tests/requirements.lock
 	@touch $@
 
-# What checks the JavaScript of web/.
-build/web/tools-installed: web/package.json web/package-lock.json .venv/test-system-packages
-	@mkdir -p $(@D)
-	@cp web/package.json web/package-lock.json $(@D)
-	@npm ci --prefix $(@D) --silent --ignore-scripts --no-audit --no-fund
-	@touch $@
+# What bundles and checks the pages of web/.
+build/web/tools-installed: web/package.json web/package-lock.json build/CMakeCache.txt
+	@$(COMPILE) --target web_tools
 
 build/bench/tools-installed: bench/requirements.lock bench/system_packages.sh cmake/packages.sh
 	bash bench/system_packages.sh

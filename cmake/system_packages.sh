@@ -14,6 +14,9 @@ cargo_is_recent() { # Debian 12's own cargo (0.66) cannot read the registry
 
 need g++ g++ --version
 need cargo-web cargo_is_recent
+# The pages are bundled by what npm brings.
+need nodejs node --version
+need npm npm --version
 need python3 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))'
 need python3-venv "$python" -c 'import ensurepip, venv'
 install_missing

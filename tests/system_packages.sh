@@ -16,8 +16,6 @@ need g++-i686-linux-gnu i686-linux-gnu-g++ --version
 need gcc-arm-none-eabi arm-none-eabi-gcc --version
 need libnewlib-arm-none-eabi test -e /usr/lib/arm-none-eabi/newlib/libc.a
 need qemu-system-arm qemu-system-arm --version
-# web/: the batch library runs in Node and in a browser; npm brings what checks its JavaScript.
-need nodejs node --version
-need npm npm --version
+# The pages of web/ are tested in a browser.
 need chromium chromium --version
 install_missing

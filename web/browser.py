@@ -48,9 +48,11 @@ class Browser:
         self, path: Path, *, width: int = WIDTHS[-1], height: int = HEIGHT, dark: bool = False, hash: str = ""
     ) -> Iterator[Page]:
         """The page in a file, when it is ready; in the end an error if it said anything or asked for anything."""
-        scheme = "dark" if dark else "light"
         context = self._chromium.new_context(
-            viewport={"width": width, "height": height}, color_scheme=scheme, accept_downloads=True, offline=True
+            viewport={"width": width, "height": height},
+            color_scheme="dark" if dark else "light",
+            accept_downloads=True,
+            offline=True,
         )
         context.set_default_timeout(PATIENCE_MS)
         try:
@@ -77,10 +79,9 @@ def _foreign(url: str, own: str) -> list[str]:
 def accessible(tab: Page) -> list[str]:
     """What axe-core finds wrong: rule, reason and element of each; nothing is as it should be."""
     tab.evaluate((TOOLS / "axe-core" / "axe.min.js").read_text())
-    found: Any = tab.evaluate("async () => JSON.stringify((await axe.run(document)).violations)")
-    return [
-        f"{rule['id']}: {node['failureSummary']} {node['html'][:200]}" for rule in json.loads(found) for node in rule["nodes"]
-    ]
+    found: Any = json.loads(tab.evaluate("async () => JSON.stringify((await axe.run(document)).violations)"))
+    nodes = [(rule["id"], node) for rule in found for node in rule["nodes"]]
+    return [f"{rule}: {node['failureSummary']} {node['html'][:200]}" for rule, node in nodes]
 
 
 def pictures(browser: Browser, path: Path, name: str, folder: Path = ROOT / "out" / "pictures") -> list[Path]:

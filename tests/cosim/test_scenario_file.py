@@ -106,6 +106,43 @@ def test_a_height_lets_the_base_tip(tmp_path: Path) -> None:
     assert found["contact.height"] == 0.45
 
 
+STATED = """\
+schema_version = 1
+duration = 0.4
+bumper = "spring"
+judge_as = "lower leg"
+
+[testbed]
+slider = { present = true, speed = 0.5, run_up = 0.05, mass = 7.0 }
+rope.attached = false
+electronics.seed = 7
+"start.theta" = 0.1
+"""
+
+
+def test_what_collides_may_be_stated_by_its_parameters(tmp_path: Path) -> None:
+    scenario = read_scenario(written(tmp_path, STATED))
+    found = scenario.parameters("testbed")
+    stated = {"slider.present": True, "slider.speed": 0.5, "slider.run_up": 0.05, "slider.mass": 7.0}
+    stated |= {"rope.attached": False, "electronics.seed": 7, "start.theta": 0.1, "bumper.kind": 1}
+    assert {name: found[name] for name in stated} == stated
+    assert batch.run(scenario).metric("peak force of the run").value > 10.0  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("line", "instead", "field"),
+    [
+        ("[testbed]", "seed = 3\n[testbed]", "testbed.electronics.seed"),
+        ("[testbed]", '[plan]\nkind = "rest"\n[testbed]', "testbed.start.theta"),
+        ("present = true", "present = false", "bumper"),
+        ("rope.attached = false", "bumper.kind = 2", "testbed.bumper.kind"),
+    ],
+)
+def test_what_is_stated_has_one_place(tmp_path: Path, line: str, instead: str, field: str) -> None:
+    with pytest.raises(InputFileError, match=field):
+        read_scenario(written(tmp_path, STATED.replace(line, instead)))
+
+
 def test_without_a_collision_there_is_no_slider(tmp_path: Path) -> None:
     scenario = read_scenario(written(tmp_path, "schema_version = 1\nduration = 1"))
     assert scenario.name == "case"

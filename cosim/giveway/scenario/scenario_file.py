@@ -1,7 +1,9 @@
 """A user's own scenario as a TOML file; `cosim/README.md` lists its keys, `examples/` has files to start from.
 
-Points are on the robot (base frame, m), directions and headings in the world (degrees). A wrong file is refused with
-one message that names file, line and key; ranges are those of the variable tables and of the plans.
+Points are on the robot (base frame, m), directions and headings in the world (degrees). Instead of [collision] the
+file may state what collides by the testbed's parameters, ``slider.present = true`` and the others, to the last bit. A
+wrong file is refused with one message that names file, line and key; ranges are those of the variable tables and of the
+plans.
 """
 
 from __future__ import annotations
@@ -99,14 +101,17 @@ def scenario_of(
         if not robot.is_file():
             raise GivewayError("robot", top.values["robot"], "a robot file, its path seen from this file")
     collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
-    if collision is None and law_of(top.values.get("bumper", "none")) != "none":
+    stated = collision is None and _states_slider(top)
+    collides = stated or collision is not None
+    if not collides and law_of(top.values.get("bumper", "none")) != "none":
         allowed = "none without [collision]: the bumper is on what collides"
         raise GivewayError("bumper", law_of(top.values["bumper"]), allowed)
     for key in ("body_region", "judge_as"):
-        if collision is None and key in top.values:
+        if not collides and key in top.values:
             raise GivewayError(key, top.values[key], "nothing without [collision]: it is about a contact")
     plan = _plan(top)
-    overrides = {model: _overrides(top, model) for model in ("testbed", "controller")}
+    overrides = {model: _overrides(top, model, stated) for model in ("testbed", "controller")}
+    start = {name: value for name, value in start_values(plan).items() if name not in overrides["testbed"]}
     kind, numbers = _bumper(top, path.parent, bumper)
     for name in numbers:
         if name in overrides["testbed"]:
@@ -116,7 +121,7 @@ def scenario_of(
             name=top.text("name", path.stem),
             duration_s=top.number("duration"),
             bumper=kind,
-            testbed={**overrides["testbed"], **numbers, **start_values(plan), "slider.present": collision is not None},
+            testbed={**overrides["testbed"], **numbers, **start, "slider.present": collides},
             controller=overrides["controller"],
             plan=plan,
             push=pushes,
@@ -200,14 +205,24 @@ def _pushes(top: Section) -> Pushes | None:
     return Pushes(tuple(pushes))
 
 
-def _overrides(top: Section, model: str) -> dict[str, Value]:
-    """Checked parameters of [testbed] or [controller]; dotted names and lists as in the variable tables."""
+def _states_slider(top: Section) -> bool:
+    """Whether [testbed] has what collides, parameter by parameter."""
+    testbed = top.values.get("testbed", {})
+    return isinstance(testbed, Mapping) and dict(scalars(testbed)).get("slider.present") is True
+
+
+def _overrides(top: Section, model: str, stated: bool) -> dict[str, Value]:
+    """Checked parameters of [testbed] or [controller]; dotted names and lists as in the variable tables.
+
+    ``stated``: what collides is stated here; so are seed and start, where no key of the file has them.
+    """
     values = top.values.get(model, {})
     if not isinstance(values, dict):
         raise GivewayError(model, values, "a table")
     found: dict[str, Value] = {}
     for name, value in scalars(values):
-        if model == "testbed" and name in SET_BY:
+        key = SET_BY.get(name, "") if model == "testbed" else ""
+        if key and not (stated and key != "bumper" and key.partition(".")[0] not in top.values):
             raise GivewayError(f"{model}.{name}", value, f"one place to set it: {SET_BY[name]}")
         try:
             found[name] = table(model).check(name, value)

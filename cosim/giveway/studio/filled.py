@@ -71,7 +71,9 @@ def _robots() -> Iterator[tuple[str, dict[str, Any]]]:
     for path in (default, *(other for other in others if other != default)):
         robot = read_robot(path)
         values = {
-            f"{model}.{name}": value for model in native.MODELS for name, value in table(model).robot_values(robot).items()
+            f"{model}.{name}": value
+            for model in native.MODELS
+            for name, value in table(model).robot_values(robot).items()
         }
         yield path.stem, {"title": robot.name, "values": values}
 
@@ -84,8 +86,7 @@ once, on this page.</p>
 </header>
 <p id="faults" class="warning" role="alert" hidden></p>
 <div class="bench">
-<div>
-<section class="card" aria-label="collision">
+<section class="card hits" aria-label="collision">
 <div class="buttons">
 <button type="button" id="design-A" aria-pressed="true">Design A</button>
 <button type="button" id="design-B" aria-pressed="false" hidden>Design B</button>
@@ -96,7 +97,7 @@ once, on this page.</p>
 <div class="choices">
 <label>robot <select id="robot"></select></label>
 <label>bumper <select id="bumper"></select></label>
-<label>reflex <select id="preset"><option value="default">default</option><option value="paper">of the paper</option></select></label>
+<label>reflex <select id="preset"></select></label>
 <label>judged as <select id="region"></select></label>
 <label>duration, s <input id="duration" type="text" inputmode="decimal" autocomplete="off"></label>
 </div>
@@ -105,12 +106,7 @@ once, on this page.</p>
 <span class="key detected"></span>at the moment of notice. Drag on the picture to move the hit.</p>
 <div id="hit" class="hit"></div>
 </section>
-<section class="card" aria-label="parameters">
-<h2>Parameters</h2>
-<div id="parameters"></div>
-</section>
-</div>
-<div>
+<div class="seen">
 <section class="card" aria-label="curves">
 <h2>Curves</h2>
 <div id="curves"></div>
@@ -132,5 +128,9 @@ once, on this page.</p>
 scenario with the same bits.</p>
 </section>
 </div>
+<section class="card sets" aria-label="parameters">
+<h2>Parameters</h2>
+<div id="parameters"></div>
+</section>
 </div>
 """

@@ -110,6 +110,16 @@ export class Curves {
   }
 }
 
+/** What is not known is null to uPlot. */
+function with_gaps(values: ArrayLike<number>): ArrayLike<number | null> {
+  for (let i = 0; i < values.length; i++) {
+    if (Number.isNaN(values[i])) {
+      return Array.from(values, (value) => (Number.isNaN(value) ? null : value));
+    }
+  }
+  return values;
+}
+
 /** One panel. */
 class Drawn {
   private readonly plot: uPlot;
@@ -174,7 +184,7 @@ class Drawn {
   }
 
   private columns(): uPlot.AlignedData {
-    return [this.x, ...this.panel.series.map((series) => series.values)] as unknown as uPlot.AlignedData;
+    return [this.x, ...this.panel.series.map(({ values }) => with_gaps(values))] as unknown as uPlot.AlignedData;
   }
 
   private plot_options(group: string): uPlot.Options {
@@ -274,7 +284,7 @@ class Drawn {
         if (value < low) low = value;
         if (value > high) high = value;
       }
-      return `${label} ${shown(low)} to ${shown(high)}${unit_of(this.panel.unit, " ")}`;
+      return low > high ? `${label} not known` : `${label} ${shown(low)} to ${shown(high)}${unit_of(this.panel.unit, " ")}`;
     });
     const limits = (this.panel.limits ?? []).map(({ label }) => label);
     const how = "Arrow keys move the line, plus and minus zoom, 0 shows all.";

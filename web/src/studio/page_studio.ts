@@ -59,6 +59,7 @@ class Studio {
   /** Computes and shows what the address says. */
   async open(): Promise<void> {
     await this.show();
+    this.redraw();
     const detected = this.results.flatMap((one) => (one ? [moments(one.motion).detected_s] : [])).find((time) => !Number.isNaN(time));
     this.scene.seek(detected === undefined ? 0 : detected + 0.01); // opens on something worth seeing
   }
@@ -345,6 +346,7 @@ class Studio {
     options(parts.robot, Object.entries(tables.robots).map(([name, { title }]) => [name, title]));
     const kinds = tables.variables.find(({ name }) => name === "testbed.bumper.kind")?.choices ?? [];
     options(parts.bumper, kinds.map((kind, i) => [String(i), kind]));
+    options(parts.preset, [["default", "default"], ["paper", "of the paper"]]);
     options(parts.region, [["", "no limits"], ...tables.regions.map(({ name }): [string, string] => [name, name])]);
     parts.robot.addEventListener("change", () => this.change({ robot: parts.robot.value }, true));
     parts.preset.addEventListener("change", () => this.change({ preset: parts.preset.value as Design["preset"] }, true));
