@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from giveway import __version__
 from giveway.base import native
+from giveway.base.version import VERSION
 from giveway.report.page import page
 from giveway.robot.robot_file import read_robot
 from giveway.robot.table_files import read_table_file
@@ -30,7 +30,7 @@ def studio_data() -> dict[str, Any]:
     parameters = [_parameter(model, v) for model, v in variables if v.causality == "parameter" and v.start is not None]
     units = sorted({entry["unit"] for entry in parameters} - {"", "1"})
     return {
-        "version": __version__,
+        "version": VERSION,
         "variables": parameters,
         "robots": dict(_robots()),
         "regions": [

@@ -17,6 +17,8 @@ export interface Series {
 export interface Panel {
   title: string;
   unit: string;
+  /** The axis need not show its zero. */
+  free?: boolean;
   series: Series[];
   /** Horizontal lines that name a value. */
   limits?: { label: string; value: number }[];
@@ -34,6 +36,7 @@ export interface CurvesOptions {
 
 const DASH = [6, 4];
 const HEIGHT = 190;
+const QUIET_MS = 200; // nobody listens to a description while it changes
 let groups = 0;
 
 /** Panels one below or beside the other; the pointer's line and the zoom are common. */
@@ -126,6 +129,11 @@ class Drawn {
   private readonly figure: HTMLElement;
   private readonly area: HTMLElement;
   private readonly now = element("div", { class: "now", hidden: true });
+  private readonly seen: IntersectionObserver;
+  private in_view = true;
+  /** What is to be drawn when the panel comes into view. */
+  private late: (() => void) | undefined;
+  private described = 0;
 
   constructor(
     where: HTMLElement, private panel: Panel, private x: ArrayLike<number>, private readonly options: CurvesOptions,
@@ -143,6 +151,16 @@ class Drawn {
     this.plot = new uPlot(this.plot_options(group), this.columns(), this.area);
     this.plot.over.append(this.now);
     this.describe();
+    this.seen = new IntersectionObserver((entries) => this.came(entries.at(-1)?.isIntersecting ?? true), { rootMargin: "80px" });
+    this.seen.observe(this.figure);
+  }
+
+  private came(in_view: boolean): void {
+    this.in_view = in_view;
+    if (in_view) {
+      this.late?.();
+      this.late = undefined;
+    }
   }
 
   fits(panel: Panel): boolean {
@@ -153,14 +171,20 @@ class Drawn {
   show(x: ArrayLike<number>, panel: Panel, zoomed: [number, number] | null): void {
     this.panel = panel;
     this.x = x;
-    this.plot.setData(this.columns(), zoomed === null);
-    if (zoomed !== null) {
-      this.plot.setScale("x", { min: zoomed[0], max: zoomed[1] });
-    }
-    this.describe();
+    this.late = () => {
+      this.plot.setData(this.columns(), zoomed === null);
+      if (zoomed !== null) {
+        this.plot.setScale("x", { min: zoomed[0], max: zoomed[1] });
+      }
+    };
+    this.came(this.in_view);
+    clearTimeout(this.described);
+    this.described = window.setTimeout(() => this.describe(), QUIET_MS);
   }
 
   zoom(range: [number, number] | null, x: ArrayLike<number>): void {
+    this.late?.();
+    this.late = undefined;
     const [min, max] = range ?? [x[0] ?? 0, x[x.length - 1] ?? 1];
     this.plot.setScale("x", { min, max });
   }
@@ -176,6 +200,8 @@ class Drawn {
   }
 
   end(): void {
+    this.seen.disconnect();
+    clearTimeout(this.described);
     this.plot.destroy();
   }
 
@@ -232,14 +258,15 @@ class Drawn {
 
   /** Room for every curve; limits that are near are in view, too. */
   private range(low: number | null, high: number | null): [number, number] {
-    let [from, to] = [Math.min(low ?? 0, 0), Math.max(high ?? 1, 0)];
+    let [from, to] = [low ?? 0, high ?? 1];
+    if (!this.panel.free) [from, to] = [Math.min(from, 0), Math.max(to, 0)];
     for (const { value } of this.panel.limits ?? []) {
       if (value <= 2.5 * to && value >= 2.5 * from) {
         [from, to] = [Math.min(from, value), Math.max(to, value)];
       }
     }
     const room = 0.06 * (to - from || 1);
-    return [from < 0 ? from - room : from, to + room];
+    return [from < 0 || this.panel.free ? from - room : from, to + room];
   }
 
   private lines(plot: uPlot): void {

@@ -166,10 +166,13 @@ export class Scene {
     if (width === 0) {
       return;
     }
-    this.canvas.width = width * ratio;
-    this.canvas.height = height * ratio;
+    const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (this.canvas.width !== wide || this.canvas.height !== high) {
+      [this.canvas.width, this.canvas.height] = [wide, high];
+    }
     const pen = this.canvas.getContext("2d") as CanvasRenderingContext2D;
-    pen.scale(ratio, ratio);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
     this.motions.forEach((motion, index) => {
       pen.save();
       pen.beginPath();

@@ -207,17 +207,28 @@ class Studio {
   }
 
   private show_numbers(all: readonly Shown[]): void {
-    const heads = all.map((_, i) => element("th", { scope: "col" }, all.length > 1 ? `${NAMES[i]}` : "value"));
-    const rows = lines(this.engine.library, all).map(({ name, unit, decimals, description, values, truths }) => {
-      const cells = values.map((value, i) => {
+    const found = lines(this.engine.library, all);
+    const names = [all.length, ...found.map(({ name }) => name)].join("|");
+    const { numbers } = this.parts;
+    if (numbers.dataset.names !== names) {
+      numbers.dataset.names = names;
+      const heads = all.map((_, i) => element("th", { scope: "col" }, all.length > 1 ? `${NAMES[i]}` : "value"));
+      const rows = found.map(({ name, unit, description }) =>
+        element("tr", { title: description }, element("th", { scope: "row" }, `${name}${unit_of(unit)}`), ...all.map(() => element("td"))),
+      );
+      const head = element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "quantity"), ...heads));
+      const caption = element("caption", {}, "In brackets: the true value.");
+      numbers.replaceChildren(caption, head, element("tbody", {}, ...rows));
+    }
+    found.forEach(({ decimals, values, truths }, line) => {
+      const cells = numbers.tBodies[0]?.rows[line]?.cells;
+      values.forEach((value, i) => {
         const truth = truths[i] ?? NaN;
-        return element("td", {}, `${shown(value, decimals)}${Number.isNaN(truth) ? "" : ` (${shown(truth, decimals)})`}`);
+        const text = `${shown(value, decimals)}${Number.isNaN(truth) ? "" : ` (${shown(truth, decimals)})`}`;
+        const cell = cells?.[i + 1];
+        if (cell && cell.textContent !== text) cell.textContent = text;
       });
-      return element("tr", { title: description }, element("th", { scope: "row" }, `${name}${unit_of(unit)}`), ...cells);
     });
-    const head = element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "quantity"), ...heads));
-    const caption = element("caption", {}, "In brackets: the true value.");
-    this.parts.numbers.replaceChildren(caption, head, element("tbody", {}, ...rows));
   }
 
   // The hit, on the canvas.

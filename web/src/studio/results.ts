@@ -106,7 +106,7 @@ export function panels(all: readonly Shown[]): { x: Float64Array; panels: Panel[
     panels: [
       { title: "Contact force", unit: "N", series: against("force", true_force, felt_force), limits: force_limits(all), marks },
       { title: "Wheel torque as measured", unit: "N.m", series: torques, limits: torque_limits(all) },
-      { title: "Direction of the force on the robot", unit: "deg", series: against("direction", true_direction, felt_direction) },
+      { title: "Direction of the force on the robot", unit: "deg", free: true, series: against("direction", true_direction, felt_direction) },
       { title: "Error of the estimated place", unit: "mm", series: each("distance", place_error) },
       { title: "Bumper compression", unit: "mm", series: each("compression", compression), limits: travel_limits(all) },
       { title: "Speed of the robot", unit: "m/s", series: each("speed", speed), limits: speed_limits(all) },
