@@ -49,6 +49,7 @@ bench: build build/bench/tools-installed build/importers/tools-installed ## how 
 	$(BIN)/python -m verify.step_cost
 	$(BIN)/python -m importers.bench
 	$(BIN)/python -m web.bench
+	$(BIN)/python -m web.study_bench
 
 endurance: product ## false alarms: 300 h of motion without contact, 20 h with tipping, 20 h with single rollers; goes on where it stopped
 	$(BIN)/giveway crowd endurance --threads $(JOBS)

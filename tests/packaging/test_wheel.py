@@ -34,6 +34,8 @@ NATIVE = {
     "giveway_batch.wasm.zig.txt",
     "page_studio.css",
     "page_studio.js",
+    "page_study.css",
+    "page_study.js",
     "testbed.variables.toml",
     "trikey.toml",
 }
