@@ -27,7 +27,6 @@ from giveway.report.style import COLOURS
 from giveway.scenario.scenario import BUMPERS
 from giveway.simulation.metrics import Collision
 from giveway.simulation.result import Result
-from giveway.study import figures as study_figures
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
@@ -139,10 +138,6 @@ def of_reversal(results: dict[str, Result]) -> Figure:
     return reversal.draw(label, results[label])
 
 
-def of_study(results: dict[str, Result]) -> Figure:
-    return study_figures.traces({i: {"front": result} for i, result in enumerate(results.values())})
-
-
 DRAWN: dict[str, tuple[Callable[[dict[str, Result]], Figure], int, int]] = {  # and how many curves, how many marks
     "contact force": (of_report(0), 3, 3),
     "wheel torques": (of_report(1), 9, 9),
@@ -151,7 +146,6 @@ DRAWN: dict[str, tuple[Callable[[dict[str, Result]], Figure], int, int]] = {  # 
     "impact response": (impact_response.draw, 12, 0),
     "overview": (of_overview, 6, 3),
     "reversal": (of_reversal, 11, 3),
-    "chosen designs of a study": (of_study, 3, 3),
 }
 
 
@@ -260,7 +254,6 @@ HELD = {  # module and function that make a figure: the file that holds its labe
     "report/push_path.py path": "test_experiment_circle.py",
     "report/pushes.py _forces": "test_push_metrics.py",
     "study/evidence_page.py forces": "test_study_evidence.py",
-    "study/figures.py _panels": "test_study_units.py",
     "study/figures.py growth": "test_study_units.py",
     "study/figures.py sensitivities": "test_study_units.py",
     "study/gallery.py latch_figure": "test_study_gallery.py",

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from cosim_helpers import Cli
 from giveway.cli import _main
+from page_arrays import data_of
 
 STUDY = """
 schema_version = 1
@@ -60,7 +61,11 @@ def test_from_the_file_to_the_chosen_bumper(
         assert word in swept.stdout
     assert "9 of 9 runs" in swept.stderr
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.count("<svg") == 4  # trade-off, effects, sensitivities, traces
+    data = data_of(page)  # of trade-off, effects and traces
+    assert {"detection time", "peak force of the run"} <= {one["label"] for one in data["columns"]}
+    assert data["runs"]["cases"][0]["name"] == "front"
+    for heading in ("Trade-off", "What decides", "Chosen designs"):
+        assert re.search(rf"<h[23]>{heading}</h", page)
     assert not re.findall(r"(?:src|href)=\"(?!#)[^\"]*\"|@import|https?://(?!www\.w3\.org)", page), "needs a network"
     best = re.search(r"^ *(\d+) .* yes *$", swept.stdout, flags=re.MULTILINE)
     assert best is not None

@@ -247,7 +247,7 @@ def test_answers_and_report_tell_how_the_search_went(found: Path, tmp_path: Path
     assert told["hypervolume"] == sorted(told["hypervolume"])
     costs = answers.values[answers.feasible][:, :2]
     assert hypervolume(costs, np.array(told["reference"])) == pytest.approx(told["hypervolume"][-1], rel=1e-12)
-    write_report(tmp_path / "report.html", answers, {})
+    write_report(tmp_path / "report.html", answers)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "How the search went" in page
     assert "kind = optimised, designs = at most 40, population = 8" in page

@@ -342,7 +342,7 @@ def test_table_report_and_console_name_parts_and_misfits(answers: Answers, tmp_p
     (row,) = tables.misfit_rows(answers)
     assert row[:3] == ("spring short", "3", "solid before the stop")
     assert row[3].endswith("compressed at the stop 91, at most 70 mm")
-    write_report(tmp_path / "report.html", answers, {})
+    write_report(tmp_path / "report.html", answers)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     for words in ("Parts that do not fit", "spring short", "compressed at the stop 91, at most 70 mm",
                   "soft, hard, long, short (catalogue-0-springs.csv, 2 of each)"):  # fmt: skip

@@ -119,7 +119,7 @@ def test_terminal_and_report_begin_with_it(tmp_path: Path, capsys: pytest.Captur
     assert _main(["study", "show", str(tmp_path / "study")]) == 0
     said, first = capsys.readouterr().out, advice(found)
     assert said.splitlines()[0].strip() == first.title == f"Recommended: design {found.order[0]}"
-    write_report(tmp_path / "report.html", found, {})
+    write_report(tmp_path / "report.html", found)
     page = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
     assert page.index(f"<h2>{first.title}</h2>") < page.index("<h2>The best designs</h2>")
     for _, text in first.lines:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import csv
 import dataclasses
 import html
@@ -9,17 +10,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from figure_labels import across, check_panel, check_panels, check_planted, curve, in_si, unit_in
-from giveway.base.units import WrittenUnit
-from giveway.report.inline_svg import inline_svg
+from figure_labels import check_panels, check_planted, curve, in_si, unit_in
+from giveway.base.units import WrittenUnit, factor
 from giveway.robot.variables import table
 from giveway.study import Study, figures
 from giveway.study.answers import Answers
 from giveway.study.asked import asked
-from giveway.study.chosen import simulate
 from giveway.study.export import export_design, export_table
+from giveway.study.page_columns import FEASIBLE, FRONT, KNOWN
+from giveway.study.page_data import page_data
 from giveway.study.report import write_report
 from giveway.study.tables import design_rows, goal_header, sensitivity_rows
+from page_arrays import page_array, page_values
 from study_helpers import LATCH, SPRING, small_study
 
 
@@ -64,51 +66,28 @@ def test_units_come_back_in_exports(answers: Answers, tmp_path: Path) -> None:
     ]
 
 
-def test_the_figures_labels_say_what_they_draw(answers: Answers) -> None:
-    compression_m, peak_n = 1e-3 * answers.values[:, 0], answers.values[:, 1]
-    figure = figures.trade_off(answers)
-    front = np.flatnonzero(answers.pareto)
-    front = front[np.argsort(compression_m[front])]
-    others = [np.flatnonzero(~answers.feasible), np.flatnonzero(answers.feasible & ~answers.pareto)]
-    best = [np.array([design]) for design in answers.order[:3]]
-    clouds = [curve(compression_m[some], "m", peak_n[some], "N") for some in (front, *others, *best) if len(some)]
-    check_planted(figure, lambda: check_panels(figure, [clouds]))
-    assert across(figure.axes[0], "x") == [3.0]  # cm, the limit
-    assert "at most 3 cm" in [text.get_text() for text in figure.axes[0].texts]
-
-    figure = figures.effects(answers)
-    good, bad = np.flatnonzero(answers.feasible), np.flatnonzero(~answers.feasible)
-    panels = []
-    for values, unit in ((compression_m, "m"), (peak_n, "N")):
-        for column, x_unit in ((0, "N/m"), (1, "m/s")):
-            x = answers.designs[:, column]
-            panels.append([curve(x[some], x_unit, values[some], unit) for some in (good, bad)])
-    check_planted(figure, lambda: check_panels(figure, panels))
-    assert [across(axes, "y") for axes in figure.axes] == [[3.0], [3.0], [], []]
-
-
-def test_every_two_objectives_are_drawn_against_each_other(tmp_path: Path) -> None:
-    study = (
-        small_study().objective("peak force of the run").objective("bumper compression").objective("contact impulse")
-    )
-    study.constraint("bumper compression", maximum=3.0, unit="cm").constraint("peak force of the run", maximum=9000.0)
-    found = study.run(tmp_path / "study", progress=False)
-    values = {"N": found.values[:, 0], "m": 1e-3 * found.values[:, 1], "N.s": found.values[:, 2]}
-    figure = figures.trade_off(found)
-    clouds = [np.flatnonzero(found.pareto), np.flatnonzero(found.feasible & ~found.pareto)]
-    clouds = [*clouds, np.flatnonzero(~found.feasible), *(np.array([design]) for design in found.order[:3])]
-    panels = []
-    for x, y in (("N", "m"), ("N", "N.s"), ("m", "N.s")):
-        clouds[0] = clouds[0][np.argsort(values[x][clouds[0]], kind="stable")]  # joined by a line
-        seen = [some for some in clouds if len(some)]
-        panels.append([curve(values[x][some], x, values[y][some], y) for some in seen])
-    drawn = [axes for axes in figure.axes if axes.axison]
-    for axes, wanted in zip(drawn, panels, strict=True):
-        check_panel(figure, axes, wanted)
-    assert [across(axes, "y") for axes in drawn] == [[3.0], [], []]
-    assert [across(axes, "x") for axes in drawn] == [[], [], [3.0]]
-    # A limit that would leave no room for the points is named at the edge, and no line is drawn.
-    assert "at most 9000 N: above this range" in [text.get_text() for text in drawn[0].texts]
+def test_the_page_s_columns_are_in_the_units_of_their_labels(answers: Answers) -> None:
+    data = page_data(answers)
+    wanted = [
+        ("bumper.spring_rate", "N/mm", answers.designs[:, 0], "N/m"),
+        ("collision.speed", "km/h", answers.designs[:, 1], "m/s"),
+        ("bumper compression, worst of tolerances", "cm", 1e-3 * answers.values[:, 0], "m"),
+        ("peak force of the run, worst of tolerances", "N", answers.values[:, 1], "N"),
+    ]
+    for column, (label, unit, values, si) in zip(data["columns"][:4], wanted, strict=True):
+        assert (column["label"], column["unit"]) == (label, unit)
+        shown = page_array(data, column["values"]) / column["scale"]
+        np.testing.assert_allclose(shown * factor("", unit, si), values, rtol=1e-12)
+        assert (column["unit"] != si) == (not np.allclose(shown, values, rtol=1e-3))  # another unit would be seen
+    limits = [column["limits"] for column in data["columns"][:4]]
+    assert limits == [[], [], [{"at": 3.0, "words": "at most 3 cm"}], []]  # once, though it is a constraint, too
+    assert [column["role"] for column in data["columns"][:4]] == ["quantity"] * 2 + ["objective"] * 2
+    kept = page_values(data["flags"]).astype(int)
+    np.testing.assert_array_equal(kept & FEASIBLE > 0, answers.feasible)
+    np.testing.assert_array_equal(kept & FRONT > 0, answers.pareto)
+    assert (kept & KNOWN > 0).all()
+    assert page_values(data["rank"])[answers.order].tolist() == list(range(len(answers.order)))
+    assert data["chosen"] == answers.order[0]
 
 
 def test_the_growth_of_a_search_is_in_shares_of_its_end(answers: Answers) -> None:
@@ -119,43 +98,43 @@ def test_the_growth_of_a_search_is_in_shares_of_its_end(answers: Answers) -> Non
     check_planted(figure, lambda: check_panels(figure, [[wanted]]))
 
 
-def test_one_objective_is_drawn_against_what_has_a_limit(tmp_path: Path) -> None:
-    study = small_study().objective("peak force of the run").constraint("bumper compression", maximum=3.0, unit="cm")
-    found = study.run(tmp_path / "study", progress=False)
-    assert figures.pairs(found) == [(0, 1)]
-    (axes,) = figures.trade_off(found).axes
-    assert across(axes, "y") == [3.0]
+def test_limits_of_forces_and_times_are_in_the_curves_too(tmp_path: Path) -> None:
+    study = small_study().objective("peak force of the run").constraint("detection time", maximum=1.0, unit="s")
+    found = study.constraint("peak force of the run", maximum=0.07, unit="kN").run(tmp_path / "study", progress=False)
+    data = page_data(found)
+    limits = [{"at": 0.07, "words": "peak force of the run at most 0.07 kN"}]
+    assert data["force"] == {"unit": "kN", "scale": 1e3, "limits": limits}
+    assert data["time"] == {"unit": "s", "scale": 1e3, "limits": [{"at": 1.0, "words": "detection time at most 1 s"}]}
 
 
-def test_limits_of_forces_are_in_the_traces_too(tmp_path: Path) -> None:
-    study = (
-        small_study().objective("peak force of the run").constraint("peak force of the run", maximum=0.07, unit="kN")
-    )
-    found = study.run(tmp_path / "study", progress=False)
-    design = int(found.order[0])
-    results = {design: simulate(found.setup, found.runs, found.folder, design)}
-    figure = figures.traces(results, found)
-    (axes,) = figure.axes
-    assert unit_in(axes.get_ylabel()) == (1.0, "kN")
-    assert across(axes, "y") == [0.07]
-    force = results[design]["front"].traces["testbed.truth.contact_force"].values
-    assert 1e3 * max(np.asarray(axes.lines[0].get_ydata())) == pytest.approx(force.max())
-    assert "peak force of the run at most 0.07 kN" in [text.get_text() for text in axes.texts]
-
-
-def test_thousands_of_points_are_an_image_and_labels_stay_text(answers: Answers) -> None:
+def test_of_many_designs_the_page_has_the_best_and_those_that_the_text_names(answers: Answers) -> None:
     many = 20_000
+    repeated = np.tile(np.arange(4), many // 4)
+    runs = copy.copy(answers.runs)
+    runs.designs = answers.designs[repeated] * (1.0 + 1e-6 * np.random.default_rng(1).random((many, 2)))
     wide = dataclasses.replace(
         answers,
-        values=np.tile(answers.values, (many // 4, 1)),
+        runs=runs,
+        values=answers.values[repeated]
+        * (1.0 + 0.1 * np.random.default_rng(2).random((many, answers.values.shape[1]))),
         feasible=np.ones(many, dtype=bool),
-        pareto=np.arange(many) == answers.order[0],
+        pareto=np.arange(many) == 77,
+        order=np.roll(np.arange(many), -77),
+        score=np.zeros(many),
+        stored=answers.stored[repeated],
+        failed=answers.failed[repeated],
     )
-    text = inline_svg(figures.trade_off(wide), "x")
-    assert text.count("<image") == 1
-    assert len(text) < 1_000_000
-    for words in ("at most 3 cm", f"design {answers.order[0]}", "bumper compression"):
-        assert words in text
+    data = page_data(wide)
+    assert data["count"] == data["total"] == many
+    assert sum(map(len, map(str, data["arrays"]))) < 4_500_000
+    few = page_data(wide, most=1000)
+    designs = page_values(few["designs"])
+    assert len(designs) == few["count"] == 1000
+    assert set(range(77, 577)) <= set(designs.tolist())
+    assert (np.diff(designs) > 0).all()
+    small = page_data(wide, size=100_000)
+    assert sum(map(len, map(str, small["arrays"]))) < 110_000
+    assert 500 < small["count"] < 10_000
 
 
 def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> None:
@@ -177,7 +156,7 @@ def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> No
 
 
 def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
-    write_report(tmp_path / "report.html", answers, {})
+    write_report(tmp_path / "report.html", answers)
     page = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
     for words in ("0.6, 2.4 N/mm", "1.2 to 2.1 km/h", "+-0.002 kN", "bumper compression: at most 3 cm"):
         assert words in page

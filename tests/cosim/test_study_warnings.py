@@ -56,7 +56,7 @@ def test_the_export_and_the_report_have_them(answers: Answers, tmp_path: Path) -
     export_table(answers, tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(encoding="utf-8") as file:
         assert [row["warnings"] for row in csv.DictReader(file)] == ["", "bumper bottomed (1 run)"]
-    write_report(tmp_path / "report.html", answers, {})
+    write_report(tmp_path / "report.html", answers)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<h2>Warnings</h2>" in page
     assert MEANINGS["bumper bottomed"] in page

@@ -20,6 +20,7 @@ from giveway.base.units import WrittenUnit
 from giveway.study.chosen import hit_of
 from giveway.study.engine import Report, sweep
 from giveway.study.frames import best_design, every_run
+from giveway.study.limit_lines import unit_of
 from giveway.study.study_file import check
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from giveway.study.answers import Answers
     from giveway.study.setup import Setup
 
-__all__ = ["COLUMNS", "EVIDENCE", "NOTICE", "Evidence", "evidence", "evidence_setup", "unit_of"]
+__all__ = ["COLUMNS", "EVIDENCE", "NOTICE", "Evidence", "evidence", "evidence_setup"]
 
 EVIDENCE = "evidence"  # folder in that of the study
 NOTICE = "Evidence from simulation, not certification: it does not replace a test on the machine, nor ISO/TS 15066."
@@ -178,12 +179,6 @@ def _places(answers: Answers) -> list[float]:
     return [float((ends[i] + share * lengths[i]) / ends[-1]) for i in range(len(lengths)) for share in PLACES]
 
 
-def unit_of(answers: Answers, metric: str, unit: str) -> WrittenUnit:
-    """The unit in which the user wrote a limit of ``metric``; else ``unit``."""
-    written = (one.written for one in answers.setup.constraints if one.goal.metric.name == metric)
-    return next((found for found in written if found is not None), WrittenUnit(unit))
-
-
 def _table(study: Answers, found: Answers) -> pandas.DataFrame:
     """The lines of `Evidence.table`."""
     import pandas
@@ -200,7 +195,7 @@ def _table(study: Answers, found: Answers) -> pandas.DataFrame:
             row = {"collision": its.name, "speed [m/s]": value[_SPEED], "x [mm]": round(1e3 * hit["point_x"], 1),
                    "y [mm]": round(1e3 * hit["point_y"], 1), "mass [kg]": mass}  # fmt: skip
             for name, (metric, sense) in COLUMNS.items():
-                unit = unit_of(study, metric, str(runs[metric].attrs["units"]))
+                unit = unit_of(study, (metric,), str(runs[metric].attrs["units"]))
                 of_samples = runs[metric].values[design, :, case]
                 row |= _two(name, of_samples, sense, unit)
                 if area is not None and metric.endswith("force"):

@@ -15,8 +15,8 @@ from giveway.base.files import replace_files
 from giveway.study.advice import design_lines
 from giveway.study.asked import all_asked
 from giveway.study.certainty import probability_lines
-from giveway.study.evidence import NOTICE, Evidence, unit_of
-from giveway.study.limit_lines import draw_limits, limits_of_metrics
+from giveway.study.evidence import NOTICE, Evidence
+from giveway.study.limit_lines import draw_limits, limits_of_metrics, unit_of
 from giveway.study.limits import limit_words
 from giveway.study.tables import number
 
@@ -82,7 +82,7 @@ def summary(found: Evidence) -> list[tuple[str, ...]]:
 
 def forces(answers: Answers, found: Evidence) -> Figure:
     """Peak force over speed: per mass, the worst place nominal (dashed) and within tolerances."""
-    unit = unit_of(answers, PEAK, "N")
+    unit = unit_of(answers, (PEAK,), "N")
     figure = Figure(figsize=(9.6, 3.4))
     figure.subplots_adjust(left=0.08, right=0.985, top=0.9, bottom=0.15)
     axes = figure.subplots()

@@ -6,15 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from giveway.base.units import WrittenUnit
 from giveway.study.limits import limit_of, limit_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.base.units import WrittenUnit
     from giveway.study.answers import Answers
 
-__all__ = ["DETECTION", "FORCES", "LIMIT_COLOUR", "LimitLine", "draw_limits", "limit_lines", "limits_of_metrics"]
+__all__ = ["DETECTION", "FORCES", "LIMIT_COLOUR", "LimitLine", "draw_limits", "limit_lines", "limits_of_metrics",
+           "unit_of"]  # fmt: skip
 
 LIMIT_COLOUR = "#b3261e"
 BACKGROUND = {"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
@@ -52,6 +53,12 @@ def limits_of_metrics(answers: Answers, metrics: Sequence[str], unit: WrittenUni
         for number, one in enumerate(answers.setup.constraints)
         if one.goal.metric.name in metrics
     ]
+
+
+def unit_of(answers: Answers, metrics: Sequence[str], unit: str) -> WrittenUnit:
+    """The unit in which the user wrote a limit of one of the ``metrics``; else ``unit``."""
+    written = (one.written for one in answers.setup.constraints if one.goal.metric.name in metrics)
+    return next((found for found in written if found is not None), WrittenUnit(unit))
 
 
 def draw_limits(axes: Axes, limits: list[LimitLine], which: str, named: bool = True) -> None:

@@ -116,16 +116,15 @@ def write_all(
     from giveway.study.export import export_table
     from giveway.study.report import write_report
 
-    results = {}
     if simulate_chosen and answers.setup.chosen:
         best = answers.order[: answers.setup.chosen].tolist()
         for index, design in enumerate(best):
             progress(CHOSEN, index / len(best))
-            results[design] = simulate(answers.setup, answers.runs, answers.folder, design)
+            simulate(answers.setup, answers.runs, answers.folder, design)
         progress(CHOSEN, 1.0)
     progress(REPORT, 0.0)
     table_file, report = answers.folder / "table.csv", answers.folder / "report.html"
     export_table(answers, table_file)
-    write_report(report, answers, results)
+    write_report(report, answers)
     progress(REPORT, 1.0)
     return [report, table_file]

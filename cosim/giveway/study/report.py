@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import datetime
-import math
 import re
 from collections.abc import Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +19,6 @@ if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
 
-    from giveway.simulation.result import Result
     from giveway.study.answers import Answers
 
 __all__ = ["write_report"]
@@ -30,19 +27,23 @@ REASONS_MAX, DESIGNS_MAX = 8, 25
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
-def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> None:
-    """Write the summary of ``answers`` to ``path``; ``results``: the chosen designs by number and collision."""
+def write_report(path: Path, answers: Answers) -> None:
+    """Write the summary of ``answers`` to ``path``."""
     import jinja2
 
+    from giveway.report.page import page
     from giveway.simulation.metrics import definitions
     from giveway.study import certainty, tables
+    from giveway.study.page_data import page_data
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
-    style = (files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8")
+    environment.filters["breakable"] = _breakable
     setup, told = answers.setup, certainty.recommended_indices(answers)
-    text = environment.get_template("study.html.j2").render(
+    known = bool((answers.stored > 0).any())
+    data = page_data(answers) if known else {}
+    body = environment.get_template("study.html.j2").render(
         title=setup.name,
         counts=tables.counts(answers),
         advice=advice(answers),
@@ -50,11 +51,13 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         complete=answers.complete,
         manifest=answers.manifest,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        known=known,
+        in_page=_in_page(data),
         header=[_breakable(name) for name in tables.goal_header(answers)],
         rows=tables.design_rows(answers, DESIGNS_MAX),
         definitions=definitions(goal.metric.column for goal in answers.goals),
         ranked=len(answers.order),
-        figures=_figures(answers, results),
+        figures=_figures(answers),
         sensitivity_header=tables.sensitivity_header(answers),
         sensitivities=tables.sensitivity_rows(answers),
         unknown=answers.sensitivities().reason,
@@ -68,9 +71,18 @@ def write_report(path: Path, answers: Answers, results: Mapping[int, Mapping[str
         misfits=tables.misfit_rows(answers, DESIGNS_MAX),
         reasons=_reasons({design: text for design, text in answers.reason.items() if misfit(text) is None}),
         warnings=_warnings(answers.warnings),
-        style=style,
     )
-    write_text(path, text)
+    write_text(path, page("study", f"giveway study: {setup.name}", data, body=body, engine=known))
+
+
+def _in_page(data: Mapping[str, Any]) -> str:
+    """Which designs of a large study the page has."""
+    if not data or data["count"] == data["total"]:
+        return ""
+    return (
+        f"This page has {data['count']:,} of {data['total']:,} designs: the best ranked, those that the text names, "
+        "and a sample of the others."
+    )
 
 
 def _reasons(reason: Mapping[int, str]) -> list[tuple[str, list[int]]]:
@@ -99,7 +111,8 @@ def _breakable(name: str) -> Markup:
     return Markup(re.sub(r"([._])(?=\w)", r"\1<wbr>", str(escape(name))))
 
 
-def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> list[NamedFigure]:
+def _figures(answers: Answers) -> list[NamedFigure]:
+    """How a search went, and what decides: the page's script draws the designs themselves."""
     from matplotlib.style import context
 
     from giveway.report.inline_svg import inline_svg
@@ -112,26 +125,11 @@ def _figures(answers: Answers, results: Mapping[int, Mapping[str, Result]]) -> l
         if figure is not None:
             found.append(NamedFigure(title, caption, inline_svg(figure, f"s{len(found)}-")))
 
-    known = bool((answers.stored > 0).any())
     with context(STYLE):
-        if known and (drawn := len(figures.pairs(answers))):
-            caption = (
-                f"{_points(answers, drawn)} Those on the front are beaten by no other one; named: the best ranked."
-            )
-            add("Trade-off", caption, figures.trade_off(answers))
         if optimum := answers.manifest.get("optimum"):
             add("How the search went", _search_caption(answers, optimum), figures.growth(answers))
-        if known and answers.setup.objectives and answers.setup.varied:
-            add(
-                "What each quantity does",
-                f"{_points(answers, math.prod(figures.effect_panels(answers)))} Grey: a constraint is not met.",
-                figures.effects(answers),
-            )
-        if known:
+        if bool((answers.stored > 0).any()):
             add("What decides", _sensitivity_caption(answers), figures.sensitivities(answers))
-        if results:
-            caption = "The best ranked designs, event-exact at their nominal values. Dashed: the moment of detection."
-            add("Chosen designs", caption, figures.traces(results, answers))
     return found
 
 
@@ -142,14 +140,6 @@ def _search_caption(answers: Answers, told: Mapping[str, Any]) -> str:
         for index, value in enumerate(told["reference"] or ())
     )
     return f"One point per generation; reference point: {reference}. {search_in_words(answers)}"
-
-
-def _points(answers: Answers, panels: int) -> str:
-    from giveway.study.figures import drawn
-
-    count = len(drawn(answers, panels))
-    known = len(answers.designs)
-    return "One point per design." if count == known else f"One point per design, {count:,} of {known:,}."
 
 
 def _sensitivity_caption(answers: Answers) -> str:
