@@ -30,6 +30,7 @@ from giveway.experiments.command import demo, list_experiments, reproduce, run
 from giveway.fitting.command import fit
 from giveway.fmu_tools.command import fmu_app, ssp
 from giveway.identification.command import calibrate
+from giveway.own_robot.command import robot_app
 from giveway.robot.command import variables
 from giveway.starters.command import new_app
 from giveway.studio.command import studio
@@ -60,6 +61,7 @@ app.add_typer(study_app)
 app.add_typer(crowd_app)
 app.add_typer(fmu_app)
 app.add_typer(new_app)
+app.add_typer(robot_app)
 
 
 @dataclass

@@ -81,8 +81,10 @@ def test_trikey_starts_as_in_the_paper_to_the_last_bit(experiment: str, tmp_path
     assert heavy.parameters("testbed")["base.mass"] == 50.0
 
 
-def test_the_robots_own_sides_are_pushed_on_the_circle(tmp_path: Path) -> None:
-    box = robot_file(tmp_path, BOX)
+# Also of a box with sides of 0.32 m at the most, which have no place 0.2 m from their middles.
+@pytest.mark.parametrize("changes", [BOX, {**BOX, Y: "value = [-0.1, 0.1, 0.1, -0.1]"}])
+def test_the_robots_own_sides_are_pushed_on_the_circle(changes: dict[str, str], tmp_path: Path) -> None:
+    box = robot_file(tmp_path, changes)
     scenario = get("circle").scenario("none", robot=box)
     assert isinstance(scenario.push, Pushes)
     (left, top), *_ = outline_of_robot(box)
@@ -90,14 +92,23 @@ def test_the_robots_own_sides_are_pushed_on_the_circle(tmp_path: Path) -> None:
         on_x = math.isclose(abs(push.point_x_m), abs(left), abs_tol=1e-12)
         on_y = math.isclose(abs(push.point_y_m), abs(top), abs_tol=1e-12)
         assert on_x or on_y
+        assert abs(push.point_x_m) <= abs(left)
+        assert abs(push.point_y_m) <= abs(top)
+
+
+def test_a_light_robot_is_pushed_less_and_by_a_lighter_slider(tmp_path: Path) -> None:
+    light = robot_file(tmp_path, {**BOX, "value = 34.7": "value = 17.35", "value = 9.08": "value = 4.54"})
+    forces = [push.force_n for push in get("circle").scenario(robot=light).push.pushes]
+    assert forces == [0.5 * push.force_n for push in get("circle").scenario().push.pushes]
+    assert get("moving").scenario("none", robot=light).parameters("testbed")["slider.mass"] == 6.81
+    low = robot_file(tmp_path, {**BOX, "value = 0.414": "value = 0.207"})
+    assert get("tipping").scenario("none", robot=low).parameters("testbed")["contact.height"] == 0.29
 
 
 @pytest.mark.parametrize(
     ("experiment", "changes", "words"),
     [
         ("motionless", {"value = 4.54": "value = 0.2"}, ("motionless", "hanging weight")),
-        # Sides of 0.32 m at the most: no place 0.2 m from a middle.
-        ("circle", {**BOX, Y: "value = [-0.1, 0.1, 0.1, -0.1]"}, ("circle", "offset_m")),
     ],
 )
 def test_what_cannot_be_done_with_a_robot_is_refused_by_name(

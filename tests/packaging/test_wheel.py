@@ -37,7 +37,7 @@ NATIVE = {
     "page_study.css",
     "page_study.js",
     "testbed.variables.toml",
-    "trikey.toml",
+    *(path.name for path in (ROOT / "robots").glob("*.toml")),
 }
 
 

@@ -9,14 +9,15 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from giveway.base.errors import NativeMissingError
+from giveway.base.errors import NativeMissingError, UnknownNameError
 
-__all__ = ["COMPONENTS", "MODELS", "batch_library", "file", "fmu", "robot", "variables"]
+__all__ = ["COMPONENTS", "MODELS", "batch_library", "file", "fmu", "robot", "robot_file", "robots", "variables"]
 
 ENVIRONMENT_VARIABLE = "GIVEWAY_NATIVE_DIR"
 MODELS = ("controller", "testbed")  # the models of an experiment
 COMPONENTS = ("drivetrain", "bumper")  # components for a user's own robot
 DEFAULT_ROBOT = "trikey.toml"
+TABLE_ENDING = ".variables.toml"
 
 
 def file(name: str) -> Path:
@@ -43,9 +44,28 @@ def batch_library() -> Path:
 
 def variables(model: str) -> Path:
     """Path of the variable table of ``model``."""
-    return file(f"{model}.variables.toml")
+    return file(f"{model}{TABLE_ENDING}")
 
 
 def robot() -> Path:
     """Path of the robot file that the FMUs were built with."""
     return file(DEFAULT_ROBOT)
+
+
+def robots() -> dict[str, Path]:
+    """The robot files that are shipped, by name: trikey, the robot that the FMUs were built with, and the others."""
+    files = sorted(robot().parent.glob("*.toml"))
+    return {path.stem: path for path in files if not path.name.endswith(TABLE_ENDING)}
+
+
+def robot_file(field: str, text: str, folder: Path = Path()) -> Path:
+    """The robot file that a user names: ``delivery`` is a shipped one; with an ending or a slash it is a path.
+
+    ``folder`` is where a relative path begins. UnknownNameError, which names ``field``, if there is no such robot.
+    """
+    if text.endswith(".toml") or "/" in text or os.sep in text or (folder / text).exists():
+        return folder / text
+    known = robots()
+    if text not in known:
+        raise UnknownNameError(field, text, [*known, "the path of a robot file (TOML)"])
+    return known[text]

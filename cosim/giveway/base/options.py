@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from giveway.base import native
+
 __all__ = ["DaskOption", "FmiOption", "RobotOption", "ThreadsOption"]
 
 FmiOption = Annotated[int, typer.Option("--fmi", help="FMI version of the FMUs: 3 or 2.")]
@@ -19,4 +21,18 @@ DaskOption = Annotated[
         help='Runs go to the workers of this Dask scheduler; "local": to processes of this machine.',
     ),
 ]
-RobotOption = Annotated[Path | None, typer.Option("--robot", metavar="FILE", help="Robot file (TOML).")]
+
+
+def _robot_file(text: str) -> Path:
+    return native.robot_file("--robot", text)
+
+
+RobotOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--robot",
+        metavar="FILE|NAME",
+        help="Robot file (TOML), or the name of a shipped one: `giveway robot list`.",
+        parser=_robot_file,
+    ),
+]

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.experiments import Experiment
-from giveway.experiments.placement import for_this_robot, outline_of_robot
+from giveway.experiments.placement import for_this_robot, has_default_outline, outline_of_robot, testbed_of
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.robot.presets import DEFAULT, check_preset
 from giveway.robot.presets import PAPER as PAPER_PRESET
@@ -75,6 +75,7 @@ BY_HAND = (
     (0, 0.20, 0.0, 35.0, 0.6),
     (2, 0.10, 10.0, 45.0, 0.5),
 )
+WITHIN = 0.8  # of a side of another robot
 FIRST_PUSH_S, BETWEEN_PUSHES_S = 7.0, 18.0
 LAST_LOOK_S = 24.0  # after the last push: 7 s of escape, 7 s of return, and time to catch up with the plan
 RAMP_SHARE = 0.25
@@ -99,7 +100,8 @@ def scenario(
     """One round with pushes by hand, one every 18 s; ``estimator`` is one of `ESTIMATORS`, which belong to the preset
     "paper" (the first if left out).
 
-    Another ``robot`` is pushed at its own sides 0 to 2, as far from their middles.
+    Another ``robot`` is pushed at three of its own sides: as far from their middles, but not beyond `WITHIN` of a short
+    side, and as hard, but a lighter one with the same share of its weight.
     """
     if bumper not in BUMPERS:
         raise UnknownNameError("bumper", bumper, BUMPERS)
@@ -113,10 +115,26 @@ def scenario(
         outline = outline_of_robot(robot)
         schedule = tuple(
             _push(outline, plan, FIRST_PUSH_S + BETWEEN_PUSHES_S * index, *by_hand)
-            for index, by_hand in enumerate(BY_HAND[:pushes])
+            for index, by_hand in enumerate(_by_hand(robot)[:pushes])
         )
     duration_s = FIRST_PUSH_S + BETWEEN_PUSHES_S * (pushes - 1) + LAST_LOOK_S
     return dataclasses.replace(_around(plan, duration_s, estimator, Pushes(schedule)), robot=robot)
+
+
+def _by_hand(robot: Path | None) -> tuple[tuple[int, float, float, float, float], ...]:
+    """`BY_HAND` for the sides and the weight of ``robot``."""
+    if has_default_outline(robot):
+        return BY_HAND
+    outline = outline_of_robot(robot)
+    masses = [float(testbed_of(one)["base.mass"]) for one in (robot, None)]
+    lighter = min(1.0, masses[0] / masses[1])
+    found = []
+    for number, offset_m, turn_deg, force_n, duration_s in BY_HAND:
+        side = number * len(outline) // 3
+        start, end = outline[side], outline[(side + 1) % len(outline)]
+        most_m = 0.5 * WITHIN * math.hypot(*(end - start))
+        found.append((side, min(max(offset_m, -most_m), most_m), turn_deg, force_n * lighter, duration_s))
+    return tuple(found)
 
 
 def _around(plan: Circle, duration_s: float, estimator: str | None, push: Pushes | None) -> Scenario:

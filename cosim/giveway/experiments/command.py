@@ -93,6 +93,7 @@ def demo(
     seed: SeedOption = None,
     engine: EngineOption = "fmu",
     preset: PresetOption = None,
+    robot: RobotOption = None,
 ) -> None:
     """Run the paper's experiment 5.2 with all three bumpers; table, report.html, overview.png, summary.json."""
     from giveway import experiments
@@ -110,7 +111,7 @@ def demo(
     titles = {bumper: f"bumper {bumper}" for bumper in experiment.bumpers}
     with progress_bars((*titles.values(), "report")) as progress:
         for bumper, title in titles.items():
-            scenario = _changed(experiment.scenario(bumper), None, fmi, None, seed)
+            scenario = _changed(experiment.scenario(bumper, robot=robot), None, fmi, None, seed)
             results[bumper] = runner.run(scenario, _share_of(progress, title), chosen)
             if results[bumper].interrupted:
                 raise KeyboardInterrupt
@@ -171,7 +172,8 @@ def list_experiments() -> None:
 
     for experiment in experiments.all_experiments().values():
         bumpers = f" Bumpers: {', '.join(experiment.bumpers)}." if experiment.bumpers else ""
-        typer.echo(f"{experiment.name}: {experiment.summary}{bumpers}")
+        robots = "" if experiment.is_single_run else " Of Trikey alone, several runs: `giveway reproduce`."
+        typer.echo(f"{experiment.name}: {experiment.summary}{bumpers}{robots}")
 
 
 def _engine(name: str) -> Engine:

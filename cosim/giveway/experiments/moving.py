@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
-from giveway.experiments.placement import before_resting, stated_contact, tare_s
+from giveway.experiments.placement import before_resting, sliding_mass, stated_contact, tare_s
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target, warning_notes
 from giveway.paper.printed import printed
 from giveway.robot.presets import DEFAULT, PAPER
@@ -48,14 +48,20 @@ def scenario(
 ) -> Scenario:
     """The experiment with ``bumper`` on the slider, up to ``after_contact_s`` after the planned contact.
 
-    The paper has the magnetic one only. Another ``robot`` drives with its own side between corners 0 and 1 ahead.
+    The paper has the magnetic one only. Another ``robot`` drives with its own side between corners 0 and 1 ahead, into
+    half again as much as its own slider's mass, as in the paper.
     """
     plan, slider = before_resting("moving", robot, SPEED_MPS, STEADY_S)
     return Scenario(
         "moving",
         math.ceil(1e3 * (tare_s() + plan.ramp_s + STEADY_S + after_contact_s)) / 1e3,
         bumper=bumper,
-        testbed={"slider.present": True, "slider.mass": SLIDER_KG, **slider, "rope.attached": False},
+        testbed={
+            "slider.present": True,
+            "slider.mass": sliding_mass(robot, SLIDER_KG),
+            **slider,
+            "rope.attached": False,
+        },
         controller={"supervisor.after_settled": HOLD},
         plan=plan,
         robot=robot,

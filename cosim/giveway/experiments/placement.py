@@ -29,8 +29,10 @@ __all__ = [
     "before_resting",
     "for_this_robot",
     "has_default_outline",
+    "not_above",
     "outline_of_robot",
     "pulled_by_weight",
+    "sliding_mass",
     "stated_contact",
     "tare_s",
     "testbed_of",
@@ -116,6 +118,17 @@ def before_resting(
         plan = Straight(speed_mps, math.atan2(normal[1], normal[0]))
         approach = Approach(point, 0.0, time_s=tare_s() + plan.ramp_s + steady_s)
         return plan, _meet(approach, testbed, plan)
+
+
+def sliding_mass(robot: Path | None, mass_kg: float) -> float:
+    """``mass_kg`` of the paper's slider; for a robot file with another slider, as many times that slider's mass."""
+    return mass_kg * float(testbed_of(robot)["slider.mass"]) / float(testbed_of(None)["slider.mass"])
+
+
+def not_above(robot: Path | None, height_m: float) -> float:
+    """``height_m``, of a contact with Trikey; with a lower centre of mass in proportion lower."""
+    heights = [float(testbed_of(one)["base.com_height"]) for one in (robot, None)]
+    return height_m * min(1.0, heights[0] / heights[1])
 
 
 def stated_contact(robot: Path | None, speed_mps: float, time_s: float | None = None) -> StatedContact:

@@ -18,6 +18,7 @@ import numpy as np
 
 from giveway.base.errors import SimulationError
 from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
+from giveway.experiments.placement import not_above
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.paper.printed import printed
 from giveway.robot.presets import DEFAULT, PAPER
@@ -49,8 +50,11 @@ FLAT: dict[str, Value] = {"base.com_height": 0.01, "contact.height": 0.01, "whee
 
 
 def scenario(bumper: str, *, robot: Path | None = None, preset: str = DEFAULT) -> Scenario:
-    """5.2 with ``bumper``, hit at `CONTACT_HEIGHT_M` by a base that can tip; ``robot``: another robot's file."""
-    return _tipping(bumper, {"contact.height": CONTACT_HEIGHT_M}, robot, preset)
+    """5.2 with ``bumper``, hit at `CONTACT_HEIGHT_M` by a base that can tip; ``robot``: another robot's file.
+
+    A robot whose centre of mass is lower than Trikey's is hit as much lower.
+    """
+    return _tipping(bumper, {"contact.height": not_above(robot, CONTACT_HEIGHT_M)}, robot, preset)
 
 
 def _planar(bumper: str, robot: Path | None = None, preset: str = PAPER) -> Scenario:

@@ -1,7 +1,9 @@
 """The robot file: every number of a robot with its unit, source, confidence and provenance.
 
 `read_robot` is the only reader. The variable tables define the entries of a robot file and the units of the returned
-values; other units of the same kind ("lb", "mm") are converted.
+values; other units of the same kind ("lb", "mm") are converted. Besides the numbers of the robot, which are needed, a
+file may set parameters of the controller, and some of the testbed, that have start values of their own:
+``[controller.channels.fast_rest]``.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ import functools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from giveway.base import native
@@ -29,12 +32,16 @@ _KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
 _HEADER = ("schema_version", "robot")  # entries that are not numbers
 EQUIPMENT = ("imu",)
 """Parts that a robot may have and a robot file may leave out."""
+SETTINGS: Mapping[str, tuple[str, ...]] = MappingProxyType({"controller": ("",), "testbed": ("imu.", "base.com_")})
+"""By model: how the names begin of parameters that a robot file may set though they have start values of their own."""
+BODY_HEIGHT = "outline.height"  # of the body's top; no model needs it, `giveway robot check` uses it
+OUTLINE_COUNT = "outline.count"  # follows from the lists of corners
 _Number = float | int
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One number, or list of numbers, of a robot file.
+    """One number, or list of numbers, of a robot file; true and false are the numbers 1 and 0.
 
     Attributes:
         values: in ``unit``; a single number is a tuple of one.
@@ -80,6 +87,10 @@ class Robot:
             return entry.values[0]
         return entry.values[index] if index < len(entry.values) else 0.0  # with a shorter list the rest is unused
 
+    def __contains__(self, name: str) -> bool:
+        """Whether the file has the entry ``name``."""
+        return name in self._entries
+
     def does_without(self, name: str) -> bool:
         """Whether ``name`` belongs to equipment of which the file says nothing: its start values stay."""
         part = name.partition(".")[0]
@@ -119,14 +130,7 @@ def read_robot(path: Path) -> Robot:
             raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
         header = top.table("robot", ("name",))
         name = "" if header is None else header.text("name", "")
-        entries: dict[str, Entry] = {}
-        for part, values in document.items():
-            if part in _HEADER:
-                continue
-            keys = [name.removeprefix(f"{part}.") for name in known if name.startswith(f"{part}.")]
-            section = Section(part, values, keys)
-            for key in section.values:
-                entries[section.full(key)] = _entry(section.full(key), section.values[key], *known[section.full(key)])
+        entries = {name: _entry(name, values, known[name]) for name, values in _stated(document, known)}
         x, y = entries.get("outline.x"), entries.get("outline.y")
         if x is not None and y is not None and len(x.values) != len(y.values):
             allowed = f"as many as outline.x has, {len(x.values)}: every corner has both"
@@ -134,16 +138,42 @@ def read_robot(path: Path) -> Robot:
     return Robot(path, text, name, entries)
 
 
-def _entry(name: str, values: Any, unit: str, count: int | None) -> Entry:
-    """The entry ``name``, converted to ``unit``; it may be a list of up to ``count`` numbers."""
+def _stated(document: Mapping[str, Any], known: Mapping[str, _Known]) -> Iterator[tuple[str, Any]]:
+    """Name and table of every entry, in the order of the file."""
+    for part, values in document.items():
+        if part in _HEADER:
+            continue
+        below = [name.removeprefix(f"{part}.") for name in known if name.startswith(f"{part}.")]
+        section = Section(part, values, list(dict.fromkeys(name.partition(".")[0] for name in below)))
+        for key in section.values:
+            if part not in SETTINGS:
+                yield section.full(key), section.values[key]
+                continue
+            names = [name.partition(".")[2] for name in below if name.startswith(f"{key}.")]
+            group = Section(section.full(key), section.values[key], names)
+            for name in group.values:
+                yield group.full(name), group.values[name]
+
+
+def _entry(name: str, values: Any, known: _Known) -> Entry:
+    """The entry ``name``, converted to the unit of its table."""
+    unit, count = known.unit, known.count
     if not isinstance(values, dict):
-        raise GivewayError(name, values, f'a table with value and unit, {name} = {{ value = ..., unit = "{unit}" }}')
+        stated = "value" if known.is_flag else f'value = ..., unit = "{unit}"'
+        raise GivewayError(
+            name, values, f"a table with value{'' if known.is_flag else ' and unit'}, {name} = {{ {stated} }}"
+        )
     section = Section(name, values, _KEYS)
+    if known.is_flag:
+        section.required("value", "true or false")
+        flag = section.flag("value", False)
+        return Entry((int(flag),), False, "1", str(flag).lower(), 1.0, *_remarks(section))
     stated = section.required("value", "a finite number" if count is None else f"up to {count} finite numbers")
     items = stated if isinstance(stated, list) else [stated]
     field = section.full("value")
-    if isinstance(stated, list) and not (count is not None and 1 <= len(stated) <= count):
-        raise GivewayError(field, stated, "one number" if count is None else f"a list of 1 to {count} numbers")
+    if isinstance(stated, list) and not (count is not None and (known.least or 1) <= len(stated) <= count):
+        numbers = f"{count} numbers" if known.least == count else f"1 to {count} numbers"
+        raise GivewayError(field, stated, "one number" if count is None else f"a list of {numbers}")
     for index, item in enumerate(items):
         finite(f"{field}[{index}]" if isinstance(stated, list) else field, item)
     section.required("unit", f'"{unit}"' + (", or a unit of the same kind" if unit != "1" else ""))
@@ -151,24 +181,49 @@ def _entry(name: str, values: Any, unit: str, count: int | None) -> Entry:
     scale = 1.0 if stated_unit == unit else factor(section.full("unit"), stated_unit, unit)
     shown = ", ".join(f"{item:g}" for item in items)
     return Entry(
-        values=tuple(items) if scale == 1.0 else tuple(item * scale for item in items),
-        is_list=isinstance(stated, list),
-        unit=unit,
-        text=shown if stated_unit == "1" else f"{shown} {stated_unit}",
-        scale=scale,
-        provenance=section.choice("provenance", PROVENANCE) if "provenance" in values else "",
-        confidence=section.choice("confidence", CONFIDENCE) if "confidence" in values else "",
-        source=section.text("source", ""),
-        note=section.text("note", ""),
+        tuple(items) if scale == 1.0 else tuple(item * scale for item in items),
+        isinstance(stated, list),
+        unit,
+        shown if stated_unit == "1" else f"{shown} {stated_unit}",
+        scale,
+        *_remarks(section),
     )
 
 
+def _remarks(section: Section) -> tuple[str, str, str, str]:
+    """Provenance, confidence, source and note of an entry."""
+    return (
+        section.choice("provenance", PROVENANCE) if "provenance" in section.values else "",
+        section.choice("confidence", CONFIDENCE) if "confidence" in section.values else "",
+        section.text("source", ""),
+        section.text("note", ""),
+    )
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What a robot file may state under a name: how many numbers (None: one), and how many at least in a list."""
+
+    unit: str
+    count: int | None = None
+    least: int | None = None
+    is_flag: bool = False
+
+
 @functools.cache
-def _known() -> Mapping[str, tuple[str, int | None]]:
-    """Every name that a robot file may have, with its unit and how many numbers it may state (None: one)."""
-    known: dict[str, tuple[str, int | None]] = {}
+def _known() -> Mapping[str, _Known]:
+    """Every name that a robot file may have."""
+    known: dict[str, _Known] = {BODY_HEIGHT: _Known("m")}
+    settings: dict[str, _Known] = {}
     for model in (*native.MODELS, *native.COMPONENTS):
         for variable in read_table_file(native.variables(model))["variable"]:
-            for name in robot_paths(variable):
-                known.setdefault(name, (entry_unit(variable) or "1", variable.get("count")))
-    return known
+            unit, count = entry_unit(variable) or "1", variable.get("count")
+            paths = list(robot_paths(variable))
+            for name in paths:
+                known.setdefault(name, _Known(unit, count))
+            beginnings = SETTINGS.get(model, ())
+            free = variable["causality"] == "parameter" and not paths and variable["name"] != OUTLINE_COUNT
+            if free and variable["name"].startswith(beginnings):
+                name = f"{model}.{variable['name']}"
+                settings[name] = _Known(unit, count, count, variable["type"] == "boolean")
+    return known | settings

@@ -11,7 +11,7 @@ from typing import Any
 
 from giveway.base import native
 from giveway.base.errors import GivewayError, UnknownNameError
-from giveway.robot.robot_file import Robot, read_robot
+from giveway.robot.robot_file import OUTLINE_COUNT, Robot, read_robot
 from giveway.robot.table_files import entry_unit, read_table_file
 
 __all__ = ["Choices", "Value", "Variable", "VariableTable", "parse_assignments", "table"]
@@ -100,23 +100,31 @@ class VariableTable:
 
     def robot_value(self, robot: Robot, variable: Variable) -> Value:
         """The checked value of ``variable`` in ``robot``; an error names the line of the robot file."""
-        assert variable.robot_path is not None
+        path = self.robot_name(variable)
         try:
-            return self.check(variable.name, robot.value(variable.robot_path, variable.robot_index))
+            stated = robot.value(path, variable.robot_index)
+            return self.check(variable.name, bool(stated) if variable.type == "boolean" else stated)
         except GivewayError as error:
             if error.field != f"{self.model}.{variable.name}":
                 raise  # the file does not have it
-            raise robot.refusal(variable.robot_path, error.allowed) from None
+            raise robot.refusal(path, error.allowed) from None
+
+    def robot_name(self, variable: Variable) -> str:
+        """The entry of a robot file that states ``variable``: a number of the robot, or a setting of this model."""
+        return variable.robot_path or f"{self.model}.{variable.name.partition('[')[0]}"
 
     def robot_values(self, robot: Robot) -> dict[str, Value]:
-        """The values of ``robot`` for every parameter that the table takes from a robot file."""
+        """The values of ``robot`` for every parameter that it states."""
         values: dict[str, Value] = {}
         for variable in self:
-            if variable.robot_path is None or robot.does_without(variable.robot_path):
+            name = self.robot_name(variable)
+            if variable.robot_path is None and name not in robot:
+                continue
+            if robot.does_without(name):
                 continue
             values[variable.name] = self.robot_value(robot, variable)
-        if "outline.count" in self:  # the only number that a robot file states by the length of a list
-            values["outline.count"] = self.check("outline.count", robot.count("outline.x"))
+        if OUTLINE_COUNT in self:  # the only number that a robot file states by the length of a list
+            values[OUTLINE_COUNT] = self.check(OUTLINE_COUNT, robot.count("outline.x"))
         return values
 
 

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from giveway.base import native
 from giveway.base.errors import GivewayError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.base.units import factor
@@ -97,9 +98,10 @@ def scenario_of(
         raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
     seed = top.values.get("seed")
     if robot is None and "robot" in top.values:
-        robot = path.parent / top.text("robot")
+        robot = native.robot_file("robot", top.text("robot"), path.parent)
         if not robot.is_file():
-            raise GivewayError("robot", top.values["robot"], "a robot file, its path seen from this file")
+            allowed = "a robot file, its path seen from this file, or the name of a shipped robot"
+            raise GivewayError("robot", top.values["robot"], allowed)
     collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
     stated = collision is None and _states_slider(top)
     collides = stated or collision is not None
