@@ -1,4 +1,5 @@
-"""`python -m web.bench`: size of giveway_batch.wasm, and its time per simulated second beside the native one."""
+"""`python -m web.bench`: size of giveway_batch.wasm, its time per simulated second beside the native one, and how soon
+the studio answers."""
 
 from __future__ import annotations
 
@@ -15,6 +16,7 @@ from giveway.library import batch_library
 from giveway.scenario.scenario import Scenario
 from giveway.simulation.native_engine import NativeRuns
 
+from web.bench_studio import MOVES, answer_times_ms, quantiles_ms
 from web.engines import LIBRARY, Chromium, Node, module, spec_of
 
 TIMES = 40
@@ -53,6 +55,9 @@ def main() -> None:
         medians = [statistics.median(times(method)[WARM_UP:]) / scenario.duration_s for method in METHODS]
         rows.append((name, *(f"{median:.1f}" for median in medians)))
     print_columns("One collision alone, ms per simulated second", ("engine", *METHODS), rows)
+    median, late = quantiles_ms(answer_times_ms())
+    moves = [("studio, 0.6 s with the default controller", f"{median:.0f}", f"{late:.0f}")]
+    print_columns(f"From a slider's move to new curves, ms, {MOVES} moves", ("page", "median", "95 %"), moves)
 
 
 if __name__ == "__main__":

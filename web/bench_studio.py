@@ -12,7 +12,7 @@ from giveway.studio import studio_page
 from web.browser import Browser
 from web.studio_page import Studio
 
-__all__ = ["answer_times_ms"]
+__all__ = ["MOVES", "answer_times_ms", "quantiles_ms"]
 
 MOVES, WARM_UP = 100, 20
 PARAMETER = "testbed.bumper.spring_rate"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from pathlib import Path
@@ -49,6 +51,22 @@ def taken(studio: Studio, button: str, folder: Path) -> Path:
     file = folder / waiting.value.suggested_filename
     waiting.value.save_as(file)
     return file
+
+
+def command(*arguments: object) -> subprocess.CompletedProcess[str]:
+    words = [sys.executable, "-m", "giveway", "studio", "--no-browser", *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, check=False)
+
+
+def test_the_command_writes_it(path: Path, tmp_path: Path) -> None:
+    out = tmp_path / "new" / "mine.html"
+    done = command("--out", out)
+    assert done.returncode == 0, done.stderr
+    assert out.read_text(encoding="utf-8") == path.read_text(encoding="utf-8")
+    refused = command("--out", tmp_path / "mine.txt")
+    assert refused.returncode == 2
+    assert "--out" in refused.stderr
+    assert [one.name for one in tmp_path.iterdir()] == ["new"]
 
 
 def test_the_file_is_small_and_whole(path: Path) -> None:

@@ -22,7 +22,7 @@ export interface Panel {
   series: Series[];
   /** Horizontal lines that name a value. */
   limits?: { label: string; value: number }[];
-  /** Vertical lines that name a moment. */
+  /** Vertical lines, named below the plot. */
   marks?: { label: string; x: number; tone?: Tone }[];
 }
 
@@ -129,6 +129,7 @@ class Drawn {
   private readonly figure: HTMLElement;
   private readonly area: HTMLElement;
   private readonly now = element("div", { class: "now", hidden: true });
+  private readonly moments = element("p", { class: "moments" });
   private readonly seen: IntersectionObserver;
   private in_view = true;
   /** What is to be drawn when the panel comes into view. */
@@ -146,7 +147,7 @@ class Drawn {
       element("button", { type: "button", click: () => this.save_csv(), "aria-label": `${panel.title} as CSV` }, "CSV"),
     );
     const title = element("span", {}, `${panel.title}${unit_of(panel.unit)}`);
-    this.figure = element("figure", { class: "curve" }, element("figcaption", {}, title, buttons), this.area);
+    this.figure = element("figure", { class: "curve" }, element("figcaption", {}, title, buttons), this.area, this.moments);
     where.append(this.figure);
     this.plot = new uPlot(this.plot_options(group), this.columns(), this.area);
     this.plot.over.append(this.now);
@@ -293,12 +294,10 @@ class Drawn {
       const above = y - bbox.top > 16 * ratio;
       ctx.fillText(label, bbox.left + bbox.width - 4 * ratio, above ? y - 4 * ratio : y + 13 * ratio);
     }
-    ctx.textAlign = "left";
-    (this.panel.marks ?? []).forEach(({ label, x, tone }, i) => {
+    for (const { x, tone } of this.panel.marks ?? []) {
       const at = plot.valToPos(x, "x", true);
       stroke([at, bbox.top], [at, bbox.top + bbox.height], theme(tone ?? "quiet"), [3, 3]);
-      ctx.fillText(label, at + 4 * ratio, bbox.top + (12 + 13 * i) * ratio);
-    });
+    }
     ctx.restore();
   }
 
@@ -315,6 +314,9 @@ class Drawn {
     });
     const limits = (this.panel.limits ?? []).map(({ label }) => label);
     const how = "Arrow keys move the line, plus and minus zoom, 0 shows all.";
+    const unit = unit_of(this.options.x_unit, " ");
+    const moments = (this.panel.marks ?? []).map(({ label, x }) => `${label} at ${shown(x)}${unit}`).join(", ");
+    this.moments.textContent = moments && `Vertical lines: ${moments}.`;
     this.area.setAttribute("aria-label", `${this.panel.title}: ${[...ranges, ...limits].join("; ")}. ${how}`);
   }
 

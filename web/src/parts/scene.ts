@@ -62,7 +62,7 @@ export class Scene {
   set(motions: Motion[], keep = false): void {
     this.motions = motions;
     if (!keep) {
-      this.box = limits(motions);
+      this.box = steady(this.box, limits(motions));
     }
     this.now = Math.min(this.now, this.last);
     this.redraw();
@@ -279,8 +279,22 @@ function what_happens(motion: Motion, now: number): string {
   return `contact${newtons}${Number.isNaN(detected_s) ? ", not noticed" : ""}`;
 }
 
+interface Box {
+  left: number;
+  bottom: number;
+  right: number;
+  top: number;
+}
+
+/** The floor in view stays where it is as long as all is in it, and it is not much too large. */
+function steady(old: Box, needed: Box): Box {
+  const inside = old.left <= needed.left && old.right >= needed.right && old.bottom <= needed.bottom && old.top >= needed.top;
+  const size = ({ left, right, bottom, top }: Box) => Math.max(right - left, top - bottom);
+  return inside && size(old) < 1.5 * size(needed) ? old : needed;
+}
+
 /** All that moves must be in view. */
-function limits(motions: readonly Motion[]) {
+function limits(motions: readonly Motion[]): Box {
   const box = { left: Infinity, bottom: Infinity, right: -Infinity, top: -Infinity };
   const add = (x: number, y: number, r: number) => {
     box.left = Math.min(box.left, x - r);
@@ -320,7 +334,7 @@ class Picture {
     this.turn = ([x, y]) => [c * x - s * y, s * x + c * y];
   }
 
-  draw(box: { left: number; bottom: number; right: number; top: number }): void {
+  draw(box: Box): void {
     this.grid(box);
     const compression = this.truth("bumper_compression");
     this.slider(compression);
@@ -362,7 +376,7 @@ class Picture {
     if (closed) this.pen.closePath();
   }
 
-  private grid(box: { left: number; bottom: number; right: number; top: number }): void {
+  private grid(box: Box): void {
     const { pen } = this;
     pen.strokeStyle = theme("grid");
     pen.lineWidth = 1 / this.scale;

@@ -187,7 +187,7 @@ export class Controls {
       if (document.activeElement !== slider) slider.value = String(scale.step(Number(value)));
       slider.setAttribute("aria-valuetext", `${value}${unit_of(variable.unit, " ")}`);
       if (document.activeElement !== field) {
-        field.value = String(value);
+        field.value = field.title = String(value);
         field.removeAttribute("aria-invalid");
       }
     };

@@ -92,7 +92,7 @@ export function panels(all: readonly Shown[]): { x: Float64Array; panels: Panel[
       { label: `${name(i)}contact`, x: 1000 * contact_s, tone },
       { label: `${name(i)}noticed`, x: 1000 * detected_s, tone },
     ];
-    return found.filter((mark) => !Number.isNaN(mark.x));
+    return found.filter((mark) => !Number.isNaN(mark.x) && !(both && mark.label.endsWith("contact")));
   });
   const torques: Series[] = both || !first
     ? each("largest of three", largest_torque)
