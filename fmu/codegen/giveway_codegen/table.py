@@ -318,8 +318,12 @@ def _plant(entry: _Entry, kind: str, causality: str, maximum: Value | None) -> t
     plant, choices = entry.raw.get("plant"), entry.raw.get("choices")
     if plant == "wheels" and "count" not in entry.raw:
         raise entry.fail("plant", "'wheels' is a number for each wheel: it has a count")
-    if plant is None and choices is None:
+    if plant is None and (choices is None or kind != "integer" or causality != "parameter"):
+        if choices is not None:
+            raise entry.fail("choices", "only a parameter of type integer has them")
         return None, ()
+    if plant is None:
+        return None, _choices(entry, maximum)
     known = _PLANT_TYPES[kind]
     enumeration = kind == "integer" and isinstance(plant, str) and _ENUMERATION.fullmatch(plant) is not None
     if causality != "parameter" or not (plant in known or enumeration):
@@ -329,11 +333,16 @@ def _plant(entry: _Entry, kind: str, causality: str, maximum: Value | None) -> t
         if choices is not None:
             raise entry.fail("choices", "only an enumeration of the plant has them")
         return plant, ()
+    return plant, _choices(entry, maximum)
+
+
+def _choices(entry: _Entry, maximum: Value | None) -> tuple[str, ...]:
+    choices = entry.raw.get("choices")
     names = choices if isinstance(choices, list) else []
     words = all(isinstance(name, str) and _NAME.fullmatch(name) for name in names)
     if not words or len(names) - 1 != maximum:
         raise entry.fail("choices", f"{choices!r}, but must be a word for each value from 0 to the maximum {maximum}")
-    return plant, tuple(names)
+    return tuple(names)
 
 
 def _display_unit(entry: _Entry, unit: str | None) -> str | None:
@@ -437,6 +446,8 @@ def _starts(
             if set(item) != {"robot"} or not isinstance(path, str):
                 raise entry.fail("start", f'{item!r}, but must be a value or {{ robot = "path" }}')
             item = _robot_value(entry, path, index, count, unit or "1", robot, robot_file)
+            if isinstance(item, str):
+                item = _number_of(entry, path, item, robot_file)
         starts.append((entry.value("start", kind, item), path))
     return starts
 
@@ -447,6 +458,8 @@ def _robot_value(
     found = _robot_entry(robot, path)
     if found is None:
         raise entry.fail("start", f"{robot_file} has no value {path}")
+    if isinstance(found["value"], str):
+        return found["value"]
     if found.get("unit") != unit:
         raise entry.fail("start", f"{path} of {robot_file} is in {found.get('unit')!r}, the variable in {unit!r}")
     value = found["value"]
@@ -456,6 +469,15 @@ def _robot_value(
         raise entry.fail("start", f"{path} of {robot_file} has {len(value)} values for {count or 1} variables")
     # If the robot has fewer elements than there are variables (an outline's vertices), the rest is unused.
     return value[index] if index < len(value) else 0
+
+
+def _number_of(entry: _Entry, path: str, word: str, robot_file: Path) -> int:
+    """The number of a choice that the robot file states in words, with spaces instead of underscores."""
+    choices = [choice.replace("_", " ") for choice in entry.raw.get("choices", [])]
+    if word not in choices:
+        allowed = " or ".join(choices) or "a number"
+        raise entry.fail("start", f"{path} of {robot_file} is {word!r}, but may be {allowed}")
+    return choices.index(word)
 
 
 def expanded(table_file: Path) -> dict[str, Any]:

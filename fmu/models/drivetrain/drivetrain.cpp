@@ -49,6 +49,7 @@ public:
         system_.archive(a);
         a(servo_);
         a(servo_torque_nm_);
+        a(sampled_torque_nm_);
         a(start_time_s_);
         a(stored_at_start_j_);
         a(tick_);
@@ -78,6 +79,7 @@ public:
         tick_ = 0;
         due_ = true;
         servo_torque_nm_ = 0.0;
+        sampled_torque_nm_ = 0.0;
         now_s_ = 0.0;
         events_ = {};
         exchanging_ = false;
@@ -164,6 +166,7 @@ public:
         v_.load_friction = e.friction;
         v_.gear_stuck = system_.stuck();
         v_.servo_torque = servo_torque_nm_;
+        v_.sensor_motor_torque = sampled_torque_nm_;
         v_.energy_stored = e.stored - stored_at_start_j_;
         v_.energy_work_in = x[work_in];
         v_.energy_dissipated = x[dissipated];
@@ -204,6 +207,7 @@ private:
         if (!due_ && now_ticks >= static_cast<double>(tick_ + 1) - rounding_ticks) {
             ++tick_;
             due_ = true;
+            sample_current();
         }
         if (now_ticks > static_cast<double>(tick_) + 1.0 - rounding_ticks) {
             std::snprintf(message.text, sizeof message.text,
@@ -237,6 +241,14 @@ private:
         }
     }
 
+    // At each cycle of the bus, before the servo acts: the same in Co-Simulation, which gets there at the end of a step,
+    // and for an importer that integrates.
+    void sample_current() {
+        if (tick_ % servo_ticks_per_cycle == 0) {
+            sampled_torque_nm_ = servo_torque_nm_;
+        }
+    }
+
     void leave_tick() {
         due_ = false;
         servo_torque_nm_ = servo_.regulate(integrator_.state()[motor_angle], v_.servo_reference_angle,
@@ -262,6 +274,7 @@ private:
             }
             tick_ = next;
             due_ = true;
+            sample_current();
         }
         return true;
     }
@@ -271,6 +284,7 @@ private:
     solver::HybridIntegrator integrator_;
     ServoAxis servo_;
     double servo_torque_nm_ = 0.0;
+    double sampled_torque_nm_ = 0.0;
     double start_time_s_ = 0.0;
     double stored_at_start_j_ = 0.0;
     std::int64_t tick_ = 0; // servo ticks since the start

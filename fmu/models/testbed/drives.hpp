@@ -20,19 +20,26 @@ struct Command {
     bool enable;
 };
 
+// What a torque signal shows: the torque behind the gear, or the motor's, which its current is proportional to. The
+// gear's friction stands between the two.
+enum class Sensing : std::uint8_t { torque_sensor, motor_current };
+
 struct DriveOptions {
     SensorOptions sensors;
     double kp_nm_per_rad, kd_nms_per_rad, torque_limit_nm, derivative_cutoff_hz;
     int sensor_delay_cycles, command_delay_cycles;
+    Sensing sensing = Sensing::torque_sensor;
 };
 
 class Drives {
 public:
-    // Before the start the drives followed their reference: earlier cycles moved at the start's wheel speeds. Returns
-    // the servo's refusal, empty if there is none.
+    // Before the start the drives followed their reference: earlier cycles moved at the start's wheel speeds, driven by
+    // motor_torque_nm. Returns the servo's refusal, empty if there is none.
     gw_config_error_t start(const DriveOptions &options, const PerWheel<double> &motor_angle_rad,
-                            const PerWheel<double> &wheel_speed_radps, const PerWheel<double> &torque_nm, bool enable) {
+                            const PerWheel<double> &wheel_speed_radps, const PerWheel<double> &torque_nm,
+                            const PerWheel<double> &motor_torque_nm, bool enable) {
         options_ = options;
+        motor_torque_nm_ = enable ? motor_torque_nm : PerWheel<double>{};
         cycle_ = 0;
         gw_servo_config_t config{};
         config.period_s = 1.0F / static_cast<gw_real_t>(servo_rate_hz);
@@ -69,6 +76,7 @@ public:
     }
 
     // Once per bus cycle, when its time is reached: samples the sensors and returns the controller's present inputs.
+    // `torque_nm`: behind the gears. A current is that of the half millisecond before, as the servo acts afterwards.
     SensorSample sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm) {
         return sample(motor_angle_rad, torque_nm, deviates(options_.sensors, cycle_));
     }
@@ -101,6 +109,7 @@ public:
             torque[i] = static_cast<double>(output.torque_nm);
         }
         reference_is_new_ = false;
+        motor_torque_nm_ = torque;
         return torque;
     }
 
@@ -111,10 +120,11 @@ private:
 
     [[nodiscard]] SensorSample take_sample(const PerWheel<double> &motor_angle_rad, const PerWheel<double> &torque_nm,
                                            std::int64_t cycle, const Deviates &drawn) const {
+        const auto &felt_nm = options_.sensing == Sensing::motor_current ? motor_torque_nm_ : torque_nm;
         SensorSample sample{};
         for (std::size_t i = 0; i < wheel_count; ++i) {
             sample.torque_nm[i] =
-                measured_torque(options_.sensors, i, torque_nm[i], bus_period_s * static_cast<double>(cycle), drawn[i]);
+                measured_torque(options_.sensors, i, felt_nm[i], bus_period_s * static_cast<double>(cycle), drawn[i]);
             sample.encoder_counts[i] = encoder_count(options_.sensors, i, motor_angle_rad[i]);
         }
         sample.counter = static_cast<std::int32_t>(static_cast<std::uint32_t>(cycle + max_delay_cycles));
@@ -126,6 +136,7 @@ private:
     DelayLine<Command> commands_;
     DelayLine<SensorSample> samples_;
     Command active_{};
+    PerWheel<double> motor_torque_nm_{}; // now
     std::int64_t cycle_ = 0;
     bool reference_is_new_ = false;
 };

@@ -48,6 +48,7 @@ inline DriveOptions drive_options(const Variables &v) {
     o.derivative_cutoff_hz = v.servo_derivative_cutoff;
     o.sensor_delay_cycles = v.electronics_sensor_delay;
     o.command_delay_cycles = v.electronics_command_delay;
+    o.sensing = static_cast<Sensing>(v.drivetrain_sensing);
     return o;
 }
 

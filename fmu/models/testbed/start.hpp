@@ -44,6 +44,21 @@ inline void write_imu(Variables &v, const ImuSample &sample) {
     v.sensor_imu_present = true;
 }
 
+// Motor torques of the steady motion that a run starts with: the wheels' and their gears' friction; none where the gear
+// holds its wheel.
+inline PerWheel<double> steady_motor_torque(const PlantSystem &system, const double *state,
+                                            const PerWheel<double> &wheel_torque_nm) {
+    PerWheel<double> torque_nm{};
+    for (int i = 0; i < wheel_count; ++i) {
+        const auto wheel = static_cast<std::size_t>(i);
+        const double direction = system.modes().gear_direction[wheel];
+        const double speed = state[plant::Layout<>::motor_speed + i];
+        torque_nm[wheel] = math::abs(direction) * (wheel_torque_nm[wheel] +
+                                                   plant::gear_friction(system.parameters(), i, direction, speed));
+    }
+    return torque_nm;
+}
+
 // False, with a message, if the parameters are inconsistent.
 inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVector<double> &state, Drives &drives,
                       Imu &imu, double &stored_j, Message &message) {
@@ -67,7 +82,8 @@ inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVec
     }
     stored_j = truth.stored_energy;
     const auto refused = drives.start(drive_options(v), motor_angles(state.data()), truth.wheel_speed,
-                                      truth.wheel_torque, v.command_enable);
+                                      truth.wheel_torque, steady_motor_torque(system, state.data(), truth.wheel_torque),
+                                      v.command_enable);
     if (refused.field != GW_FIELD_NONE) {
         std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]",
                       gw_config_name(refused.field), static_cast<double>(refused.value),

@@ -128,6 +128,23 @@ def test_the_servo_follows_the_reference(delay: int) -> None:
     assert largest_deviation(run, trace) < 1e-5
 
 
+def test_the_motors_current_is_sampled_before_the_servo_acts() -> None:
+    def inputs(t: float) -> dict[str, float]:
+        return {"servo.reference_angle": 0.05 if t < 0.1 else -0.02, "servo.reference_speed": 0.0}
+
+    parameters = {"servo.enabled": True, "load.inertia": 0.1}
+    names = ("servo.torque", "sensor.motor_torque", "sensor.torque", "gear.stuck")
+    run = co_simulate("drivetrain", parameters, inputs, 0.4, 5e-4, names)
+    # A row shows the servo's torque of the half millisecond before it; every other one is a cycle of the bus.
+    assert run["sensor.motor_torque"][::2].tolist() == run["servo.torque"][::2].tolist()
+    assert run["sensor.motor_torque"][1::2].tolist() == run["sensor.motor_torque"][:-1:2].tolist()
+    assert np.ptp(run["sensor.motor_torque"]) > 5.0
+    # The gear's friction stands between the two: at rest up to its stiction.
+    held = run["gear.stuck"] > 0.5
+    assert held[-1]
+    assert abs(run["sensor.motor_torque"] - run["sensor.torque"])[-1] <= 2.75
+
+
 def test_steps_of_whole_ticks_give_the_same_bits() -> None:
     def inputs(t: float) -> dict[str, float]:
         return {"servo.reference_speed": 0.3, "environment.torque": 2.0}

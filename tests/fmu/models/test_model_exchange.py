@@ -103,6 +103,7 @@ CASES = {
         importer_tolerance=1e-10,
     ),
     "testbed, pushed": Case("testbed", SMOOTH, pushed, stop=0.3),
+    "testbed, motor current": Case("testbed", {**SMOOTH, "drivetrain.sensing": 1}, pushed, stop=0.3),
     "testbed, spring": Case("testbed", {**SMOOTH, "bumper.kind": 1}),
     "testbed, ideal latch": Case("testbed", {**SMOOTH, "bumper.latch_model": 1}),
     "testbed, bumper on the robot": Case("testbed", {**SMOOTH, **ON_THE_ROBOT}),

@@ -243,6 +243,27 @@ def test_choices_are_a_word_for_each_value(tmp_path: Path) -> None:
         assert "must be a word for each value from 0 to the maximum 2" in result.stderr
     result = generate(tmp_path, table(variable(choices='["one"]', plant='"number"')))
     assert "variable group.second: choices: only an enumeration of the plant has them" in result.stderr
+    result = generate(tmp_path, table(variable(choices='["one"]')))
+    assert "variable group.second: choices: only a parameter of type integer has them" in result.stderr
+    entry["plant"] = None
+    assert generate(tmp_path, table(variable(choices='["none", "spring", "foam"]', **entry))).returncode == 0
+    result = generate(tmp_path, table(variable(choices='["none", "spring"]', **entry)))
+    assert "must be a word for each value from 0 to the maximum 2" in result.stderr
+
+
+def test_a_robot_file_states_a_choice_in_words(tmp_path: Path) -> None:
+    entry = {"type": '"integer"', "unit": None, "minimum": "0", "maximum": "1", "choices": '["one", "the_other"]'}
+    entry["start"] = '{ robot = "base.kind" }'
+    for word, start in (("one", 0), ("the other", 1), ("neither", None)):
+        robot = f'schema_version = 1\n[base.kind]\nvalue = "{word}"\n'
+        result = generate(tmp_path, table(variable(**entry)), robot)
+        if start is None:
+            assert "base.kind of" in result.stderr
+            assert "is 'neither', but may be one or the other" in result.stderr
+        else:
+            assert result.returncode == 0, result.stderr
+            description = (tmp_path / "out" / "fmi3" / "modelDescription.xml").read_text()
+            assert f'start="{start}"' in description
 
 
 def of_c_core(**changes: str | None) -> str:

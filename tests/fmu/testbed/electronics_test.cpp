@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -137,7 +138,7 @@ TEST(Sensors, TorqueNoiseHasItsStandardDeviation) {
 TEST(Drives, SampleIsDelayedByTheBusAndCounted) {
     DriveOptions o{ideal_sensors(), 200.0, 8.0, 20.0, 60.0, 3, 0};
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}, true).field, GW_FIELD_NONE);
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}, {}, true).field, GW_FIELD_NONE);
     std::int32_t before = 0;
     for (int cycle = 0; cycle < 10; ++cycle) {
         const auto sample = drives.sample({0.0, 0.0, 0.0}, {10.0 + cycle, 0.0, 0.0});
@@ -155,7 +156,7 @@ TEST(Drives, SampleIsOfEachWheelsOwnTorqueNoiseOffsetAndEncoder) {
     o.sensors.torque_noise_nm = 0.1;
     o.sensors.torque_offset_nm = {0.01, -0.02, 0.03};
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true).field, GW_FIELD_NONE);
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}, true).field, GW_FIELD_NONE);
     const double count = 2.0 * M_PI / 8500.0;
     for (int cycle = 0; cycle < 5; ++cycle) {
         const auto sample = drives.sample({10.5 * count, -20.5 * count, 30.5 * count}, {1.0, 2.0, 3.0});
@@ -168,12 +169,32 @@ TEST(Drives, SampleIsOfEachWheelsOwnTorqueNoiseOffsetAndEncoder) {
     }
 }
 
+TEST(Drives, ACurrentIsThatBeforeTheServoActs) {
+    DriveOptions o{ideal_sensors(), 200.0, 0.0, 20.0, 60.0, 1, 0, Sensing::motor_current};
+    o.sensors.torque_gain = {2.0, 1.0, 1.0};
+    o.sensors.torque_resolution_nm = 0.5;
+    Drives drives;
+    const std::array<double, 3> held{0.3, 1.2, -0.8};
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {7.0, 7.0, 7.0}, held, true).field, GW_FIELD_NONE);
+    using Torques = std::array<double, 3>;
+    std::vector<Torques> found;
+    for (int cycle = 0; cycle < 3; ++cycle) { // the torques behind the gears count for nothing
+        found.push_back(drives.sample({0.0, 0.0, 0.0}, {9.0, 9.0, 9.0}).torque_nm);
+        drives.receive({{0.01 * (cycle + 1), 0.0, 0.0}, {0.0, 0.0, 0.0}, true});
+        EXPECT_NEAR(drives.regulate({0.0, 0.0, 0.0})[0], 2.0 * (cycle + 1), 1e-5); // float rounding
+    }
+    // One cycle late; that of the start twice, then that of the first cycle's servo. Gain, then quantum.
+    EXPECT_EQ(found, (std::vector<Torques>{{0.5, 1.0, -1.0}, {0.5, 1.0, -1.0}, {4.0, 0.0, 0.0}}));
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {7.0, 7.0, 7.0}, held, false).field, GW_FIELD_NONE);
+    EXPECT_EQ(drives.sample({0.0, 0.0, 0.0}, {9.0, 9.0, 9.0}).torque_nm, (Torques{0.0, 0.0, 0.0})); // no power
+}
+
 TEST(Drives, BeforeTheStartTheWheelsTurnedAtTheirSpeed) {
     DriveOptions o{ideal_sensors(), 200.0, 0.0, 20.0, 60.0, 3, 2};
     const double count = 2.0 * M_PI / 8500.0;
     const std::array<double, 3> speed{100e3 * count, 0.0, -50e3 * count}; // counts per second
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.5 * count, 0.5 * count, 0.5 * count}, speed, {0.0, 0.0, 0.0}, true).field,
+    ASSERT_EQ(drives.start(o, {0.5 * count, 0.5 * count, 0.5 * count}, speed, {0.0, 0.0, 0.0}, {}, true).field,
               GW_FIELD_NONE);
     for (int cycle = 0; cycle < 3; ++cycle) {
         const int ago = 3 - cycle;
@@ -191,7 +212,7 @@ TEST(Drives, BeforeTheStartTheWheelsTurnedAtTheirSpeed) {
 TEST(Drives, WithoutDelayACommandActsAndASampleComesAtOnce) {
     DriveOptions o{ideal_sensors(), 200.0, 0.0, 20.0, 60.0, 0, 0};
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true).field, GW_FIELD_NONE);
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}, true).field, GW_FIELD_NONE);
     for (int cycle = 1; cycle < 5; ++cycle) {
         EXPECT_EQ(drives.sample({0.0, 0.0, 0.0}, {1.0 * cycle, 0.0, 0.0}).torque_nm[0], cycle);
         drives.receive({{0.01 * cycle, 0.0, 0.0}, {0.0, 0.0, 0.0}, true});
@@ -202,7 +223,7 @@ TEST(Drives, WithoutDelayACommandActsAndASampleComesAtOnce) {
 TEST(Drives, BetweenCommandsTheReferenceMovesOnAndThenStops) {
     DriveOptions o{ideal_sensors(), 200.0, 0.0, 20.0, 60.0, 0, 0};
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true).field, GW_FIELD_NONE);
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}, true).field, GW_FIELD_NONE);
     constexpr double angle_rad = 0.01;
     constexpr double speed_radps = 2.0;
     constexpr double tick_s = 1.0 / servo_rate_hz;
@@ -223,7 +244,7 @@ TEST(Drives, BetweenCommandsTheReferenceMovesOnAndThenStops) {
 TEST(Drives, CommandReachesTheServoAfterTheBusDelay) {
     DriveOptions o{ideal_sensors(), 200.0, 0.0, 20.0, 60.0, 0, 2};
     Drives drives;
-    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true).field, GW_FIELD_NONE);
+    ASSERT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}, true).field, GW_FIELD_NONE);
     for (int cycle = 0; cycle < 5; ++cycle) {
         drives.receive({{0.05, 0.0, -0.05}, {0.0, 0.0, 0.0}, true});
         for (int tick = 0; tick < servo_ticks_per_cycle; ++tick) {
@@ -238,5 +259,5 @@ TEST(Drives, CommandReachesTheServoAfterTheBusDelay) {
 TEST(Drives, RefusesServoGainsOutOfRange) {
     DriveOptions o{ideal_sensors(), -1.0, 8.0, 20.0, 60.0, 1, 1};
     Drives drives;
-    EXPECT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true).field, GW_FIELD_SERVO_KP);
+    EXPECT_EQ(drives.start(o, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}, true).field, GW_FIELD_SERVO_KP);
 }
