@@ -20,6 +20,7 @@ SIZES = {  # of one unit in SI: the SI brochure; NIST SP 811 for inch, foot, pou
     ("J", "N.m", "kg.m2/s2"): {"J": 1.0},
     ("W", "J/s", "N.m/s"): {"W": 1.0},
     ("degC",): {"degC": 1.0},
+    ("A",): {"mA": 1e-3, "A": 1.0},
     ("1", ""): {"1": 1.0, "%": 1e-2},
 }
 CONVERSIONS = [(unit, si, size) for names, sizes in SIZES.items() for si in names for unit, size in sizes.items()]

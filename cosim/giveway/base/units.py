@@ -17,40 +17,42 @@ __all__ = ["WrittenUnit", "check_unit", "factor"]
 
 DIGITS = 15  # digits of a displayed value: one less than a conversion in both directions may change
 
-# Per unit: size in SI, and exponents of m, kg, s, rad, degC.
-_Dimension = tuple[int, int, int, int, int]
+# Per unit: size in SI, and exponents of m, kg, s, rad, degC, A.
+_Dimension = tuple[int, int, int, int, int, int]
 _ATOMS: Mapping[str, tuple[float, _Dimension]] = {
-    "1": (1.0, (0, 0, 0, 0, 0)),
-    "%": (1e-2, (0, 0, 0, 0, 0)),
-    "um": (1e-6, (1, 0, 0, 0, 0)),
-    "mm": (1e-3, (1, 0, 0, 0, 0)),
-    "cm": (1e-2, (1, 0, 0, 0, 0)),
-    "m": (1.0, (1, 0, 0, 0, 0)),
-    "in": (0.0254, (1, 0, 0, 0, 0)),
-    "ft": (0.3048, (1, 0, 0, 0, 0)),
-    "km": (1e3, (1, 0, 0, 0, 0)),
-    "g": (1e-3, (0, 1, 0, 0, 0)),
-    "kg": (1.0, (0, 1, 0, 0, 0)),
-    "lb": (0.45359237, (0, 1, 0, 0, 0)),
-    "us": (1e-6, (0, 0, 1, 0, 0)),
-    "ms": (1e-3, (0, 0, 1, 0, 0)),
-    "s": (1.0, (0, 0, 1, 0, 0)),
-    "h": (3600.0, (0, 0, 1, 0, 0)),
-    "rad": (1.0, (0, 0, 0, 1, 0)),
-    "mrad": (1e-3, (0, 0, 0, 1, 0)),
-    "deg": (0.017453292519943295, (0, 0, 0, 1, 0)),
-    "Hz": (1.0, (0, 0, -1, 0, 0)),
-    "kHz": (1e3, (0, 0, -1, 0, 0)),
-    "mN": (1e-3, (1, 1, -2, 0, 0)),
-    "N": (1.0, (1, 1, -2, 0, 0)),
-    "kN": (1e3, (1, 1, -2, 0, 0)),
-    "lbf": (0.45359237 * 9.80665, (1, 1, -2, 0, 0)),
-    "Pa": (1.0, (-1, 1, -2, 0, 0)),
-    "kPa": (1e3, (-1, 1, -2, 0, 0)),
-    "MPa": (1e6, (-1, 1, -2, 0, 0)),
-    "J": (1.0, (2, 1, -2, 0, 0)),
-    "W": (1.0, (2, 1, -3, 0, 0)),
-    "degC": (1.0, (0, 0, 0, 0, 1)),
+    "1": (1.0, (0, 0, 0, 0, 0, 0)),
+    "%": (1e-2, (0, 0, 0, 0, 0, 0)),
+    "um": (1e-6, (1, 0, 0, 0, 0, 0)),
+    "mm": (1e-3, (1, 0, 0, 0, 0, 0)),
+    "cm": (1e-2, (1, 0, 0, 0, 0, 0)),
+    "m": (1.0, (1, 0, 0, 0, 0, 0)),
+    "in": (0.0254, (1, 0, 0, 0, 0, 0)),
+    "ft": (0.3048, (1, 0, 0, 0, 0, 0)),
+    "km": (1e3, (1, 0, 0, 0, 0, 0)),
+    "g": (1e-3, (0, 1, 0, 0, 0, 0)),
+    "kg": (1.0, (0, 1, 0, 0, 0, 0)),
+    "lb": (0.45359237, (0, 1, 0, 0, 0, 0)),
+    "us": (1e-6, (0, 0, 1, 0, 0, 0)),
+    "ms": (1e-3, (0, 0, 1, 0, 0, 0)),
+    "s": (1.0, (0, 0, 1, 0, 0, 0)),
+    "h": (3600.0, (0, 0, 1, 0, 0, 0)),
+    "rad": (1.0, (0, 0, 0, 1, 0, 0)),
+    "mrad": (1e-3, (0, 0, 0, 1, 0, 0)),
+    "deg": (0.017453292519943295, (0, 0, 0, 1, 0, 0)),
+    "Hz": (1.0, (0, 0, -1, 0, 0, 0)),
+    "kHz": (1e3, (0, 0, -1, 0, 0, 0)),
+    "mN": (1e-3, (1, 1, -2, 0, 0, 0)),
+    "N": (1.0, (1, 1, -2, 0, 0, 0)),
+    "kN": (1e3, (1, 1, -2, 0, 0, 0)),
+    "lbf": (0.45359237 * 9.80665, (1, 1, -2, 0, 0, 0)),
+    "Pa": (1.0, (-1, 1, -2, 0, 0, 0)),
+    "kPa": (1e3, (-1, 1, -2, 0, 0, 0)),
+    "MPa": (1e6, (-1, 1, -2, 0, 0, 0)),
+    "J": (1.0, (2, 1, -2, 0, 0, 0)),
+    "W": (1.0, (2, 1, -3, 0, 0, 0)),
+    "degC": (1.0, (0, 0, 0, 0, 1, 0)),
+    "mA": (1e-3, (0, 0, 0, 0, 0, 1)),
+    "A": (1.0, (0, 0, 0, 0, 0, 1)),
 }
 _FACTOR = re.compile(r"(1|%|[A-Za-z]+)(\d?)")
 
@@ -101,7 +103,7 @@ def _allowed(wanted: str) -> str:
 
 def _read(field: str, unit: str, allowed: str) -> tuple[float, _Dimension]:
     """Magnitude and dimension of ``N.m.s/rad``: all factors after the one slash are divisors."""
-    size, dimension = 1.0, [0, 0, 0, 0, 0]
+    size, dimension = 1.0, [0, 0, 0, 0, 0, 0]
     above, _, below = unit.partition("/")
     for part, sign in ((above, 1), (below, -1)):
         for word in part.split(".") if part else ():
@@ -114,5 +116,5 @@ def _read(field: str, unit: str, allowed: str) -> tuple[float, _Dimension]:
             dimension = [total + power * one for total, one in zip(dimension, exponents, strict=True)]
     if not above or unit.count("/") > 1 or (not below and "/" in unit):
         raise GivewayError(field, unit, allowed)
-    a, b, c, d, e = dimension
-    return size, (a, b, c, d, e)
+    a, b, c, d, e, f = dimension
+    return size, (a, b, c, d, e, f)

@@ -42,6 +42,8 @@ def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
     document = tomlkit.parse(path.read_text(encoding="utf-8"))
     stated: dict[str, float] = {}
     for name, new in changes.items():
+        if robot.follows_from(name):
+            raise FileError(path, f"{name} cannot be replaced: it follows from {robot.follows_from(name)}")
         stated[name] = finite(name, new.value) / robot[name].scale
         table = document
         for key in name.split("."):

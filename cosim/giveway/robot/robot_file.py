@@ -21,6 +21,7 @@ from giveway.base.errors import FileError, GivewayError, InputFileError, nearest
 from giveway.base.toml_lines import line_of
 from giveway.base.toml_sections import Section, lines_named, read_toml
 from giveway.base.units import factor
+from giveway.robot.motor_current import MOTOR, MOTOR_CURRENT, SENSING, from_motor, stated_by
 from giveway.robot.table_files import entry_unit, read_table_file, robot_paths
 
 __all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot"]
@@ -32,6 +33,8 @@ _KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
 _HEADER = ("schema_version", "robot")  # entries that are not numbers
 EQUIPMENT = ("imu",)
 """Parts that a robot may have and a robot file may leave out."""
+LATER = (SENSING,)
+"""Entries that a file from before they were known may leave out."""
 SETTINGS: Mapping[str, tuple[str, ...]] = MappingProxyType({"controller": ("",), "testbed": ("imu.", "base.com_")})
 """By model: how the names begin of parameters that a robot file may set though they have start values of their own."""
 BODY_HEIGHT = "outline.height"  # of the body's top; no model needs it, `giveway robot check` uses it
@@ -44,7 +47,7 @@ class Entry:
     """One number, or list of numbers, of a robot file; true and false are the numbers 1 and 0.
 
     Attributes:
-        values: in ``unit``; a single number is a tuple of one.
+        values: in ``unit``; a single number is a tuple of one, and a word is its number in the variable table.
         is_list: the file states a list.
         unit: of the variable tables; "1" for what has none.
         text: value with unit as in the file.
@@ -69,11 +72,16 @@ class Robot:
     """A robot file that has been read; values are addressed by their table path (``base.mass``)."""
 
     def __init__(self, path: Path, text: str, name: str, entries: Mapping[str, Entry]) -> None:
+        """The file's entries; those that follow from others are added."""
         self.path, self.name = path, name
         self._text, self._entries = text, dict(entries)
+        self._derived: dict[str, Entry] = {}
+        self._derived = self._follow()
 
     def __getitem__(self, name: str) -> Entry:
-        """The entry at ``name``; FileError if the file does not have it."""
+        """The entry at ``name``, stated or following from others; FileError if the file does not have it."""
+        if name in self._derived:
+            return self._derived[name]
         if name not in self._entries:
             near = nearest_names(name, self._entries)
             hint = f"the file has {' and '.join(near)}" if near else "every value of the robot is needed"
@@ -88,17 +96,27 @@ class Robot:
         return entry.values[index] if index < len(entry.values) else 0.0  # with a shorter list the rest is unused
 
     def __contains__(self, name: str) -> bool:
-        """Whether the file has the entry ``name``."""
-        return name in self._entries
+        """Whether the file has the entry ``name``, or it follows from others."""
+        return name in self._entries or name in self._derived
 
     def does_without(self, name: str) -> bool:
         """Whether ``name`` belongs to equipment of which the file says nothing: its start values stay."""
         part = name.partition(".")[0]
-        return part in EQUIPMENT and not any(entry.startswith(f"{part}.") for entry in self._entries)
+        equipment = part in EQUIPMENT and not any(entry.startswith(f"{part}.") for entry in self._entries)
+        return equipment or (name in LATER and name not in self._entries)
+
+    @property
+    def motor_current(self) -> bool:
+        """Torque is sensed by the motors' current: the gears' friction is in it."""
+        return SENSING in self._entries and self._entries[SENSING].text == MOTOR_CURRENT
+
+    def follows_from(self, name: str) -> str | None:
+        """The entry that the number ``name`` follows from; None if the file states it itself."""
+        return stated_by(name) if name in self._derived else None
 
     def entries(self) -> Iterator[tuple[str, Entry]]:
-        """Every entry with its name, in the order of the file."""
-        yield from self._entries.items()
+        """Every number that the file states, with its name, in the order of the file."""
+        yield from ((name, entry) for name, entry in self._entries.items() if name != SENSING)
 
     def count(self, name: str) -> int:
         """Number of values at ``name``: the length of a list, 1 for a single number."""
@@ -110,7 +128,26 @@ class Robot:
         values = ", ".join(f"{value:g}" for value in entry.values)
         converted = f" ({values} {entry.unit})" if entry.scale != 1.0 else ""
         cause = GivewayError(name, entry.text + converted, allowed)
-        return InputFileError(self.path, line_of(self._text, f"{name}.value"), cause)
+        return InputFileError(self.path, line_of(self._text, f"{self.follows_from(name) or name}.value"), cause)
+
+    def _follow(self) -> dict[str, Entry]:
+        """What follows from other entries: the torque signal's numbers from those of the motors' current."""
+        if not self.motor_current:
+            return {}
+        missing = [name for name in MOTOR if name not in self._entries]
+        if missing:
+            hint = f'with {SENSING} = "{MOTOR_CURRENT}" a robot file states {", ".join(MOTOR)}'
+            raise FileError(self.path, f"{missing[0]} is missing", hint)
+        found: dict[str, Entry] = {}
+        for name, value in from_motor({key: float(self._entries[key].values[0]) for key in MOTOR}).items():
+            if name in self._entries:
+                allowed = f'left out: with {SENSING} = "{MOTOR_CURRENT}" it follows from {stated_by(name)}'
+                raise self.refusal(name, allowed)
+            stated = self._entries[stated_by(name)]
+            source = f"follows from {stated_by(name)}: {stated.source}"
+            remarks = (stated.provenance, stated.confidence, source, stated.note)
+            found[name] = Entry((value,), False, "N.m", f"{value:g} N.m", 1.0, *remarks)
+        return found
 
 
 def read_robot(path: Path) -> Robot:
@@ -159,11 +196,15 @@ def _entry(name: str, values: Any, known: _Known) -> Entry:
     """The entry ``name``, converted to the unit of its table."""
     unit, count = known.unit, known.count
     if not isinstance(values, dict):
-        stated = "value" if known.is_flag else f'value = ..., unit = "{unit}"'
-        raise GivewayError(
-            name, values, f"a table with value{'' if known.is_flag else ' and unit'}, {name} = {{ {stated} }}"
-        )
+        alone = known.is_flag or known.words
+        stated = "value = ..." if alone else f'value = ..., unit = "{unit}"'
+        raise GivewayError(name, values, f"a table with value{'' if alone else ' and unit'}, {name} = {{ {stated} }}")
     section = Section(name, values, _KEYS)
+    if known.words:
+        word = section.choice("value", known.words)
+        if "unit" in section.values:
+            raise GivewayError(section.full("unit"), section.values["unit"], "left out: it is a word")
+        return Entry((known.words.index(word),), False, "1", word, 1.0, *_remarks(section))
     if known.is_flag:
         section.required("value", "true or false")
         flag = section.flag("value", False)
@@ -179,6 +220,9 @@ def _entry(name: str, values: Any, known: _Known) -> Entry:
     section.required("unit", f'"{unit}"' + (", or a unit of the same kind" if unit != "1" else ""))
     stated_unit = section.text("unit")
     scale = 1.0 if stated_unit == unit else factor(section.full("unit"), stated_unit, unit)
+    if name in MOTOR:
+        _, low, high = MOTOR[name]
+        finite(field, items[0] * scale, low, high, unit)
     shown = ", ".join(f"{item:g}" for item in items)
     return Entry(
         tuple(items) if scale == 1.0 else tuple(item * scale for item in items),
@@ -202,25 +246,30 @@ def _remarks(section: Section) -> tuple[str, str, str, str]:
 
 @dataclass(frozen=True)
 class _Known:
-    """What a robot file may state under a name: how many numbers (None: one), and how many at least in a list."""
+    """What a robot file may state under a name: how many numbers (None: one), how many at least in a list, or words."""
 
     unit: str
     count: int | None = None
     least: int | None = None
     is_flag: bool = False
+    words: tuple[str, ...] = ()  # one of them instead of a number
 
 
 @functools.cache
 def _known() -> Mapping[str, _Known]:
     """Every name that a robot file may have."""
-    known: dict[str, _Known] = {BODY_HEIGHT: _Known("m")}
+    known: dict[str, _Known] = {
+        BODY_HEIGHT: _Known("m"),
+        **{name: _Known(unit) for name, (unit, _, _) in MOTOR.items()},
+    }
     settings: dict[str, _Known] = {}
     for model in (*native.MODELS, *native.COMPONENTS):
         for variable in read_table_file(native.variables(model))["variable"]:
             unit, count = entry_unit(variable) or "1", variable.get("count")
             paths = list(robot_paths(variable))
             for name in paths:
-                known.setdefault(name, _Known(unit, count))
+                words = tuple(choice.replace("_", " ") for choice in variable.get("choices", ()))
+                known.setdefault(name, _Known(unit, count, words=words))
             beginnings = SETTINGS.get(model, ())
             free = variable["causality"] == "parameter" and not paths and variable["name"] != OUTLINE_COUNT
             if free and variable["name"].startswith(beginnings):
