@@ -241,8 +241,8 @@ private:
         }
     }
 
-    // At each cycle of the bus, before the servo acts: the same in Co-Simulation, which gets there at the end of a step,
-    // and for an importer that integrates.
+    // At each cycle of the bus, before the servo acts: the same in Co-Simulation, which gets there at the end of a
+    // step, and for an importer that integrates.
     void sample_current() {
         if (tick_ % servo_ticks_per_cycle == 0) {
             sampled_torque_nm_ = servo_torque_nm_;

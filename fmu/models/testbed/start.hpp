@@ -53,8 +53,8 @@ inline PerWheel<double> steady_motor_torque(const PlantSystem &system, const dou
         const auto wheel = static_cast<std::size_t>(i);
         const double direction = system.modes().gear_direction[wheel];
         const double speed = state[plant::Layout<>::motor_speed + i];
-        torque_nm[wheel] = math::abs(direction) * (wheel_torque_nm[wheel] +
-                                                   plant::gear_friction(system.parameters(), i, direction, speed));
+        torque_nm[wheel] = math::abs(direction) *
+                           (wheel_torque_nm[wheel] + plant::gear_friction(system.parameters(), i, direction, speed));
     }
     return torque_nm;
 }
@@ -81,9 +81,9 @@ inline bool start_run(const Variables &v, PlantSystem &system, plant::TippingVec
         return false;
     }
     stored_j = truth.stored_energy;
-    const auto refused = drives.start(drive_options(v), motor_angles(state.data()), truth.wheel_speed,
-                                      truth.wheel_torque, steady_motor_torque(system, state.data(), truth.wheel_torque),
-                                      v.command_enable);
+    const auto refused =
+        drives.start(drive_options(v), motor_angles(state.data()), truth.wheel_speed, truth.wheel_torque,
+                     steady_motor_torque(system, state.data(), truth.wheel_torque), v.command_enable);
     if (refused.field != GW_FIELD_NONE) {
         std::snprintf(message.text, sizeof message.text, "%s = %.9g is not allowed: [%.9g, %.9g]",
                       gw_config_name(refused.field), static_cast<double>(refused.value),
