@@ -31,6 +31,7 @@ from giveway.fitting.command import fit
 from giveway.fmu_tools.command import fmu_app, ssp
 from giveway.identification.command import calibrate
 from giveway.own_robot.command import robot_app
+from giveway.replay.command import replay
 from giveway.robot.command import variables
 from giveway.starters.command import new_app
 from giveway.studio.command import studio
@@ -51,6 +52,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     **{"run": run, "demo": demo, "reproduce": reproduce, "list": list_experiments, "variables": variables},
     **{"drivetrain": drivetrain, "fit": fit, "calibrate": calibrate, "bench": bench, "ssp": ssp},
     "studio": studio,
+    "replay": replay,
     "sweep": sweep_designs,
     "optimise": optimise_designs,
     "doctor": doctor,

@@ -299,6 +299,32 @@ typedef struct gwb_traces {
  * GWB_NO_MEMORY, or GWB_WRONG_SPEC with a message that names what is missing or wrong. */
 GWB_API uint32_t gwb_evaluate(const gwb_traces_t *traces, gwb_result_t *result);
 
+/* A replay: the controller alone, on inputs that were recorded, of this library or of a real robot.
+ *
+ *     gwb_replay_t *replay;
+ *     if (gwb_replay_start(settings, setting_count, 0.001, &replay, message)) {
+ *         while (more) { gwb_replay_steps(replay, columns, column_count, rows, &result); ... }
+ *         gwb_replay_finish(replay);
+ *     }
+ *
+ * On the inputs that a run recorded it gives the controller's outputs of that run, bit for bit. */
+typedef struct gwb_replay gwb_replay_t;
+
+/* Settings are the controller's; they are copied. 1 if it was started; else 0, *replay is null, and message
+ * (GWB_MESSAGE_SIZE bytes, or null) says why. */
+GWB_API int gwb_replay_start(const gwb_setting_t *settings, uint32_t setting_count, double step_s,
+                             gwb_replay_t **replay, char *message);
+
+/* Goes on by `rows` steps, row k of the columns being the k-th of them: the controller's inputs are read, its outputs
+ * written. An input without a column keeps its last value, at first its start value. Returns result->status: GWB_OK;
+ * GWB_WRONG_SPEC, then result->rows were done, and the value of an input that is not allowed is in the row after them;
+ * or GWB_FAILED. The replay can go on after GWB_WRONG_SPEC. */
+GWB_API uint32_t gwb_replay_steps(gwb_replay_t *replay, const gwb_column_t *columns, uint32_t column_count,
+                                  uint32_t rows, gwb_result_t *result);
+
+/* Frees it. Null is allowed. */
+GWB_API void gwb_replay_finish(gwb_replay_t *replay);
+
 /* A contact force over time as GWB_TRANSIENT_FORCE, GWB_LASTING_FORCE and GWB_LONGEST_CONTACT have it. */
 typedef struct gwb_force {
     double transient_n, transient_time_s; /* 0 and NaN without contact */

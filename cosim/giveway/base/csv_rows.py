@@ -10,7 +10,7 @@ from pathlib import Path
 
 from giveway.base.errors import FileError, GivewayError, InputFileError
 
-__all__ = ["Row", "check_widths", "head_parts", "number_of", "read_rows", "title_of"]
+__all__ = ["Row", "check_widths", "head_parts", "number_of", "read_rows", "rows_of", "title_of"]
 
 Row = tuple[int, list[str]]
 """Line and stripped cells."""
@@ -26,12 +26,17 @@ def read_rows(path: Path, what: str) -> list[Row]:
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as stream:
-            return [(line, row) for line, row in _rows(stream) if any(row)]
+            return list(rows_of(stream))
     except FileNotFoundError:
         hint = f"give the path of {what} (CSV), seen from the file that names it"
         raise FileError(path, "no such file", hint) from None
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise FileError(path, f"cannot be read: {error}") from None
+
+
+def rows_of(stream: Iterable[str]) -> Iterator[Row]:
+    """The rows of lines that are not empty and no comments; lines count from 1."""
+    return ((line, row) for line, row in _rows(stream) if any(row))
 
 
 def _rows(stream: Iterable[str]) -> Iterator[Row]:

@@ -57,9 +57,14 @@ def run(
     robot: RobotOption = None,
     engine: EngineOption = "fmu",
     preset: PresetOption = None,
+    log: Annotated[
+        Path | None,
+        typer.Option("--log", metavar="FILE", help="Also the controller's inputs, as .csv, .parquet or .mcap."),
+    ] = None,
 ) -> None:
     """Run one experiment, or your own scenario, with one bumper; writes traces, metrics, manifest and a report."""
     from giveway.base.files import check_output, replace_folder
+    from giveway.replay.run_log import check_log_path, write_log
     from giveway.report.console import print_results
     from giveway.simulation import runner
 
@@ -67,6 +72,8 @@ def run(
     scenario, summary = _scenario(what, bumper, robot, preset)
     scenario = _changed(scenario, assignments, fmi, duration, seed)
     check_output(out)
+    if log is not None:
+        check_log_path(log)
     with progress_bars(("simulation", "report")) as progress:
         result = runner.run(scenario, _share_of(progress, "simulation"), chosen)
         progress("report", 0.0)
@@ -75,11 +82,13 @@ def run(
         with replace_folder(out) as folder:
             result.write_into(folder)
             write_report(folder / "report.html", scenario.name, summary, [result])
+        if log is not None:
+            write_log(log, result)
         progress("report", 1.0)
     print_results(scenario.name, {scenario.bumper: result})
     if result.judgement is not None:
         typer.echo(str(result.judgement))
-    typer.echo(f"Written: {out / 'report.html'}")
+    typer.echo(f"Written: {out / 'report.html'}" + ("" if log is None else f" and {log}"))
     if result.interrupted:
         typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)
         raise typer.Exit(INTERRUPTED)

@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -110,6 +110,12 @@ class ProgressCounts(ctypes.Structure):
     _fields_ = [(name, ctypes.c_uint64) for name in ("runs_done", "runs", "steps_done", "steps")]
 
 
+class ReplayCalls(NamedTuple):
+    start: Callable[..., int]
+    steps: Callable[..., int]
+    finish: Callable[..., None]
+
+
 @dataclass(frozen=True)
 class NativeMetric:
     """A line of GWB_METRICS: `shown` is a sum of ``OF_COLLISION``, ``OF_DESIGN`` and ``OF_FREE_RUN``."""
@@ -182,6 +188,17 @@ class Library:
                 ("message", f"S{MESSAGE_SIZE}"),
             ],
             align=True,
+        )
+
+    @functools.cached_property
+    def replay(self) -> ReplayCalls:
+        """gwb_replay_start, gwb_replay_steps and gwb_replay_finish."""
+        pointer, number = ctypes.c_void_p, ctypes.c_uint32
+        begin = (pointer, number, ctypes.c_double, pointer, ctypes.c_char_p)
+        return ReplayCalls(
+            self._function("gwb_replay_start", ctypes.c_int, *begin),
+            self._function("gwb_replay_steps", number, pointer, pointer, number, number, pointer),
+            self._function("gwb_replay_finish", None, pointer),
         )
 
     def _function(self, name: str, returns: Any, *arguments: Any) -> Callable[..., Any]:
