@@ -240,9 +240,12 @@ class LogChecks:
             found.open.append("wheels against the yaw rate: the robot turns too little to tell")
             return
         ratio = float(gyro @ wheels) / float(wheels @ wheels)
-        best = min(
-            itertools.product((1, -1), repeat=WHEELS), key=lambda signs: float(np.abs(gyro - parts @ signs).mean())
-        )
+
+        def likeness(signs: tuple[int, ...]) -> float:  # whatever the unit is
+            turned = parts @ np.array(signs)
+            return float(gyro @ turned) / math.sqrt(float(turned @ turned) or math.inf)
+
+        best = max(itertools.product((1, -1), repeat=WHEELS), key=likeness)
         if all(sign > 0 for sign in best) and 0.8 <= ratio <= 1.25:
             found.fine.append(f"the yaw rate is {ratio:.3g} times that of the wheels")
         elif all(sign < 0 for sign in best):
