@@ -16,21 +16,28 @@ __all__ = ["MOVES", "answer_times_ms", "quantiles_ms"]
 
 MOVES, WARM_UP = 100, 20
 PARAMETER = "testbed.bumper.spring_rate"
-# Each move is one of its own, and the next one comes when the curves of this one are on the screen: drawn in the frame
-# after which the browser calls back.
+# Each move is one of its own: the next one comes when the curves of this one have been painted. A message that is
+# sent at the start of the next frame is heard when that frame has been painted.
 MEASURE = """async ([name, moves]) => {
   const slider = document.querySelector(`[data-name="${name}"] input[type=range]`);
   const curves = document.getElementById("curves");
-  const frame = () => new Promise((go) => requestAnimationFrame(go));
+  const painted = () => new Promise((done) => {
+    const seen = new MutationObserver(() => {
+      seen.disconnect();
+      const { port1, port2 } = new MessageChannel();
+      port1.onmessage = () => done(performance.now());
+      requestAnimationFrame(() => port2.postMessage(0));
+    });
+    seen.observe(curves, { attributeFilter: ["data-drawn"] });
+  });
   const found = [];
   for (let i = 0; i < moves; i++) {
-    const before = curves.dataset.drawn;
     const began = performance.now();
+    const end = painted();
     slider.value = String(300 + ((i * 37) % 400));
     slider.dispatchEvent(new Event("input", { bubbles: true }));
-    while (curves.dataset.drawn === before) await frame();
-    await frame();
-    found.push(performance.now() - began);
+    found.push((await end) - began);
+    await new Promise((done) => setTimeout(done, 20 + (i % 7) * 3));
   }
   return found;
 }"""

@@ -192,8 +192,9 @@ class Drawn {
 
   place(x: number | null): void {
     const at = x === null ? NaN : this.plot.valToPos(x, "x");
-    this.now.hidden = !(at >= 0 && at <= this.plot.over.clientWidth);
-    this.now.style.left = `${at}px`;
+    const hidden = !(at >= 0 && at <= this.plot.bbox.width / (devicePixelRatio || 1));
+    if (this.now.hidden !== hidden) this.now.hidden = hidden;
+    if (!hidden) this.now.style.transform = `translateX(${at}px)`;
   }
 
   resize(): void {

@@ -35,6 +35,7 @@ export class Scene {
   readonly canvas: HTMLCanvasElement;
   private motions: Motion[] = [];
   private box = { left: -1, bottom: -1, right: 1, top: 1 };
+  private size: [number, number] = [0, 0];
   private now = 0;
   private playing = false;
   private before = 0;
@@ -53,19 +54,20 @@ export class Scene {
     this.speed = element("select", { "aria-label": "speed of playing" }, ...speeds);
     const bar = element("p", { class: "buttons" }, this.play_button, this.seeker, this.clock, this.speed);
     where.append(element("div", { class: "scene" }, this.canvas, bar));
+    this.size = [this.canvas.clientWidth, this.canvas.clientHeight];
     this.canvas.addEventListener("keydown", (event) => this.key(event));
-    new ResizeObserver(() => this.draw()).observe(this.canvas);
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
     on_scheme(() => this.draw());
   }
 
-  /** Shows these motions, the time as it is. `keep`: the part of the floor that is in view, too. */
+  /** Shows these motions at once, the time as it is. `keep`: the part of the floor that is in view, too. */
   set(motions: Motion[], keep = false): void {
     this.motions = motions;
     if (!keep) {
       this.box = steady(this.box, limits(motions));
     }
     this.now = Math.min(this.now, this.last);
-    this.redraw();
+    this.draw();
   }
 
   /** Shows a time, s. */
@@ -151,8 +153,13 @@ export class Scene {
     }
   }
 
+  private resize(): void {
+    this.size = [this.canvas.clientWidth, this.canvas.clientHeight];
+    this.draw();
+  }
+
   private view() {
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const [width, height] = this.size;
     const [cell, top] = [width / Math.max(1, this.motions.length), 46];
     const { box } = this;
     const scale = Math.min((cell - 16) / (box.right - box.left), (height - top - 10) / (box.top - box.bottom));

@@ -2,7 +2,7 @@
 import "./studio.css";
 import { engine, Latest, type Engine } from "../engine/engine";
 import { Curves } from "../parts/curves";
-import { data, each_frame, element, shown, start, theme, unit_of } from "../parts/page";
+import { data, element, shown, start, theme, unit_of } from "../parts/page";
 import { save } from "../parts/save";
 import { moments, Scene } from "../parts/scene";
 import { outline_of, type Point } from "../parts/shapes";
@@ -38,7 +38,6 @@ class Studio {
   private moving = false;
   private faults: string[] = [];
   private link = 0;
-  private readonly draw = each_frame(() => this.redraw());
 
   constructor(private readonly tables: Tables, private readonly engine: Engine) {
     this.history = new History<State>(this.from_address());
@@ -59,7 +58,6 @@ class Studio {
   /** Computes and shows what the address says. */
   async open(): Promise<void> {
     await this.show();
-    this.redraw();
     const detected = this.results.flatMap((one) => (one ? [moments(one.motion).detected_s] : [])).find((time) => !Number.isNaN(time));
     this.scene.seek(detected === undefined ? 0 : detected + 0.01); // opens on something worth seeing
   }
@@ -116,25 +114,26 @@ class Studio {
     const { designs } = this.state;
     this.results.length = this.completes.length = designs.length;
     const jobs = designs.map((design, i) => (this.completes[i]?.design === design ? undefined : this.compute(design, i)));
-    this.show_controls();
-    await Promise.all(jobs);
-    this.draw();
+    const found = await Promise.all(jobs);
+    if (found.every((one) => one !== "overtaken")) this.redraw();
   }
 
-  private async compute(design: Design, i: number): Promise<void> {
+  private async compute(design: Design, i: number): Promise<"shown" | "overtaken" | "refused"> {
     try {
       const whole = complete(this.tables, this.engine.library, design);
       this.completes[i] = whole;
       const run = await this.latest[i]?.run(spec_of(whole));
-      if (run && this.completes[i]?.design !== undefined && i < this.state.designs.length) {
-        this.results[i] = shown_of(whole, run, this.title(whole, i));
-        this.draw();
+      if (!run || i >= this.state.designs.length) {
+        return "overtaken";
       }
+      this.results[i] = shown_of(whole, run, this.title(whole, i));
+      return "shown";
     } catch (error) {
       if (this.state.designs[i] === design) {
         this.completes[i] = undefined;
         this.fault(`Design ${NAMES[i]}: ${error instanceof Error ? error.message : String(error)}`);
       }
+      return "refused";
     }
   }
 
@@ -193,7 +192,9 @@ class Studio {
     if (text !== location.hash) history.replaceState(null, "", text);
   }
 
+  /** All that is shown, at once: a frame comes soon enough. */
   private redraw(): void {
+    this.show_controls();
     const all = this.results.filter((one) => one !== undefined);
     if (all.length === 0) {
       return;
