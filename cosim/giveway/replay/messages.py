@@ -6,6 +6,7 @@ import contextlib
 import re
 import sqlite3
 import struct
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,6 +90,8 @@ def batches(path: Path) -> Iterator[Batch]:
                 stream.seek(len(MAGIC))
                 yield from _Mcap(path, stream).batches()
                 return
+    except (struct.error, ValueError, IndexError, OverflowError) as error:
+        raise FileError(path, f"is no MCAP file as its records say: {error}", "a complete MCAP file") from None
     except FileNotFoundError:
         raise FileError(path, "no such file", "give the path of a log") from None
     except OSError as error:
@@ -171,17 +174,20 @@ class _Mcap:
     def _decompressed(self, content: bytes) -> bytes:
         import pyarrow
 
-        (size,) = struct.unpack_from("<Q", content, 16)
+        size, checksum = struct.unpack_from("<QI", content, 16)
         kind, at = _text(content, 28)
         data = content[at + 8 :]
-        if kind == "":
-            return data
-        if kind not in ("lz4", "zstd"):
+        if size > RECORD_MAX:
+            raise self._broken(f"has a chunk of {size} bytes")
+        if kind not in ("", "lz4", "zstd"):
             raise FileError(self._path, f"has a chunk of compression {kind}", "allowed: none, lz4, zstd")
         try:
-            return bytes(pyarrow.Codec(kind).decompress(data, decompressed_size=size, asbytes=True))
+            whole = pyarrow.Codec(kind).decompress(data, decompressed_size=size, asbytes=True) if kind else data
         except (pyarrow.ArrowException, OSError) as error:
             raise self._broken(f"has a chunk that cannot be decompressed ({error})") from None
+        if checksum and zlib.crc32(whole) != checksum:  # 0: its writer made none
+            raise self._broken("has a chunk whose checksum is wrong")
+        return bytes(whole)
 
     def _of_chunk(self, chunk: bytes, indexes: dict[int, NDArray[np.int64]]) -> Iterator[Batch]:
         if not indexes or any(number not in self._channels for number in indexes):

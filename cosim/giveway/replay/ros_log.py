@@ -141,7 +141,11 @@ class RosLog:
                     imu_s, imu = np.concatenate([imu_s[-1:], time_s]), np.concatenate([imu[-1:], values])
                 if batch.topic.name != self._topic.name:
                     continue
-                time_s, values = self._numbers(batch, row, self._names)
+                try:
+                    time_s, values = self._numbers(batch, row, self._names)
+                except IndexError:
+                    reason = f"{self.place(row)} or one after it is shorter than its kind"
+                    raise FileError(self.path, reason, "whole messages") from None
                 if self._topic.type != MULTI_ARRAY:
                     values = np.concatenate([time_s[:, None], values], axis=1)
                 if self._imu is not None:
