@@ -52,8 +52,8 @@ def test_a_log_of_free_motion_is_resampled_and_found_in_order(tmp_path: Path) ->
     replay = played(csv(tmp_path / "log.csv", columns()))
     assert (replay.did.way, replay.did.rows, replay.did.steps) == ("linear", 2100, 4199)
     assert replay.observes
-    assert replay.findings().wrong == []
-    assert "signs and order of torque fit the motion" in replay.findings().fine
+    assert replay.findings.wrong == []
+    assert "signs and order of torque fit the motion" in replay.findings.fine
 
 
 Change = Callable[[Columns], Columns]
@@ -95,12 +95,12 @@ def with_yaw(sign: float) -> Change:
     ],
 )
 def test_wrong_signs_orders_and_units_are_named(change: Change, said: str, tmp_path: Path) -> None:
-    wrong = played(csv(tmp_path / "log.csv", change(columns()))).findings().wrong
+    wrong = played(csv(tmp_path / "log.csv", change(columns()))).findings.wrong
     assert any(said in line for line in wrong), wrong
 
 
 def test_the_yaw_rate_of_the_wheels_is_in_order(tmp_path: Path) -> None:
-    found = played(csv(tmp_path / "log.csv", with_yaw(1.0)(columns()))).findings()
+    found = played(csv(tmp_path / "log.csv", with_yaw(1.0)(columns()))).findings
     assert found.wrong == []
     assert any("times that of the wheels" in line for line in found.fine)
 
@@ -119,7 +119,7 @@ def test_other_names_units_and_signs_give_the_same(tmp_path: Path) -> None:
     two = played(csv(tmp_path / "two.csv", other), wishes)
     assert two.did.steps == one.did.steps
     assert "torque_2 = -tau2 [mN.m]" in [column.words for column in two.chosen.columns]
-    assert two.findings().fine == one.findings().fine
+    assert two.findings.fine == one.findings.fine
 
 
 def test_missing_rows_repeated_rows_and_empty_cells_are_named(tmp_path: Path) -> None:
@@ -152,7 +152,7 @@ def test_currents_take_a_torque_constant(tmp_path: Path) -> None:
     path = csv(tmp_path / "log.csv", {n: 1e3 * v / 2.0 if "mA" in n else v for n, v in values.items()})
     with pytest.raises(GivewayError, match="--torque-constant: nothing is not allowed"):
         played(path)
-    assert played(path, torque_constant=2.0).findings().wrong == []
+    assert played(path, torque_constant=2.0).findings.wrong == []
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,7 @@ def write_page(path: Path, replay: Replay, curves: Curves, robot: str) -> None:
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
     story = replay.story
-    findings = replay.findings()
+    findings = replay.findings
     text = environment.get_template("replay.html.j2").render(
         title=f"Replay of {replay.source.path.name}",
         version=VERSION,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -114,8 +115,9 @@ class Replay:
         """What was done to the rows."""
         return self._sampling.did
 
+    @functools.cached_property
     def findings(self) -> Findings:
-        """What the log so far shows of units, signs and order."""
+        """What the log shows of units, signs and order, when it is over."""
         found = self._checks.judge()
         if self.value("estimator.velocity_source") == 0.0 and not self.inputs.has_plan:
             found.wrong.append("the controller takes the planned motion, and the log has no plan: it counts as at rest")

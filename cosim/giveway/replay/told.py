@@ -46,7 +46,7 @@ def done_lines(replay: Replay, robot: str) -> list[tuple[str, str]]:
 
 def wrong_lines(replay: Replay) -> list[str]:
     """What a user should look at."""
-    did, found = replay.did, replay.findings()
+    did, found = replay.did, replay.findings
     lines = list(found.wrong)
     if did.repeated:
         lines.append(f"{did.repeated} rows have the time of the row before; they were left out")

@@ -44,7 +44,8 @@ def residual_torques(outputs: Mapping[str, NDArray[Any]], parameters: Mapping[st
     x, y = outputs["estimate.force_x"], outputs["estimate.force_y"]
     cos, sin = np.cos(azimuth), np.sin(azimuth)
     wrench = np.stack([cos * x + sin * y, cos * y - sin * x, outputs["estimate.torque_z"]], axis=1)
-    at_slots = -wrench @ np.linalg.inv(model.wheel_jacobian)
+    # without the threads of BLAS, which would wait for the controller's
+    at_slots = -np.einsum("ij,jk->ik", wrench, np.linalg.inv(model.wheel_jacobian))
     slots = [int(value(f"geometry.wheel_slot[{wheel}]")) for wheel in _WHEELS]
     return np.asarray(at_slots[:, slots])
 

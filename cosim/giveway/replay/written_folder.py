@@ -34,7 +34,7 @@ def play_into(folder: Path, source: Source, wishes: Wishes, choice: Choice, robo
 
     check_output(folder)
     outputs = tuple(controller_outputs()) if every_output else OUTPUTS
-    started, ended = time.perf_counter(), False
+    started, ended = (time.perf_counter(), time.process_time()), False
     with Replay(source, wishes, choice, outputs) as replay, replace_folder(folder) as temporary:
         curves = Curves(choice.step_s)
         parquet = ParquetFile(temporary / "replay.parquet", replay, outputs)
@@ -55,18 +55,19 @@ def play_into(folder: Path, source: Source, wishes: Wishes, choice: Choice, robo
             mcap.close()
         write_page(temporary / "report.html", replay, curves, robot)
         write_text(temporary / "manifest.json", json.dumps(_manifest(replay, robot, ended), indent=2) + "\n")
-        wall_s = time.perf_counter() - started
+        wall_s, cpu_s = time.perf_counter() - started[0], time.process_time() - started[1]
     _print(replay, robot)
     typer.echo(f"Written: {folder / 'report.html'}, replay.parquet, replay.mcap and manifest.json")
     played_s = replay.did.steps * choice.step_s
-    typer.echo(f"Played {played_s:.6g} s in {wall_s:.2f} s, report included: {played_s / wall_s:.0f} times real time")
+    speed = f"{played_s / wall_s:.0f} times real time ({cpu_s:.2f} s of processor time)"
+    typer.echo(f"Played {played_s:.6g} s in {wall_s:.2f} s, report included: {speed}")
     if ended:
         typer.echo(f"Interrupted at t = {played_s:.3f} s; what was played is kept.", err=True)
     return ended
 
 
 def _print(replay: Replay, robot: str) -> None:
-    findings = replay.findings()
+    findings = replay.findings
     lines = [*done_lines(replay, robot), *(("in order", text) for text in findings.fine)]
     lines += [("not known", text) for text in findings.open]
     lines += [(f"mode {name}", text) for name, text in mode_lines(replay)]
@@ -85,7 +86,7 @@ def _manifest(replay: Replay, robot: str, ended: bool) -> dict[str, Any]:
     from giveway.base import native
     from giveway.library.batch_library import library
 
-    did, findings = replay.did, replay.findings()
+    did, findings = replay.did, replay.findings
     return {
         "schema_version": SCHEMA_VERSION,
         "giveway": VERSION,
