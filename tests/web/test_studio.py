@@ -90,7 +90,12 @@ def test_each_parameter_has_unit_and_range(studio: Studio) -> None:
 
 
 @pytest.mark.parametrize(
-    "changed", ["", "&preset=paper&testbed.base.mass=50&region=lower+leg", "&testbed.bumper.mount=1"]
+    "changed",
+    [
+        "",
+        "&preset=paper&testbed.base.mass=50&region=lower+leg",
+        "&robot=delivery&testbed.bumper.mount=1&testbed.start.theta=0.3&testbed.electronics.seed=5",
+    ],
 )
 def test_its_scenario_gives_the_same_bits(browser: Browser, path: Path, tmp_path: Path, changed: str) -> None:
     with browser.page(path, hash=DESIGN + changed) as tab:

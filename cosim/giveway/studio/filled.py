@@ -66,15 +66,10 @@ def _choices(model: str) -> dict[str, list[str]]:
 
 def _robots() -> Iterator[tuple[str, dict[str, Any]]]:
     """The shipped robot files, the default robot's first."""
-    default = native.robot()
-    others = [path for path in sorted(default.parent.glob("*.toml")) if not path.name.endswith(".variables.toml")]
-    for path in (default, *(other for other in others if other != default)):
+    for path in sorted(native.robots().values(), key=lambda path: (path != native.robot(), path.name)):
         robot = read_robot(path)
-        values = {
-            f"{model}.{name}": value
-            for model in native.MODELS
-            for name, value in table(model).robot_values(robot).items()
-        }
+        stated = {model: table(model).robot_values(robot) for model in native.MODELS}
+        values = {f"{model}.{name}": value for model in native.MODELS for name, value in stated[model].items()}
         yield path.stem, {"title": robot.name, "values": values}
 
 

@@ -272,6 +272,9 @@ class Studio {
     const { canvas } = this.scene;
     const { parts } = this;
     canvas.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) {
+        return;
+      }
       this.scene.pause();
       this.dragging = true;
       canvas.setPointerCapture(event.pointerId);
