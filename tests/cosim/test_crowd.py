@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from giveway import batch
+from giveway.base import native
 from giveway.base.errors import GivewayError
 from giveway.cli import _main as cli_main
 from giveway.crowd import endurance, lifts, table
@@ -462,3 +463,52 @@ def test_the_command_writes_tables_and_refuses_what_it_cannot_do(
         )
         assert said in capsys.readouterr().err
     assert not (tmp_path / "other").exists()
+
+
+def test_the_robots_of_another_file_differ_from_its_numbers(tmp_path: Path) -> None:
+    file = native.robots()["delivery"]
+    mine, trikeys = robot(DRAW, ROBOT, file=file), robot(DRAW, ROBOT)
+    assert mine.testbed["base.mass"] / 60.0 == pytest.approx(trikeys.testbed["base.mass"] / 34.7)
+    assert mine.testbed["electronics.torque_gain[0]"] == trikeys.testbed["electronics.torque_gain[0]"]
+    offset = "electronics.torque_offset[0]"  # in proportion to the sensor's range
+    assert mine.testbed[offset] == pytest.approx(trikeys.testbed[offset] * 30.0 / 28.0)
+    one = hit(DRAW, NUMBERS[0], file=file)
+    assert one.scenario.robot == file
+    assert one.scenario.parameters("testbed")["imu.present"] is False
+    assert one.scenario.parameters("controller")["imu.use"] == 0
+    with_imu = hit(DRAW, NUMBERS[0], file=file, imu=True).scenario
+    assert with_imu.parameters("testbed")["imu.present"] is True
+    assert with_imu.parameters("controller")["imu.use"] == 1
+    records = compute(DRAW, {}, NUMBERS[:4], 2, lambda _done: None, robot=file)
+    assert all(record["status"] == "ok" for record in records)
+    assert all(contact["verdict"] == "noticed" for record in records for contact in record["judged"]["contacts"][:1])
+    _, driven = endurance.drive(DRAW, "planar", 0, {}, robot=file)
+    assert (driven.robot, driven.parameters("controller")["base.mass"]) == (file, 60.0)
+
+
+def test_a_light_and_slow_robot_is_hit_and_driven_accordingly(tmp_path: Path) -> None:
+    file = tmp_path / "light.toml"
+    text = native.robot().read_text(encoding="utf-8").replace("value = 34.7", "value = 3.47")
+    speed = text.index("[admittance.speed_limit]")
+    file.write_text(text[:speed] + text[speed:].replace("value = 0.5", "value = 0.2", 1), encoding="utf-8")
+    for number in NUMBERS[:8]:
+        light, heavy = hit(DRAW, number, file=file), hit(DRAW, number)
+        assert light.mass_kg == pytest.approx(0.1 * heavy.mass_kg)
+        assert batch.Prepared([light.scenario])  # the plan is within the limits
+    moving = [hit(DRAW, number, file=file).scenario.plan for number in NUMBERS[3:8]]
+    assert all(leg.speed_mps <= 0.1601 for plan in moving if isinstance(plan, Drive) for leg in plan.legs)
+
+
+def test_the_command_names_what_a_robot_file_lacks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "bare.toml"
+    text = native.robot().read_text(encoding="utf-8")
+    file.write_text(text[: text.index("# --- Accelerometer")] + text[text.index("# --- Body outline") :])
+    for arguments, words in (
+        (("crowd", "--robot", str(file), "--imu"), "--imu: "),
+        (("crowd", "endurance", "--robot", str(file), "--imu"), "--imu: "),
+        (("crowd", "--robot", "delivery", "--calibrated"), "--calibrated: "),
+    ):
+        assert cli_main(list(arguments)) == 2
+        error = capsys.readouterr().err
+        assert words in error
+        assert len(error.splitlines()) == 1

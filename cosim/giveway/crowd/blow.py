@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,6 +34,7 @@ class Blow:
         direction_rad: of the force, world frame.
         point_m: base frame.
         start_s: time of the first touch.
+        robot: whose mass, cover and bumper these are: a robot file; None: Trikey's.
     """
 
     bumper: str
@@ -41,6 +43,7 @@ class Blow:
     direction_rad: float
     point_m: tuple[float, float]
     start_s: float
+    robot: Path | None = None
 
     def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
         force = self.force(time_s - self.start_s)
@@ -53,14 +56,18 @@ class Blow:
 
     def force(self, since_s: NDArray[np.float64]) -> NDArray[np.float64]:
         """Magnitude in N at times since the first touch (n,), shape (n,)."""
-        mass = 1.0 / (1.0 / self.mass_kg + 1.0 / start_value("base.mass"))
-        cover = _Spring(start_value("contact.stiffness"), 0.0, mass, self.speed_mps)
+
+        def value(name: str) -> float:
+            return start_value(name, robot=self.robot)
+
+        mass = 1.0 / (1.0 / self.mass_kg + 1.0 / value("base.mass"))
+        cover = _Spring(value("contact.stiffness"), 0.0, mass, self.speed_mps)
         if self.bumper == "none":
             return cover.force(since_s)
-        spring = _Spring(start_value("bumper.spring_rate"), start_value("bumper.preload"), mass, self.speed_mps)
+        spring = _Spring(value("bumper.spring_rate"), value("bumper.preload"), mass, self.speed_mps)
         if self.bumper == "spring":
             return np.clip(since_s / ONSET_S, 0.0, 1.0) * spring.force(since_s)
-        latch = start_value("bumper.latch_force")
+        latch = value("bumper.latch_force")
         if cover.peak <= latch:
             return cover.force(since_s)
         gives_way = cover.reaches_s(latch)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from giveway.base.options import ThreadsOption
+from giveway.base.options import RobotOption, ThreadsOption
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, working
 
 if TYPE_CHECKING:
@@ -55,21 +55,42 @@ def crowd(
         Path | None, typer.Option("--out", metavar="DIR", help="Without it: out/crowd/DRAW, or out/crowd/hit-N.")
     ] = None,
     threads: ThreadsOption = None,
+    robot: RobotOption = None,
 ) -> None:
     """Hit every robot of the crowd; a table per plant, with intervals and the worst cases, in DIR."""
     if context.invoked_subcommand is not None:
         return
-    from giveway.base.errors import UnknownNameError
+    from giveway.base.errors import GivewayError, UnknownNameError
     from giveway.crowd.population import DRAWS
 
     controller = _controller(assignments)
     if draw not in DRAWS:
         raise UnknownNameError("--draw", draw, DRAWS)
+    if calibrated and robot is not None:
+        raise GivewayError("--calibrated", robot, "no --robot beside it: the logs of the calibration are Trikey's")
+    _check_imu(robot, imu)
+    base = OUT if robot is None else OUT / robot.stem
     if only is not None:
-        _one(draw, only, controller, calibrated, bool(imu), out or OUT / (f"hit-{only}-imu" if imu else f"hit-{only}"))
+        folder = out or base / (f"hit-{only}-imu" if imu else f"hit-{only}")
+        _one(draw, only, controller, calibrated, bool(imu), robot, folder)
     else:
-        folder = out or OUT / (f"{draw}-calibrated" if calibrated else draw)
-        _all(draw, robots, group, (False, True) if imu is None else (imu,), controller, calibrated, folder, threads)
+        folder = out or base / (f"{draw}-calibrated" if calibrated else draw)
+        imus = (False, *([True] if _has_imu(robot) else [])) if imu is None else (imu,)
+        _all(draw, robots, group, imus, controller, calibrated, robot, folder, threads)
+
+
+def _has_imu(robot: Path | None) -> bool:
+    """Whether the robot file states an accelerometer and gyro, which robots of the crowd may then have."""
+    from giveway.robot.robot_file import read_robot
+
+    return robot is None or not read_robot(robot).does_without("imu.height")
+
+
+def _check_imu(robot: Path | None, imu: bool | None) -> None:
+    from giveway.base.errors import GivewayError
+
+    if imu and not _has_imu(robot):
+        raise GivewayError("--imu", robot, "robot files with the entries imu.*")
 
 
 def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
@@ -98,6 +119,7 @@ def _all(
     imus: Sequence[bool],
     controller: Mapping[str, Value],
     calibrated: bool,
+    robot: Path | None,
     folder: Path,
     threads: int | None,
 ) -> None:
@@ -120,7 +142,7 @@ def _all(
     )
     interrupted = False
     for imu in imus:
-        work = work_of(draw, robots, controller, found, group, imu)
+        work = work_of(draw, robots, controller, found, group, imu, robot)
         with showing(work.name) as progress:
             done = go_on(work, folder / "imu" if imu else folder, threads, progress)
         if done.ran:
@@ -131,14 +153,15 @@ def _all(
         interrupted = done.interrupted
         if interrupted:
             break
-    title = f"crowd, {draw} draw{', calibrated' if calibrated else ''}"
+    title = f"crowd, {draw} draw{', calibrated' if calibrated else ''}{f', {robot.stem}' if robot else ''}"
     for table, rows in tables(records):
         print_columns(f"{title}: {table}", short_header(), [short_cells(row) for row in rows])
         if targets := target_rows(table, rows):
             print_columns(f"Targets: {table}", TARGET_HEADER, targets)
     simulated_h = sum(record["simulated_s"] for record in records) / 3600.0
     settings = "".join(f" --set controller.{name}={value}" for name, value in controller.items())
-    again = f"giveway crowd --draw {draw} --only N{' --calibrated' if calibrated else ''}{settings}"
+    whose = f" --robot {robot}" if robot else ""
+    again = f"giveway crowd --draw {draw} --only N{' --calibrated' if calibrated else ''}{whose}{settings}"
     notes = [
         *notes,
         f"{len(records)} runs, {simulated_h:.1f} h simulated. One of them again, with its report: `{again}`, with "
@@ -178,7 +201,15 @@ def _calibrate(draw: str, robots: int, folder: Path, threads: int) -> tuple[dict
     return beliefs(done.records), [note]
 
 
-def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bool, imu: bool, folder: Path) -> None:
+def _one(
+    draw: str,
+    number: int,
+    controller: Mapping[str, Value],
+    calibrated: bool,
+    imu: bool,
+    robot: Path | None,
+    folder: Path,
+) -> None:
     """One hit: its figures as in the crowd, and the usual report of the event-exact run."""
     from giveway.base.checks import whole
     from giveway.base.files import check_output
@@ -191,10 +222,10 @@ def _one(draw: str, number: int, controller: Mapping[str, Value], calibrated: bo
         from giveway.crowd.calibrated import beliefs
         from giveway.crowd.calibrated import compute as calibrate
 
-        robot = number // PER_ROBOT
-        controller = {**beliefs(calibrate(draw, [robot], 1, lambda _done: None))[robot], **controller}
-    one = hit(draw, number, controller, imu=imu)
-    record = compute(draw, controller, [number], 1, lambda _done: None, imu=imu)[0]
+        whose = number // PER_ROBOT
+        controller = {**beliefs(calibrate(draw, [whose], 1, lambda _done: None))[whose], **controller}
+    one = hit(draw, number, controller, imu=imu, file=robot)
+    record = compute(draw, controller, [number], 1, lambda _done: None, imu=imu, robot=robot)[0]
     what = f"Robot {one.robot.number} ({one.robot.table}), {one.situation}, {one.kind}, bumper {one.bumper}."
     _report(one.scenario, what, record, folder)
     rows = [
@@ -251,6 +282,7 @@ def endurance(
         "out/endurance"
     ),
     threads: ThreadsOption = None,
+    robot: RobotOption = None,
 ) -> None:
     """Drive for hours without contact: false alarms per hour with their upper bound. Goes on where it stopped."""
     from giveway.base.checks import finite
@@ -261,10 +293,13 @@ def endurance(
         raise UnknownNameError("--group", group, HOURS)
     share = 1.0 if hours is None else finite("--hours", hours, 1e-3, 1e5, "h") / HOURS["planar"]
     controller = _controller(assignments)
+    _check_imu(robot, imu)
+    out = out if robot is None else out / robot.stem
     if only is not None:
-        _one_drive(draw, group or "planar", only, imu, controller, out)
+        _one_drive(draw, group or "planar", only, imu, controller, robot, out)
         return
-    _endure(draw, [group] if group else list(HOURS), share, imu, controller, out / "imu" if imu else out, threads)
+    groups = [group] if group else list(HOURS)
+    _endure(draw, groups, share, imu, controller, robot, out / "imu" if imu else out, threads)
 
 
 def _endure(
@@ -273,6 +308,7 @@ def _endure(
     share: float,
     imu: bool,
     controller: Mapping[str, Value],
+    robot: Path | None,
     out: Path,
     threads: int | None,
 ) -> None:
@@ -287,7 +323,7 @@ def _endure(
     found = {}
     interrupted = False
     for group in groups:
-        work = endurance(draw, group, share * HOURS[group], controller, imu)
+        work = endurance(draw, group, share * HOURS[group], controller, imu, robot)
         with showing(work.name) as progress:
             done = go_on(work, out / group.replace(" ", "-"), threads, progress)
         found[group] = {"asked": dict(work.asked), **rates(done.records)}
@@ -315,7 +351,15 @@ def _endure(
         raise typer.Exit(FAILED)
 
 
-def _one_drive(draw: str, group: str, number: int, imu: bool, controller: Mapping[str, Value], out: Path) -> None:
+def _one_drive(
+    draw: str,
+    group: str,
+    number: int,
+    imu: bool,
+    controller: Mapping[str, Value],
+    robot: Path | None,
+    out: Path,
+) -> None:
     from giveway.base.checks import whole
     from giveway.base.files import check_output
     from giveway.crowd.endurance import compute, drive
@@ -323,8 +367,8 @@ def _one_drive(draw: str, group: str, number: int, imu: bool, controller: Mappin
     whole("--only", number, 0, 2**31 - 1)
     folder = out / f"{group.replace(' ', '-')}{'-imu' if imu else ''}-run-{number}"
     check_output(folder)
-    _, scenario = drive(draw, group, number, controller, imu)
-    record = compute(draw, group, controller, [number], 1, lambda _done: None, imu)[0]
+    _, scenario = drive(draw, group, number, controller, imu, robot)
+    record = compute(draw, group, controller, [number], 1, lambda _done: None, imu, robot)[0]
     _report(scenario, f"Free motion of robot {number} ({group}): {record['detections']} false alarms.", record, folder)
     typer.echo(f"Written: {folder / 'report.html'}")
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import hashlib
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from giveway import batch
@@ -49,11 +51,13 @@ def crowd(
     beliefs: Beliefs | None = None,
     group: str | None = None,
     imu: bool = False,
+    robot: Path | None = None,
 ) -> Work:
     """The work of the first ``robots`` robots of ``draw``, with these parameters of the controller.
 
     ``beliefs``: of each robot's own; without it every controller knows its robot by the robot file alone. ``group``:
-    only the robots among them that have this plant of `GROUPS`. ``imu``: the same robots, each with an IMU.
+    only the robots among them that have this plant of `GROUPS`. ``imu``: the same robots, each with an IMU. ``robot``:
+    the robot file that they differ from, and that their controllers believe; None: Trikey's.
     """
     if group is not None and group not in GROUPS:
         raise UnknownNameError("group", group, GROUPS)
@@ -64,15 +68,22 @@ def crowd(
         "imu": imu,
         "controller": dict(controller),
     }
+    if robot is not None:
+        asked["robot"] = {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()}
     if beliefs is not None:
         asked["beliefs"] = {str(number): dict(values) for number, values in sorted(beliefs.items())}
     chosen = [number for number in range(robots) if group in (None, group_of(number))]
 
     def run(indices: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
         numbers = [chosen[index // PER_ROBOT] * PER_ROBOT + index % PER_ROBOT for index in indices]
-        return compute(draw, controller, numbers, threads, progress, beliefs, imu)
+        return compute(draw, controller, numbers, threads, progress, beliefs, imu, robot)
 
-    name = f"crowd, {draw} draw" + ("" if beliefs is None else ", calibrated") + (", IMU" if imu else "")
+    name = (
+        f"crowd, {draw} draw"
+        + ("" if robot is None else f", {robot.stem}")
+        + ("" if beliefs is None else ", calibrated")
+        + (", IMU" if imu else "")
+    )
     return Work(name, asked, len(chosen) * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run, CODE)
 
 
@@ -84,10 +95,13 @@ def compute(
     progress: Callable[[int], None],
     beliefs: Beliefs | None = None,
     imu: bool = False,
+    robot: Path | None = None,
 ) -> list[Record]:
     """Records of the hits ``numbers``: each has the same bits alone and among others."""
     own = beliefs or {}
-    hits = [hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}, imu=imu) for number in numbers]
+    hits = [
+        hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}, imu=imu, file=robot) for number in numbers
+    ]
     records: dict[int, Record] = {}
     for alike in _alike(hits):
         can_tip = alike[0].robot.group == "tipping"
@@ -163,7 +177,8 @@ def _alike(hits: Sequence[Hit]) -> list[list[Hit]]:
 
 def limits_of(one: Hit) -> Limits:
     """What `judge` needs to know of a hit."""
-    return limits(one.scenario.controller, start_value("wheel.distance"), one.kind == "moment")
+    file = one.robot.file
+    return limits(one.scenario.controller, start_value("wheel.distance", robot=file), one.kind == "moment", file)
 
 
 def record_of(one: Hit, status: tuple[str, str], method: str, simulated_s: float, judged: Judged | None) -> Record:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,12 +17,19 @@ from giveway.scenario.plan import PLAN_INPUTS, travel_from_rest
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Drive", "Leg", "tare_s"]
+__all__ = ["Drive", "Leg", "fastest", "tare_s"]
+
+SPEED_SHARE = 0.8  # of the limit: the rest is for the way back to the plan
 
 
 def tare_s() -> float:
     """Length of the controller's first tare: the plan begins after it."""
     return start_value("estimator.tare_ticks", "controller") * start_value("controller.period", "controller")
+
+
+def fastest(robot: Path | None) -> float:
+    """The highest speed that plans ask of the robots of a robot file, m/s; infinite for Trikey's."""
+    return math.inf if robot is None else SPEED_SHARE * start_value("reference.speed_limit", "controller", robot)
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,10 @@ detection is a false alarm.
 from __future__ import annotations
 
 import functools
+import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -17,7 +19,7 @@ import numpy as np
 
 from giveway import batch
 from giveway.base.errors import UnknownNameError
-from giveway.crowd.drive import Drive, Leg, tare_s
+from giveway.crowd.drive import Drive, Leg, fastest, tare_s
 from giveway.crowd.parts import Interrupted, Record, Work
 from giveway.crowd.population import DRAWS, GROUPS, Robot, controller_of, robot_of
 from giveway.crowd.statistics import rate_upper_bound
@@ -49,19 +51,30 @@ SHARES = (0.35, 0.25, 0.25, 0.15)
 LONGEST_RAMP_S = 4.0
 
 
-def endurance(draw: str, group: str, hours: float, controller: Mapping[str, Value], imu: bool = False) -> Work:
-    """The work of ``hours`` of free motion of robots of ``group``; ``imu``: each with an IMU."""
+def endurance(
+    draw: str,
+    group: str,
+    hours: float,
+    controller: Mapping[str, Value],
+    imu: bool = False,
+    robot: Path | None = None,
+) -> Work:
+    """The work of ``hours`` of free motion of robots of ``group``.
+
+    ``imu``: each with an IMU; ``robot``: the robot file that they differ from, None: Trikey's.
+    """
     if draw not in DRAWS:
         raise UnknownNameError("draw", draw, DRAWS)
     if group not in GROUPS:
         raise UnknownNameError("group", group, GROUPS)
     asked = {"draw": draw, "seed": DRAWS[draw], "group": group, "imu": imu, "controller": dict(controller)}
+    if robot is not None:
+        asked["robot"] = {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()}
     count = math.ceil(hours * 3600.0 / RUN_S)
     part = PART if group != "tipping" else PART // 8
     code = ("population.py", "../robot/population.py", "drive.py", "endurance.py", "parts.py")
-    return Work(
-        f"endurance, {group}", asked, count, part, functools.partial(compute, draw, group, controller, imu=imu), code
-    )
+    run = functools.partial(compute, draw, group, controller, imu=imu, robot=robot)
+    return Work(f"endurance, {group}", asked, count, part, run, code)
 
 
 def compute(
@@ -72,10 +85,11 @@ def compute(
     threads: int,
     progress: Callable[[int], None],
     imu: bool = False,
+    robot: Path | None = None,
 ) -> list[Record]:
     """Records of the runs ``numbers``."""
-    plans = {number // SHARED: _plan(draw, number // SHARED) for number in numbers}
-    scenarios = [_driven(draw, group, number, plans[number // SHARED], controller, imu)[1] for number in numbers]
+    plans = {number // SHARED: _plan(draw, number // SHARED, robot) for number in numbers}
+    scenarios = [_driven(draw, group, number, plans[number // SHARED], controller, imu, robot)[1] for number in numbers]
     method = "event-exact" if group == "tipping" else "fixed-step"
     table = batch.Prepared(scenarios).run(threads=threads, method=method, progress=lambda done, _of: progress(done))
     if table.attrs["interrupted"]:
@@ -95,16 +109,16 @@ def compute(
 
 
 def drive(
-    draw: str, group: str, number: int, controller: Mapping[str, Value], imu: bool = False
+    draw: str, group: str, number: int, controller: Mapping[str, Value], imu: bool = False, robot: Path | None = None
 ) -> tuple[Robot, Scenario]:
     """Run ``number``: its robot, and its whole input."""
-    return _driven(draw, group, number, _plan(draw, number // SHARED), controller, imu)
+    return _driven(draw, group, number, _plan(draw, number // SHARED, robot), controller, imu, robot)
 
 
 def _driven(
-    draw: str, group: str, number: int, plan: Drive, controller: Mapping[str, Value], imu: bool
+    draw: str, group: str, number: int, plan: Drive, controller: Mapping[str, Value], imu: bool, robot: Path | None
 ) -> tuple[Robot, Scenario]:
-    whose = robot_of(draw, number, group, imu)
+    whose = robot_of(draw, number, group, imu, robot)
     seed = int(np.random.default_rng((DRAWS[draw], 3, number)).integers(2**31))
     own: dict[str, Value] = {
         **whose.testbed,
@@ -114,12 +128,12 @@ def _driven(
     }
     known = controller_of(whose, controller)
     scenario = Scenario(
-        f"endurance {number}", RUN_S, bumper="none", testbed=own, controller=known, plan=plan, seed=seed
+        f"endurance {number}", RUN_S, bumper="none", testbed=own, controller=known, plan=plan, seed=seed, robot=robot
     )
     return whose, scenario
 
 
-def _plan(draw: str, number: int) -> Drive:
+def _plan(draw: str, number: int, robot: Path | None) -> Drive:
     """Legs until the run is over."""
     rng = np.random.default_rng((DRAWS[draw], 2, number))
 
@@ -130,14 +144,14 @@ def _plan(draw: str, number: int) -> Drive:
     legs: list[Leg] = []
     at_s = 0.0
     while True:
-        leg = _leg(rng, uniform, at_s)
+        leg = _leg(rng, uniform, at_s, fastest(robot))
         if leg.end_s > RUN_S - tare_s():
             return Drive(tuple(legs), heading)
         legs.append(leg)
         at_s = leg.end_s
 
 
-def _leg(rng: np.random.Generator, uniform: Callable[[str], float], after_s: float) -> Leg:
+def _leg(rng: np.random.Generator, uniform: Callable[[str], float], after_s: float, fastest_mps: float) -> Leg:
     start_s = after_s + uniform("standing before a leg, s")
     kind = int(rng.choice(len(SHARES), p=SHARES))
     side = 1.0 if rng.uniform() < 0.5 else -1.0
@@ -145,7 +159,7 @@ def _leg(rng: np.random.Generator, uniform: Callable[[str], float], after_s: flo
     if kind == ON_THE_SPOT:
         rate, growth = uniform("yaw rate on the spot, rad/s"), uniform("yaw acceleration on the spot, rad/s2")
         return Leg(start_s, rate, growth, cruise_s, curvature_pm=side, on_the_spot=True)
-    speed = uniform("speed, m/s")
+    speed = min(uniform("speed, m/s"), fastest_mps)
     low, high = DRAWN["acceleration, m/s2, logarithmic"]
     acceleration = max(float(low * (high / low) ** rng.uniform()), 0.5 * math.pi * speed / LONGEST_RAMP_S)
     direction = uniform("heading, rad")

@@ -12,6 +12,7 @@ import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ import numpy as np
 from giveway.base.errors import GivewayError
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.crowd.blow import Blow
-from giveway.crowd.drive import Drive, Leg, tare_s
+from giveway.crowd.drive import Drive, Leg, fastest, tare_s
 from giveway.crowd.population import DRAWS, GROUP_PATTERN, Robot, controller_of, robot, start_value, start_values
 from giveway.robot.variables import Value
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
@@ -117,9 +118,20 @@ class Hit:
     scenario: Scenario
 
 
-def hit(draw: str, number: int, controller: Mapping[str, Value] | None = None, *, imu: bool = False) -> Hit:
-    """Hit ``number`` of ``draw`` with these parameters of the controller; ``imu``: of a robot that has one."""
-    whose = robot(draw, number // PER_ROBOT, imu)
+def hit(
+    draw: str,
+    number: int,
+    controller: Mapping[str, Value] | None = None,
+    *,
+    imu: bool = False,
+    file: Path | None = None,
+) -> Hit:
+    """Hit ``number`` of ``draw`` with these parameters of the controller; ``imu``: of a robot that has one.
+
+    ``file``: robots of this robot file instead of Trikey's. What hits a lighter one is as much lighter, a push and a
+    moment as much weaker, and none drives faster than `drive.SPEED_SHARE` of its limit or is hit above its body.
+    """
+    whose = robot(draw, number // PER_ROBOT, imu, file)
     situation, kind = PATTERN[number % PER_ROBOT]
     if situation == "rest or motion":
         # Half of the robots of every plant, which repeat after ten.
@@ -128,15 +140,21 @@ def hit(draw: str, number: int, controller: Mapping[str, Value] | None = None, *
 
 
 @functools.cache
-def _outline() -> NDArray[np.float64]:
-    return outline_of(start_values())
+def _outline(file: Path | None) -> NDArray[np.float64]:
+    return outline_of(start_values(robot=file))
 
 
 @functools.cache
-def _met() -> Mapping[str, Value]:
+def _lighter(file: Path | None) -> float:
+    """Mass of the robot over Trikey's, at most 1."""
+    return 1.0 if file is None else min(1.0, start_value("base.mass", robot=file) / start_value("base.mass"))
+
+
+@functools.cache
+def _met(file: Path | None) -> Mapping[str, Value]:
     """What the place and the start of a slider depend on, of the testbed."""
     rooms = ("outline.", "slider.", "rope.", "bumper.", "contact.")
-    return MappingProxyType({name: value for name, value in start_values().items() if name.startswith(rooms)})
+    return MappingProxyType({name: value for name, value in start_values(robot=file).items() if name.startswith(rooms)})
 
 
 class _Draw:
@@ -145,7 +163,7 @@ class _Draw:
     def __init__(self, draw: str, number: int, whose: Robot, situation: str, kind: str) -> None:
         self._rng = np.random.default_rng((DRAWS[draw], 1, number))
         self._number, self._robot, self._situation, self._kind = number, whose, situation, kind
-        self._outline = _outline()
+        self._file, self._outline, self._lighter = whose.file, _outline(whose.file), _lighter(whose.file)
         self._bumper = str(self._rng.choice(list(ROBOT_BUMPERS)))
         self._seed = int(self._rng.integers(2**31))
         self._stated = int(self._rng.integers(STATED_EVERY)) == 0
@@ -156,6 +174,9 @@ class _Draw:
     def _logarithmic(self, what: str) -> float:
         low, high = DRAWN[what]
         return float(low * (high / low) ** self._rng.uniform())
+
+    def _mass(self) -> float:
+        return self._lighter * self._logarithmic("mass of what hits, kg, logarithmic")
 
     def _coin(self) -> bool:
         return bool(self._rng.uniform() < 0.5)
@@ -173,16 +194,16 @@ class _Draw:
         if self._kind in ("slow push", "moment"):
             return self._pushed(controller)
         plan, contact_s = self._motion()
-        mass, speed = self._logarithmic("mass of what hits, kg, logarithmic"), self._speed()
+        mass, speed = self._mass(), self._speed()
         slider, stated, contact_s = self._slider(plan, contact_s, mass, speed)
         scenario = self._scenario(plan, DURATION_S, {**slider, "slider.mass": mass}, controller)
         scenario = dataclasses.replace(scenario, contact=stated)
         if self._situation == "reacting":
-            mass, speed = self._logarithmic("mass of what hits, kg, logarithmic"), self._speed()
+            mass, speed = self._mass(), self._speed()
             point, inward = self._place()
             direction = self._heading_at(plan, contact_s) + inward
             start_s = contact_s + self._uniform("second hit after the first, s")
-            blow = Blow(self._bumper, mass, speed, direction, point, start_s)
+            blow = Blow(self._bumper, mass, speed, direction, point, start_s, self._file)
             scenario = dataclasses.replace(scenario, push=blow)
         return self._made(scenario, speed, mass, 0.0)
 
@@ -193,7 +214,7 @@ class _Draw:
     def _scenario(
         self, plan: Plan, duration_s: float, testbed: Mapping[str, Value], controller: Mapping[str, Value]
     ) -> Scenario:
-        height = self._uniform("height of the contact with tipping, m")
+        height = self._uniform("height of the contact with tipping, m") * self._lower()
         own = {**self._robot.testbed, **testbed, "contact.height": height, "push.height": height}
         start = plan(np.zeros(1))[0]
         own["start.theta"] = float(start[2])
@@ -205,7 +226,14 @@ class _Draw:
             controller=controller,
             plan=plan,
             seed=self._seed,
+            robot=self._file,
         )
+
+    def _lower(self) -> float:
+        """Height of the centre of mass over Trikey's, at most 1."""
+        if self._file is None:
+            return 1.0
+        return min(1.0, start_value("base.com_height", robot=self._file) / start_value("base.com_height"))
 
     def _speed(self) -> float:
         drawn = self._uniform("speed of what hits, m/s")
@@ -228,7 +256,7 @@ class _Draw:
         return Drive((leg,), heading), tare + leg.cruise_from_s + after
 
     def _leg(self, cruise_s: float, *, circle: bool | None = None, turning: bool | None = None) -> Leg:
-        speed = self._uniform("speed of the robot, m/s")
+        speed = min(self._uniform("speed of the robot, m/s"), fastest(self._file))
         acceleration = self._uniform("acceleration of the robot, m/s2")
         bend = 2.0 / self._uniform("diameter of a circle, m") * (1.0 if self._coin() else -1.0)
         round_it, turned = self._coin(), self._coin()
@@ -275,7 +303,7 @@ class _Draw:
         when = None if rope else contact_s
         heading = self._heading_at(plan, contact_s)
         approach = Approach(point, speed, math.remainder(heading + inward, 2.0 * math.pi), when, rope)
-        testbed = {**_met(), **own, "slider.mass": mass, "bumper.kind": BUMPERS[self._bumper]}
+        testbed = {**_met(self._file), **own, "slider.mass": mass, "bumper.kind": BUMPERS[self._bumper]}
         slider, stated, time_s = meet_as_stated(approach, testbed, plan, tare_s())
         return {**own, **slider}, stated, time_s
 
@@ -284,7 +312,7 @@ class _Draw:
         heavy = mass * self._uniform("hanging weight over what hits, at rest")
         run_up_s = self._uniform("run-up on the rope, in motion, s")
         wanted = speed / (SHORTEST_RUN_UP_S if self._situation == "rest" else run_up_s)
-        weight = (mass * wanted + start_value("slider.friction")) / (GRAVITY_MPS2 - wanted)
+        weight = (mass * wanted + start_value("slider.friction", robot=self._file)) / (GRAVITY_MPS2 - wanted)
         return {
             "rope.hanging_mass": min(heavy, weight) if self._situation == "rest" else weight,
             "rope.drop_height": 2.0,
@@ -304,9 +332,9 @@ class _Draw:
         else:
             start_s, duration_s = self._uniform("contact at rest, s"), PUSHED_AT_REST_S
         point, inward = self._place()
-        force, moment = PUSH_N, 0.0
+        force, moment = PUSH_N * self._lighter, 0.0
         if self._kind == "moment":
-            moment = self._uniform("moment, N m") * (1.0 if self._coin() else -1.0)
+            moment = self._uniform("moment, N m") * (1.0 if self._coin() else -1.0) * self._lighter
             arm, force = moment / MOMENT_N, MOMENT_N
             point = (arm * math.sin(inward), -arm * math.cos(inward))
         rise_s = self._uniform("rise of a slow push, s")

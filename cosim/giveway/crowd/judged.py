@@ -21,6 +21,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -95,11 +96,13 @@ class Limits:
     moment: bool = False
 
 
-def limits(controller: Mapping[str, Value], wheel_distance_m: float, moment: bool = False) -> Limits:
+def limits(
+    controller: Mapping[str, Value], wheel_distance_m: float, moment: bool = False, robot: Path | None = None
+) -> Limits:
     """Those of a controller with these parameters: of tipping as in c_core's gw_tip.c, towards a wheel."""
 
     def value(name: str) -> float:
-        return float(controller.get(f"admittance.{name}", start_value(f"admittance.{name}", "controller")))
+        return float(controller.get(f"admittance.{name}", start_value(f"admittance.{name}", "controller", robot)))
 
     acceleration = value("acceleration_limit")
     height = value("tip_height")

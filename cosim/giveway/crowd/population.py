@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -63,6 +64,9 @@ IMU: tuple[Quantity, ...] = (
 IMU_CONTROLLER: Mapping[str, Value] = MappingProxyType({"imu.use": 1, "estimator.acceleration_source": 3})
 """What the controller of a robot with an IMU is told about it."""
 
+NO_IMU_CONTROLLER: Mapping[str, Value] = MappingProxyType({"imu.use": 0, "estimator.acceleration_source": 1})
+"""What that of a robot without one is told, where the robot file has one."""
+
 
 @dataclass(frozen=True)
 class Robot:
@@ -73,12 +77,14 @@ class Robot:
         group: one of `GROUPS`.
         testbed: parameters that make it differ from the robot file.
         imu: it has an IMU.
+        file: the robot file that it differs from; None: Trikey's.
     """
 
     number: int
     group: str
     testbed: Mapping[str, Value]
     imu: bool = False
+    file: Path | None = None
 
     @property
     def table(self) -> str:
@@ -91,23 +97,23 @@ def group_of(number: int) -> str:
     return GROUPS[GROUP_PATTERN[number % len(GROUP_PATTERN)]]
 
 
-def robot(draw: str, number: int, imu: bool = False) -> Robot:
-    """Robot ``number`` of ``draw`` (a name in `DRAWS`).
+def robot(draw: str, number: int, imu: bool = False, file: Path | None = None) -> Robot:
+    """Robot ``number`` of ``draw`` (a name in `DRAWS`), one of those that the robot file ``file`` means.
 
     Raises:
         UnknownNameError: a parameter of `POPULATION` is not one of the testbed; none is skipped.
     """
-    return robot_of(draw, number, group_of(number), imu)
+    return robot_of(draw, number, group_of(number), imu, file)
 
 
-def robot_of(draw: str, number: int, group: str, imu: bool = False) -> Robot:
+def robot_of(draw: str, number: int, group: str, imu: bool = False, file: Path | None = None) -> Robot:
     """Robot ``number`` with the plant of ``group``, whatever it has in the crowd."""
     if draw not in DRAWS:
         raise UnknownNameError("draw", draw, DRAWS)
     rng = np.random.default_rng((DRAWS[draw], 0, number))
     values: dict[str, Value] = {}
-    for quantity in quantities_of(group):
-        values.update(quantity.drawn(rng))
+    for quantity in quantities_of(group, file):
+        values.update(quantity.drawn(rng, file))
     if group == "tipping":
         values["base.tipping"] = True
     if group == "single rollers":
@@ -116,10 +122,14 @@ def robot_of(draw: str, number: int, group: str, imu: bool = False) -> Robot:
         own = np.random.default_rng((DRAWS[draw], 4, number))  # all else stays as it is without
         values["imu.present"] = True
         for quantity in IMU:
-            values.update(quantity.drawn(own))
-    return Robot(number, group, MappingProxyType(values), imu)
+            values.update(quantity.drawn(own, file))
+    elif file is not None:
+        values["imu.present"] = False
+    return Robot(number, group, MappingProxyType(values), imu, file)
 
 
 def controller_of(whose: Robot, controller: Mapping[str, Value]) -> Mapping[str, Value]:
     """What the controller of this robot is set to: ``controller``, but for what it is told about its IMU."""
-    return {**controller, **IMU_CONTROLLER} if whose.imu else controller
+    if whose.imu:
+        return {**controller, **IMU_CONTROLLER}
+    return controller if whose.file is None else {**controller, **NO_IMU_CONTROLLER}

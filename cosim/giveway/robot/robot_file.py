@@ -39,6 +39,11 @@ SETTINGS: Mapping[str, tuple[str, ...]] = MappingProxyType({"controller": ("",),
 """By model: how the names begin of parameters that a robot file may set though they have start values of their own."""
 BODY_HEIGHT = "outline.height"  # of the body's top; no model needs it, `giveway robot check` uses it
 OUTLINE_COUNT = "outline.count"  # follows from the lists of corners
+NO_SETTINGS = (
+    OUTLINE_COUNT,
+    "controller.period",
+    "estimator.tare_ticks",
+)  # plans and contacts are timed by the last two
 _Number = float | int
 
 
@@ -271,7 +276,7 @@ def _known() -> Mapping[str, _Known]:
                 words = tuple(choice.replace("_", " ") for choice in variable.get("choices", ()))
                 known.setdefault(name, _Known(unit, count, words=words))
             beginnings = SETTINGS.get(model, ())
-            free = variable["causality"] == "parameter" and not paths and variable["name"] != OUTLINE_COUNT
+            free = variable["causality"] == "parameter" and not paths and variable["name"] not in NO_SETTINGS
             if free and variable["name"].startswith(beginnings):
                 name = f"{model}.{variable['name']}"
                 settings[name] = _Known(unit, count, count, variable["type"] == "boolean")

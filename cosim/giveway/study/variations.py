@@ -202,7 +202,8 @@ def crowd_of(
         raise GivewayError(section.full("kind"), "corners", 'sobol, with robot = "crowd"')
     testbed = {variable.name: variable.start for variable in table("testbed").select("parameter")}
     testbed |= cases[0].scenario.parameters("testbed")
-    found = quantities_of(group_of_plant(bool(testbed["base.tipping"]), testbed["roller.arrangement"] == 1))
+    group = group_of_plant(bool(testbed["base.tipping"]), testbed["roller.arrangement"] == 1)
+    found = quantities_of(group, cases[0].scenario.robot)
     if testbed["roller.arrangement"] == 1:
         found = (*found, RobotQuantity("rollers of each wheel", ("roller.seed",), 0.0, 2.0**31))
     all_columns = columns()
