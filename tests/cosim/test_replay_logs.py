@@ -228,3 +228,17 @@ def test_a_text_that_is_no_log(tmp_path: Path) -> None:
         (tmp_path / name).write_text("no log\n")
         with pytest.raises(FileError, match=name):
             open_log(tmp_path / name, Wishes(), None, "motor_angle", "torque")
+
+
+def test_the_example_of_columns_is_read(tmp_path: Path) -> None:
+    values = columns()
+    time, names = values["time [s]"], ("front", "left", "right")
+    other = {"stamp": 1e3 * time}
+    other |= {f"{name}.pos": np.rad2deg(values[f"wheel_angle_{i} [rad]"]) for i, name in enumerate(names)}
+    signs = (1.0, -1.0, 1.0)
+    other |= {f"{name}.tau": 1e3 * signs[i] * values[f"torque_{i} [N.m]"] for i, name in enumerate(names)}
+    other |= {name: np.zeros(len(time)) for name in ("gyro.z", "acc.x", "acc.y")}
+    example = Path(__file__).parents[2] / "examples" / "logs" / "columns.toml"
+    replay = played(csv(tmp_path / "log.csv", other), read_wishes(example, [], None))
+    assert "signs and order of torque fit the motion" in replay.findings.fine
+    assert replay.inputs.has_imu

@@ -57,6 +57,8 @@ class Column:
     def words(self) -> str:
         """For the report: "torque_1 = -tau_b, in mN.m"."""
         unit = f" [{self.head.unit}]" if self.head.unit not in (None, "1") else ""
+        if self.scale > 0.0 and self.head.name == self.quantity:
+            return f"{self.quantity}{unit}"
         return f"{self.quantity} = {'-' if self.scale < 0.0 else ''}{self.head.name}{unit}"
 
 

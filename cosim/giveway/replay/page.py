@@ -62,7 +62,9 @@ def write_page(path: Path, replay: Replay, curves: Curves, robot: str) -> None:
         modes=mode_lines(replay),
         mode_keys=[(name, MODE_COLOURS[at]) for at, name in enumerate(MODES) if at in story.modes.total_s],
         strip=_strip(replay),
-        panels=[(title, unit, _panel(replay, curves, names), _keys(labels)) for title, unit, names, labels in PANELS],
+        panels=[
+            (title, unit, _panel(replay, curves, title, names), _keys(labels)) for title, unit, names, labels in PANELS
+        ],
         top=_top(replay),
         hits=story.detections[:HITS_LISTED],
         more=story.count - min(len(story.detections), HITS_LISTED),
@@ -79,7 +81,7 @@ def _ticks(low: float, high: float, wanted: int) -> list[float]:
     """Round numbers in [low, high]."""
     raw = (high - low) / wanted
     size = 10.0 ** math.floor(math.log10(raw))
-    step = next(size * factor for factor in (1, 2, 5, 10) if size * factor >= raw)
+    step = next(size * factor for factor in (1.0, 2.0, 2.5, 5.0, 10.0) if size * factor >= raw)
     return [step * number for number in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
 
 
@@ -93,7 +95,7 @@ def _time_axis(end_s: float, bottom: float) -> list[str]:
     return parts
 
 
-def _panel(replay: Replay, curves: Curves, names: Sequence[str]) -> str:
+def _panel(replay: Replay, curves: Curves, title: str, names: Sequence[str]) -> str:
     """Least and largest value of each curve over time as a band; dashed lines are hits."""
     time_s = curves.envelope.time_s
     bands = [curves.envelope.curve(CURVES.index(name)) for name in names]
@@ -125,7 +127,7 @@ def _panel(replay: Replay, curves: Curves, names: Sequence[str]) -> str:
             back = zip(across[::-1], y_of(least[part])[::-1], strict=True)
             points = " ".join(f"{a:.1f},{b:.1f}" for a, b in (*there, *back))
             parts.append(f'<polygon points="{points}" fill="{colour}" stroke="{colour}" class="band"/>')
-    return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img">{"".join(parts)}</svg>'
+    return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{title}">{"".join(parts)}</svg>'
 
 
 def _end(replay: Replay) -> float:
@@ -148,7 +150,7 @@ def _strip(replay: Replay) -> str:
         fill = MODE_COLOURS[span.value]
         parts.append(f'<rect x="{x:.2f}" y="{TOP}" width="{width:.2f}" height="{STRIP}" fill="{fill}">{title}</rect>')
     parts += _time_axis(end_s, TOP + STRIP)
-    return f'<svg viewBox="0 0 {WIDTH} {TOP + STRIP + BOTTOM}" role="img">{"".join(parts)}</svg>'
+    return f'<svg viewBox="0 0 {WIDTH} {TOP + STRIP + BOTTOM}" role="img" aria-label="Modes">{"".join(parts)}</svg>'
 
 
 def _top(replay: Replay) -> str:
@@ -175,4 +177,4 @@ def _top(replay: Replay) -> str:
         parts.append(f'<polyline points="{begin} {at(x, y)}" class="push">{title}</polyline>')
         cx, cy = at(x, y).split(",")
         parts.append(f'<circle cx="{cx}" cy="{cy}" r="4" class="place">{title}</circle>')
-    return f'<svg viewBox="0 0 440 440" role="img" style="max-width: 440px">{"".join(parts)}</svg>'
+    return f'<svg viewBox="0 0 440 440" role="img" aria-label="Places of the hits">{"".join(parts)}</svg>'

@@ -25,7 +25,8 @@ def done_lines(replay: Replay, robot: str) -> list[tuple[str, str]]:
         ("columns", "; ".join(column.words for column in replay.chosen.columns)),
     ]
     lines += [("assumed", text) for text in (*source.said, *replay.chosen.said)]
-    lines.append(("rows", f"every {1e3 * did.usual_s:.6g} ms, up to {1e3 * did.jitter_s:.3g} ms from that"))
+    jitter = f"up to {1e3 * did.jitter_s:.3g} ms from that" if did.jitter_s > 1e-9 else "to the ns"
+    lines.append(("rows", f"every {1e3 * did.usual_s:.6g} ms, {jitter}"))
     lines.append(("steps", f"{did.steps} of {1e3 * replay.choice.step_s:.6g} ms, {did.way}: {RESAMPLING[did.way]}"))
     if replay.chosen.angle != "encoder":
         counts = value_of(replay.parameters, "estimator.encoder_counts")
