@@ -260,6 +260,8 @@ def _sensor(n: Numbers) -> Iterator[Doubt]:
 
 def _thresholds(n: Numbers) -> Iterator[Doubt]:
     friction = WHEELS * n["roller.coulomb_torque"] / n["roller.radius"]
+    if n.robot.motor_current:
+        friction += WHEELS * n["drivetrain.gear_coulomb"] / n.radius
     for name in ("fast_rest", "slow_rest"):
         entry = f"controller.channels.{name}"
         threshold = n.controller(f"channels.{name}")
@@ -272,7 +274,7 @@ def _thresholds(n: Numbers) -> Iterator[Doubt]:
             yield Doubt("threshold", (entry, "base.mass"), words)
     creep = n.controller("channels.fast_motion")
     if not 0.03 * friction <= creep <= 3.0 * friction:
-        words = f"{creep:.3g} N, while the rollers' friction is {friction:.3g} N; usual: 0.03 to 3 times it"
+        words = f"{creep:.3g} N, while the friction that it stands for is {friction:.3g} N; usual: 0.03 to 3 times it"
         yield Doubt("threshold", ("controller.channels.fast_motion", "roller.coulomb_torque"), words)
 
 
