@@ -24,6 +24,7 @@ from giveway.base.failures import DEBUG_VARIABLE, unforeseen
 from giveway.base.terminal import FAILED, INTERRUPTED, WRONG_INPUT
 from giveway.bench.command import bench
 from giveway.crowd.command import crowd_app
+from giveway.detectability.command import detectability
 from giveway.doctor.command import doctor
 from giveway.drivetrain.command import drivetrain
 from giveway.experiments.command import demo, list_experiments, reproduce, run
@@ -53,6 +54,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     **{"drivetrain": drivetrain, "fit": fit, "calibrate": calibrate, "bench": bench, "ssp": ssp},
     "studio": studio,
     "replay": replay,
+    "detectability": detectability,
     "sweep": sweep_designs,
     "optimise": optimise_designs,
     "doctor": doctor,

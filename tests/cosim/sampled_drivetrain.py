@@ -36,17 +36,21 @@ def sensed(p: Drivetrain) -> np.ndarray:
     return np.array([p.stiffness, p.damping, -p.stiffness, -p.damping])
 
 
-def simulate(p: Drivetrain, servo: Servo, torque: tuple[float, float], ticks: int) -> np.ndarray:
-    """Sensed torque at every tick after a step of torque; the servo as gw_servo.c has it, holding zero."""
+def simulate(p: Drivetrain, servo: Servo, torque: tuple[float, float], ticks: int, current: bool = False) -> np.ndarray:
+    """Sensed torque at every tick after a step of torque; the servo as gw_servo.c has it, holding zero.
+
+    ``current``: the servo's torque, read before it acts at that tick.
+    """
     phi, gamma = held(p)
     gain = 1.0 - math.exp(-2.0 * math.pi * servo.derivative_cutoff * TICK_S)
-    x, speed, last, queue, out = np.zeros(4), 0.0, 0.0, [0.0] * servo.delay, []
+    x, speed, last, queue, out, acts = np.zeros(4), 0.0, 0.0, [0.0] * servo.delay, [], 0.0
     for _ in range(ticks):
-        out.append(sensed(p) @ x)
+        out.append(acts if current else sensed(p) @ x)
         speed += gain * ((x[0] - last) / TICK_S - speed)
         last = x[0]
         queue.append(-servo.kp * x[0] - servo.kd * speed)
-        x = phi @ x + gamma @ [queue.pop(0) + torque[0], torque[1]]
+        acts = queue.pop(0)
+        x = phi @ x + gamma @ [acts + torque[0], torque[1]]
     return np.array(out)
 
 

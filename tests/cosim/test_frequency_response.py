@@ -11,7 +11,7 @@ from giveway.base.errors import GivewayError, SimulationError
 from giveway.drivetrain import frequency_response
 from giveway.drivetrain.analysis import SOURCES, analyse
 from giveway.drivetrain.frequency_response import Sweep, measure
-from giveway.drivetrain.model import Drivetrain, Servo, read, response
+from giveway.drivetrain.model import CURRENT, SERVO_PERIOD_S, Drivetrain, Servo, read, response
 
 FREQUENCY_HZ = np.array([0.7, 4.0, 9.0, 19.0, 33.0, 80.0, 250.0, 600.0])
 FRICTION_NM = 2.8  # Trikey's
@@ -52,6 +52,21 @@ def test_the_fmu_lies_on_the_model(load: str, case: str, source: str, bias_speed
     gain, phase_deg = deviation(measured, drivetrain, servo)
     assert gain < (SERVO_GAIN if case == "servo" else GAIN)
     assert phase_deg < (SERVO_PHASE_DEG if case == "servo" else PHASE_DEG)
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_the_fmus_current_lies_on_the_model(source: str) -> None:
+    drivetrain, servo = read(load="base")
+    frequency = np.array([9.0, 33.0, 80.0, 250.0])
+    measured = measure(drivetrain, servo, "servo", source, frequency, gear_friction=FRICTION_NM, motor_current=True)
+    model = response(drivetrain, servo, SOURCES[source], measured.frequency_hz, sink=CURRENT)
+    ratio = measured.response / model
+    assert np.max(np.abs(np.abs(ratio) - 1.0)) < SERVO_GAIN
+    assert np.degrees(np.max(np.abs(np.angle(ratio)))) < SERVO_PHASE_DEG
+    tick_late = ratio * np.exp(2j * np.pi * measured.frequency_hz * SERVO_PERIOD_S)
+    assert np.degrees(np.max(np.abs(np.angle(tick_late)))) > 5.0 * SERVO_PHASE_DEG
+    with pytest.raises(GivewayError, match="the motor's current shows nothing else"):
+        measure(drivetrain, servo, "unpowered", source, frequency, gear_friction=FRICTION_NM, motor_current=True)
 
 
 @pytest.mark.parametrize("fmi_version", [2, 3])

@@ -17,18 +17,21 @@ from giveway.base.errors import GivewayError, InputFileError
 from giveway.drivetrain.analysis import analyse
 from giveway.drivetrain.model import (
     ANGLE,
+    CURRENT,
     ENVIRONMENT,
     MOTOR,
     SENSED,
     Drivetrain,
     Servo,
     closed_loop,
+    current_loop,
     loop_gain,
     plant,
     read,
     response,
 )
 from giveway.robot.robot_file import read_robot
+from motor_current_robot import trikey_by_current
 from PIL import Image
 from sampled_drivetrain import TICK_S, largest_multiplier, simulate
 
@@ -118,6 +121,28 @@ def test_sampled_response_is_the_settled_simulation(delay: int) -> None:
     for source in (MOTOR, ENVIRONMENT):
         # At 20 Hz the first image is 1 % of the sine and passes at a hundredth of the sine's gain.
         assert np.max(np.abs(discrete[SENSED, source] / (hold * response(p, servo, source, frequency)) - 1.0)) < 3e-4
+
+
+@pytest.mark.parametrize("delay", [0, 3])
+def test_the_motors_current_is_that_of_the_simulation(delay: int) -> None:
+    import control
+
+    p, servo = read(load="base", delay=delay)
+    system, ticks = current_loop(p, servo), 400
+    frequency = np.array([0.5, 3.0, 20.0])
+    z = np.exp(2j * np.pi * frequency * TICK_S)
+    hold = (1.0 - 1.0 / z) / np.log(z)
+    for source in (MOTOR, ENVIRONMENT):
+        wanted = simulate(p, servo, (1.0, 0.0) if source == MOTOR else (0.0, 1.0), ticks, current=True)
+        step = control.step_response(system[0, source], TICK_S * np.arange(ticks))
+        assert np.max(np.abs(np.squeeze(step.outputs) - wanted)) < 1e-9  # rounding over 400 ticks
+        found = response(p, servo, source, frequency, sink=CURRENT)
+        assert np.max(np.abs(system(z)[0, source] / (hold * found) - 1.0)) < 3e-4  # images, as above
+    # What cannot turn the encoder, or has no servo, is not seen.
+    assert not response(p, servo, ENVIRONMENT, frequency, stuck=True, sink=CURRENT).any()
+    assert not response(p, None, ENVIRONMENT, frequency, sink=CURRENT).any()
+    # The servo takes all of a lasting torque upon itself.
+    assert response(p, servo, ENVIRONMENT, np.array([1e-4]), sink=CURRENT)[0].real == pytest.approx(-1.0, abs=1e-3)
 
 
 def test_a_slow_servo_is_a_spring_and_a_damper_at_the_motor() -> None:
@@ -292,6 +317,17 @@ def test_command_writes_single_files(cli: Cli, process: Cli, tmp_path: Path) -> 
     assert folder_content(tmp_path) == ["curves.svg", "numbers.json"]
     assert "Motor torque to sensed torque" in (tmp_path / "curves.svg").read_text()
     assert json.loads((tmp_path / "numbers.json").read_text())["parameters"]["load.inertia"] == "locked"
+
+
+def test_command_of_a_robot_by_motor_current(cli: Cli, tmp_path: Path) -> None:
+    done = cli("drivetrain", "--robot", str(trikey_by_current(tmp_path)), "--out", "out")
+    assert done.returncode == 0, done.stderr
+    assert "torque sensed by motor current" in done.stdout
+    (static,) = (line for line in done.stdout.splitlines() if line.startswith(" sensed per environment"))
+    assert static.split()[-3:] == ["-", "-", "-1.000"]
+    document = json.loads((tmp_path / "out" / "drivetrain.json").read_text())
+    assert document["sensing"] == "motor current"
+    assert [len(case["channels"]) for case in document["cases"].values()] == [0, 0, 2]
 
 
 def test_only_the_analysis_loads_python_control() -> None:

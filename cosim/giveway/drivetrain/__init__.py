@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         read,
         response,
         sampled_plant,
+        senses_current,
     )
 
 __all__ = [
@@ -41,6 +42,7 @@ __all__ = [
     "read",
     "response",
     "sampled_plant",
+    "senses_current",
 ]
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.drivetrain.model import (
+    CURRENT,
     ENVIRONMENT,
     MOTOR,
     SENSED,
@@ -20,6 +21,7 @@ from giveway.drivetrain.model import (
     Drivetrain,
     Servo,
     closed_loop,
+    current_loop,
     loop_gain,
     plant,
     response,
@@ -124,10 +126,12 @@ class Analysis:
         frequency_hz: of all responses.
         time_s: of all step responses.
         loop: the servo's open loop, broken at the motor torque.
+        motor_current: what is sensed is the servo's torque, by the motor's current; only "servo" shows any then.
     """
 
     drivetrain: Drivetrain
     servo: Servo
+    motor_current: bool
     frequency_hz: NDArray[np.float64]
     time_s: NDArray[np.float64]
     loop: NDArray[np.complex128]
@@ -135,8 +139,11 @@ class Analysis:
     cases: dict[str, Case]
 
 
-def analyse(drivetrain: Drivetrain, servo: Servo) -> Analysis:
-    """All cases of ``drivetrain`` (without "gear stuck" for a locked wheel, which cannot move)."""
+def analyse(drivetrain: Drivetrain, servo: Servo, motor_current: bool = False) -> Analysis:
+    """All cases of ``drivetrain`` (without "gear stuck" for a locked wheel, which cannot move).
+
+    ``motor_current``: torque is sensed by the motor's current instead of a sensor behind the gear.
+    """
     systems: dict[str, control.StateSpace] = {}
     if not drivetrain.locked:
         systems[STUCK] = plant(drivetrain, stuck=True)
@@ -144,10 +151,21 @@ def analyse(drivetrain: Drivetrain, servo: Servo) -> Analysis:
     systems[SERVO] = closed_loop(drivetrain, servo)
     frequency_hz = _grid([pole for system in systems.values() for pole in _poles(system)])
     time_s = _step_times([pole for system in systems.values() for pole in _poles(system)])
-    cases = {name: _case(drivetrain, servo, name, system, frequency_hz, time_s) for name, system in systems.items()}
+    seen = {SERVO: current_loop(drivetrain, servo)} if motor_current else {n: s[SENSED, :] for n, s in systems.items()}
+    cases = {
+        name: _case(drivetrain, servo, name, system, seen.get(name), motor_current, frequency_hz, time_s)
+        for name, system in systems.items()
+    }
     loop = loop_gain(drivetrain, servo)(np.exp(2j * np.pi * frequency_hz * SERVO_PERIOD_S))
     return Analysis(
-        drivetrain, servo, frequency_hz, time_s, loop, _margins(loop, frequency_hz, cases[SERVO].stable), cases
+        drivetrain,
+        servo,
+        motor_current,
+        frequency_hz,
+        time_s,
+        loop,
+        _margins(loop, frequency_hz, cases[SERVO].stable),
+        cases,
     )
 
 
@@ -177,17 +195,20 @@ def _case(
     servo: Servo,
     name: str,
     system: control.StateSpace,
+    seen: control.StateSpace | None,
+    motor_current: bool,
     frequency_hz: NDArray[np.float64],
     time_s: NDArray[np.float64],
 ) -> Case:
+    """``seen``: from both torques to what is sensed; None: nothing is."""
     poles = _poles(system)
     # The integrator of a freely turning load does not appear in the torque.
     stable = all(pole.real < 0.0 or pole.damping is None for pole in poles)
     moved = {"environment": not drivetrain.locked, "motor": name != STUCK}
     channels = {
-        source: _channel(drivetrain, servo, name, source, system, frequency_hz, time_s)
+        source: _channel(drivetrain, servo, name, source, seen, motor_current, frequency_hz, time_s)
         for source in SOURCES
-        if stable and moved[source]
+        if stable and moved[source] and seen is not None
     }
     return Case(poles, stable, channels)
 
@@ -197,14 +218,17 @@ def _channel(
     servo: Servo,
     name: str,
     source: str,
-    system: control.StateSpace,
+    seen: control.StateSpace,
+    motor_current: bool,
     frequency_hz: NDArray[np.float64],
     time_s: NDArray[np.float64],
 ) -> Channel:
     import control
 
     def answer(frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
-        return response(drivetrain, servo if name == SERVO else None, SOURCES[source], frequency, stuck=name == STUCK)
+        sink = CURRENT if motor_current else SENSED
+        driven = servo if name == SERVO else None
+        return response(drivetrain, driven, SOURCES[source], frequency, stuck=name == STUCK, sink=sink)
 
     curve = answer(frequency_hz)
     gain = np.abs(curve)
@@ -214,7 +238,7 @@ def _channel(
     peak = int(np.argmax(gain))
     # The first and last point of the range are not peaks, nor are maxima barely above the static gain.
     peaked = 0 < peak < len(gain) - 1 and gain[peak] > 1.001 * abs(static)
-    step = control.step_response(system[SENSED, SOURCES[source]], time_s)
+    step = control.step_response(seen[0, SOURCES[source]], time_s)
     return Channel(
         response=curve,
         step=np.asarray(step.outputs, dtype=float),

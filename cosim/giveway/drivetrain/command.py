@@ -42,8 +42,9 @@ def drivetrain(
         from giveway.drivetrain.frequency_response import check_load
 
         check_load(found[0])
+    current = model.senses_current(robot)
     with working("linear model"):
-        analysis = analyse(*found)
+        analysis = analyse(*found, current)
     sweeps: list[Sweep] = []
     if sweep:
         from giveway.drivetrain.frequency_response import deviations, measurable, measure_all

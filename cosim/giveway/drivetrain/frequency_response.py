@@ -7,7 +7,8 @@ The nonlinear drivetrain answers a sine like the linear one only while its gear 
 - "gear stuck": no bias, and a sine that the stiction holds.
 
 A run in which the gear changes its mode all the same is refused, not averaged over. The torque sensor is read without
-noise; the encoder has its finest resolution of a million counts, since a staircase has no slope to measure.
+noise; the encoder has its finest resolution of a million counts, since a staircase has no slope to measure. The motor's
+current is a sample of each millisecond: only these samples are fitted.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from giveway.base import native
 from giveway.base.checks import finite
 from giveway.base.errors import GivewayError, SimulationError, UnknownNameError
 from giveway.drivetrain.analysis import SERVO, SOURCES, STUCK, UNPOWERED, analyse
-from giveway.drivetrain.model import ANGLE, SENSED, SERVO_PERIOD_S, Drivetrain, Servo, response
+from giveway.drivetrain.model import ANGLE, CURRENT, SENSED, SERVO_PERIOD_S, Drivetrain, Servo, response
 from giveway.robot.variables import table
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ PERIODS, SHORTEST_S = 4, 0.02  # periods of the fitted sine
 SAMPLES_PER_PERIOD = 64  # of the master, at the least
 SHARE = 0.2  # share of the stiction or of the bias speed that the settled sine uses; its start uses more
 FREQUENCY_HZ = (0.01, 0.45 / SERVO_PERIOD_S)
+BUS_TICKS = 2  # servo ticks from one sample of the motor's current to the next
 TIME_CONSTANTS = 10.0  # until the transient has decayed
 SLOW_PER_S = 0.5  # slower decays without oscillation are covered by the fit's constant and slope
 LONGEST_SETTLING_S = 30.0
@@ -80,6 +82,7 @@ def measure(
     gear_friction: float,
     bias_speed: float = 5.0,
     amplitude: float = 10.0,
+    motor_current: bool = False,
     fmi_version: int = 3,
     progress: Callable[[float], None] | None = None,
 ) -> Sweep:
@@ -89,19 +92,23 @@ def measure(
         gear_friction: Coulomb friction and stiction of the gear, N m.
         bias_speed: rad/s, for a gear that slides; 0: without Coulomb friction.
         amplitude: of the sine, N m; reduced where the gear would change its mode.
+        motor_current: the torque in the motor's current is measured, with a servo.
         progress: called with the finished share, 0 to 1.
     """
     if case not in (STUCK, UNPOWERED, SERVO):
         raise UnknownNameError("case", case, (STUCK, UNPOWERED, SERVO))
     if source not in SOURCES:
         raise UnknownNameError("source", source, SOURCES)
+    if motor_current and case != SERVO:
+        raise GivewayError("case", case, f"{SERVO}: the motor's current shows nothing else")
     check_load(drivetrain)
     least = LEAST_STICTION_NM if case == STUCK else 0.0
     finite("gear_friction", gear_friction, least, TORQUE_LIMIT_NM / 2.0, "N m")
     finite("bias_speed", bias_speed, 0.0, 100.0, "rad/s")
     finite("amplitude", amplitude, 1e-6, TORQUE_LIMIT_NM / 4.0, "N m")
+    lowest, highest = FREQUENCY_HZ
     for frequency in frequency_hz:
-        finite("frequency_hz", float(frequency), *FREQUENCY_HZ, "Hz")
+        finite("frequency_hz", float(frequency), lowest, highest / (BUS_TICKS if motor_current else 1), "Hz")
     found = analyse(drivetrain, servo).cases[case]
     if not found.stable:
         raise GivewayError("case", case, "a stable one; this one does not settle")
@@ -110,7 +117,15 @@ def measure(
     if settling_s > LONGEST_SETTLING_S:
         raise GivewayError("case", case, f"one that settles in {LONGEST_SETTLING_S:g} s; this takes {settling_s:.3g} s")
     setup = _Setup(
-        drivetrain, servo, case, source, 0.0 if case == STUCK else bias_speed, gear_friction, amplitude, settling_s
+        drivetrain,
+        servo,
+        case,
+        source,
+        0.0 if case == STUCK else bias_speed,
+        gear_friction,
+        amplitude,
+        settling_s,
+        motor_current,
     )
     points = []
     for index, frequency in enumerate(frequency_hz):
@@ -138,11 +153,11 @@ def measure_all(
     points: int = 16,
     progress: Callable[[str, str, float], None] | None = None,
 ) -> list[Sweep]:
-    """Everything `measurable`, at frequencies from 0.5 to 500 Hz.
+    """Everything `measurable`, at frequencies from 0.5 to 500 Hz, of the motor's current to 400 Hz.
 
     ``progress``, if given, is called with case, source and its finished share.
     """
-    frequency_hz = np.geomspace(0.5, 500.0, points)
+    frequency_hz = np.geomspace(0.5, 400.0 if analysis.motor_current else 500.0, points)
     return [
         measure(
             analysis.drivetrain,
@@ -151,6 +166,7 @@ def measure_all(
             source,
             frequency_hz,
             gear_friction=gear_friction,
+            motor_current=analysis.motor_current,
             progress=None if progress is None else functools.partial(progress, case, source),
         )
         for case, source in measurable(analysis, gear_friction)
@@ -163,7 +179,12 @@ def deviations(analysis: Analysis, sweeps: Sequence[Sweep]) -> list[tuple[str, .
     for sweep in sweeps:
         servo = analysis.servo if sweep.case == SERVO else None
         model = response(
-            analysis.drivetrain, servo, SOURCES[sweep.source], sweep.frequency_hz, stuck=sweep.case == STUCK
+            analysis.drivetrain,
+            servo,
+            SOURCES[sweep.source],
+            sweep.frequency_hz,
+            stuck=sweep.case == STUCK,
+            sink=CURRENT if analysis.motor_current else SENSED,
         )
         ratio = sweep.response / model
         gain, phase = 100.0 * np.max(np.abs(np.abs(ratio) - 1.0)), np.degrees(np.max(np.abs(np.angle(ratio))))
@@ -181,6 +202,12 @@ class _Setup:
     gear_friction: float
     wanted_amplitude: float
     settling_s: float
+    motor_current: bool
+
+    @property
+    def sensed(self) -> str:
+        """The output that is measured."""
+        return "sensor.motor_torque" if self.motor_current else "sensor.torque"
 
     @property
     def frictionless(self) -> bool:
@@ -245,11 +272,13 @@ def _measure_one(setup: _Setup, frequency_hz: float, fmi_version: int) -> tuple[
     # The FMU's input is a staircase: its sine component is smaller and half a step late.
     phase = 2j * np.pi * frequency_hz * step_s
     hold = (1.0 - np.exp(-phase)) / phase
-    time_s = step_s * np.arange(settling + 1, settling + fitted + 1)
-    turn = np.exp(2j * np.pi * frequency_hz * time_s)
+    row = np.arange(settling + 1, settling + fitted + 1)
+    if setup.motor_current:
+        row = row[row % (BUS_TICKS * steps_per_tick) == 0]
+    turn = np.exp(2j * np.pi * frequency_hz * step_s * row)
     # Over whole periods; a constant and a slope cover the rest of the transient.
-    columns = np.column_stack((turn.real, turn.imag, np.ones(fitted), np.linspace(-1.0, 1.0, fitted)))
-    cosine, sine = np.linalg.lstsq(columns, sensed[settling:], rcond=None)[0][:2]
+    columns = np.column_stack((turn.real, turn.imag, np.ones(len(row)), np.linspace(-1.0, 1.0, len(row))))
+    cosine, sine = np.linalg.lstsq(columns, sensed[row - 1], rcond=None)[0][:2]
     return frequency_hz, complex(cosine, -sine) / (amplitude * hold)
 
 
@@ -260,7 +289,7 @@ def _run(
     names = ("motor.torque", "environment.torque", "servo.reference_angle", "servo.reference_speed")
     variables = table("drivetrain")
     put = instance.setter("real", [variables[name].reference for name in names])
-    get = instance.getter("real", [variables["sensor.torque"].reference])
+    get = instance.getter("real", [variables[setup.sensed].reference])
     advance = instance.stepper()
     time_s = step_s * np.arange(steps)
     inputs = np.zeros((steps, len(names)))

@@ -19,6 +19,9 @@ and its torque holds until the next, ``delay`` ticks later. Without limits and q
 
 and acts as tau_m = -C(z) thm. A reading affects the torque of its own tick: there is no latency from encoder to torque
 except ``delay``.
+
+Where torque comes from the motor's current, the servo's torque is what is sensed, sampled before the servo acts, so one
+tick old: -z^-1 C(z) thm. A stuck gear and a drive without power show nothing.
 """
 
 from __future__ import annotations
@@ -48,6 +51,7 @@ __all__ = [
     "Drivetrain",
     "Servo",
     "closed_loop",
+    "current_loop",
     "describe",
     "gear_friction",
     "loop_gain",
@@ -55,11 +59,13 @@ __all__ = [
     "read",
     "response",
     "sampled_plant",
+    "senses_current",
 ]
 
 SERVO_PERIOD_S = 5e-4
 MOTOR, ENVIRONMENT = 0, 1  # inputs of `plant`: motor torque, environment torque, N m
 SENSED, ANGLE = 0, 1  # outputs of `plant`: sensed torque, N m; motor angle, rad
+CURRENT = 2  # of `response`: the servo's torque as the motor's current shows it, N m
 LOADS = ("base", "wheel", "locked")
 
 
@@ -171,8 +177,10 @@ def describe(robot_path: Path | None, load: str | float, drivetrain: Drivetrain,
     name = (native.robot() if robot_path is None else robot_path).name
     loads = {"base": "base in straight motion", "wheel": "lifted wheel", "locked": "locked wheel"}
     inertia = "" if drivetrain.locked else f" ({drivetrain.load_inertia:.4g} kg m2 per wheel)"
+    sensed = "; torque sensed by motor current" if senses_current(robot_path) else ""
     return (
-        f"Linear drivetrain of {name}; load: {loads.get(str(load), 'given')}{inertia}; servo delay: {servo.delay} ticks"
+        f"Linear drivetrain of {name}; load: {loads.get(str(load), 'given')}{inertia}; servo delay: {servo.delay} "
+        f"ticks{sensed}"
     )
 
 
@@ -181,6 +189,11 @@ def gear_friction(robot_path: Path | None = None) -> float:
     return _value(
         read_robot(native.robot() if robot_path is None else robot_path), "drivetrain", "drivetrain.gear_coulomb"
     )
+
+
+def senses_current(robot_path: Path | None = None) -> bool:
+    """Whether the robot's torque is that of its motors' current."""
+    return read_robot(native.robot() if robot_path is None else robot_path).motor_current
 
 
 def _load_inertia(robot: Robot, load: str | float) -> float:
@@ -254,6 +267,14 @@ def closed_loop(drivetrain: Drivetrain, servo: Servo) -> control.StateSpace:
     return control.feedback(sampled_plant(drivetrain), into_motor * servo.system() * from_angle, sign=-1)
 
 
+def current_loop(drivetrain: Drivetrain, servo: Servo) -> control.StateSpace:
+    """From motor and environment torque to the servo's torque as the motor's current shows it, under the servo."""
+    import control
+
+    before = control.ss([[0.0]], [[1.0]], [[-1.0]], [[0.0]], SERVO_PERIOD_S)  # -1/z
+    return before * servo.system() * closed_loop(drivetrain, servo)[ANGLE, :]
+
+
 def response(
     drivetrain: Drivetrain,
     servo: Servo | None,
@@ -263,7 +284,8 @@ def response(
     stuck: bool = False,
     sink: int = SENSED,
 ) -> NDArray[np.complex128]:
-    """``sink`` (SENSED torque, N m, or motor ANGLE, rad) per N m of ``source`` (MOTOR, ENVIRONMENT) at each frequency.
+    """``sink`` (SENSED torque, N m, motor ANGLE, rad, or CURRENT, N m, of a servo) per N m of ``source`` (MOTOR,
+    ENVIRONMENT) at each frequency.
 
     With a servo, the response of the sampled loop to a sine has further frequencies; this is the part at the sine's own
     frequency, below half the servo's rate 1/T. With G the plant and P its sampled form, z = exp(j w T), and a hold H =
@@ -272,13 +294,14 @@ def response(
         G_ks - G_km H C(z)/(1 + C(z) P_am(z)) G_as       k: sink, s: source, m: motor torque, a: motor angle
 
     Exact: the samples of a sine are those of its continuous response, and C responds with a staircase. With a stuck
-        gear the servo has no effect.
+        gear the servo has no effect. CURRENT is a sequence of samples: -C(z)/(z (1 + C(z) P_am(z))) G_as.
     """
     w = 2.0 * np.pi * np.asarray(frequency_hz, dtype=float)
     continuous: NDArray[np.complex128] = plant(drivetrain, stuck)(1j * w)
-    direct: NDArray[np.complex128] = continuous[sink, source]
     if servo is None or stuck:
-        return direct
+        nothing: NDArray[np.complex128] = np.zeros(len(w), dtype=np.complex128)
+        direct: NDArray[np.complex128] = continuous[min(sink, ANGLE), source]
+        return nothing if sink == CURRENT else direct
     if w.max() >= np.pi / SERVO_PERIOD_S:
         raise GivewayError("frequency_hz", float(w.max() / (2.0 * np.pi)), f"below {0.5 / SERVO_PERIOD_S:g} Hz")
     z = np.exp(1j * w * SERVO_PERIOD_S)
@@ -286,5 +309,8 @@ def response(
     gain: NDArray[np.complex128] = servo.system()(z)
     sampled: NDArray[np.complex128] = sampled_plant(drivetrain)(z)
     fed_back: NDArray[np.complex128] = gain / (1.0 + gain * sampled[ANGLE, MOTOR]) * continuous[ANGLE, source]
-    returned: NDArray[np.complex128] = continuous[sink, MOTOR] * hold * fed_back
-    return direct - returned
+    if sink == CURRENT:
+        sampled_current: NDArray[np.complex128] = -fed_back / z
+        return sampled_current
+    returned: NDArray[np.complex128] = continuous[sink, source] - continuous[sink, MOTOR] * hold * fed_back
+    return returned

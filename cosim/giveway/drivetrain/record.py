@@ -29,6 +29,7 @@ def write_json(path: Path, title: str, analysis: Analysis, sweeps: Sequence[Swee
     document = {
         "schema_version": SCHEMA_VERSION,
         "title": title,
+        "sensing": "motor current" if analysis.motor_current else "torque sensor",
         "parameters": {
             name: value if math.isfinite(value) else "locked"
             for name, value in {**analysis.drivetrain.variables(), **analysis.servo.variables()}.items()
