@@ -114,6 +114,12 @@ def test_without_torque_sensors_the_gears_keep_it_from_the_motor(tmp_path: Path)
     assert value > 5.0 * felt
 
 
+def test_few_hours_cannot_show_a_low_rate() -> None:
+    assert Asked(rate_per_hour=0.1).hours_needed == pytest.approx(-math.log(0.05) / 0.1)
+    assert not Asked(rate_per_hour=0.1).can_show
+    assert Asked().can_show
+
+
 def test_a_rate_of_alarms_counts_until_the_first() -> None:
     assert Alarms(2.0, 240, 0).per_hour[:2] == (0.0, 0.0)
     assert Alarms(2.0, 240, 0).per_hour[2] == pytest.approx(-math.log(0.05) / 2.0)
@@ -187,7 +193,7 @@ def test_the_command_writes_table_rows_and_figure(
     done = cli("detectability", str(trikey_by_current(tmp_path)), "--out", "out")
     assert done.returncode == 0, done.stderr
     assert "push in motion" in done.stdout
-    assert "without friction in the gears" in done.stdout
+    assert "a tenth of the gears' friction" in done.stdout
     assert folder_content(tmp_path) == [
         "by_current.toml", "out", "out/polar.png", "out/smallest.csv", "out/table.json",
     ]  # fmt: skip

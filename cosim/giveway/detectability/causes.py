@@ -14,7 +14,7 @@ from giveway.detectability.robots import Subject
 from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
 
-__all__ = ["CAUSES", "GEAR_CAUSE", "THRESHOLDS", "THRESHOLD_CAUSE", "Changed", "raised"]
+__all__ = ["CAUSES", "FRICTIONLESS_GEARS", "GEAR_CAUSE", "THRESHOLDS", "THRESHOLD_CAUSE", "Changed", "raised"]
 
 THRESHOLDS: Mapping[int, tuple[str, ...]] = MappingProxyType(
     {
@@ -31,6 +31,7 @@ THRESHOLDS: Mapping[int, tuple[str, ...]] = MappingProxyType(
 
 GEAR_CAUSE, THRESHOLD_CAUSE = "gear friction", "thresholds"
 LEAST_FRICTION = 0.01  # of the rollers: none at all is another plant
+LEAST_GEAR_FRICTION = 0.1  # without any, encoder counts keep a resting servo moving
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,10 @@ def _each(name: str, value: Value) -> dict[str, Value]:
     return {f"{name}[{wheel}]": value for wheel in range(WHEELS)}
 
 
+FRICTIONLESS_GEARS: Mapping[str, Value] = MappingProxyType(_each("drivetrain.friction_scale", 0.0))
+"""As if the controller knew the gears' friction, for robots that drive."""
+
+
 def _noise(whose: Subject) -> Changed:
     believed = table("controller")["estimator.torque_noise"].minimum
     return Changed({"electronics.torque_noise": 0.0}, {"estimator.torque_noise": believed})
@@ -59,7 +64,7 @@ def _resolution(whose: Subject) -> Changed:
 
 
 def _gears(whose: Subject) -> Changed:
-    return Changed(_each("drivetrain.friction_scale", 0.0), {})
+    return Changed(_each("drivetrain.friction_scale", LEAST_GEAR_FRICTION), {})
 
 
 def _rollers(whose: Subject) -> Changed:
@@ -75,7 +80,7 @@ CAUSES: Mapping[str, tuple[str, Callable[[Subject], Changed]]] = MappingProxyTyp
     {
         "noise": ("without noise of the torque signal", _noise),
         "resolution": ("without its quantum", _resolution),
-        GEAR_CAUSE: ("without friction in the gears", _gears),
+        GEAR_CAUSE: ("with a tenth of the gears' friction", _gears),
         "roller friction": ("with a hundredth of the rollers' friction", _rollers),
         THRESHOLD_CAUSE: ("with half the thresholds", _thresholds),
     }

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from giveway.base import native
 from giveway.base.options import ThreadsOption
 from giveway.base.terminal import print_columns, progress_bars
 
@@ -14,7 +15,9 @@ __all__ = ["detectability"]
 
 
 def detectability(
-    robot: Annotated[Path | None, typer.Argument(metavar="[ROBOT.toml]", help="Robot file (Trikey's).")] = None,
+    robot: Annotated[
+        str, typer.Argument(metavar="[FILE|NAME]", help="Robot file (TOML), or the name of a shipped one.")
+    ] = "trikey",
     robots: Annotated[int, typer.Option("--robots", help="Robots that differ from the file.")] = 40,
     directions: Annotated[int, typer.Option("--directions", help="Sides from which they are pushed.")] = 6,
     speed: Annotated[float, typer.Option("--speed", metavar="M/S", help="Of the robots in motion.")] = 0.2,
@@ -44,7 +47,7 @@ def detectability(
 
     asked = Asked(robots, directions, speed, hours, rate)
     used = default_threads() if threads is None else whole("--threads", threads, 1, THREADS_MAX)
-    whose = subject(robot, parse_assignments(assignments or []))
+    whose = subject(native.robot_file("ROBOT", robot), parse_assignments(assignments or []))
     if out is not None:
         check_output(out)
     with progress_bars(parts(asked)) as progress:
@@ -52,8 +55,8 @@ def detectability(
     print_columns(title(found), HEADER, rows(found.stated))
     if found.told is not found.stated:
         print_columns(f"With thresholds {found.told.factor:g} times as high", HEADER, rows(found.told))
-    print_columns("What limits the push at the middle, 95 % of robots and directions", ("", "at rest", "in motion"),
-                  cause_rows(found))  # fmt: skip
+    limits = "What limits the push at the middle: 95 % of directions and robots that are not alarmed by themselves"
+    print_columns(limits, ("", "at rest", "in motion"), cause_rows(found))
     for line in remarks(found):
         typer.echo(line)
     if out is not None:

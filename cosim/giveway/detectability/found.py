@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.base.checks import finite, whole
-from giveway.crowd.statistics import Estimate, percentile
+from giveway.crowd.statistics import Estimate, percentile, rate_upper_bound
 from giveway.detectability.alarms import Alarms, alarms
-from giveway.detectability.causes import CAUSES, GEAR_CAUSE, THRESHOLD_CAUSE, raised
+from giveway.detectability.causes import CAUSES, FRICTIONLESS_GEARS, THRESHOLD_CAUSE, raised
 from giveway.detectability.probes import KINDS, MOTION, PUSH, SITUATIONS, Drive, Probe, places
 from giveway.detectability.robots import SEED, Subject, differing
 from giveway.detectability.search import Smallest, smallest
@@ -57,6 +57,16 @@ class Asked:
         finite("--speed", self.speed_mps, 0.01, 2.0, "m/s")
         finite("--hours", self.hours, 0.01, 10_000.0, "h")
         finite("--false-alarms", self.rate_per_hour, 1e-3, 1000.0, "1/h")
+
+    @property
+    def hours_needed(self) -> float:
+        """Without any alarm these show the wished rate with 95 % confidence."""
+        return rate_upper_bound(0, self.rate_per_hour)
+
+    @property
+    def can_show(self) -> bool:
+        """Whether the hours are enough for that."""
+        return self.hours >= self.hours_needed
 
 
 @dataclass(frozen=True)
@@ -161,7 +171,7 @@ def detect(whose: Subject, asked: Asked, threads: int, progress: Progress = lamb
         progress("causes", (1 + number) / len(CAUSES))
     gearless = None
     if whose.motor_current:
-        gearless = work.driven("causes", CAUSES[GEAR_CAUSE][1](whose).testbed)
+        gearless = work.driven("causes", FRICTIONLESS_GEARS)
     return Detectability(
         whose, asked, work.probes, stated, chosen, MappingProxyType(base), MappingProxyType(causes), gearless
     )
@@ -204,7 +214,7 @@ class _Work:
     def quiet_enough(self) -> Level | None:
         """The lowest thresholds of `FACTORS` that keep to the wished rate of false alarms."""
         rate = self._asked.rate_per_hour
-        for factor in FACTORS[1:]:
+        for factor in FACTORS[1:] if self._asked.can_show else ():
             controller = raised(self._whose, factor)
             level = Level(factor, self.driven("false alarms as wished", None, controller, rate))
             if level.meets(rate):
@@ -212,13 +222,16 @@ class _Work:
         return None
 
     def pushed(self, changed: Mapping[str, Value], controller: Mapping[str, Value]) -> dict[str, float]:
-        """The push at the middle, by situation, of `SHARE` of the first robots and all directions."""
+        """The push at the middle, by situation, of `SHARE` of the first robots and all directions.
+
+        Of those that are not alarmed by themselves: here the question is what the push has to overcome.
+        """
         middle = places(self._whose, CAUSE_DIRECTIONS, ("middle",))
         own = [{**robot, **changed} for robot in self._robots[:CAUSE_ROBOTS]]
         values = {}
         for situation in SITUATIONS:
             drives = self._drives[:CAUSE_ROBOTS] if situation == MOTION else None
             found = smallest(self._whose, own, drives, PUSH, middle, controller, self._threads)
-            ranked = np.sort(of_robots(found), axis=None)
-            values[situation] = float(ranked[math.ceil(SHARE * len(ranked)) - 1])
+            ranked = np.sort(found.values[~found.alarmed], axis=None)
+            values[situation] = float(ranked[math.ceil(SHARE * len(ranked)) - 1]) if len(ranked) else math.inf
         return values

@@ -14,7 +14,7 @@ from giveway.base import native
 from giveway.base.files import write_text
 from giveway.detectability.alarms import Alarms
 from giveway.detectability.causes import GEAR_CAUSE, THRESHOLD_CAUSE
-from giveway.detectability.found import SHARE, Detectability, Level, anywhere, at_each_probe
+from giveway.detectability.found import FACTORS, SHARE, Detectability, Level, anywhere, at_each_probe
 from giveway.detectability.probes import KINDS, MOTION, PUSH, REST, SITUATIONS
 from giveway.detectability.search import DECADES, largest
 
@@ -90,9 +90,12 @@ def remarks(found: Detectability) -> list[str]:
     asked, told = found.asked, found.told
     said = [f"False alarms of the same robots, thresholds as they are: {alarms_text(found.stated.alarms)}."]
     if found.chosen is None:
-        need = 3.0 / asked.rate_per_hour
-        more = f" {asked.hours:g} h cannot show it: that takes {need:.3g} h." if asked.hours < need else ""
-        said.append(f"No thresholds up to 64 times as high keep to {asked.rate_per_hour:g} per hour.{more}")
+        wish = f"{asked.rate_per_hour:g} per hour"
+        said.append(
+            f"No thresholds up to {FACTORS[-1]:g} times as high keep to {wish}."
+            if asked.can_show
+            else f"{asked.hours:g} h cannot show {wish}: that takes {asked.hours_needed:.3g} h without an alarm."
+        )
     elif found.chosen.factor == 1.0:
         said.append(f"That keeps to {asked.rate_per_hour:g} per hour, with 95 % confidence.")
     else:
@@ -111,7 +114,8 @@ def remarks(found: Detectability) -> list[str]:
     if found.gearless is not None:
         said.append(
             "The controller takes the motors' torque for that of the wheels: it has no model of the gears' friction "
-            f"yet. Without that friction the same robots would have false alarms of {alarms_text(found.gearless)}, and "
+            "yet. Without any of it the same robots would have false alarms of "
+            f"{alarms_text(found.gearless)} (thresholds as they are). With a tenth of it they would "
             + ", ".join(
                 f"{situation} notice {number(found.causes[GEAR_CAUSE].values[situation], 'N')} instead of "
                 f"{number(found.base[situation], 'N')}"

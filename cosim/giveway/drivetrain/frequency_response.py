@@ -41,6 +41,7 @@ PERIODS, SHORTEST_S = 4, 0.02  # periods of the fitted sine
 SAMPLES_PER_PERIOD = 64  # of the master, at the least
 SHARE = 0.2  # share of the stiction or of the bias speed that the settled sine uses; its start uses more
 FREQUENCY_HZ = (0.01, 0.45 / SERVO_PERIOD_S)
+CURRENT_TO_HZ = 30.0  # above, a heavy load hides from the encoder: a thousandth of a count and less
 BUS_TICKS = 2  # servo ticks from one sample of the motor's current to the next
 TIME_CONSTANTS = 10.0  # until the transient has decayed
 SLOW_PER_S = 0.5  # slower decays without oscillation are covered by the fit's constant and slope
@@ -153,11 +154,11 @@ def measure_all(
     points: int = 16,
     progress: Callable[[str, str, float], None] | None = None,
 ) -> list[Sweep]:
-    """Everything `measurable`, at frequencies from 0.5 to 500 Hz, of the motor's current to 400 Hz.
+    """Everything `measurable`, at frequencies from 0.5 to 500 Hz, of the motor's current to 30 Hz.
 
     ``progress``, if given, is called with case, source and its finished share.
     """
-    frequency_hz = np.geomspace(0.5, 400.0 if analysis.motor_current else 500.0, points)
+    frequency_hz = np.geomspace(0.5, CURRENT_TO_HZ if analysis.motor_current else 500.0, points)
     return [
         measure(
             analysis.drivetrain,
