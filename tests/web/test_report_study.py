@@ -20,12 +20,13 @@ from giveway.study.chosen import scenario_of_run
 from giveway.study.report import write_report
 from study_helpers import LATCH, SPRING, stored_runs
 
-from web.browser import WIDTHS, Browser, accessible, pictures
+from web.browser import WIDTHS, Browser, accessible
 from web.study_bench import brush_times, many_designs
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+ROOT = Path(__file__).parents[2]
 MAXIMUM_BYTES = 6_000_000
 PEAK, TRAVEL = "peak force of the run", "bumper compression"
 
@@ -224,20 +225,15 @@ def test_pictures_and_tables_can_be_taken(tab: Page, answers: Answers, tmp_path:
         np.testing.assert_equal(shown, answers.goal_unit(1).of(answers.values[int(row["design"]), 1]))
 
 
+@pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("dark", [False, True])
-def test_everybody_can_read_it(browser: Browser, path: Path, dark: bool) -> None:
-    with browser.page(path, dark=dark) as tab:
+def test_everybody_can_read_it(browser: Browser, path: Path, width: int, dark: bool) -> None:
+    folder = ROOT / "out" / "pictures"
+    folder.mkdir(parents=True, exist_ok=True)
+    with browser.page(path, width=width, dark=dark) as tab:
         assert accessible(tab) == []
-
-
-def test_nothing_is_cut_off(browser: Browser, path: Path) -> None:
-    for width in WIDTHS:
-        with browser.page(path, width=width) as tab:
-            assert tab.evaluate("document.documentElement.scrollWidth") <= width
-
-
-def test_its_pictures_are_written(browser: Browser, path: Path) -> None:
-    assert len(pictures(browser, path, "report_of_a_study")) == 4
+        assert tab.evaluate("document.documentElement.scrollWidth") <= width
+        tab.screenshot(path=folder / f"report_of_a_study_{width}_{'dark' if dark else 'light'}.png", full_page=True)
 
 
 def test_thousands_of_designs_are_small_and_quick(browser: Browser, tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ function names_of(column: Column, most: number): number[] {
 }
 
 /** Round numbers, so many at most. */
-function steps(low: number, high: number, most: number): number[] {
+export function steps(low: number, high: number, most: number): number[] {
   if (!(high > low)) {
     return [low];
   }

@@ -2,10 +2,12 @@
 
 import "../parts/theme.css";
 import "./study.css";
+import "./figures.css";
 import { data, element, start } from "../parts/page";
 import { save } from "../parts/save";
 import { Beside } from "./beside";
 import { DesignTable } from "./design_table";
+import { draw_figures, type FigureData } from "./figures";
 import { Parallel } from "./parallel";
 import { Scatter, type Marked } from "./scatter";
 import { Selection, type Only } from "./selection";
@@ -14,7 +16,12 @@ import { cell_text, FEASIBLE, Study, titled, type StudyData } from "./study_data
 const ONLY: Record<Only, string> = { all: "all designs", allowed: "those that meet all constraints", front: "the Pareto front" };
 
 start(async () => {
-  const study = new Study(data<StudyData>());
+  const given = data<StudyData & { figures: FigureData[] }>();
+  draw_figures(given.figures);
+  if (!given.columns) {
+    return; // nothing is stored yet
+  }
+  const study = new Study(given);
   const place = (id: string): HTMLElement => document.getElementById(id) ?? document.body.appendChild(element("div"));
   const selection = new Selection(study);
   const marked: Marked = { chosen: study.chosen, picked: -1 };
