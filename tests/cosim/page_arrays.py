@@ -34,4 +34,8 @@ def data_of(page: str) -> Any:
     """What a page's script is given."""
     found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
     assert found is not None
-    return json.loads(found[1])
+    return json.loads(found[1], parse_constant=_refused)
+
+
+def _refused(constant: str) -> Any:
+    raise AssertionError(f"{constant} is no JSON")

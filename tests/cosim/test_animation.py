@@ -49,7 +49,7 @@ def world(points: Any, x: float, y: float, theta: float) -> Polygon:
 
 
 def placed(points: Any, scene: dict[str, Any], row: int, moved: float = 0.0) -> Polygon:
-    """Points behind the nose in the world, as animation.js places them."""
+    """Points behind the nose in the world, as the page's script places them."""
     rail = np.array(scene["obstacle"]["rail"])
     nose = [values[row] for values in scene["nose"]]
     back, left = np.asarray(points).T

@@ -32,6 +32,8 @@ NATIVE = {
     "giveway_batch.wasm.musl.txt",
     "giveway_batch.wasm.wasi.txt",
     "giveway_batch.wasm.zig.txt",
+    "page_report.css",
+    "page_report.js",
     "page_studio.css",
     "page_studio.js",
     "page_study.css",

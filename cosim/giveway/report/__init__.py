@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,8 +32,9 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     import jinja2
 
     from giveway.report import pushes
-    from giveway.report.animation import scene
+    from giveway.report.animation import motion, scene
     from giveway.report.figures import figures
+    from giveway.report.page import page
     from giveway.simulation.metrics import definitions
     from giveway.simulation.summary import false_detection_line, preset_line, push_rows, table_rows, warning_lines
 
@@ -49,9 +48,8 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
-    resources = files("giveway.report") / "templates"
-    scenes = [scene(BUMPER_LABELS[bumper], result) for bumper, result in by_bumper.items()]
-    return environment.get_template("report.html.j2").render(
+    scenes = [motion(scene(BUMPER_LABELS[bumper], result)) for bumper, result in by_bumper.items()]
+    body = environment.get_template("report.html.j2").render(
         title=title,
         summary=" ".join(filter(None, (summary, preset_line(by_bumper)))),
         header=[BUMPER_LABELS[bumper] for bumper in by_bumper],
@@ -61,10 +59,8 @@ def render(title: str, summary: str, results: Sequence[Result]) -> str:
         warnings=warning_lines(by_bumper),
         pushes=[(push_rows(result), false_detection_line(result)) for result in results if result.pushes],
         figures=drawn,
-        # "</" would end the script element.
-        scenes=json.dumps(scenes, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
         manifest=results[0].manifest,
         runs=[result.manifest for result in results],
-        style=(resources / "style.css").read_text(encoding="utf-8"),
-        script=(resources / "animation.js").read_text(encoding="utf-8"),
     )
+    data = {"figures": [figure.data for figure in drawn], "scenes": scenes}
+    return page("report", f"giveway: {title}", data, body=body)

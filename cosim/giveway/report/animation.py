@@ -18,11 +18,17 @@ if TYPE_CHECKING:
     from giveway.simulation.push_response import PushResponse
     from giveway.simulation.result import Result
 
-__all__ = ["scene"]
+__all__ = ["motion", "scene"]
 
 LEAD_S = 0.15  # shown before contact
 IMPACT_S, IMPACT_STEP_S, ESCAPE_STEP_S = 0.6, 0.002, 0.025
 DECIMALS = 4
+PUSH = tuple(f"{kind}_{axis}" for kind in ("force", "point") for axis in "xy")
+FELT = (
+    "controller.estimate.valid",
+    "controller.detection.count",
+    *(f"controller.{what}.{name}" for what in ("estimate", "detection") for name in PUSH),
+)  # in the base frame
 
 
 def scene(label: str, result: Result) -> dict[str, Any]:
@@ -37,7 +43,7 @@ def scene(label: str, result: Result) -> dict[str, Any]:
     x, y = hit["testbed.truth.x"], hit["testbed.truth.y"]
 
     def sampled(name: str) -> list[float]:
-        return _rounded(hit[name][rows])
+        return _rounded(hit[name][rows].astype(float))
 
     force = [hit[f"testbed.truth.contact_force_{axis}"] for axis in "xy"]
     point = [hit[f"testbed.truth.contact_point_{axis}"] for axis in "xy"]
@@ -45,8 +51,6 @@ def scene(label: str, result: Result) -> dict[str, Any]:
         pushed_at = _to_world(hit, "testbed.push.point_x", "testbed.push.point_y", x, y, theta)
         point = [np.where(hit.pushed(), at, touched) for at, touched in zip(pushed_at, point, strict=True)]
         force = [total + hit[f"testbed.push.force_{axis}"] for total, axis in zip(force, "xy", strict=True)]
-    estimated_point = _to_world(hit, "controller.estimate.point_x", "controller.estimate.point_y", x, y, theta)
-    estimated_force = _to_world(hit, "controller.estimate.force_x", "controller.estimate.force_y", 0.0, 0.0, theta)
     return {
         "label": label,
         "outline": outline_of(parameters).tolist(),
@@ -59,9 +63,38 @@ def scene(label: str, result: Result) -> dict[str, Any]:
         "compression": sampled("testbed.truth.bumper_compression"),
         "point": [_rounded(values[rows]) for values in point],
         "force": [_rounded(values[rows]) for values in force],
-        "estimated_point": [_rounded(values[rows]) for values in estimated_point],
-        "estimated_force": [_rounded(values[rows], 2) for values in estimated_force],
+        "felt": {name: sampled(name) for name in FELT},
+        "touched": _rounded(((hit["testbed.truth.contact"] != 0) | hit.pushed()).astype(float)[rows], 0),
         "touches": touches,
+    }
+
+
+def motion(found: dict[str, Any]) -> dict[str, Any]:
+    """A `scene` as the page's script takes it: traces by name, shapes by what they are."""
+    named = {"x": found["base"][0], "y": found["base"][1], "theta": found["base"][2]}
+    named |= {"nose_x": found["nose"][0], "nose_y": found["nose"][1], "bumper_compression": found["compression"]}
+    named |= {f"contact_{what}_{axis}": found[what][k] for what in ("force", "point") for k, axis in enumerate("xy")}
+    shape, plate_ = found["obstacle"], found["plate"]
+    front = None if shape is None else shape["body"][0][0]
+    return {
+        "label": found["label"],
+        "time": found["time"],
+        "traces": {f"testbed.truth.{name}": values for name, values in named.items()}
+        | {"testbed.truth.contact": found["touched"]}
+        | found["felt"],
+        "robot": {
+            "outline": found["outline"],
+            "wheel": found["wheel"],
+            "obstacle": None
+            if shape is None
+            else {
+                **{name: shape[name] for name in ("rail", "sprung", "front")},
+                "radius": shape["radius"] or 0.0,
+                "edge": shape["edge"] is not None,
+                "body": front,
+            },
+            "plate": plate_,
+        },
     }
 
 

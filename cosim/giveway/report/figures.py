@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.style import context
 
-from giveway.report.inline_svg import inline_svg
+from giveway.report.figure_data import figure_data
 from giveway.report.runs import IMPACT_MS, Run, force_window_ms
 from giveway.report.style import STYLE, TRUTH_COLOUR
 from giveway.robot.wheels import WHEELS
@@ -32,11 +32,11 @@ BETWEEN_IN = (0.2, 0.5)  # columns, whose numbers are those of the first one; ro
 
 @dataclass(frozen=True)
 class NamedFigure:
-    """A figure with its texts; ``svg`` is an element for inline use."""
+    """A figure with its texts; ``data``: of `figure_data`, for the page's script."""
 
     title: str
     caption: str
-    svg: str
+    data: dict[str, Any]
 
 
 def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
@@ -44,8 +44,8 @@ def figures(results: Mapping[str, Result]) -> list[NamedFigure]:
     runs = [Run(label, result) for label, result in results.items()]
     drawn = []
     with context(STYLE):
-        for number, (title, caption, draw) in enumerate(_FIGURES):
-            drawn.append(NamedFigure(title, caption, inline_svg(draw(runs), f"f{number}-")))
+        for title, caption, draw in _FIGURES:
+            drawn.append(NamedFigure(title, caption, figure_data(draw(runs))))
     return drawn
 
 

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.style import context
 
 from giveway.report import push_path
+from giveway.report.figure_data import figure_data
 from giveway.report.figures import NamedFigure
-from giveway.report.inline_svg import inline_svg
 from giveway.report.style import STYLE, TRUTH_COLOUR
 from giveway.scenario.approach import outline_of
 from giveway.simulation.push_response import responses_of
@@ -37,8 +37,8 @@ def figures(result: Result) -> list[NamedFigure]:
     outline = outline_of(result.manifest["parameters"]["testbed"])
     name = result.manifest["scenario"]["name"]
     with context(STYLE):
-        forces = inline_svg(_forces(result, found.pushes), "p0-")
-    above = inline_svg(push_path.path({name: (result.traces, found)}, outline), "p1-")
+        forces = figure_data(_forces(result, found.pushes))
+    above = figure_data(push_path.path({name: (result.traces, found)}, outline))
     return [
         NamedFigure(
             "Each push",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import math
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,17 +33,18 @@ def write_evidence(answers: Answers, found: Evidence) -> list[Path]:
     import jinja2
     from matplotlib.style import context
 
-    from giveway.report.inline_svg import inline_svg
+    from giveway.report.figure_data import figure_data
+    from giveway.report.page import page
     from giveway.report.style import STYLE
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
     with context(STYLE):
-        picture = inline_svg(forces(answers, found), "e-")
+        picture = figure_data(forces(answers, found))
     table = found.table
     setup = answers.setup
-    text = environment.get_template("evidence.html.j2").render(
+    body = environment.get_template("evidence.html.j2").render(
         title=f"Evidence for design {found.design} of {setup.name}",
         notice=NOTICE,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
@@ -52,18 +52,18 @@ def write_evidence(answers: Answers, found: Evidence) -> list[Path]:
         design=[*design_lines(answers, found.design), *probability_lines(answers, found.design)],
         limits=[(one.goal.metric.name, limit_words(setup, i)) for i, one in enumerate(setup.constraints)],
         summary=summary(found),
-        picture=picture,
         header=list(table.columns),
         rows=[[_cell(value) for value in row] for row in table.itertuples(index=False)],
         asked=all_asked(found.answers.setup),
-        style=(files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8"),
     )
-    page, listed = found.folder / "evidence.html", found.folder / "evidence.csv"
-    with replace_files(page, listed) as (html, csv):
+    title = f"giveway: evidence for design {found.design} of {setup.name}"
+    text = page("report", title, {"figures": [picture]}, body=body)
+    html_file, listed = found.folder / "evidence.html", found.folder / "evidence.csv"
+    with replace_files(html_file, listed) as (html, csv):
         html.write_text(text, encoding="utf-8")
         told = "".join(f"# {name}: {text}\n" for name, text in probability_lines(answers, found.design))
         csv.write_text(f"# {NOTICE}\n{told}{table.to_csv(index=False)}", encoding="utf-8")
-    return [page, listed]
+    return [html_file, listed]
 
 
 def _cell(value: object) -> str:

@@ -42,6 +42,7 @@ def write_report(path: Path, answers: Answers) -> None:
     environment.filters["breakable"] = _breakable
     setup, told = answers.setup, certainty.recommended_indices(answers)
     known = bool((answers.stored > 0).any())
+    figures = _figures(answers)
     data = page_data(answers) if known else {}
     body = environment.get_template("study.html.j2").render(
         title=setup.name,
@@ -57,7 +58,7 @@ def write_report(path: Path, answers: Answers) -> None:
         rows=tables.design_rows(answers, DESIGNS_MAX),
         definitions=definitions(goal.metric.column for goal in answers.goals),
         ranked=len(answers.order),
-        figures=_figures(answers),
+        figures=figures,
         sensitivity_header=tables.sensitivity_header(answers),
         sensitivities=tables.sensitivity_rows(answers),
         unknown=answers.sensitivities().reason,
@@ -72,7 +73,8 @@ def write_report(path: Path, answers: Answers) -> None:
         reasons=_reasons({design: text for design, text in answers.reason.items() if misfit(text) is None}),
         warnings=_warnings(answers.warnings),
     )
-    write_text(path, page("study", f"giveway study: {setup.name}", data, body=body, engine=known))
+    drawn = {"figures": [figure.data for figure in figures]}
+    write_text(path, page("study", f"giveway study: {setup.name}", drawn | data, body=body, engine=known))
 
 
 def _in_page(data: Mapping[str, Any]) -> str:
@@ -115,7 +117,7 @@ def _figures(answers: Answers) -> list[NamedFigure]:
     """How a search went, and what decides: the page's script draws the designs themselves."""
     from matplotlib.style import context
 
-    from giveway.report.inline_svg import inline_svg
+    from giveway.report.figure_data import figure_data
     from giveway.report.style import STYLE
     from giveway.study import figures
 
@@ -123,7 +125,7 @@ def _figures(answers: Answers) -> list[NamedFigure]:
 
     def add(title: str, caption: str, figure: Figure | None) -> None:
         if figure is not None:
-            found.append(NamedFigure(title, caption, inline_svg(figure, f"s{len(found)}-")))
+            found.append(NamedFigure(title, caption, figure_data(figure)))
 
     with context(STYLE):
         if optimum := answers.manifest.get("optimum"):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,8 @@ from giveway.base.files import write_text
 from giveway.experiments.reproduction.findings import CLASSES, PROVENANCES
 from giveway.experiments.reproduction.reproduce import number
 from giveway.paper.printed import NOT_JUDGED
-from giveway.report.inline_svg import inline_svg
+from giveway.report.figure_data import figure_data
+from giveway.report.page import page
 from giveway.report.style import STYLE
 from giveway.robot.robot_file import read_robot
 
@@ -54,25 +54,26 @@ def render(reproduction: Reproduction) -> str:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
+    pictures = [
+        (chapter.experiment.name, picture.name, picture.figure)
+        for chapter in reproduction.chapters
+        for picture in chapter.findings.pictures
+    ]
     with context(STYLE):
-        drawings = {
-            (chapter.experiment.name, picture.name): inline_svg(picture.figure, f"{anchor}-{picture.name}-")
-            for anchor, chapter in ((chapter.experiment.name, chapter) for chapter in reproduction.chapters)
-            for picture in chapter.findings.pictures
-        }
-    return environment.get_template("reproduction.html.j2").render(
+        figures = [figure_data(figure) for _, _, figure in pictures]
+    body = environment.get_template("reproduction.html.j2").render(
         chapters=reproduction.chapters,
         lines={
             chapter.experiment.name: [_line(row) for row in chapter.findings.rows] for chapter in reproduction.chapters
         },
-        drawings=drawings,
+        drawings={(experiment, name): index for index, (experiment, name, _) in enumerate(pictures)},
         summary=list(zip(reproduction.summary(), CLASSES.values(), strict=True)),
         not_judged=NOT_JUDGED,
         interrupted=reproduction.interrupted,
         manifest=reproduction.manifest,
         parameters=_parameters(),
-        style=(files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8"),
     )
+    return page("report", "giveway: the paper, reproduced", {"figures": figures}, body=body)
 
 
 def _line(row: Row) -> _Line:
