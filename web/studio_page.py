@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Studio"]
 
-QUIET_MS = 400.0  # after the last curves: the address is written 300 ms after a change
+OPENED_MS = 200.0  # until groups that were opened have their rows
 
 
 class Studio:
@@ -31,7 +31,7 @@ class Studio:
         """Names of the parameters in the groups, all or the first ones, which are open then."""
         groups = "[...document.querySelectorAll('details.group')].slice(0, count)"
         self.tab.evaluate(f"(count) => {groups}.forEach((one) => (one.open = true))", count or 1000)
-        self.settle()
+        self.tab.wait_for_timeout(OPENED_MS)
         rows = "() => [...document.querySelectorAll('.parameter[data-name]')].map((row) => row.dataset.name)"
         found: list[str] = self.tab.evaluate(rows)
         return found
@@ -59,8 +59,8 @@ class Studio:
         self.settle()
 
     def settle(self) -> None:
-        """Until nothing more is computed, drawn or written."""
-        self.tab.wait_for_timeout(QUIET_MS)
+        """Until nothing more is computed or drawn, and the address is written, 0.3 s after a change."""
+        self.tab.locator('#curves[data-settled="true"]').wait_for()
 
     def numbers(self, name: str) -> list[float]:
         """A metric of each design."""

@@ -112,6 +112,7 @@ class Studio {
   /** Computes all designs that have changed, and shows them. */
   private async show(): Promise<void> {
     const { designs } = this.state;
+    this.parts.curves.dataset.settled = "false";
     this.results.length = this.completes.length = designs.length;
     const jobs = designs.map((design, i) => (this.completes[i]?.design === design ? undefined : this.compute(design, i)));
     const found = await Promise.all(jobs);
@@ -190,6 +191,8 @@ class Studio {
   private write_address(): void {
     const text = `#${to_hash(this.tables, this.state.designs)}`;
     if (text !== location.hash) history.replaceState(null, "", text);
+    const shown_now = this.completes.every((whole, i) => whole === undefined || this.results[i]?.complete === whole);
+    this.parts.curves.dataset.settled = String(shown_now);
   }
 
   /** All that is shown, at once: a frame comes soon enough. */
@@ -203,7 +206,7 @@ class Studio {
     const { x, panels: found } = panels(all);
     this.curves.set(x, found);
     this.show_numbers(all);
-    // For tests and the benchmark: which state is drawn.
+    // For tests and the benchmark: how often it was drawn; and `settled`: nothing is under way.
     this.parts.curves.dataset.drawn = String(Number(this.parts.curves.dataset.drawn ?? 0) + 1);
   }
 
