@@ -106,11 +106,13 @@ def remarks(found: Detectability) -> list[str]:
     for situation in SITUATIONS:
         name = limiting(found, situation)
         half = found.causes[THRESHOLD_CAUSE].values[situation]
-        follow = "follows the thresholds" if half < 0.75 * found.base[situation] else "hardly follows the thresholds"
+        follow = (
+            "it follows the thresholds" if half < 0.75 * found.base[situation] else "it hardly follows the thresholds"
+        )
         what = "nothing but the thresholds" if name is None else name
-        if math.isinf(found.base[situation]) and math.isinf(half):
-            follow = "none is noticed with half of them, either"
-        said.append(f"The smallest push {situation} is limited by {what}; it {follow}.")
+        if math.isinf(half):
+            follow = "with half the thresholds none is noticed, or all robots are alarmed by themselves"
+        said.append(f"The smallest push {situation} is limited by {what}; {follow}.")
     if found.gearless is not None:
         said.append(
             "The controller takes the motors' torque for that of the wheels: it has no model of the gears' friction "
