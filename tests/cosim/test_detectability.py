@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cosim_helpers import Cli, folder_content
-from giveway.detectability import causes, found, probes, record, search
+from figure_labels import check_planted, in_si, keeping, same, unit_in
+from giveway.base.errors import GivewayError
+from giveway.detectability import causes, figure, found, probes, record, search
 from giveway.detectability.alarms import Alarms, alarms
 from giveway.detectability.causes import CAUSES, THRESHOLDS, raised
 from giveway.detectability.found import Asked, Detectability, detect
@@ -22,6 +24,7 @@ from giveway.robot.population import POPULATION
 from giveway.robot.variables import table
 from giveway.scenario.approach import outline_of
 from giveway.scenario.plan import Pushes
+from matplotlib.figure import Figure
 from motor_current_robot import trikey_by_current
 
 RESOLUTION = 10.0 ** (search.DECADES / 2**search.STEPS)
@@ -159,6 +162,37 @@ def coarse(tmp_path_factory: pytest.TempPathFactory) -> Detectability:
         patch.setattr(found, "FACTORS", (1.0, 48.0))
         path = trikey_by_current(tmp_path_factory.mktemp("robot"))
         return detect(subject(path), Asked(2, 1, 0.2, 0.01, 400.0), 2)
+
+
+def test_the_figure_shows_the_pushes_in_their_unit(
+    coarse: Detectability, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    curves = {
+        (situation, kind): {
+            place: [(90.0 * i, 2.0 + row + 3.0 * column + i) for i in range(4)] for place in probes.PLACES
+        }
+        for row, kind in enumerate((PUSH, IMPULSE))
+        for column, situation in enumerate((REST, MOTION))
+    }
+    kept: list[Figure] = []
+    monkeypatch.setattr(figure, "Figure", keeping(Figure, kept))
+    monkeypatch.setattr(figure, "polar", lambda _found, _level, situation, kind: curves[situation, kind])
+    figure.write_figure(tmp_path / "one.svg", coarse)
+
+    def check() -> None:
+        for axes, ((_, kind), wanted) in zip(kept[0].axes, curves.items(), strict=True):
+            unit = unit_in(axes.get_title("left") or axes.get_title())
+            assert unit is not None
+            for line, points in zip(axes.lines, wanted.values(), strict=False):  # the outline comes after them
+                closed = np.array([*points, points[0]])
+                assert same(np.asarray(line.get_xdata()), np.radians(closed[:, 0]))
+                try:
+                    drawn = in_si(line.get_ydata(), unit, {PUSH: "N", IMPULSE: "N.s"}[kind])
+                except GivewayError as error:
+                    raise AssertionError(str(error)) from None
+                assert same(drawn, closed[:, 1])
+
+    check_planted(kept[0], check)
 
 
 def test_it_says_what_the_gears_cost(coarse: Detectability) -> None:

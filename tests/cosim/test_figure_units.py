@@ -235,6 +235,7 @@ def in_world(hit: Collision, row: int, points: NDArray[np.float64]) -> NDArray[n
 HERE = "test_figure_units.py"
 HELD = {  # module and function that make a figure: the file that holds its labels against what it draws
     "crowd/curves/figure.py draw": "test_crowd_curves.py",
+    "detectability/figure.py write_figure": "test_detectability.py",
     "drivetrain/pictures.py write_picture": "test_drivetrain_margins.py",
     "experiments/clamping.py _figure": "test_experiment_clamping.py",
     "experiments/figures/circle.py alarm": HERE,
@@ -249,6 +250,7 @@ HELD = {  # module and function that make a figure: the file that holds its labe
     "fmu_tools/page.py _figure": "test_fmu_run.py",
     "identification/figures.py residual_figure": "test_experiment_roller_calibration.py",
     "identification/figures.py torque_figure": "test_experiment_roller_calibration.py",
+    "own_robot/drawing.py draw": "test_own_robot_files.py",
     "report/figures.py _panels": HERE,
     "report/overview.py write_overview": HERE,
     "report/push_path.py path": "test_experiment_circle.py",

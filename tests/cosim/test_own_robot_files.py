@@ -6,15 +6,22 @@ import io
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from cosim_helpers import Cli, folder_content
+from figure_labels import check_planted, in_si, same, unit_of_axis
 from giveway.base import native
+from giveway.base.errors import GivewayError
 from giveway.own_robot.body import plate
 from giveway.own_robot.checked import check
+from giveway.own_robot.drawing import draw
 from giveway.own_robot.measured import outline_of
 from giveway.own_robot.plausible import RULES, Numbers, doubts
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
+from matplotlib.axes import Axes
+from matplotlib.text import Annotation
+from numpy.typing import NDArray
 
 TRIKEY = native.robot().read_text(encoding="utf-8")
 SIZES = ("--mass", "34.7 kg", "--wheel-radius", "4 in", "--wheel-distance", "240 mm")
@@ -160,6 +167,34 @@ def test_the_drawing_is_a_picture(ending: str, cli: Cli, tmp_path: Path) -> None
     assert cli("robot", "check", "trikey", "--out", f"a.{ending}").returncode == 0
     begin = (tmp_path / f"a.{ending}").read_bytes()[:300]
     assert begin.startswith(b"\x89PNG") if ending == "png" else b"<svg" in begin
+
+
+def test_the_drawing_is_in_the_unit_of_its_labels() -> None:
+    figure = draw(Numbers(read_robot(native.robot())), "Trikey")
+    above, side = figure.axes
+    turns = np.radians([0.0, 120.0, 240.0, 0.0])
+    centres = 0.24 * np.column_stack((np.cos(turns), np.sin(turns)))  # robots/trikey.toml: wheel.distance
+
+    def read(axes: Axes, which: str, values: object) -> NDArray[np.float64]:
+        unit = unit_of_axis(figure, axes, which)
+        assert unit is not None
+        try:
+            return in_si(values, unit, "m")
+        except GivewayError as error:
+            raise AssertionError(str(error)) from None
+
+    def compared() -> None:
+        over, centre = above.lines[:2]
+        for line, wanted in ((over, centres), (centre, np.zeros((1, 2)))):
+            assert same(read(above, "x", line.get_xdata()), wanted[:, 0])
+            assert same(read(above, "y", line.get_ydata()), wanted[:, 1])
+        marks = [text for text in side.texts if isinstance(text, Annotation)]
+        heights = sorted(float(read(side, "y", text.xy[1])) for text in marks)
+        assert heights[:3] == pytest.approx([0.101, 0.2032, 0.414])  # clearance, wheel, centre of mass
+        front = [float(read(side, "x", text.xy[0])) for text in marks]
+        assert front == pytest.approx([0.352184] * len(marks))  # outline.x
+
+    check_planted(figure, compared)
 
 
 # A number of Trikey's file, another value in its own unit, and the doubts that this raises.

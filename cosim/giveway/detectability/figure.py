@@ -50,7 +50,7 @@ def _wrapped(text: str) -> str:
 
 
 def _diagram(axes: PolarAxes, found: Detectability, situation: str, kind: str) -> None:
-    axes.set_title(f"{kind} {situation}, {KINDS[kind].replace('.', ' ')}")
+    axes.set_title(f"{kind} {situation} ({KINDS[kind].replace('.', ' ')})")
     top = 0.0
     for place, points in polar(found, found.told, situation, kind).items():
         angles = [math.radians(side) for side, _ in points]

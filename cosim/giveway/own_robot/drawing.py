@@ -62,7 +62,7 @@ def _above(axes: Axes, n: Numbers) -> None:
     axes.annotate("", (0.45 * reach, 0.0), (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": TIP})
     axes.text(0.47 * reach, 0.0, "x", color=TIP, va="center", fontsize=8.5)
     axes.set(xlim=(-1.08 * reach, 1.08 * reach), ylim=(-1.08 * reach, 1.08 * reach))
-    axes.set(xlabel="x (forward), mm", ylabel="y (left), mm", title="from above", aspect="equal")
+    axes.set(xlabel="x, forward (mm)", ylabel="y, left (mm)", title="from above", aspect="equal")
 
 
 def _side(axes: Axes, n: Numbers) -> None:
@@ -86,7 +86,7 @@ def _side(axes: Axes, n: Numbers) -> None:
     _label_heights(axes, heights, right, max(top, 2e3 * n.radius))
     reach = max(-left, right, 1e3 * (n.distance + n.radius))
     axes.set(xlim=(-1.08 * reach, 2.1 * reach), ylim=(-0.04 * top, 1.08 * max(top, 2e3 * n.radius)))
-    axes.set(xlabel="x (forward), mm", ylabel="height, mm", title="from the side", aspect="equal")
+    axes.set(xlabel="x, forward (mm)", ylabel="height (mm)", title="from the side", aspect="equal")
 
 
 def _label_heights(axes: Axes, heights: dict[str, float], right: float, top: float) -> None:
