@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from giveway.studio import studio_page
+from giveway.studio.filled import studio_page
 
 from web.browser import Browser
 from web.studio_page import Studio

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from giveway.base.files import replace_file
-from giveway.studio import studio_page
+from giveway.studio.filled import studio_page
 from PIL import Image
 
 from web.browser import ROOT, Browser

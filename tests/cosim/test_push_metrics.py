@@ -15,11 +15,13 @@ from cosim_helpers import Cli
 from figure_labels import across, band, check_panels, check_planted, curve
 from giveway import batch
 from giveway.report import pushes, render
+from giveway.report.animation import scene
 from giveway.scenario.plan import Pushes, TimedPush
 from giveway.simulation.metrics import Metric
 from giveway.simulation.push_response import TRACES, push_metrics, responses, responses_of
 from giveway.simulation.result import Result
 from giveway.simulation.summary import false_detection_line, push_rows
+from page_arrays import data_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pushed_on_a_circle.toml"
 STEP_S = 0.001
@@ -134,10 +136,12 @@ def test_its_page_has_a_row_and_a_plot_per_push(pushed: Result) -> None:
     for words in ("<h2>Pushes</h2>", "1: 50 N at 5 s", "2: 40 N at 23 s", "<h2>Each push</h2>", "Path and pushes"):
         assert words in page
     assert "Wheel torques" not in page  # figures of a collision would be empty
-    (scene,) = json.loads(page.split('<script id="scenes" type="application/json">')[1].split("</script>")[0])
-    assert [touch["what"] for touch in scene["touches"]] == ["push", "push"]
-    assert [touch["time"] for touch in scene["touches"]] == [0.0, 18.0]
-    late_s = [touch["detection"]["time"] - touch["time"] for touch in scene["touches"]]
+    (shown,) = data_of(page)["scenes"]
+    found = scene("pushed", pushed)
+    assert shown["time"] == found["time"]
+    assert [touch["what"] for touch in found["touches"]] == ["push", "push"]
+    assert [touch["time"] for touch in found["touches"]] == [0.0, 18.0]
+    late_s = [touch["detection"]["time"] - touch["time"] for touch in found["touches"]]
     assert late_s == pytest.approx([1e-3 * (push[0].value or 0.0) for push in pushed.pushes], abs=1e-4)
 
 

@@ -20,7 +20,7 @@ from giveway.base.errors import GivewayError
 from giveway.robot.changes import NewValue, changed_robot
 from giveway.study.answers import Answers, load
 from giveway.study.engine import sweep
-from giveway.study.export import SSV, _powers, arrow_array, export_design, export_table
+from giveway.study.export import SSV, arrow_array, export_design, export_table, powers
 from lxml import etree
 from study_helpers import LATCH, SPRING, small_study, stored_runs
 
@@ -181,7 +181,7 @@ def test_what_cannot_be_exported_is_said(
 
 
 @pytest.mark.parametrize(
-    ("unit", "powers"),
+    ("unit", "expected"),
     [
         ("kg.m2", {"kg": 1, "m": 2}),
         ("N.m.s/rad", {"kg": 1, "m": 2, "s": -1, "rad": -1}),
@@ -189,8 +189,8 @@ def test_what_cannot_be_exported_is_said(
         ("1", {}),
     ],
 )
-def test_a_unit_is_told_in_base_units(unit: str, powers: dict[str, int]) -> None:
-    assert _powers(unit) == powers
+def test_a_unit_is_told_in_base_units(unit: str, expected: dict[str, int]) -> None:
+    assert powers(unit) == expected
 
 
 def test_a_column_is_what_pyarrow_would_make_of_it() -> None:

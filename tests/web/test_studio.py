@@ -19,8 +19,7 @@ import pytest
 from giveway.base import native
 from giveway.robot import variables
 from giveway.scenario.scenario_file import read_scenario
-from giveway.studio import studio_page
-from giveway.studio.filled import studio_data
+from giveway.studio.filled import studio_data, studio_page
 
 from web.browser import Browser, accessible, pictures
 from web.studio_page import Studio

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -56,11 +55,13 @@ def write(path: Path, checked: Checked) -> None:
 def _html(checked: Checked, name: str, drawing: str) -> str:
     import jinja2
 
+    from giveway.report.page import page
+
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
     assert checked.numbers is not None
-    return environment.get_template("robot_check.html.j2").render(
+    body = environment.get_template("robot_check.html.j2").render(
         name=name,
         file=checked.robot.path.name,
         version=VERSION,
@@ -69,5 +70,5 @@ def _html(checked: Checked, name: str, drawing: str) -> str:
         height_is_stated=checked.numbers.height_is_stated,
         doubts=checked.doubts,
         origins=list(checked.origins()),
-        style=(files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8"),
     )
+    return page("report", f"{name}: robot file", {"figures": []}, body=body)

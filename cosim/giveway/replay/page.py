@@ -1,11 +1,10 @@
-"""The page of a replay: curves as envelopes, the places of the hits, what was done to the log. No script."""
+"""The page of a replay: curves as envelopes, the places of the hits, what was done to the log."""
 
 from __future__ import annotations
 
 import datetime
 import math
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from giveway.replay.inputs import value_of
 from giveway.replay.story import MODES
 from giveway.replay.told import done_lines, mode_lines, wrong_lines
 from giveway.replay.written import CURVES, Curves
+from giveway.report.page import page
 from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
@@ -49,8 +49,9 @@ def write_page(path: Path, replay: Replay, curves: Curves, robot: str) -> None:
     )
     story = replay.story
     findings = replay.findings
-    text = environment.get_template("replay.html.j2").render(
-        title=f"Replay of {replay.source.path.name}",
+    title = f"Replay of {replay.source.path.name}"
+    body = environment.get_template("replay.html.j2").render(
+        title=title,
         version=VERSION,
         created=datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         count=story.count,
@@ -68,9 +69,8 @@ def write_page(path: Path, replay: Replay, curves: Curves, robot: str) -> None:
         top=_top(replay),
         hits=story.detections[:HITS_LISTED],
         more=story.count - min(len(story.detections), HITS_LISTED),
-        style=(files("giveway.report") / "templates" / "style.css").read_text(encoding="utf-8"),
     )
-    path.write_text(text, encoding="utf-8")
+    path.write_text(page("report", f"giveway: {title}", {"figures": []}, body=body), encoding="utf-8")
 
 
 def _keys(labels: Sequence[str]) -> list[tuple[str, str]]:

@@ -2,7 +2,3 @@
 
 The page is bundled from `web/src/studio`; this room fills in the tables of variables, robots and body regions.
 """
-
-from giveway.studio.filled import studio_page
-
-__all__ = ["studio_page"]

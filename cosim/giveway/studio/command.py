@@ -19,7 +19,7 @@ def studio(
     """Write the studio, one HTML file in which collisions are computed while you drag, and open it."""
     from giveway.base.errors import GivewayError
     from giveway.base.files import check_file, replace_file
-    from giveway.studio import studio_page
+    from giveway.studio.filled import studio_page
 
     if out.suffix != ".html":
         raise GivewayError("--out", out, "a file that ends in .html")

@@ -3,6 +3,7 @@
 import "../parts/theme.css";
 import "./report.css";
 import "./figures.css";
+import "./drawn.css";
 import { data, element, start } from "../parts/page";
 import { Scene } from "../parts/scene";
 import { draw_figures, type FigureData } from "./figures";
