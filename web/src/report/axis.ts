@@ -25,7 +25,8 @@ export function axis_of(column: Column, start: number, end: number, every: numbe
     : log
       ? spread(column.low, column.high, most, back, map)
       : steps(column.low, column.high, most);
-  const text = (one: number) => (named ? name_of(column, one) : log ? number_text(one) : String(one));
+  const round = !log && column.high > column.low; // as `steps` makes them
+  const text = (one: number) => (named ? name_of(column, one) : round ? String(one) : number_text(one));
   return { at, value, ticks: values.map((one) => ({ at: one, text: text(one) })) };
 }
 
