@@ -18,6 +18,7 @@ from giveway.study import Study
 from giveway.study.answers import Answers
 from giveway.study.chosen import scenario_of_run
 from giveway.study.report import write_report
+from playwright.sync_api import expect
 from study_helpers import LATCH, SPRING, stored_runs
 
 from web.browser import WIDTHS, Browser, accessible
@@ -105,7 +106,7 @@ def test_a_design_that_the_page_computes_has_the_stored_bits(
         for case, collision in enumerate(("front", "slow")):
             tab.get_by_label("collision shown").select_option(collision)
             show(tab, other)
-            assert tab.locator("#beside").get_attribute("data-same") == "true true"
+            expect(tab.locator("#beside")).to_have_attribute("data-same", "true true")
             text = taken(tab, "numbers of these designs as CSV", tmp_path)
             for design in (chosen, other):
                 row = int(np.flatnonzero((stored["design"] == design) & (stored["tolerance sample"] == 0))[case])
@@ -144,7 +145,7 @@ def test_curves_are_those_of_the_design_in_the_user_s_units(tab: Page, answers: 
 
 def test_a_brush_is_seen_in_all_views(tab: Page, answers: Answers) -> None:
     said = tab.locator("#selection").get_by_role("status")
-    assert said.inner_text() == "12 of 12 designs selected"
+    expect(said).to_have_text("12 of 12 designs selected")
     box = box_of(tab, "scatter")
     tab.mouse.move(box["x"] + 70, box["y"] + 0.5 * box["height"])
     tab.mouse.down()
@@ -156,7 +157,7 @@ def test_a_brush_is_seen_in_all_views(tab: Page, answers: Answers) -> None:
     peak = 1e-3 * answers.values[:, 1]
     inside = np.flatnonzero((peak >= float(low)) & (peak <= float(high)))
     assert 0 < len(inside) < 12
-    assert said.inner_text() == f"{len(inside)} of 12 designs selected"
+    expect(said).to_have_text(f"{len(inside)} of 12 designs selected")
     assert sorted(map(int, column(tab, 1))) == inside.tolist()
     tab.get_by_label(f"lowest {name}").fill("1000")
     tab.get_by_label(f"lowest {name}").press("Enter")
@@ -209,7 +210,7 @@ def test_the_keyboard_is_enough(tab: Page, answers: Answers) -> None:
 
 def test_an_address_opens_its_design(browser: Browser, path: Path, answers: Answers) -> None:
     with browser.page(path, hash="#design=7") as tab:
-        assert tab.locator("#beside").get_attribute("data-shown") == f"{answers.order[0]} 7"
+        expect(tab.locator("#beside")).to_have_attribute("data-shown", f"{answers.order[0]} 7")
 
 
 def test_pictures_and_tables_can_be_taken(tab: Page, answers: Answers, tmp_path: Path) -> None:
