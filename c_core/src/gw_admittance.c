@@ -111,12 +111,10 @@ static void remember_start(gw_admittance_t *admittance)
     admittance->first = admittance->away;
 }
 
-/* Does a direction agree with that of the start? For a robot that may lean any does: the push that tips it is felt
- * later than what its body does meanwhile. */
+/* Does a direction agree with that of the start? */
 static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
 {
-    return (admittance->tip.margin_mps2 > GW_ZERO) ||
-           (((admittance->first.x * direction.x) + (admittance->first.y * direction.y)) >= LEAST_AGREEMENT);
+    return ((admittance->first.x * direction.x) + (admittance->first.y * direction.y)) >= LEAST_AGREEMENT;
 }
 
 /* The share of a change of velocity that lifts no wheel. */
