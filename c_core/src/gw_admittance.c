@@ -111,10 +111,12 @@ static void remember_start(gw_admittance_t *admittance)
     admittance->first = admittance->away;
 }
 
-/* Does a direction agree with that of the start? */
+/* Does a direction agree with that of the start? For a robot that may lean any does: the push that tips it is felt
+ * later than what its body does meanwhile. */
 static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
 {
-    return ((admittance->first.x * direction.x) + (admittance->first.y * direction.y)) >= LEAST_AGREEMENT;
+    return (admittance->tip.margin_mps2 > GW_ZERO) ||
+           (((admittance->first.x * direction.x) + (admittance->first.y * direction.y)) >= LEAST_AGREEMENT);
 }
 
 /* The share of a change of velocity that lifts no wheel. */

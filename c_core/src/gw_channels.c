@@ -12,8 +12,10 @@
 #define WARM_UP_TICKS 60U /* the baseline's first mean */
 #define QUIET_TICKS 40U   /* without a force before a contact counts as over */
 #define TURN_TICKS 60U    /* after the last count, wheels count as standing */
+#define CALM_TICKS 250U   /* after a motion: a robot that has stopped swings on its springs */
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
+#define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
 #define FORCES_MAX_N2 ((gw_real_t)6.0e10) /* five of GW_BALANCE_MAX, and rounding */
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
@@ -33,6 +35,8 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->yaw_inertia = (gw_real_t)0.2;
     config->centre_of_mass_m = (gw_real_t)0.03;
     config->lever_m = (gw_real_t)0.01;
+    config->rocking = GW_ZERO;
+    config->rocking_s = (gw_real_t)0.6;
     config->fast.rest_n = (gw_real_t)3.0;
     config->fast.creep_n = (gw_real_t)14.0;
     config->fast.motion_n = (gw_real_t)7.0;
@@ -58,6 +62,8 @@ void gw_channels_config_check(const gw_channels_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_CHANNELS_YAW_INERTIA, config->yaw_inertia);
     gw_config_check_real(error, GW_FIELD_CHANNELS_CENTRE_OF_MASS, config->centre_of_mass_m);
     gw_config_check_real(error, GW_FIELD_CHANNELS_LEVER, config->lever_m);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_ROCKING, config->rocking);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_ROCKING_TIME, config->rocking_s);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_REST, config->fast.rest_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_CREEP, config->fast.creep_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_MOTION, config->fast.motion_n);
@@ -79,10 +85,18 @@ void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *confi
 {
     channels->config = *config;
     channels->period_s = noise->period_s;
+    channels->rocking2 = config->rocking * config->rocking;
+    channels->rocking_keep =
+        gw_max(GW_ONE - (((GW_TWO * (gw_real_t)GW_SLOW_TICKS) * noise->period_s) / config->rocking_s), GW_ZERO);
     gw_follower_init(&channels->follower, &config->follower, noise->period_s * (gw_real_t)LEARN_TICKS);
     gw_fast_channel_init(&channels->fast, config, noise);
     gw_slow_channel_init(&channels->slow, config, noise);
     gw_channels_restart(channels);
+}
+
+void gw_channels_stand_firm(gw_channels_t *channels)
+{
+    channels->rocking2 = GW_ZERO;
 }
 
 void gw_channels_restart(gw_channels_t *channels)
@@ -91,6 +105,7 @@ void gw_channels_restart(gw_channels_t *channels)
     gw_fast_channel_restart(&channels->fast);
     gw_slow_channel_restart(&channels->slow);
     channels->forces_n2 = GW_ZERO;
+    channels->rocking_n2 = GW_ZERO;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->tick = 0U;
@@ -98,6 +113,7 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->ticks_since_release = GW_TICK_MASK;
     channels->ticks_of_motion = 0U;
     channels->ticks_without_turn = GW_TICK_MASK;
+    channels->calm_ticks = CALM_TICKS;
     channels->quiet_ticks = 0U;
     channels->warm_up_ticks = 0U;
     channels->channel = GW_CHANNEL_NONE;
@@ -113,7 +129,11 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
         gw_channels_config_check(&channels->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_follower_invariant_holds(&channels->follower) &&
                 gw_fast_channel_invariant_holds(&channels->fast) && gw_slow_channel_invariant_holds(&channels->slow) &&
-                gw_within(channels->forces_n2, FORCES_MAX_N2) && gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
+                gw_within(channels->forces_n2, FORCES_MAX_N2) &&
+                gw_in_range(channels->rocking2, GW_ZERO, channels->config.rocking * channels->config.rocking) &&
+                gw_in_range(channels->rocking_keep, GW_ZERO, GW_ONE) &&
+                gw_in_range(channels->rocking_n2, GW_ZERO, ROCKING_MAX_N2) && (channels->calm_ticks <= CALM_TICKS) &&
+                gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
                 gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
     }
@@ -133,15 +153,29 @@ static void count_ticks(gw_channels_t *channels, const gw_channels_input_t *inpu
     channels->ticks_without_turn = input->turned ? 0U : one_more(channels->ticks_without_turn);
 }
 
+/* Has a robot that stopped been calm for long enough? Below half of the thresholds of rest it is. */
+static bool is_calm(gw_channels_t *channels, const gw_channels_input_t *input)
+{
+    if (input->regime != GW_REGIME_REST) {
+        channels->calm_ticks = 0U;
+    } else if (channels->calm_ticks < CALM_TICKS) {
+        const bool calm = (!channels->active) && gw_fast_channel_is_calm(&channels->fast, &channels->config, CALM);
+        channels->calm_ticks = calm ? (channels->calm_ticks + 1U) : 0U;
+    } else {
+        /* it rests */
+    }
+    return channels->calm_ticks >= CALM_TICKS;
+}
+
 /* Which noise and floor hold now. */
-static gw_regime_t judged_regime(const gw_channels_t *channels, const gw_channels_input_t *input)
+static gw_regime_t judged_regime(const gw_channels_t *channels, const gw_channels_input_t *input, bool calm)
 {
     gw_regime_t regime = input->regime;
     const bool settled = (channels->ticks_since_release >= channels->config.settle_ticks) &&
                          (channels->ticks_of_motion >= channels->config.settle_ticks);
     if ((regime != GW_REGIME_REST) && (!settled)) {
         regime = GW_REGIME_CREEPING;
-    } else if ((regime == GW_REGIME_REST) && (channels->ticks_without_turn < TURN_TICKS)) {
+    } else if ((regime == GW_REGIME_REST) && ((channels->ticks_without_turn < TURN_TICKS) || (!calm))) {
         regime = GW_REGIME_MOTION;
     } else {
         /* as it is */
@@ -191,18 +225,36 @@ static bool all_wheels_slide(const gw_channels_t *channels)
     return slide;
 }
 
+/* A force that the body of a robot that may lean did not feel before makes it swing. */
+static void rock(gw_channels_t *channels, gw_real_t x_n, gw_real_t y_n)
+{
+    const gw_real_t swing_n2 = channels->rocking2 * ((x_n * x_n) + (y_n * y_n));
+    channels->rocking_n2 = gw_clamp(gw_max(channels->rocking_n2, swing_n2), GW_ZERO, ROCKING_MAX_N2);
+}
+
+/* The swing fades, and every change of the acceleration is such a force. */
+static void rock_on(gw_channels_t *channels)
+{
+    const gw_vector_t now_n = channels->slow.mean.model.inertia_n;
+    const gw_vector_t usual_n = channels->fast.baseline.model.inertia_n;
+    channels->rocking_n2 = channels->rocking_keep * channels->rocking_n2;
+    rock(channels, now_n.x - usual_n.x, now_n.y - usual_n.y);
+}
+
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */
 static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                            const gw_balance_t *balance, gw_regime_t regime, gw_real_t fast)
 {
+    const bool rests = (input->regime == GW_REGIME_REST) && (channels->calm_ticks >= CALM_TICKS);
     if ((channels->tick % DOUBT_TICKS) != 0U) {
         gw_fast_channel_doubt(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
-                              channels->forces_n2);
+                              channels->forces_n2, channels->rocking_n2);
     } else if ((channels->tick % GW_SLOW_TICKS) == 0U) {
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
-                              (input->regime == GW_REGIME_REST) ? GW_REGIME_REST : regime);
+                              rests ? GW_REGIME_REST : regime, channels->rocking_n2);
     } else {
         channels->forces_n2 = squares_of_forces(channels);
+        rock_on(channels);
         if ((!channels->active) && (input->regime != GW_REGIME_REST)) {
             gw_slow_channel_follow(&channels->slow, regime == GW_REGIME_MOTION);
         }
@@ -248,12 +300,22 @@ static void begin_contact(gw_channels_t *channels, const gw_fast_found_t *found)
     }
 }
 
+static gw_wrench_t mean_wrench(const gw_channels_t *channels)
+{
+    const gw_real_t per_s = GW_ONE / channels->impulse_s;
+    const gw_wrench_t mean = {channels->impulse.force_x_n * per_s, channels->impulse.force_y_n * per_s,
+                              channels->impulse.torque_nm * per_s};
+    return gw_wrench_limited(mean);
+}
+
 static void end_contact(gw_channels_t *channels, const gw_balance_t *balance, const gw_fast_found_t *found)
 {
     const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
+    const gw_wrench_t mean = mean_wrench(channels);
     gw_fast_channel_release(&channels->fast, balance, found, gw_unit(impulse.x, impulse.y, gw_length(impulse)));
     channels->active = false;
     channels->ticks_since_release = 0U;
+    rock(channels, mean.force_x_n, mean.force_y_n); /* it leant against what pushed it */
 }
 
 /* While a contact lasts: its impulse grows, until it is over. */
@@ -287,7 +349,7 @@ static void warm_up(gw_channels_t *channels, const gw_balance_t *balance)
 static gw_real_t compare(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                          const gw_balance_t *balance, gw_channels_output_t *output)
 {
-    const gw_regime_t regime = judged_regime(channels, input);
+    const gw_regime_t regime = judged_regime(channels, input, is_calm(channels, input));
     gw_fast_found_t found;
     gw_fast_channel_step(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
                          !channels->active, &found);
@@ -310,14 +372,6 @@ static gw_real_t compare(gw_channels_t *channels, const gw_kinematics_t *kinemat
         }
     }
     return largest;
-}
-
-static gw_wrench_t mean_wrench(const gw_channels_t *channels)
-{
-    const gw_real_t per_s = GW_ONE / channels->impulse_s;
-    const gw_wrench_t mean = {channels->impulse.force_x_n * per_s, channels->impulse.force_y_n * per_s,
-                              channels->impulse.torque_nm * per_s};
-    return gw_wrench_limited(mean);
 }
 
 void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,

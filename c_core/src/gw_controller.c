@@ -34,6 +34,8 @@ static void choose_channels(gw_controller_config_t *config)
     config->estimator.aligned = 1U;
     config->estimator.creep_speed_mps = (gw_real_t)0.04;
     config->detector.kind = GW_DETECTOR_CHANNELS;
+    config->channels.lever_m = (gw_real_t)0.015;
+    config->channels.rocking = (gw_real_t)0.3;
 }
 #else
 static void choose_channels(const gw_controller_config_t *config)
@@ -136,6 +138,19 @@ static gw_channels_noise_t sensor_noise(const gw_controller_config_t *config, co
     return noise;
 }
 
+#if (GW_WITH_ESCAPE == 1)
+static bool may_lean(const gw_controller_config_t *config)
+{
+    return config->admittance.tip.height_m > GW_ZERO;
+}
+#else
+static bool may_lean(const gw_controller_config_t *config)
+{
+    (void)config;
+    return false;
+}
+#endif
+
 static void init_channels(gw_controller_t *controller, const gw_controller_config_t *config)
 {
     static const gw_imu_output_t nothing_felt = {0};
@@ -146,6 +161,9 @@ static void init_channels(gw_controller_t *controller, const gw_controller_confi
     controller->contact_now = nowhere;
     const gw_channels_noise_t noise = sensor_noise(config, &controller->estimator, &controller->imu);
     gw_channels_init(&controller->channels, &config->channels, &noise);
+    if (!may_lean(config)) {
+        gw_channels_stand_firm(&controller->channels);
+    }
 }
 
 static void restart_channels(gw_controller_t *controller)

@@ -6,6 +6,7 @@
 
 #if (GW_WITH_CHANNELS == 1)
 
+#define BANK_OF_CALM 1U    /* what swings passes it, the noise of one tick does not */
 #define BANK_OF_RELEASE 2U /* decides on the end of a contact, and sets the baseline there */
 #define RELEASE_FLOOR_N2 ((gw_real_t)16.0)
 #define MODEL_TIME_S \
@@ -157,6 +158,7 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel)
     static const gw_planar_covariance_t no_doubt = {0};
     channel->baseline = no_balance;
     channel->model_n2 = no_doubt;
+    channel->rocking_n2 = GW_ZERO;
     channel->moment_nm2 = GW_ZERO;
     channel->moment_noise_m2 = channel->moment_per_force_m2;
     channel->held = nothing;
@@ -198,6 +200,7 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
                 gw_model_forces_are_within(&channel->model, GW_CHANGE_MAX) &&
                 gw_planar_is_within(channel->model_n2, VARIANCE_MAX) &&
                 gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) &&
+                gw_in_range(channel->rocking_n2, GW_ZERO, VARIANCE_MAX) &&
                 gw_wrench_is_within(&channel->held, HELD_MAX_N) && gw_within(channel->doubt_n.x, HELD_MAX_N) &&
                 gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_in_range(channel->held_share, GW_ZERO, GW_ONE) &&
                 (channel->followed < GW_BANK_COUNT) && (channel->sensor < GW_SENSOR_COUNT) &&
@@ -276,14 +279,23 @@ static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
 
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2)
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2)
 {
-    channel->model_n2 = gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
-                                            (regime == GW_REGIME_REST) ? GW_ZERO : channel->sliding_n);
+    channel->model_n2 =
+        gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
+                            (regime == GW_REGIME_REST) ? GW_ZERO : channel->sliding_n, config->presliding);
+    channel->rocking_n2 = rocking_n2;
     channel->moment_nm2 = moment_of_model(config, &channel->model, forces_n2);
     channel->moment_noise_m2 = counts_alike(channel, regime, forces_n2)
                                    ? (COUNTING_ALIKE * channel->moment_per_force_m2)
                                    : channel->moment_per_force_m2;
+}
+
+bool gw_fast_channel_is_calm(const gw_fast_channel_t *channel, const gw_channels_config_t *config, gw_real_t share)
+{
+    const gw_wrench_t *const x = &channel->bank[BANK_OF_CALM];
+    const gw_real_t floor_n = gw_force_floor(config->fast, GW_REGIME_REST);
+    return ((x->force_x_n * x->force_x_n) + (x->force_y_n * x->force_y_n)) < (share * (floor_n * floor_n));
 }
 
 /* What the baseline holds of a contact grows with a contact that lasts and grows: the baseline follows it. */
@@ -329,7 +341,8 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         const gw_wrench_t *const x = &channel->bank[j];
         const gw_real_t noise_square = (j < FIRST_NORMAL) ? square : normal_square;
-        const gw_real_t n2 = (noise_square * noise_of(channel, regime, j)) + (floor_n * floor_n);
+        const gw_real_t still_n2 = (noise_square * noise_of(channel, regime, j)) + (floor_n * floor_n);
+        const gw_real_t n2 = still_n2 + channel->rocking_n2;
         const gw_vector_t force_n = {x->force_x_n, x->force_y_n};
         const bool ends = ((held.x * force_n.x) + (held.y * force_n.y)) < GW_ZERO;
         const gw_planar_spread_t *const spread = ends ? &against : &along;
@@ -343,7 +356,8 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
             found->widest = j;
         }
         if (j == BANK_OF_RELEASE) {
-            found->release_n2 = n2 + RELEASE_FLOOR_N2;
+            /* What swings is waited for. */
+            found->release_n2 = still_n2 + RELEASE_FLOOR_N2;
             found->release = gw_planar_distance(spread, found->release_n2, force_n);
         }
     }

@@ -28,6 +28,7 @@ PAPER = {
     "estimator.friction_model": 0,
     "estimator.aligned": 0,
     "detector.kind": 1,
+    "channels.lever": 0.01,
     "admittance.kind": 0,
     "admittance.tip_height": 0.0,
     "admittance.tip_share": 0.45,
@@ -35,6 +36,7 @@ PAPER = {
     "admittance.lead": 0.0,
     "admittance.brake_limit": 0.0,
     "admittance.push_share": 0.0,
+    "channels.rocking": 0.0,
 }
 SCENARIO_FILE = 'schema_version = 1\nduration = 0.3\npreset = "{}"\n'
 

@@ -99,8 +99,8 @@ bool gw_admittance_invariant_holds(const gw_admittance_t *admittance);
 /* A hit: from the present velocity along the unit vector direction; (0, 0) means: come to rest here.
  * Velocity and direction finite, at most 100 m/s and length 1.01; else GW_STATUS_INPUT_INVALID, state unchanged. */
 gw_status_t gw_admittance_start(gw_admittance_t *admittance, gw_vector_t velocity_mps, gw_vector_t direction);
-/* A better estimate of the direction of the hit, a unit vector: what was moved so far counts. An escape takes none that
- * is more than 60 degrees from that of its start. Pointer not NULL. */
+/* A better estimate of the direction of the hit, a unit vector: what was moved so far counts. An escape of a
+ * robot that cannot lean takes none that is more than 60 degrees from that of its start. Pointer not NULL. */
 void gw_admittance_redirect(gw_admittance_t *admittance, gw_vector_t direction);
 #if (GW_WITH_ESCAPE == 1)
 /* The limit of the acceleration that tipping sets; and where the base faces now. Pointers not NULL. */

@@ -9,6 +9,11 @@
  * any case. The mean wrench of the hit is refined for GW_REFINE_TICKS after the trip. When the acceleration has another
  * sensor the baseline begins anew, unless a contact lasts.
  *
+ * A robot that has stopped swings on its springs: the thresholds of rest hold once it has been calm for 250 ticks,
+ * until then those of motion. The body of one that may lean rocks after every change of its acceleration and after
+ * every contact: that adds r^2 I to the covariances, r a share of the change of M a, or of the contact's force, which
+ * fades. The end of a contact waits for the rocking.
+ *
  * Life cycle: gw_channels_init, gw_channels_step per tick, gw_channels_restart after a gap. All members are private.
  */
 #ifndef GW_CHANNELS_H
@@ -72,13 +77,17 @@ typedef struct {
     gw_fast_channel_t fast;
     gw_slow_channel_t slow;
     gw_real_t forces_n2; /* sum of the squares of the model's forces */
-    gw_wrench_t impulse; /* N s, N m s */
+    gw_real_t rocking2;  /* square of config.rocking; 0 if the robot cannot lean */
+    gw_real_t rocking_keep;
+    gw_real_t rocking_n2; /* variance of what the rocking body does */
+    gw_wrench_t impulse;  /* N s, N m s */
     gw_real_t impulse_s;
     uint32_t tick; /* counts the ticks of the tasks that not every tick has */
     uint32_t ticks_since_trip;
     uint32_t ticks_since_release;
     uint32_t ticks_of_motion;
     uint32_t ticks_without_turn;
+    uint32_t calm_ticks; /* at rest after a motion, or all that is asked for */
     uint32_t quiet_ticks;
     uint32_t warm_up_ticks;
     uint32_t channel;
@@ -89,6 +98,8 @@ typedef struct {
 GW_SMALL void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *config,
                                const gw_channels_noise_t *noise);
 bool gw_channels_invariant_holds(const gw_channels_t *channels);
+/* After gw_channels_init: the robot cannot lean, its body does not rock. */
+GW_SMALL void gw_channels_stand_firm(gw_channels_t *channels);
 /* Forgets signals and contact, keeps what was learned of the model and of the noise. */
 GW_SMALL void gw_channels_restart(gw_channels_t *channels);
 /* Nothing else was due in this tick: time for what not every tick needs. */

@@ -39,6 +39,10 @@ typedef struct {
     gw_real_t centre_of_mass_m;
     /* Arm of the wheels' forces that changes with the row of rollers, m, [0, 0.1]. */
     gw_real_t lever_m;
+    /* What the body of a robot that may lean pushes and pulls while it rocks, as a share of the force that made it
+     * rock, [0, 10], and the time constant with which that fades, s, [0.01, 10]. */
+    gw_real_t rocking;
+    gw_real_t rocking_s;
     /* Smallest force of the fast channel and of the slow one, in each regime, N, [0.01, 1000]. */
     gw_force_floors_t fast;
     gw_force_floors_t slow;

@@ -4,11 +4,12 @@
  * The change from the baseline, less what is known of friction and mass, passes a bank of low-passes, short ones for
  * hard impacts and long ones for soft ones. Each is compared with a covariance
  *
- *     S = (k_n^2 noise + floor^2) I + k_m^2 M + h h^T
+ *     S = (k_n^2 noise + floor^2 + r^2) I + k_m^2 M + h h^T
  *
  * where the noise of each low-pass is followed and k_n is smaller for the longer ones, M is what the follower does not
  * know of friction and mass with the forces of this tick, and h is what the baseline holds of contacts that last: their
- * end, a change against that, is no hit. The moment has a variance of its own. The channel trips if x^T S^-1 x > 1.
+ * end, a change against that, is no hit; r is what the body does while it rocks. The moment has a variance of its own.
+ * The channel trips if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
@@ -57,6 +58,7 @@ typedef struct {
     gw_wrench_t bank[GW_BANK_COUNT];
     gw_planar_covariance_t model_n2; /* k_m^2 M */
     gw_real_t moment_nm2;            /* likewise of the moment */
+    gw_real_t rocking_n2;            /* variance of what the rocking body does */
     gw_real_t moment_noise_m2; /* variance of the moment's noise over that of the force's, as the wheels turn now */
     /* What the baseline holds of contacts, how sure nobody is of that, along the last one, and the share of the
      * baseline's motion that is put down to them. All fade after a contact. */
@@ -88,10 +90,12 @@ GW_SMALL void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance
 /* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
 /* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
- * model's forces, not of their change. */
+ * model's forces, not of their change; rocking_n2: variance of what the rocking body does. */
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2);
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2);
+/* Is the force below this share of the smallest that counts at rest, squared? */
+bool gw_fast_channel_is_calm(const gw_fast_channel_t *channel, const gw_channels_config_t *config, gw_real_t share);
 /* One tick, in a regime. quiet: nothing touches, the noise may be followed. */
 void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, const gw_balance_t *balance,

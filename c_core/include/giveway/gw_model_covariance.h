@@ -17,11 +17,12 @@ extern "C" {
 #endif
 
 /* change: the forces that count, from those of a baseline; model: the forces themselves; sliding_n: friction of a wheel
- * whose rollers slide. What rollers carry within it is their history's, of which the model knows a part: now, and at
- * the baseline's time. Friction that is higher than the model's also turns round later than that. Pointers not NULL. */
+ * whose rollers slide; presliding: the share of what is missing to it. What rollers carry within it is their history's,
+ * of which the model knows a part: now, and at the baseline's time. Friction that is higher than the model's also turns
+ * round later than that. Pointers not NULL. */
 gw_planar_covariance_t gw_model_covariance(const gw_channels_config_t *config, const gw_kinematics_t *kinematics,
                                            const gw_follower_t *follower, const gw_model_forces_t *change,
-                                           const gw_model_forces_t *model, gw_real_t sliding_n);
+                                           const gw_model_forces_t *model, gw_real_t sliding_n, gw_real_t presliding);
 
 #ifdef __cplusplus
 }

@@ -44,6 +44,13 @@ static inline gw_planar_covariance_t gw_planar_widened(gw_planar_covariance_t m,
     return sum;
 }
 
+/* M + n I */
+static inline gw_planar_covariance_t gw_planar_raised(gw_planar_covariance_t m, gw_real_t n)
+{
+    const gw_planar_covariance_t sum = {m.xx + n, m.xy, m.yy + n};
+    return sum;
+}
+
 /* Rounding may leave a singular covariance a determinant below zero. */
 static inline gw_planar_spread_t gw_planar_spread(gw_planar_covariance_t m)
 {

@@ -2,8 +2,9 @@
  *
  * The balance of forces, behind a low-pass and less what is known of friction and mass, is compared with a baseline of
  * seconds: at rest that is what was there when the zero was taken, in motion it follows slowly, so that a slope and a
- * zero that is wrong do not matter. S = floor^2 I + k_m^2 M, as in gw_fast_channel.h; at rest the floor alone. It trips
- * if x^T S^-1 x > 1.
+ * zero that is wrong do not matter. S = floor^2 I + k_m^2 M, as in gw_fast_channel.h; at rest the floor alone. Friction
+ * of rollers that hardly turn lasts longer than the channel's low-pass, which nothing but its size tells from a push:
+ * it is doubted twice as much as in the fast channel. It trips if x^T S^-1 x > 1.
  *
  * Life cycle: gw_slow_channel_init, gw_slow_channel_restart, gw_slow_channel_begin for each tick of the first mean,
  * then gw_slow_channel_step per tick. All members of gw_slow_channel_t are private.
@@ -46,9 +47,11 @@ void gw_slow_channel_step(gw_slow_channel_t *channel, const gw_balance_t *balanc
 GW_SMALL void gw_slow_channel_take_zero(gw_slow_channel_t *channel, gw_wrench_t step, gw_regime_t regime);
 /* The baseline follows, in motion without contact; to be called every GW_SLOW_TICKS. */
 void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled);
-/* Compares; every few ticks is enough. floor: of which regime the floor is. */
+/* Compares; every few ticks is enough. floor: of which regime the floor is; rocking_n2:
+ * variance of what the rocking body does. */
 void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
-                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor);
+                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor,
+                           gw_real_t rocking_n2);
 /* The follower learns from the mean balance, in motion without contact, when all rollers slide: from its component
  * along y or along x. */
 GW_SMALL void gw_slow_channel_teach(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,

@@ -134,7 +134,8 @@ digest_t drive_model_covariance(void)
         const gw_model_forces_t model = random_forces(&generator, (gw_real_t)25.0);
         const gw_real_t sliding_n = generator_between(&generator, GW_ZERO, (gw_real_t)30.0);
         teach(&generator, &kinematics, &follower);
-        digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, sliding_n));
+        digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, sliding_n,
+                                                       config.presliding));
     }
     return digest;
 }
@@ -212,6 +213,7 @@ static digest_t play_channels(uint32_t seed, void (*take)(digest_t *digest, cons
     bool felt = false;
     gw_channels_config_trikey(&config);
     config.settle_ticks = 100U;
+    config.rocking = GW_ONE;
     gw_channels_init(&channels, &config, &noise);
     for (uint32_t i = 0U; i < 8000U; i++) {
         gw_channels_input_t input;

@@ -348,6 +348,23 @@ static void an_escape_does_not_follow_a_contradiction(void)
     }
 }
 
+/* A robot that may lean takes every direction: what its body did first is not what pushes it. */
+static void an_escape_that_may_lean_follows_every_direction(void)
+{
+    for (uint32_t degree = 61U; degree <= 181U; degree += 60U) {
+        const gw_rotation_t rotation = gw_sincos((gw_real_t)degree * (GW_PI / R(180.0)));
+        const gw_vector_t other = {rotation.cosine, -rotation.sine};
+        const gw_tip_t tip = tip_of(GW_HALF);
+        gw_admittance_t admittance = made(GW_ADMITTANCE_ESCAPE);
+        unit_row(degree);
+        gw_admittance_set_tip(&admittance, &tip);
+        CHECK_STATUS(gw_admittance_start(&admittance, nothing, along_x), GW_STATUS_OK);
+        gw_admittance_redirect(&admittance, other);
+        CHECK_NEAR(admittance.goal_m.y, GW_HALF * other.y, ULP);
+        CHECK_NEAR(admittance.away.x, other.x, ULP);
+    }
+}
+
 /* It comes to rest, after p/B or where it could stop, and stays there. */
 static void an_escape_comes_to_rest_and_holds(void)
 {
@@ -576,6 +593,7 @@ void suite_admittance(void)
     unit_run("rare_states_keep_the_limits", rare_states_keep_the_limits);
     unit_run("an_escape_never_goes_against_the_push", an_escape_never_goes_against_the_push);
     unit_run("an_escape_does_not_follow_a_contradiction", an_escape_does_not_follow_a_contradiction);
+    unit_run("an_escape_that_may_lean_follows_every_direction", an_escape_that_may_lean_follows_every_direction);
     unit_run("an_escape_comes_to_rest_and_holds", an_escape_comes_to_rest_and_holds);
     unit_run("a_goal_that_was_passed_is_given_up", a_goal_that_was_passed_is_given_up);
     unit_run("there_is_no_escape_by_default", there_is_no_escape_by_default);

@@ -461,6 +461,125 @@ static void the_threshold_is_that_of_what_the_robot_does(void)
     }
 }
 
+/* 4 N to and fro, five times a second: what a body does on its springs after a stop, over the floor of the fast channel
+ * at rest. */
+static void swing(uint32_t count)
+{
+    for (uint32_t k = 0U; k < count; k++) {
+        wrench.force_x_n = R(4.0) * gw_sincos(((GW_TWO * GW_PI) * R(0.005)) * (gw_real_t)k).sine;
+        tick();
+    }
+    wrench.force_x_n = GW_ZERO;
+}
+
+/* The same at rest, when it was calm for 250 ticks, is a hit. */
+static void a_robot_that_stopped_may_swing(void)
+{
+    begin_in_motion();
+    input.regime = GW_REGIME_REST;
+    input.turned = false;
+    swing(1000U);
+    CHECK((trips == 0U) && (channels.calm_ticks < 30U)); /* those in which it turns round */
+    ticks(300U);
+    CHECK((trips == 0U) && (channels.calm_ticks == 250U));
+    swing(100U);
+    CHECK((trips == 1U) && (channels.calm_ticks == 250U));
+    input.regime = GW_REGIME_CREEPING;
+    tick();
+    CHECK(channels.calm_ticks == 0U);
+}
+
+/* Below half of the square of 3 N, behind the second low-pass, and without a contact. */
+static void calm_ticks_are_counted_at_rest(void)
+{
+    const struct {
+        gw_real_t force_n;
+        uint32_t before;
+        bool active;
+        uint32_t after;
+        gw_regime_t judged;
+    } rows[] = {
+        {R(2.12), 248U, false, 249U, GW_REGIME_MOTION}, {R(2.12), 249U, false, 250U, GW_REGIME_REST},
+        {R(2.13), 249U, false, 0U, GW_REGIME_MOTION},   {R(2.13), 250U, false, 250U, GW_REGIME_REST},
+        {R(2.12), 248U, true, 0U, GW_REGIME_MOTION},    {R(2.12), 250U, true, 250U, GW_REGIME_REST},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        channels.calm_ticks = rows[i].before;
+        channels.active = rows[i].active;
+        channels.fast.bank[1].force_y_n = rows[i].force_n;
+        channels.tick = 3U; /* the slow channel is judged in the next one */
+        channels.slow.baseline.residual.force_x_n = R(-3.0);
+        tick();
+        unit_row(i);
+        CHECK(channels.calm_ticks == rows[i].after);
+        /* At rest the floor of 4 N alone; in motion rollers that hardly turn, too. */
+        const bool rests = rows[i].judged == GW_REGIME_REST;
+        const gw_real_t missing_n2 = (R(6.25) * R(0.36)) * (SLIDING * SLIDING) * R(1.5);
+        CHECK_NEAR(channels.slow.statistic, R(9.0) / (rests ? R(16.0) : (R(196.0) + missing_n2)), R(0.0001));
+    }
+}
+
+/* A change of the acceleration makes a robot that may lean rock: r^2 (M a)^2, and every four ticks 1 - 8 ms/0.6 s of
+ * it. */
+static void what_was_accelerated_rocks(void)
+{
+    gw_channels_config_trikey(&config);
+    config.rocking = R(0.5);
+    begin_with_config();
+    channels.fast.baseline_share = GW_ZERO;
+    ticks(WARM_UP + 3U);
+    forces.inertia_n.x = R(-30.0);
+    forces.inertia_n.y = R(40.0);
+    channels.slow.mean.model = forces;
+    ticks(4U);
+    CHECK_NEAR(channels.rocking_n2, R(625.0), R(0.01));
+    forces.inertia_n.x = GW_ZERO;
+    forces.inertia_n.y = GW_ZERO;
+    channels.slow.mean.model = forces;
+    channels.slow.mean.residual.force_x_n = R(20.0);
+    ticks(4U);
+    CHECK_NEAR(channels.rocking_n2, R(625.0) * (GW_ONE - (R(0.008) / R(0.6))), R(0.01));
+    CHECK(channels.fast.rocking_n2 == channels.rocking_n2);
+    CHECK((trips == 0U) && (channels.slow.statistic < GW_ONE)); /* 20 N */
+    gw_channels_stand_firm(&channels);
+    channels.slow.mean.model.inertia_n.x = R(1.0e4);
+    ticks(600U);
+    CHECK(channels.rocking_n2 < R(100.0));
+}
+
+/* Likewise a contact, when it ends: by its mean force, as far as it was refined. */
+static void what_was_pushed_rocks(void)
+{
+    gw_channels_config_trikey(&config);
+    config.rocking = R(0.5);
+    begin_with_config();
+    ticks(WARM_UP);
+    wrench.force_y_n = R(-60.0);
+    ticks(80U);
+    CHECK(output.active && (channels.rocking_n2 == GW_ZERO));
+    wrench.force_y_n = GW_ZERO;
+    CHECK(ticks_to_release(400U) < 400U);
+    CHECK_NEAR(gw_sqrt(channels.rocking_n2), GW_HALF * gw_abs(output.mean_wrench.force_y_n),
+               R(0.05)); /* three ticks later */
+    CHECK(gw_in_range(channels.rocking_n2, R(27.0) * R(27.0), R(30.0) * R(30.0)));
+}
+
+static void rocking_is_bounded(void)
+{
+    gw_channels_config_trikey(&config);
+    config.rocking = R(10.0);
+    config.rocking_s = R(0.01);
+    begin_with_config();
+    CHECK(channels.rocking_keep == GW_ONE - (R(0.008) / R(0.01)));
+    ticks(WARM_UP);
+    channels.fast.baseline_share = GW_ZERO;
+    forces.inertia_n.x = R(1.0e30);
+    forces.inertia_n.y = R(-1.0e30);
+    ticks(1000U);
+    CHECK(channels.rocking_n2 == R(1.0e12));
+}
+
 static void counters_stop_at_their_largest(void)
 {
     begin();
@@ -761,6 +880,9 @@ static void the_invariant_sees_every_member(void)
                                   &channels.fast.held.force_x_n,
                                   &channels.slow.force_n.y,
                                   &channels.forces_n2,
+                                  &channels.rocking2,
+                                  &channels.rocking_keep,
+                                  &channels.rocking_n2,
                                   &channels.impulse.torque_nm,
                                   &channels.impulse_s};
     CHECK(!gw_channels_invariant_holds(NULL));
@@ -773,6 +895,9 @@ static void the_invariant_sees_every_member(void)
         channels = good;
     }
     channels.warm_up_ticks = WARM_UP + 1U;
+    CHECK(!gw_channels_invariant_holds(&channels));
+    channels = good;
+    channels.calm_ticks = 251U;
     CHECK(!gw_channels_invariant_holds(&channels));
     channels = good;
     channels.channel = GW_CHANNEL_SLOW + 1U;
@@ -808,6 +933,11 @@ void suite_channels(void)
     unit_run("an_armed_detector_after_rearm_ticks", an_armed_detector_after_rearm_ticks);
     unit_run("some_modes_do_not_look_for_pushes", some_modes_do_not_look_for_pushes);
     unit_run("the_threshold_is_that_of_what_the_robot_does", the_threshold_is_that_of_what_the_robot_does);
+    unit_run("a_robot_that_stopped_may_swing", a_robot_that_stopped_may_swing);
+    unit_run("calm_ticks_are_counted_at_rest", calm_ticks_are_counted_at_rest);
+    unit_run("what_was_accelerated_rocks", what_was_accelerated_rocks);
+    unit_run("what_was_pushed_rocks", what_was_pushed_rocks);
+    unit_run("rocking_is_bounded", rocking_is_bounded);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
     unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
     unit_run("another_zero_takes_its_time", another_zero_takes_its_time);

@@ -103,6 +103,19 @@ static void live_force_yields_while_it_is_pushed(void)
     rig_until(GW_MODE_REJOINING, 20000U);
 }
 
+/* Only a robot whose height is known may lean, and rocks. */
+static void a_robot_without_height_stands_firm(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        rig_with_channels();
+        rig_config.channels.rocking = GW_HALF;
+        rig_config.admittance.tip.height_m = (i == 0U) ? GW_ZERO : R(0.4);
+        rig_begin();
+        unit_row(i);
+        CHECK(rig_controller.channels.rocking2 == ((i == 0U) ? GW_ZERO : R(0.25)));
+    }
+}
+
 /* In a fault, and while taring, nothing is looked for; what comes after begins anew. */
 static void an_interruption_forgets_the_contact(void)
 {
@@ -183,6 +196,7 @@ void suite_channels_use(void)
     unit_run("the_escape_turns_with_what_is_felt", the_escape_turns_with_what_is_felt);
     unit_run("a_slow_push_is_noticed_at_rest", a_slow_push_is_noticed_at_rest);
     unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
+    unit_run("a_robot_without_height_stands_firm", a_robot_without_height_stands_firm);
     unit_run("an_interruption_forgets_the_contact", an_interruption_forgets_the_contact);
     unit_run("a_stop_in_a_contact_forgets_it", a_stop_in_a_contact_forgets_it);
     unit_run("a_force_that_is_no_contact_is_not_located", a_force_that_is_no_contact_is_not_located);

@@ -537,9 +537,10 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.model.inertia_n.x = R(30.0);
         channel.model.inertia_n.y = R(40.0);
         channel.model.inertia_moment_nm = R(10.0);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(30000.0));
-        const gw_planar_covariance_t m = gw_model_covariance(&config, &kinematics, &follower, &channel.model,
-                                                             &balance.model, (i == 0U) ? GW_ZERO : R(20.0));
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(30000.0), GW_ZERO);
+        const gw_planar_covariance_t m =
+            gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model,
+                                (i == 0U) ? GW_ZERO : R(20.0), config.presliding);
         unit_row(i);
         CHECK((channel.model_n2.xx == m.xx) && (channel.model_n2.xy == m.xy) && (channel.model_n2.yy == m.yy));
         CHECK_NEAR(channel.moment_nm2, R(6.25) * (R(4.0) + R(2.25) + R(3.0)), R(60.0) * ROUNDING);
@@ -553,6 +554,47 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.bank[0].force_x_n = GW_ZERO;
         steps(1U);
         CHECK(doubted < found.statistic);
+    }
+}
+
+/* What the body does while it rocks widens the threshold of a hit, to all sides; the end of a contact waits for it. */
+static void rocking_widens_the_threshold_of_a_hit(void)
+{
+    gw_real_t statistics[2];
+    gw_real_t releases[2];
+    for (uint32_t i = 0U; i < 2U; i++) {
+        begin();
+        balance.residual.force_x_n = R(24.0);
+        balance.residual.force_y_n = R(18.0);
+        channel.bank[2].force_x_n = R(24.0);
+        channel.bank[2].force_y_n = R(18.0);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_REST, GW_ZERO,
+                              (i == 0U) ? GW_ZERO : R(900.0));
+        steps(1U);
+        CHECK(found.widest == 2U);
+        statistics[i] = R(900.0) / found.statistic;
+        releases[i] = found.release;
+    }
+    CHECK_NEAR(statistics[1] - statistics[0], R(900.0), R(1.0e5) * ROUNDING);
+    CHECK(releases[0] == releases[1]);
+}
+
+/* Below this share of the square of 3 N, behind the second low-pass. */
+static void calm_is_a_share_of_the_floor_at_rest(void)
+{
+    const struct {
+        gw_real_t x_n;
+        gw_real_t y_n;
+        bool calm;
+    } rows[] = {{R(1.19), R(0.9), true}, {R(1.21), R(0.9), false}, {R(1.2), R(0.89), true}, {R(1.2), R(0.91), false}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        channel.bank[0].force_x_n = R(50.0);
+        channel.bank[2].force_x_n = R(50.0);
+        channel.bank[1].force_x_n = rows[i].x_n;
+        channel.bank[1].force_y_n = rows[i].y_n;
+        unit_row(i);
+        CHECK(gw_fast_channel_is_calm(&channel, &config, R(0.25)) == rows[i].calm);
     }
 }
 
@@ -573,7 +615,8 @@ static void wheels_that_turn_alike_count_alike(void)
         begin();
         CHECK(channel.moment_noise_m2 == channel.moment_per_force_m2);
         gw_fast_channel_feel(&channel, rows[i].felt, GW_ZERO);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, rows[i].forces_n2);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, rows[i].forces_n2,
+                              GW_ZERO);
         unit_row(i);
         CHECK(channel.moment_noise_m2 == ((rows[i].alike ? R(3.0) : GW_ONE) * channel.moment_per_force_m2));
         /* What the levers add does not count here. */
@@ -640,7 +683,8 @@ static void any_robot_keeps_the_invariant(void)
             balance.model.friction_n.wheel[k % 3U] = sizes[(k / 2U) % 5U];
             balance.model.inertia_n.x = sizes[(k / 3U) % 5U];
             gw_fast_channel_feel(&channel, (k % 2U) == 0U, sizes[k % 5U]);
-            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(5.0e10));
+            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(5.0e10),
+                                  R(1.0e12));
             step((gw_regime_t)(k % 3U), true);
             if ((k % 11U) == 0U) {
                 gw_fast_channel_release(&channel, &balance, &found, direction);
@@ -671,6 +715,7 @@ static void the_invariant_sees_every_member(void)
                                   &channel.model_n2.xy,
                                   &channel.model_n2.yy,
                                   &channel.moment_nm2,
+                                  &channel.rocking_n2,
                                   &channel.moment_noise_m2,
                                   &channel.held.force_x_n,
                                   &channel.held.force_y_n,
@@ -741,5 +786,7 @@ void suite_fast_channel(void)
     unit_run("wheels_that_turn_alike_count_alike", wheels_that_turn_alike_count_alike);
     unit_run("a_restart_keeps_what_was_learned_of_the_noise", a_restart_keeps_what_was_learned_of_the_noise);
     unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
+    unit_run("rocking_widens_the_threshold_of_a_hit", rocking_widens_the_threshold_of_a_hit);
+    unit_run("calm_is_a_share_of_the_floor_at_rest", calm_is_a_share_of_the_floor_at_rest);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

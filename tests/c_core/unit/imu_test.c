@@ -197,6 +197,22 @@ static void a_tare_that_is_interrupted_starts_anew(void)
     CHECK_NEAR(imu.zero[2], bias[2], ROUNDING);
 }
 
+/* Whatever a signal's mean was. */
+static void an_interrupted_tare_forgets_every_signal(void)
+{
+    start();
+    show(R(0.3), R(-0.2), R(0.1), GW_ZERO);
+    ticks(25U, false);
+    for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
+        imu.mean[i] = unit_nan();
+    }
+    (void)tick(false);
+    for (uint32_t i = 0U; i < GW_IMU_SIGNALS; i++) {
+        unit_row(i);
+        CHECK(imu.mean[i] == GW_ZERO);
+    }
+}
+
 /* A step while the filters still recover from a bad sample is not told: the source changes then anyway. */
 static void a_bias_that_comes_before_the_trust_tells_no_step(void)
 {
@@ -422,6 +438,7 @@ void suite_imu(void)
     unit_run("it_is_trusted_when_the_bias_is_known", it_is_trusted_when_the_bias_is_known);
     unit_run("every_stop_has_a_bias_of_its_own", every_stop_has_a_bias_of_its_own);
     unit_run("a_tare_that_is_interrupted_starts_anew", a_tare_that_is_interrupted_starts_anew);
+    unit_run("an_interrupted_tare_forgets_every_signal", an_interrupted_tare_forgets_every_signal);
     unit_run("a_bias_that_comes_before_the_trust_tells_no_step", a_bias_that_comes_before_the_trust_tells_no_step);
     unit_run("a_bad_sample_is_named_and_takes_time_to_recover_from",
              a_bad_sample_is_named_and_takes_time_to_recover_from);

@@ -18,7 +18,7 @@ static gw_planar_covariance_t of(const gw_channels_config_t *config, const gw_mo
     geometry.azimuth_rad = GW_ZERO;
     CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
     gw_follower_init(&follower, &config->follower, R(0.008));
-    return gw_model_covariance(config, &kinematics, &follower, change, model, sliding_n);
+    return gw_model_covariance(config, &kinematics, &follower, change, model, sliding_n, config->presliding);
 }
 
 static gw_channels_config_t config_of(gw_real_t shape, gw_real_t presliding, gw_real_t wheel, gw_real_t mass)

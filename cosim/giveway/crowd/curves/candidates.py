@@ -93,7 +93,7 @@ OURS = Candidate(
     (0.6, 0.8, 1.0, 1.4, 2.0),
     MappingProxyType({**FULL, "detector.kind": 2}),
     (
-        *("channels.noise_multiple", "channels.model_multiple"),
+        *("channels.noise_multiple", "channels.model_multiple", "channels.rocking"),
         *(f"channels.{channel}_{regime}" for channel in ("fast", "slow") for regime in ("rest", "creep", "motion")),
     ),
 )
