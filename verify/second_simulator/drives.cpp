@@ -27,7 +27,8 @@ struct Electronics {
 
 extern "C" {
 
-// `numbers`: in the order in which they are read here, and in electronics.py. Null if the servos refuse them.
+// `numbers`: in the order in which they are read here, and in electronics.py. `torque`: of the sensors and of the motors,
+// the same for drives at rest. Null if the servos refuse them.
 void *second_simulator_drives(const double *numbers, std::uint32_t seed, const double *motor_angle,
                               const double *wheel_speed, const double *torque, int enable)
 {
@@ -43,6 +44,7 @@ void *second_simulator_drives(const double *numbers, std::uint32_t seed, const d
     v.servo_kp = next();
     v.servo_kd = next();
     v.drivetrain_torque_limit = next();
+    v.drivetrain_sensing = whole();
     v.servo_derivative_cutoff = next();
     v.electronics_sensor_delay = whole();
     v.electronics_command_delay = whole();
@@ -68,7 +70,7 @@ void *second_simulator_drives(const double *numbers, std::uint32_t seed, const d
     if (electronics != nullptr) {
         electronics->imu.start(imu_options(v), {});
         const auto refused = electronics->drives.start(drive_options(v), three(motor_angle), three(wheel_speed),
-                                                       three(torque), enable != 0);
+                                                       three(torque), three(torque), enable != 0);
         if (refused.field == GW_FIELD_NONE) {
             return electronics;
         }

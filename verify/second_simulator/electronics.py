@@ -25,6 +25,7 @@ NUMBERS = (
     "servo.kp",
     "servo.kd",
     "drivetrain.torque_limit",
+    "drivetrain.sensing",
     "servo.derivative_cutoff",
     "electronics.sensor_delay",
     "electronics.command_delay",

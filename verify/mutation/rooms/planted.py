@@ -159,8 +159,9 @@ def _configure(context: Context, tree: Path) -> None:
 def _build(context: Context, tree: Path) -> None:
     cmake = context.root / ".venv/bin/cmake"
     jobs = ("-j", str(AT_A_TIME))
+    targets = (*TARGETS, "pages")  # pages, because they are installed, too
     # Without a limit of memory: programs with AddressSanitizer are run.
-    context.run(cmake, "--build", tree / "build", *jobs, "--target", *TARGETS, timeout_s=3600.0, memory_gib=None)
+    context.run(cmake, "--build", tree / "build", *jobs, "--target", *targets, timeout_s=3600.0, memory_gib=None)
     context.run(cmake, "--install", tree / "build", "--component", "native", "--prefix", tree / "cosim")
 
 
