@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING
 import giveway
 import numpy as np
 import pytest
+from giveway.base import native
+from giveway.fmu_tools.page import write_run
+from giveway.fmu_tools.run import run_fmu
 from giveway.report import render
 from giveway.simulation.result import Result
 from playwright.sync_api import expect
@@ -62,8 +65,13 @@ def test_its_curves_are_those_of_the_run(tab: Page, results: list[Result], tmp_p
     true = np.interp(1e-3 * time + contact_s, hit["time"].values, hit["testbed.truth.contact_force"].values)
     np.testing.assert_allclose(force, true, atol=2e-3 * true.max())
     svg = taken(tab, "Contact force as SVG", tmp_path)
-    assert ElementTree.fromstring(svg).tag.endswith("svg")
+    drawn = ElementTree.fromstring(svg)
+    assert drawn.tag.endswith("svg")
     assert "contact force (N)" in svg
+    name = {"svg": "http://www.w3.org/2000/svg"}
+    clip = drawn.find(".//svg:clipPath", name)
+    assert clip is not None  # a zoomed curve stays within its axes
+    assert drawn.find(f".//svg:g[@clip-path='url(#{clip.get('id')})']/svg:path", name) is not None
 
 
 def test_a_curve_tells_its_values_and_moves_the_scene(tab: Page) -> None:
@@ -99,3 +107,15 @@ def test_everybody_can_read_it(browser: Browser, path: Path, width: int, dark: b
         assert accessible(tab) == []
         assert tab.evaluate("document.documentElement.scrollWidth") <= width
         tab.screenshot(path=folder / f"report_of_runs_{width}_{'dark' if dark else 'light'}.png", full_page=True)
+
+
+def test_the_run_of_an_fmu_has_the_same_curves(browser: Browser, tmp_path: Path) -> None:
+    out = tmp_path / "run.html"
+    run = run_fmu(native.fmu("drivetrain", 3), "cs", 0.1, 0.001, ["motor.torque=6"])
+    write_run(out, run)
+    with browser.page(out, width=WIDTHS[0]) as tab:
+        assert accessible(tab) == []
+        assert tab.evaluate("document.documentElement.scrollWidth") <= WIDTHS[0]
+        rows = list(csv.DictReader(io.StringIO(taken(tab, "N.m as CSV", tmp_path))))
+        torque = np.array([float(row["sensor.torque: N.m"]) for row in rows])
+        np.testing.assert_allclose(torque, run.traces["sensor.torque"], rtol=1e-6)  # 7 digits

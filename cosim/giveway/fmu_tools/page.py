@@ -44,27 +44,29 @@ def _write_csv(path: Path, run: FmuRun) -> None:
 def _page(run: FmuRun) -> str:
     """One self-contained page. Variables that are not drawn are listed: those that never change, and counters if there
     are reals."""
-    from html import escape
+    import jinja2
 
-    from giveway.report.inline_svg import inline_svg
+    from giveway.report.figure_data import figure_data
+    from giveway.report.page import page
 
     drawn, others, still = _sorted_out(run)
-    figures = []
-    for number, (unit, names) in enumerate(drawn.items()):
-        shown = names[:PLOTTED_VARIABLES]
-        more = f"<p>and {len(names) - len(shown)} more, in the CSV</p>" if len(names) > len(shown) else ""
-        figures.append(inline_svg(_figure(run.traces, unit, shown), f"plot{number}") + more)
-    title = escape(run.path.name)
-    constant = ", ".join(escape(f"{name} = {run.traces[name][0]}") for name in still) or "none"
-    listed = f"<h2>Not drawn</h2><p>{escape(', '.join(others))} (--plot NAME draws them)</p>\n" if others else ""
-    style = "body{font-family:sans-serif;max-width:70rem;margin:2rem auto;color:#2b2f36}svg{max-width:100%;height:auto}"
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-        f"<style>{style}</style></head>\n"
-        f"<body><h1>{title}</h1><p>{escape(run.description)}</p><p>{run.interface}, {len(run.traces)} rows, "
-        f"{run.step_s:g} s apart, to {run.traces['time'][-1]:g} s.</p>\n{''.join(figures)}\n{listed}"
-        f"<h2>Constant</h2><p>{constant}</p></body></html>\n"
+    figures = {unit or "no unit": _figure(run.traces, unit, names[:PLOTTED_VARIABLES]) for unit, names in drawn.items()}
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("giveway.report", "templates"), autoescape=True, undefined=jinja2.StrictUndefined
     )
+    body = environment.get_template("fmu_run.html.j2").render(
+        run=run,
+        rows=len(run.traces),
+        end_s=f"{run.traces['time'][-1]:g}",
+        plots=[
+            (title, max(0, len(names) - PLOTTED_VARIABLES))
+            for title, names in zip(figures, drawn.values(), strict=True)
+        ],
+        others=", ".join(others),
+        still=", ".join(f"{name} = {run.traces[name][0]}" for name in still) or "none",
+    )
+    found = [figure_data(figure, points_max=POINTS_SHOWN) for figure in figures.values()]
+    return page("report", run.path.name, {"figures": found}, body=body)
 
 
 def _sorted_out(run: FmuRun) -> tuple[dict[str, list[str]], list[str], list[str]]:
@@ -98,14 +100,13 @@ def _figure(traces: NDArray[Any], unit: str, names: list[str]) -> Any:
 
     from giveway.report.style import STYLE
 
-    every = max(1, len(traces) // POINTS_SHOWN)
     with context(STYLE):
         figure = Figure(figsize=(9.0, 3.2), layout="constrained")
         axes = figure.add_subplot()
         for name in names:
-            values = traces[name][::every]
+            values = traces[name]
             axes.plot(
-                traces["time"][::every],
+                traces["time"],
                 values.astype(float),
                 label=_label(name),
                 drawstyle="steps-post" if values.dtype.kind in "biu" else None,
@@ -118,5 +119,5 @@ def _figure(traces: NDArray[Any], unit: str, names: list[str]) -> Any:
 
 def _label(text: str) -> str:
     """Names come from the FMU: they are not interpreted as formulas, and none is hidden for its first character."""
-    plain = text.replace("\\", "\\\\").replace("$", "\\$")
+    plain = text.replace("$", "\\$")
     return f" {plain}" if plain.startswith("_") else plain

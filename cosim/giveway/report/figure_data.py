@@ -27,15 +27,18 @@ if TYPE_CHECKING:
 
 __all__ = ["figure_data"]
 
-POINTS_MAX = 8000  # of a line; of more, the lowest and highest of every bit of it
+POINTS_MAX = 8000  # of a line
 PIXELS_PER_POINT = 4.0 / 3.0
 
 
-def figure_data(figure: Figure) -> dict[str, Any]:
-    """Axes by row and column, with their lines, points, areas, words and limits in the units of their labels."""
+def figure_data(figure: Figure, *, points_max: int = POINTS_MAX) -> dict[str, Any]:
+    """Axes by row and column, with their lines, points, areas, words and limits in the units of their labels.
+
+    Of a line with more than ``points_max`` points it takes the lowest and highest of every bit.
+    """
     drawn = [axes for axes in figure.axes if axes.get_visible() and axes.axison]
     places = [_place(axes, index) for index, axes in enumerate(drawn)]
-    found = [_axes(axes, row, column) for axes, (row, column) in zip(drawn, places, strict=True)]
+    found = [_axes(axes, row, column, points_max) for axes, (row, column) in zip(drawn, places, strict=True)]
     for one in found:  # a label that stands at the edge of a grid is that of all its panels
         for name, same in (("x", "column"), ("y", "row")):
             others = [other[name]["label"] for other in found if other[same] == one[same] and other[name]["label"]]
@@ -56,7 +59,7 @@ def _place(axes: Axes, index: int) -> tuple[int, int]:
     return (index, 0) if spec is None else (spec.rowspan.start, spec.colspan.start)
 
 
-def _axes(axes: Axes, row: int, column: int) -> dict[str, Any]:
+def _axes(axes: Axes, row: int, column: int, points_max: int) -> dict[str, Any]:
     crossing = [line for line in axes.lines if _is_across(axes, line)]
     return {
         "row": row,
@@ -66,7 +69,7 @@ def _axes(axes: Axes, row: int, column: int) -> dict[str, Any]:
         "x": _axis(axes, "x"),
         "y": _axis(axes, "y"),
         "areas": [*_areas(axes), *(_area(axes, patch) for patch in axes.patches)],
-        "lines": [_line(line) for line in axes.lines if line not in crossing],
+        "lines": [_line(line, points_max) for line in axes.lines if line not in crossing],
         "clouds": [_cloud(found) for found in axes.collections if isinstance(found, PathCollection)],
         "segments": [_segments(found) for found in axes.collections if isinstance(found, LineCollection)],
         "across": [_across(line) for line in crossing],
@@ -110,10 +113,10 @@ def _numbers(values: Any) -> NDArray[np.float64]:
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
 
 
-def _line(line: Line2D) -> dict[str, Any]:
+def _line(line: Line2D, points_max: int) -> dict[str, Any]:
     x, y = (_numbers(values) for values in line.get_data())
     x, y = STEP_LOOKUP_MAP[line.get_drawstyle()](x, y)
-    kept = _thinned(y)
+    kept = _thinned(y, points_max)
     style, marker = line.get_linestyle(), line.get_marker()
     marked = marker not in (None, "None", "none", "", " ")
     return {
@@ -128,11 +131,11 @@ def _line(line: Line2D) -> dict[str, Any]:
     }
 
 
-def _thinned(y: NDArray[np.float64]) -> NDArray[np.intp]:
+def _thinned(y: NDArray[np.float64], points_max: int) -> NDArray[np.intp]:
     """Rows of a curve that are enough to draw it: its ends, and the lowest and highest row of every bit."""
-    if len(y) <= POINTS_MAX:
+    if len(y) <= points_max:
         return np.arange(len(y))
-    bits = np.array_split(np.arange(len(y)), POINTS_MAX // 2)
+    bits = np.array_split(np.arange(len(y)), points_max // 2)
     filled = np.where(np.isnan(y), -np.inf, y)
     ends = [rows[place] for rows in bits for place in {int(np.argmin(y[rows])), int(np.argmax(filled[rows]))}]
     return np.unique([0, *ends, len(y) - 1])

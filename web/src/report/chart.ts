@@ -152,14 +152,19 @@ export class Chart {
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, pen.canvas.width, pen.canvas.height);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this._framed(pen);
+    this._pointed(pen);
+  }
+
+  private _framed(pen: Pen): void {
+    const { width, height } = this._surface;
     pen.save();
     this._frame(pen);
     pen.beginPath();
-    pen.rect(LEFT, TOP, width - LEFT - RIGHT, this._surface.height - TOP - BOTTOM);
+    pen.rect(LEFT, TOP, width - LEFT - RIGHT, height - TOP - BOTTOM);
     pen.clip();
     this._content(pen);
     pen.restore();
-    this._pointed(pen);
   }
 
   private _frame(pen: Pen): void {
@@ -451,10 +456,7 @@ export class Chart {
 
   private _save_svg(): void {
     const { width, height } = this._surface;
-    const text = drawn_svg(width, height, (pen) => {
-      this._frame(pen);
-      this._content(pen);
-    });
+    const text = drawn_svg(width, height, (pen) => this._framed(pen));
     save(`${this._file()}.svg`, text, "image/svg+xml");
   }
 
@@ -481,10 +483,12 @@ export function shade(hex: string): string {
   return `rgb(${lift(red)} ${lift(green)} ${lift(blue)})`;
 }
 
-/** matplotlib's mathematics as far as our labels use it. */
+/** matplotlib's mathematics as far as our labels use it; `\$` is a dollar sign. */
 export function plain(text: string): string {
-  return text.replace(/\$([^$]*)\$/g, (_, inner: string) =>
-    inner.replace(/\\sqrt\{([^}]*)\}/g, "√($1)").replace(/[_^]\{?(\w+)\}?/g, "$1").replace(/\\(\w+)/g, "$1"),
+  return text.replace(/\\\$|\$([^$]*)\$/g, (_, inner?: string) =>
+    inner === undefined
+      ? "$"
+      : inner.replace(/\\sqrt\{([^}]*)\}/g, "√($1)").replace(/[_^]\{?(\w+)\}?/g, "$1").replace(/\\(\w+)/g, "$1"),
   );
 }
 

@@ -354,7 +354,7 @@ export class Scatter {
 /** What the pens of a canvas and of an SVG file have in common. */
 export type Pen = Pick<
   CanvasRenderingContext2D,
-  | "beginPath" | "moveTo" | "lineTo" | "arc" | "rect" | "stroke" | "fill" | "fillText" | "save" | "restore"
+  | "beginPath" | "moveTo" | "lineTo" | "arc" | "rect" | "stroke" | "fill" | "fillText" | "save" | "restore" | "clip"
   | "translate" | "rotate" | "setLineDash" | "measureText"
 > & { fillStyle: unknown; strokeStyle: unknown; lineWidth: number; globalAlpha: number; font: string;
   textAlign: CanvasTextAlign; textBaseline: CanvasTextBaseline }; // prettier-ignore

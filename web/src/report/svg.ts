@@ -40,9 +40,8 @@ class SvgPen implements Pen {
   }
   stroke(): void {
     const dash = this._dash ? ` stroke-dasharray="${this._dash}"` : "";
-    this.parts.push(
-      `<path d="${this._path}" fill="none" stroke="${this.strokeStyle}" stroke-width="${this.lineWidth}"${dash}/>`,
-    );
+    const paint = `stroke="${this.strokeStyle}" stroke-opacity="${this.globalAlpha}" stroke-width="${this.lineWidth}"`;
+    this.parts.push(`<path d="${this._path}" fill="none" ${paint}${dash}/>`);
   }
   fill(): void {
     this.parts.push(`<path d="${this._path}" fill="${this.fillStyle}" fill-opacity="${this.globalAlpha}"/>`);
@@ -62,10 +61,16 @@ class SvgPen implements Pen {
     this._open = this._groups.pop() ?? 0;
   }
   translate(x: number, y: number): void {
-    this._group(`translate(${round(x)} ${round(y)})`);
+    this._group(`transform="translate(${round(x)} ${round(y)})"`);
   }
   rotate(angle: number): void {
-    this._group(`rotate(${round((angle * 180) / Math.PI)})`);
+    this._group(`transform="rotate(${round((angle * 180) / Math.PI)})"`);
+  }
+  /** What follows, until `restore`, stays within the path. */
+  clip(): void {
+    const name = `clip${this.parts.length}`;
+    this.parts.push(`<clipPath id="${name}"><path d="${this._path}"/></clipPath>`);
+    this._group(`clip-path="url(#${name})"`);
   }
   setLineDash(dash: number[]): void {
     this._dash = dash.join(" ");
@@ -77,8 +82,8 @@ class SvgPen implements Pen {
     this._measure.font = this.font;
     return this._measure.measureText(text);
   }
-  private _group(transform: string): void {
-    this.parts.push(`<g transform="${transform}">`);
+  private _group(attribute: string): void {
+    this.parts.push(`<g ${attribute}>`);
     this._open++;
   }
 }
