@@ -8,9 +8,10 @@ from figure_labels import Curve, check_panels, check_planted, curve, keeping
 from giveway import experiments
 from giveway.base.errors import GivewayError
 from giveway.experiments.reproduction.findings import Effort, Findings
-from giveway.experiments.roller_calibration import ARCS, REST_S, WheelArc
+from giveway.experiments.roller_calibration import ARCS
 from giveway.identification import roller_friction
 from giveway.identification.roller_friction import Calibration
+from giveway.scenario.arcs import REST_S, WheelArc
 
 STEP_S = 1e-4
 

@@ -12,7 +12,7 @@ import pytest
 from arc_logs import arc_log, csv_lines, sine
 from giveway.base import native
 from giveway.base.errors import FileError
-from giveway.identification.motion_log import read_log
+from giveway.identification.motion_log import MotionLog, pieces, read_log
 from giveway.robot.robot_file import Robot, read_robot
 
 SHORT = arc_log((1.0, 0.5, 0.0), sine(4.0, 1.0), 1.0)
@@ -63,6 +63,38 @@ def test_other_units_order_and_columns(robot: Robot, write: Callable[[list[str]]
     assert log.time_s == pytest.approx(SHORT.time_s, abs=1e-12)
     assert log.torque_nm == pytest.approx(torque, abs=1e-12)
     assert log.wheel_angle_rad - log.wheel_angle_rad[0] == pytest.approx(angle - angle[0], abs=1e-6)  # of 1.6e6 rad
+
+
+def test_the_log_of_a_run(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    """Its heads, under comments, mean the same as those of a log of one's own; an error has the line of the file."""
+    columns = {f"motor_angle_{i}_counts": np.rint(SHORT.wheel_angle_rad[:, i] * 1e3) for i in range(3)}
+    columns |= {f"torque_{i}_nm": SHORT.torque_nm[:, i] for i in range(3)}
+    own = table(time_s=SHORT.time_s, **columns)
+    heads = ["time [s]", *(f"encoder_{i}" for i in range(3)), *(f"torque_{i} [N.m]" for i in range(3))]
+    comments = ["# of a run", "# step_s = 0.001"]
+    wanted, found = read_log(write(own), robot), read_log(write([*comments, ",".join(heads), *own[1:]]), robot)
+    for name in ("time_s", "wheel_angle_rad", "torque_nm"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
+    with pytest.raises(FileError, match=r"line 5: torque_1_nm is nan"):
+        read_log(write([*comments, ",".join(heads), own[1], "0.5,1,2,3,0.1,nan,0.2", *own[2:]]), robot)
+    with pytest.raises(FileError, match=r"line 3: there is no column for torque_2"):
+        read_log(write([*comments, ",".join(heads[:-1]), *own[1:]]), robot)
+
+
+def test_a_log_is_cut_where_the_robot_stands() -> None:
+    time = np.arange(0.0, 30.0, 0.01)
+    swing = np.where((time > 1.0) & (time < 11.0), 1.0 - np.cos(0.2 * math.pi * (time - 1.0)), 0.0)
+    later = np.where((time > 14.0) & (time < 24.0), 1.0 - np.cos(0.2 * math.pi * (time - 14.0)), 0.0)
+    angle = np.stack([swing, later, np.zeros_like(time)], axis=1)
+    log = MotionLog("two.csv", time, angle, np.zeros_like(angle))
+    found = pieces(log)  # with the rest of 0.3 s on either side
+    assert [(one.time_s[0], one.time_s[-1]) for one in found] == [
+        (pytest.approx(0.7, abs=0.1), pytest.approx(11.3, abs=0.1)),
+        (pytest.approx(13.7, abs=0.1), pytest.approx(24.3, abs=0.1)),
+    ]
+    assert found[1].name.startswith("two.csv, 13.")
+    one = MotionLog("one.csv", time[:1300], angle[:1300], np.zeros((1300, 3)))
+    assert pieces(one) == [one]
 
 
 def test_counts_go_on_over_their_wrap(robot: Robot, write: Callable[[list[str]], Path]) -> None:

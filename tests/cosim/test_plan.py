@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
+from giveway.scenario.arcs import EVERY_WHEEL, Arcs
 from giveway.scenario.plan import Circle, Pushes, Rest, Straight, TimedPush, start_values
 from numpy.typing import NDArray
 
@@ -20,6 +22,7 @@ MOVING = {
     "circle from rest": Circle(1.5, 0.16, acceleration_mps2=0.1),
     "circle from rest, turning": Circle(0.8, -0.3, heading="turning", acceleration_mps2=0.5),
 }
+ARCS = Arcs(EVERY_WHEEL, 1.5, 0.1, 2, 0.5, 0.1016, 0.24)
 
 
 @pytest.mark.parametrize("name", MOVING)
@@ -52,6 +55,22 @@ def test_a_circle_is_a_circle() -> None:
     )
     anticlockwise = from_centre[0, 0] * from_centre[1, 1] - from_centre[0, 1] * from_centre[1, 0]
     assert anticlockwise > 0.0
+
+
+def test_arcs_are_driven_one_after_the_other_and_end_where_they_began() -> None:
+    """The wheels that swing, by the rates that the plan asks of each; the others stand."""
+    plan = Arcs(EVERY_WHEEL, 1.5, 0.1, 2, 0.5, 0.1016, 0.24, x_m=1.0, y_m=-2.0, theta_rad=0.7)
+    assert plan.duration_s == pytest.approx(6 * 20.5)
+    angle = np.arange(3) * 2.0 * math.pi / 3.0
+    for number, wheels in enumerate((*EVERY_WHEEL, EVERY_WHEEL[0])):
+        start_s = number * 20.5
+        table = plan(start_s + np.linspace(0.0, 20.5, 206, endpoint=False))
+        azimuth = table[:, 2:3] + angle
+        rate = (-np.sin(azimuth) * table[:, 3:4] + np.cos(azimuth) * table[:, 4:5] + 0.24 * table[:, 5:6]) / 0.1016
+        moving_s = np.maximum(np.linspace(0.0, 20.5, 206, endpoint=False) - 0.5, 0.0)
+        wanted = 1.5 * 0.2 * math.pi * np.sin(0.2 * math.pi * moving_s)[:, None] * np.array(wheels)
+        np.testing.assert_allclose(rate, wanted, atol=1e-12)
+        np.testing.assert_allclose(table[:5, POSITION], [[1.0, -2.0, 0.7]] * 5, atol=1e-12)
 
 
 def test_a_turning_heading_keeps_the_same_side_ahead() -> None:
@@ -109,6 +128,27 @@ def test_the_testbed_starts_where_the_plan_starts() -> None:
 def test_a_plan_refuses(plan: str, changes: dict[str, object], field: str) -> None:
     with pytest.raises(GivewayError) as caught:
         dataclasses.replace(MOVING[plan], **changes)  # type: ignore[type-var]
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"wheels": ()}, "Arcs.wheels"),
+        ({"wheels": ((1.0, -1.0, 0.0),)}, "Arcs.wheels"),
+        ({"wheels": ((2.0, 0.0, 0.0),)}, "Arcs.wheels"),
+        ({"swing_rad": 0.0}, "Arcs.swing_rad"),
+        ({"frequency_hz": math.inf}, "Arcs.frequency_hz"),
+        ({"swings": 0}, "Arcs.swings"),
+        ({"rest_s": -1.0}, "Arcs.rest_s"),
+        ({"wheel_radius_m": 0.0}, "Arcs.wheel_radius_m"),
+        ({"y_m": 1e5}, "Arcs.y_m"),
+        ({"theta_rad": math.nan}, "Arcs.theta_rad"),
+    ],
+)
+def test_arcs_refuse(changes: dict[str, Any], field: str) -> None:
+    with pytest.raises(GivewayError) as caught:
+        dataclasses.replace(ARCS, **changes)
     assert caught.value.field == field
 
 

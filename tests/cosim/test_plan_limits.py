@@ -9,6 +9,7 @@ import giveway
 import pytest
 from giveway import batch
 from giveway.base.errors import GivewayError, InputFileError
+from giveway.scenario.arcs import EVERY_WHEEL, Arcs
 from giveway.scenario.plan import Circle, Plan, Straight
 from giveway.scenario.plan_limits import Limits, check_plan
 from giveway.scenario.scenario_file import read_scenario
@@ -16,6 +17,12 @@ from giveway.study import Study
 from study_helpers import small_study, stored_runs
 
 LIMITS = Limits(speed_mps=0.5, acceleration_mps2=1.5, yaw_rate_radps=1.5, yaw_acceleration_radps2=6.0)
+
+
+def arcs(swing_rad: float, frequency_hz: float, wheels: tuple[tuple[float, float, float], ...] = EVERY_WHEEL) -> Arcs:
+    return Arcs(wheels, swing_rad, frequency_hz, 2, 0.5, 0.1016, 0.24)
+
+
 REFUSED: dict[str, tuple[Plan, str, str]] = {
     "speed": (Straight(0.51), "Straight.speed_mps: 0.51", "at most 0.5 m/s, controller.reference.speed_limit"),
     "acceleration": (Straight(0.2, acceleration_mps2=1.6), "Straight.acceleration_mps2: 1.6", "at most 1.5 m/s2"),
@@ -30,12 +37,22 @@ REFUSED: dict[str, tuple[Plan, str, str]] = {
         "yaw acceleration: 6.67 rad/s2",
         "controller.reference.yaw_acceleration_limit",
     ),
+    # 2/3 of the rim of the wheel that swings: 0.1016 (2/3) 1.5 (2 pi 1.3) = 0.83 m/s
+    "arcs, speed": (arcs(1.5, 1.3), "Arcs.frequency_hz: 1.3 (speed: 0.83 m/s)", "at most 0.5 m/s"),
+    "arcs, acceleration": (arcs(0.1, 3.0), "acceleration: 2.41 m/s2", "at most 1.5 m/s2"),
+    "arcs on the spot": (arcs(10.0, 0.1, ((1.0, 1.0, 1.0),)), "yaw rate: 2.66 rad/s", "at most 1.5 rad/s"),
+    "arcs on the spot, quick": (
+        arcs(0.1, 2.0, ((1.0, 1.0, 1.0),)),
+        "yaw acceleration: 6.69 rad/s2",
+        "yaw_acceleration",
+    ),
 }
 FOLLOWED: dict[str, Plan] = {
     "the limits themselves": Straight(0.5, acceleration_mps2=1.5),
     "already moving": Straight(0.5, acceleration_mps2=None),
     "a heading that stays": Circle(0.6, 0.48),
     "turning": Circle(1.0, -0.5, heading="turning", acceleration_mps2=1.0),
+    "arcs": arcs(1.5, 0.1),
     "something of one's own": lambda time_s: Straight(5.0)(time_s),
 }
 

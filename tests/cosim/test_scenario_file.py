@@ -13,6 +13,7 @@ from cosim_helpers import Cli, folder_content
 from giveway import batch
 from giveway.base.errors import InputFileError
 from giveway.base.toml_lines import flatten, line_of
+from giveway.scenario.arcs import EVERY_WHEEL, Arcs, wheels_of
 from giveway.scenario.plan import Circle, Pushes, Straight
 from giveway.scenario.scenario_file import read_scenario
 
@@ -45,6 +46,9 @@ electronics.torque_offset = [
 def test_every_example_runs_and_is_noticed(path: Path) -> None:
     scenario = giveway.read_scenario(path)
     result = batch.run(scenario)
+    if isinstance(scenario.plan, Arcs):
+        assert float(np.abs(result.traces["testbed.truth.theta"]).max()) > 0.3
+        return
     if scenario.push is not None:
         found = [{metric.name: metric.value for metric in push} for push in result.pushes]
         assert [push["detections"] for push in found] == [1.0] * len(scenario.push.pushes)  # type: ignore[attr-defined]
@@ -178,6 +182,12 @@ ramp = 0.1
     steady = read_scenario(written(tmp_path, head + text.replace("turning = true\n", "")))
     assert steady.plan == Circle(2.0, -0.3, 1.0, 2.0, math.pi, "fixed", math.pi / 4, 0.5)
     assert isinstance(round_.push, Pushes)
+    arcs = read_scenario(
+        written(tmp_path, head + '[plan]\nkind = "arcs"\nwheels = [[1, 0, 0], [1, 1, 0]]\nswing = 90\n')
+    )
+    assert arcs.plan == Arcs(((1.0, 0.0, 0.0), (1.0, 1.0, 0.0)), math.pi / 2, 0.1, 2, 1.0, 0.1016, 0.24)
+    light = read_scenario(written(tmp_path, head + 'robot = "lekiwi"\n[plan]\nkind = "arcs"\nfrequency = 0.05\n'))
+    assert light.plan == Arcs(EVERY_WHEEL, 1.5, 0.05, 2, 1.0, *wheels_of(light.robot))
     np.testing.assert_allclose(round_.push(np.array([2.2]))[0], [-30.0, 0.0, 0.3, 0.0], atol=1e-12)
 
 
@@ -250,6 +260,14 @@ WRONG: dict[str, tuple[str, str, int, tuple[str, ...]]] = {
     "key of another plan": ("[collision]", '[plan]\nkind = "rest"\nspeed = 1\n[collision]', 8, ("plan.speed",)),
     "plan out of range": ("[collision]", '[plan]\nkind = "circle"\nspeed = 1\ndiameter = 0\n[collision]', 9,
                           ("plan.diameter: 0.0", "m")),
+    "arcs of nothing": ("[collision]", '[plan]\nkind = "arcs"\nwheels = [[1, 0]]\n[collision]', 8,
+                        ("plan.wheels: [[1, 0]]", "every wheel")),
+    "arcs about no point": ("[collision]", '[plan]\nkind = "arcs"\nwheels = [[1, -1, 0]]\n[collision]', 8,
+                            ("plan.wheels", "sum is not 0")),
+    "arcs too quick": ("[collision]", '[plan]\nkind = "arcs"\nfrequency = 2\n[collision]', 8,
+                       ("plan.frequency: 2 (speed", "at most")),
+    "half a swing": ("[collision]", '[plan]\nkind = "arcs"\nswings = 0.5\n[collision]', 8,
+                     ("plan.swings: 0.5", "whole")),
     "plan too fast": ("[collision]", '[plan]\nkind = "straight"\nspeed = 99\n[collision]', 8, ("plan.speed: 99.0",)),
     "push is no list": ("[collision]", "push = 1\n[collision]", 6, ("push: 1", "[[push]]")),
     "push without force": ("[collision]", "[[push]]\npoint = [0, 0]\n[collision]", 6, ("push[0].force: nothing",)),

@@ -20,8 +20,9 @@ from giveway.base import native
 from giveway.base.errors import GivewayError
 from giveway.crowd.parts import Interrupted, Record, Work
 from giveway.crowd.population import DRAWS, robot
-from giveway.experiments.roller_calibration import ARCS, RECORDED, REST_S, WheelArc, arc_scenario, log_of
+from giveway.experiments.roller_calibration import ARCS, RECORDED, arc_scenario, log_of
 from giveway.robot.robot_file import read_robot
+from giveway.scenario.arcs import REST_S, WheelArc
 
 if TYPE_CHECKING:
     from giveway.robot.variables import Value

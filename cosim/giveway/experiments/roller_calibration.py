@@ -8,18 +8,15 @@ fitted. The paper does not print f; with 0.1 Hz the rollers pass slowly through 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from giveway.base.checks import finite
 from giveway.experiments import Experiment
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
 from giveway.paper.printed import printed
 from giveway.robot.presets import NO_REFLEX, PAPER
-from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
-from giveway.scenario.plan import PLAN_INPUTS
+from giveway.robot.wheels import WHEELS
+from giveway.scenario.arcs import REST_S, WheelArc
 from giveway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -34,7 +31,6 @@ if TYPE_CHECKING:
 SWING_RAD = 1.5
 FREQUENCY_HZ = 0.1
 PERIODS = 3
-REST_S = 0.5  # before the arc, for the controller's tare
 ARCS: Mapping[str, tuple[float, float, float]] = {
     "wheel 0 moving": (1.0, 0.0, 0.0),
     "wheels 0 and 1 moving": (1.0, 1.0, 0.0),
@@ -45,56 +41,6 @@ RECORDED = tuple(f"testbed.sensor.{what}[{wheel}]" for what in ("torque", "encod
 PLATEAU = 0.9  # of the largest wheel rate: the top of the wave
 ERROR = 0.05  # of a fitted friction
 EDGE = 0.9  # of the plateau: where a wave counts as risen
-
-
-@dataclass(frozen=True)
-class WheelArc:
-    """The base when some wheels swing and the others stand.
-
-    Attributes:
-        wheels: share of the swing of each wheel, not all three the same.
-        swing_rad: half of a wheel's travel, rad.
-        frequency_hz: swings per second.
-        wheel_radius_m, wheel_distance_m: of the robot.
-    """
-
-    wheels: tuple[float, float, float]
-    swing_rad: float
-    frequency_hz: float
-    wheel_radius_m: float
-    wheel_distance_m: float
-
-    def __post_init__(self) -> None:
-        for name in ("swing_rad", "frequency_hz", "wheel_radius_m", "wheel_distance_m"):
-            finite(f"WheelArc.{name}", getattr(self, name), 0.0)
-
-    def __call__(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        import numpy as np
-
-        azimuth = np.array(AZIMUTHS_RAD)
-        axes = (
-            np.stack([-2.0 * np.sin(azimuth), 2.0 * np.cos(azimuth), np.full(WHEELS, 1.0 / self.wheel_distance_m)])
-            / WHEELS
-        )
-        vx, vy, turn = self.wheel_radius_m * axes @ np.array(self.wheels)  # base twist per wheel rate
-        pivot = np.array([-vy, vx]) / turn  # pivot: the point of the base without velocity; it does not move
-
-        omega = 2.0 * math.pi * self.frequency_hz
-        phase = omega * np.maximum(time_s - REST_S, 0.0)
-        theta = turn * self.swing_rad * (1.0 - np.cos(phase))
-        rate = turn * self.swing_rad * omega * np.sin(phase)
-        acceleration = turn * self.swing_rad * omega**2 * np.where(time_s >= REST_S, np.cos(phase), 0.0)
-        cos, sin = np.cos(theta), np.sin(theta)
-        arm = -np.stack(
-            [cos * pivot[0] - sin * pivot[1], sin * pivot[0] + cos * pivot[1]]
-        )  # from the pivot to the base
-
-        table = np.empty((len(time_s), len(PLAN_INPUTS)))
-        table[:, 0:2] = (pivot[:, None] + arm).T
-        table[:, 2], table[:, 5], table[:, 8] = theta, rate, acceleration
-        table[:, 3:5] = (rate * np.stack([-arm[1], arm[0]])).T
-        table[:, 6:8] = (acceleration * np.stack([-arm[1], arm[0]]) - rate**2 * arm).T
-        return table
 
 
 def arc_scenario(

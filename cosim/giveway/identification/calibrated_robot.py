@@ -7,7 +7,7 @@ from pathlib import Path
 
 from giveway.base.errors import GivewayError
 from giveway.base.files import check_file, replace_files
-from giveway.identification.motion_log import MotionLog, read_log
+from giveway.identification.motion_log import MotionLog, pieces, read_log
 from giveway.identification.roller_friction import Calibration, Estimate
 from giveway.identification.roller_friction import calibrate as calibrate_rollers
 from giveway.robot.changes import NewValue, changed_robot
@@ -35,7 +35,7 @@ def calibrate_robot(logs: Sequence[Path], robot: Path, out: Path) -> tuple[Calib
         check_file(path)
     parameters = read_robot(robot)
     read = [read_log(path, parameters) for path in logs]
-    calibration = calibrate_rollers(read, parameters)
+    calibration = calibrate_rollers([piece for log in read for piece in pieces(log)], parameters)
     text = changed_robot(robot, _new_values(calibration, read))
     from giveway.identification.figures import write_residuals
 

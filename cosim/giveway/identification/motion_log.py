@@ -7,14 +7,17 @@ Columns are found by their names, in any order; other columns are ignored:
     torque_0_nm        ..._1_nm   ..._2_nm        also _mnm
 
 `motor_angle_0_...` instead of `wheel_angle_0_...` means that the encoders are on the motor side of the torque sensors,
-as on Trikey; the deflection T/k of the drivetrain is then subtracted. Angles may wrap (at a turn, counts at 32 bits).
-Signs and order are those of the robot: wheel i at azimuth 120 i deg, positive torque turns it towards positive angles.
+as on Trikey; the deflection T/k of the drivetrain is then subtracted. So does ``encoder_0``, as in the logs of
+`giveway run --log` and `giveway replay`, whose heads ``time [s]`` and ``torque_0 [N.m]`` are understood, too. Angles
+may wrap (at a turn, counts at 32 bits). Signs and order are those of the robot: wheel i at azimuth 120 i deg, positive
+torque turns it towards positive angles.
 """
 
 from __future__ import annotations
 
 import csv
 import hashlib
+import itertools
 import math
 import re
 from collections.abc import Mapping
@@ -30,11 +33,14 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["MotionLog", "behind_drivetrain", "counts_to_rad", "read_log"]
+__all__ = ["MotionLog", "behind_drivetrain", "counts_to_rad", "pieces", "read_log"]
 
 ROWS_MIN = 10  # a shorter file is wrong; the fit decides whether a log is long enough
 GAP_STEPS = 10.0  # a step longer than this many usual steps is a gap in the log
 COUNT_WRAP = 2.0**32
+STANDING_S = 0.8  # without motion: the robot stands between two arcs, it does not just turn back
+STANDING_RAD = 2e-3  # in which wheels that stand move, between them two counts of an encoder
+SHORTEST_PIECE_S = 2.0
 _TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 _TORQUE = {"nm": 1.0, "mnm": 1e-3}
 _ANGLE_UNITS = ("rad", "deg", "counts")
@@ -84,13 +90,17 @@ def read_log(path: Path, robot: Robot) -> MotionLog:
         raise FileError(path, "no such file", "give the path of a log (CSV)") from None
     except (OSError, UnicodeDecodeError) as error:
         raise FileError(path, f"cannot be read: {error}") from None
-    header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
-    time = _find(path, header, r"time", _TIME)
+    comments = sum(1 for _ in itertools.takewhile(lambda line: line.startswith("#"), lines))
+    head = comments + 1
+    header = [_own_name(name.strip()) for name in next(csv.reader(lines[comments:head]), [])]
+    time = _find(path, head, header, r"time", _TIME)
     kind = "motor" if any(name.startswith("motor_angle_") for name in header) else "wheel"
-    angles = [_find(path, header, f"{kind}_angle_{wheel}", dict.fromkeys(_ANGLE_UNITS, 1.0)) for wheel in range(WHEELS)]
-    torques = [_find(path, header, f"torque_{wheel}", _TORQUE) for wheel in range(WHEELS)]
+    angles = [
+        _find(path, head, header, f"{kind}_angle_{wheel}", dict.fromkeys(_ANGLE_UNITS, 1.0)) for wheel in range(WHEELS)
+    ]
+    torques = [_find(path, head, header, f"torque_{wheel}", _TORQUE) for wheel in range(WHEELS)]
     columns = [time, *angles, *torques]
-    values, numbers = _values(path, lines, columns)
+    values, numbers = _values(path, lines, head, columns)
 
     time_s = values[:, 0] * _TIME[time.unit]
     _check_time(path, time_s, numbers)
@@ -99,6 +109,38 @@ def read_log(path: Path, robot: Robot) -> MotionLog:
     if kind == "motor":
         angle = behind_drivetrain(angle, torque, robot)
     return MotionLog(path.name, time_s, angle, torque, hashlib.sha256(content).hexdigest())
+
+
+def pieces(log: MotionLog) -> list[MotionLog]:
+    """The motions of ``log`` between times at which the robot stands; ``log`` itself if it has only one.
+
+    Arcs about several points then count as logs of their own: each has other rollers that roll.
+    """
+    import numpy as np
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+    step_s = float(np.median(np.diff(log.time_s)))
+    width = max(2, round(STANDING_S / step_s))
+    span = maximum_filter1d(log.wheel_angle_rad, width, axis=0) - minimum_filter1d(log.wheel_angle_rad, width, axis=0)
+    standing = (span < STANDING_RAD).all(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate(([True], standing, [True])).astype(np.int8)))
+    found = [
+        (begin, end)
+        for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+        if log.time_s[end - 1] - log.time_s[begin] >= SHORTEST_PIECE_S
+    ]
+    if len(found) < 2:
+        return [log]
+    return [
+        MotionLog(
+            f"{log.name}, {log.time_s[begin]:.1f} to {log.time_s[end - 1]:.1f} s",
+            log.time_s[begin:end],
+            log.wheel_angle_rad[begin:end],
+            log.torque_nm[begin:end],
+            log.sha256,
+        )
+        for begin, end in found
+    ]
 
 
 def behind_drivetrain(
@@ -116,33 +158,43 @@ def counts_to_rad(counts: NDArray[np.float64], robot: Robot) -> NDArray[np.float
     return np.asarray(np.unwrap(counts, period=COUNT_WRAP, axis=0)) * (2.0 * math.pi / turn)
 
 
-def _find(path: Path, header: list[str], quantity: str, units: Mapping[str, float]) -> _Column:
+def _own_name(name: str) -> str:
+    """The name of a column as the logs of `giveway run --log` have it, as one of these logs."""
+    if re.fullmatch(r"encoder_\d", name):
+        return f"motor_angle_{name.removeprefix('encoder_')}_counts"
+    found = re.fullmatch(r"(time|torque_\d) \[(\w+|m?N\.m)\]", name)
+    return f"{found[1]}_{found[2].replace('.', '').lower()}" if found else name
+
+
+def _find(path: Path, line: int, header: list[str], quantity: str, units: Mapping[str, float]) -> _Column:
     """The one column of ``quantity``; its unit is the end of its name."""
     allowed = " or ".join(f"{quantity}_{unit}" for unit in units)
     found = [i for i, name in enumerate(header) if re.fullmatch(rf"{quantity}(_[^_]*)?", name)]
     if not found:
         near = nearest_names(f"{quantity}_{next(iter(units))}", header)
         hint = f" (the header has {' and '.join(near)})" if near else ""
-        raise FileError(path, f"line 1: there is no column for {quantity}{hint}", f"needed: {allowed}")
+        raise FileError(path, f"line {line}: there is no column for {quantity}{hint}", f"needed: {allowed}")
     if len(found) > 1:
         names = " and ".join(header[i] for i in found)
-        raise FileError(path, f"line 1: {names} say the same thing", f"give one of: {allowed}")
+        raise FileError(path, f"line {line}: {names} say the same thing", f"give one of: {allowed}")
     name = header[found[0]]
     unit = name.removeprefix(quantity).removeprefix("_")
     if unit not in units:
-        reason = f"line 1: column {name} has the unit {unit}" if unit else f"line 1: column {name} states no unit"
+        reason = (
+            f"line {line}: column {name} has the unit {unit}" if unit else f"line {line}: column {name} states no unit"
+        )
         raise FileError(path, reason, f"allowed: {allowed}")
     return _Column(name, found[0], unit)
 
 
-def _values(path: Path, lines: list[str], columns: list[_Column]) -> tuple[NDArray[np.float64], list[int]]:
+def _values(path: Path, lines: list[str], head: int, columns: list[_Column]) -> tuple[NDArray[np.float64], list[int]]:
     """The wanted columns, shape (n, columns), and the number in the file of each of the n lines."""
     import numpy as np
 
     table: list[list[float]] = []
     numbers: list[int] = []
     last = max(column.index for column in columns)
-    for number, line in enumerate(lines[1:], 2):
+    for number, line in enumerate(lines[head:], head + 1):
         if not line.strip():
             continue
         row = next(csv.reader([line]))

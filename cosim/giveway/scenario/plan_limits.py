@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from giveway.base.errors import GivewayError
+from giveway.scenario.arcs import Arcs
 from giveway.scenario.plan import Circle, Straight
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def check_plan_of(scenario: Scenario) -> None:
 
 
 def check_plan(plan: Plan, limits: Limits) -> None:
-    """Refuse a `Straight` or `Circle` beyond ``limits``; other plans are not checked.
+    """Refuse a `Straight`, `Circle` or `Arcs` beyond ``limits``; other plans are not checked.
 
     Raises:
         GivewayError: naming the plan's field (``Straight.speed_mps``), its value and the limit.
@@ -80,6 +81,29 @@ def check_plan(plan: Plan, limits: Limits) -> None:
             _refuse(at, plan.acceleration_mps2, plan.acceleration_mps2, "acceleration_mps2", limits)
     elif isinstance(plan, Circle):
         _check_circle(plan, limits)
+    elif isinstance(plan, Arcs):
+        _check_arcs(plan, limits)
+
+
+def _check_arcs(plan: Arcs, limits: Limits) -> None:
+    """The quickest moments of every arc; accelerations are largest at its ends or in its middle, or between."""
+    omega = 2.0 * math.pi * plan.frequency_hz
+    rate, growth = plan.swing_rad * omega, plan.swing_rad * omega**2
+    at = "Arcs.frequency_hz"
+    for number in range(len(plan.wheels)):
+        vx, vy, turn = plan.arc(number).twist
+        along, turn = math.hypot(vx, vy), abs(turn)
+        largest = max(
+            math.hypot(growth * along * math.cos(phase), (rate * math.sin(phase)) ** 2 * along * turn)
+            for phase in (0.5 * math.pi * index / (SAMPLES - 1) for index in range(SAMPLES))
+        )
+        for asked, limit, what in (
+            (rate * along, "speed_mps", "speed"),
+            (largest, "acceleration_mps2", "acceleration"),
+            (rate * turn, "yaw_rate_radps", "yaw rate"),
+            (growth * turn, "yaw_acceleration_radps2", "yaw acceleration"),
+        ):
+            _refuse(at, plan.frequency_hz, asked, limit, limits, what)
 
 
 def _check_circle(plan: Circle, limits: Limits) -> None:

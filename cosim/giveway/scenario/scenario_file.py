@@ -14,11 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base import native
+from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.base.units import factor
 from giveway.robot.presets import DEFAULT, PRESETS
 from giveway.robot.variables import Value, table
+from giveway.robot.wheels import WHEELS
+from giveway.scenario.arcs import EVERY_WHEEL, MAXIMUM_SWINGS, Arcs, wheels_of
 from giveway.scenario.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
 from giveway.scenario.plan_limits import check_plan_of
 from giveway.scenario.scenario import BUMPERS, Scenario
@@ -31,7 +34,8 @@ SCHEMA_VERSION = 1
 NAME_MAX = 80
 START_ACCELERATION_MPS2 = 0.2
 MEETING_S = 0.5
-PLANS = ("rest", "straight", "circle")
+PLANS = ("rest", "straight", "circle", "arcs")
+SWING_RAD, SWING_HZ, SWINGS, STANDING_S = 1.5, 0.1, 2, 1.0  # of arcs
 
 _TOP = (
     "schema_version", "name", "duration", "bumper", "robot", "preset", "seed", "body_region", "judge_as",
@@ -39,11 +43,16 @@ _TOP = (
     "plan", "collision", "push", "testbed", "controller",
 )  # fmt: skip
 _POSE = ("x", "y", "heading")
-PLAN_KEYS = {"speed_mps": "speed", "acceleration_mps2": "acceleration"}  # fields of plans, by the file's keys
+PLAN_KEYS = {  # fields of plans, by the file's keys
+    "speed_mps": "speed",
+    "acceleration_mps2": "acceleration",
+    "frequency_hz": "frequency",
+}
 _PLAN_KEYS = {
     "rest": _POSE,
     "straight": (*_POSE, "speed", "direction", "acceleration"),
     "circle": ("diameter", "speed", "centre", "start", "heading", "turning", "acceleration"),
+    "arcs": (*_POSE, "wheels", "swing", "frequency", "swings", "rest"),
 }
 _COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
 _PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
@@ -111,7 +120,7 @@ def scenario_of(
     for key in ("body_region", "judge_as"):
         if not collides and key in top.values:
             raise GivewayError(key, top.values[key], "nothing without [collision]: it is about a contact")
-    plan = _plan(top)
+    plan = _plan(top, robot)
     overrides = {model: _overrides(top, model, stated) for model in ("testbed", "controller")}
     start = {name: value for name, value in start_values(plan).items() if name not in overrides["testbed"]}
     kind, numbers = _bumper(top, path.parent, bumper)
@@ -160,7 +169,7 @@ def _bumper(top: Section, folder: Path, instead: str | None) -> tuple[str, dict[
     return (law, numbers) if instead in (None, law) else (str(instead), {})
 
 
-def _plan(top: Section) -> Plan:
+def _plan(top: Section, robot: Path | None) -> Plan:
     kind = "rest"
     if "plan" in top.values:
         kind = Section("plan", top.values["plan"], None).choice("kind", PLANS)
@@ -169,6 +178,8 @@ def _plan(top: Section) -> Plan:
     if kind == "rest":
         with renamed("plan", x_m="x", y_m="y"):
             return Rest(section.number("x", 0.0), section.number("y", 0.0), heading)
+    if kind == "arcs":
+        return _arcs(section, heading, robot)
     speed, acceleration = section.number("speed"), section.number("acceleration", START_ACCELERATION_MPS2)
     if kind == "straight":
         with renamed("plan", x_m="x", y_m="y", **PLAN_KEYS):
@@ -179,6 +190,36 @@ def _plan(top: Section) -> Plan:
     with renamed("plan", diameter_m="diameter", centre_x_m="centre", centre_y_m="centre", **PLAN_KEYS):
         start = section.angle("start", 0.0)
         return Circle(section.number("diameter"), speed, *centre, start, turning, heading, acceleration)
+
+
+def _arcs(section: Section, heading_rad: float, robot: Path | None) -> Arcs:
+    """The wheels are those of the robot file."""
+    swings = whole(section.full("swings"), section.values.get("swings", SWINGS), 1, MAXIMUM_SWINGS)
+    fields = {"swing_rad": "swing", "rest_s": "rest", "x_m": "x", "y_m": "y", "wheels": "wheels"}
+    with renamed("plan", **fields, **PLAN_KEYS):
+        return Arcs(
+            _shares(section),
+            section.angle("swing", SWING_RAD),
+            section.number("frequency", SWING_HZ),
+            swings,
+            section.number("rest", STANDING_S),
+            *wheels_of(robot),
+            section.number("x", 0.0),
+            section.number("y", 0.0),
+            heading_rad,
+        )
+
+
+def _shares(section: Section) -> tuple[tuple[float, float, float], ...]:
+    """For each arc the share of the swing of each wheel."""
+    if "wheels" not in section.values:
+        return EVERY_WHEEL
+    found, field = section.values["wheels"], section.full("wheels")
+    allowed = "a list of arcs, each the share of the swing of every wheel: [[1, 0, 0], [1, 1, 0]]"
+    if not isinstance(found, list) or not all(isinstance(arc, list) and len(arc) == WHEELS for arc in found):
+        raise GivewayError(field, found, allowed)
+    shares = [tuple(finite(field, share) for share in arc) for arc in found]
+    return tuple((a, b, c) for a, b, c in shares)
 
 
 def _pushes(top: Section) -> Pushes | None:
