@@ -28,6 +28,7 @@ from giveway.detectability.command import detectability
 from giveway.doctor.command import doctor
 from giveway.drivetrain.command import drivetrain
 from giveway.experiments.command import demo, list_experiments, reproduce, run
+from giveway.firmware.command import firmware
 from giveway.fitting.command import fit
 from giveway.fmu_tools.command import fmu_app, ssp
 from giveway.identification.command import calibrate
@@ -58,6 +59,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "sweep": sweep_designs,
     "optimise": optimise_designs,
     "doctor": doctor,
+    "firmware": firmware,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

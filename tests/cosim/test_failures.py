@@ -56,6 +56,7 @@ COMMANDS = {
     "drivetrain": ("drivetrain", "--plot", "--out", "{out}/drivetrain"),
     "picture": ("drivetrain", "--out", "{out}/drivetrain.png"),
     "calibrate": ("calibrate", "{inputs}/arc.csv", "--robot", "{inputs}/robot.toml", "--out", "{out}/new.toml"),
+    "firmware": ("firmware", "trikey", "--out", "{out}/firmware"),
     "ssp": ("ssp", "--out", "{out}/giveway.ssp"),
     "sweep": ("sweep", "{inputs}/study.toml", "--out", "{out}/study"),
     "export of a table": ("study", "export", "{inputs}/study", "--out", "{out}/table.csv"),

@@ -36,6 +36,7 @@ class Variable:
     robot_index: int
     description: str
     paper: Value | None = None  # in the preset "paper", where that differs from the start value
+    c_core: str = ""  # what it is in the C library: a member of its configuration, input or output
 
     @property
     def allowed(self) -> str:
@@ -224,4 +225,5 @@ def _expand(entry: Mapping[str, Any], robot: Robot) -> Iterator[Variable]:
             robot_index=index,
             description=entry.get("description", ""),
             paper=entry.get("paper"),
+            c_core=entry.get("c_core", "").replace("[i]", f"[{index}]"),
         )

@@ -1,0 +1,1 @@
+"""Firmware: the C library with a robot's numbers, tested on a recorded collision."""

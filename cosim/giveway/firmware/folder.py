@@ -1,0 +1,79 @@
+"""The folder that `giveway firmware` writes: every file by its name."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from giveway.base import native
+from giveway.base.errors import FileError
+from giveway.base.files import check_file, replace_files, replace_folder
+from giveway.firmware.config_source import config_header, config_source
+from giveway.firmware.recording import Recording
+from giveway.firmware.settings import Settings
+from giveway.firmware.words_source import words_header, words_source
+
+__all__ = ["check_folder", "core_files", "firmware_files", "write_files"]
+
+PROGRAMS = Path(__file__).parent / "c"
+SOURCES = "sources/"  # of the controller's FMU, which is compiled from the same files
+
+
+def core_files() -> dict[str, bytes]:
+    """The C library, include/ and src/: the very sources that the controller's FMU was compiled from."""
+    path = native.fmu("controller", 3)
+    try:
+        with zipfile.ZipFile(path) as fmu:
+            names = [name.removeprefix(SOURCES) for name in fmu.namelist() if name.startswith(SOURCES)]
+            found = {_place(name): fmu.read(SOURCES + name) for name in names if _place(name)}
+    except (OSError, zipfile.BadZipFile) as error:
+        raise FileError(path, f"is not a usable FMU: {error}") from None
+    if not found:
+        raise FileError(path, "has no sources of the C library")
+    return found
+
+
+def _place(name: str) -> str:
+    """Where a file of the FMU's sources belongs; "" for those that are not the C library's."""
+    if name.startswith("giveway/"):
+        return f"c_core/include/{name}"
+    return f"c_core/src/{name}" if name.startswith("gw_") and name.endswith(".c") else ""
+
+
+def firmware_files(settings: Settings, recording: Recording) -> dict[str, bytes]:
+    """Path below the folder to content."""
+    fixed = {path.relative_to(PROGRAMS).as_posix(): path.read_bytes() for path in PROGRAMS.rglob("*") if path.is_file()}
+    written = {
+        "robot_config.h": config_header(settings),
+        "robot_config.c": config_source(settings),
+        "controller_words.h": words_header(),
+        "controller_words.c": words_source(),
+        "recorded_collision.h": recording.header(),
+        "recorded_collision.c": recording.source(),
+    }
+    return core_files() | fixed | {name: text.encode() for name, text in written.items()}
+
+
+def check_folder(folder: Path, force: bool) -> None:
+    """Refuse, before any work, a folder with files in it, unless ``force``, and one that cannot be written."""
+    check_file(folder / "Makefile")
+    if folder.exists() and not folder.is_dir():
+        raise FileError(folder, "is a file", "give a folder to write to")
+    if folder.exists() and any(folder.iterdir()) and not force:
+        hint = "give a new or an empty folder, or --force to replace the files of the same names"
+        raise FileError(folder, "is not empty", hint)
+
+
+def write_files(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
+    """Write all of ``files`` or none; other files in ``folder`` stay."""
+    check_folder(folder, force)
+    if not folder.exists() or not any(folder.iterdir()):
+        with replace_folder(folder) as new:
+            for name, content in files.items():
+                (new / name).parent.mkdir(parents=True, exist_ok=True)
+                (new / name).write_bytes(content)
+        return
+    with replace_files(*(folder / name for name in files)) as places:
+        for place, content in zip(places, files.values(), strict=True):
+            place.write_bytes(content)
