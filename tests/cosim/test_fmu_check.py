@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
 import fmpy
 import pytest
+from cosim_helpers import Cli
 from giveway.base import native
 from giveway.base.errors import FileError
 from giveway.cli import _main
@@ -24,6 +26,19 @@ DESCRIPTION = "modelDescription.xml"
 @pytest.mark.parametrize("model", MODELS)
 def test_nothing_is_wrong_with_what_we_build(model: str, version: int) -> None:
     assert [str(finding) for finding in check_fmu(native.fmu(model, version))] == []
+
+
+def test_without_what_reads_libraries_its_extra_is_named(
+    cli: Cli, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Not taken for a finding, and nothing is written."""
+    monkeypatch.setitem(sys.modules, "lief", None)
+    path = str(native.fmu("bumper", 3))
+    for arguments in (["check", path], ["info", path], ["run", path, "--out", "run.csv"]):
+        answer = cli("fmu", *arguments)
+        assert (answer.returncode, answer.stdout) == (2, "")
+        assert answer.stderr == "giveway: lief is not installed; `pip install 'giveway[fmu]'` installs it\n"
+    assert not list(tmp_path.iterdir())
 
 
 class Draft:

@@ -14,6 +14,7 @@ from typing import Any
 import fmpy
 
 from giveway.base.errors import FileError
+from giveway.base.extras import extra
 from giveway.fmu_tools.isolation import IsolatedError, isolated
 
 __all__ = ["PLATFORMS", "Binary", "fmi_functions", "is_common", "is_of_the_system", "platform_here", "read_binary"]
@@ -83,9 +84,7 @@ def read_binary(path: Path) -> Binary:
     size = path.stat().st_size
     if size > LARGEST_BYTES:
         raise FileError(path, f"has {size / 1e6:.0f} MB, too many to look into it")
-    import lief
-
-    lief.logging.disable()  # loaded here, so that the reading process does not have to
+    extra("lief", "fmu").logging.disable()  # loaded here, so that the reading process does not have to
     try:
         found = isolated(_read, path, READING_S, READING_MB)
     except IsolatedError as error:
