@@ -16,7 +16,7 @@ from cosim_helpers import Cli, folder_content
 from giveway.base import native
 from giveway.firmware.c_text import comment, quoted, real
 from giveway.firmware.config_source import config_source
-from giveway.firmware.folder import core_files
+from giveway.firmware.core import core_files
 from giveway.firmware.settings import Settings
 from giveway.robot.variables import table
 

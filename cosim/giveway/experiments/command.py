@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from giveway.base.errors import UnknownNameError
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.base.options import FmiOption, RobotOption
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, progress_bars
 from giveway.robot.presets import DEFAULT, check_preset
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["demo", "list_experiments", "reproduce", "run"]
 
 DEFAULT_BUMPER = "magnetic"
+FMU = "fmu"  # of --controller and of --engine
 
 SetOption = Annotated[
     list[str] | None,
@@ -57,6 +58,14 @@ def run(
     robot: RobotOption = None,
     engine: EngineOption = "fmu",
     preset: PresetOption = None,
+    controller: Annotated[
+        str,
+        typer.Option(
+            "--controller",
+            metavar="fmu|host|qemu|DEVICE",
+            help="What controls: the FMU, or its firmware here, in qemu, or on a board at a serial line.",
+        ),
+    ] = FMU,
     log: Annotated[
         Path | None,
         typer.Option("--log", metavar="FILE", help="Also the controller's inputs, as .csv, .parquet or .mcap."),
@@ -74,8 +83,15 @@ def run(
     check_output(out)
     if log is not None:
         check_log_path(log)
+    opened = None
+    if controller != FMU:
+        if chosen != FMU:
+            raise GivewayError("--controller", controller, f"only with --engine {FMU}")
+        from giveway.firmware.in_the_loop import controller_of
+
+        opened = controller_of(scenario, controller)
     with progress_bars(("simulation", "report")) as progress:
-        result = runner.run(scenario, _share_of(progress, "simulation"), chosen)
+        result = runner.run(scenario, _share_of(progress, "simulation"), chosen, opened)
         progress("report", 0.0)
         from giveway.report import write_report
 

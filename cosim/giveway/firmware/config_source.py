@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from giveway.firmware.c_text import comment, literal, quoted, real
+from giveway.firmware.digest import firmware_digest
 from giveway.firmware.settings import Setting, Settings
 from giveway.robot.motor_current import CONSTANT, RATIO
 
@@ -72,6 +73,7 @@ class Scaling:
 def config_header(settings: Settings) -> str:
     """The text of robot_config.h."""
     parameters = settings.parameters()
+    digest = firmware_digest(settings)
     period_us = round(1e6 * float(parameters["controller.period"]))
     return (
         comment(
@@ -87,6 +89,10 @@ def config_header(settings: Settings) -> str:
         + f"#define ROBOT_ENCODER_COUNTS {parameters['estimator.encoder_counts']}U\n\n"
         + Scaling.of(settings).lines(settings)
         + "\n"
+        + comment(
+            "Of the C library's sources and every bit of the configuration: whoever asks can tell what runs here."
+        )
+        + f"#define ROBOT_DIGEST_LOW 0x{digest[8:]}U\n#define ROBOT_DIGEST_HIGH 0x{digest[:8]}U\n\n"
         + comment("Every field, for gw_controller_init.")
         + "extern const gw_controller_config_t robot_config;\n\n#endif\n"
     )

@@ -2,57 +2,38 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from giveway.base import native
 from giveway.base.errors import FileError
 from giveway.base.files import check_file, replace_files, replace_folder
 from giveway.firmware.config_source import config_header, config_source
+from giveway.firmware.core import core_files
 from giveway.firmware.recording import Recording
 from giveway.firmware.settings import Settings
 from giveway.firmware.words_source import words_header, words_source
 
-__all__ = ["check_folder", "core_files", "firmware_files", "write_files"]
+__all__ = ["check_folder", "firmware_files", "program_files", "write_files"]
 
 PROGRAMS = Path(__file__).parent / "c"
-SOURCES = "sources/"  # of the controller's FMU, which is compiled from the same files
 
 
-def core_files() -> dict[str, bytes]:
-    """The C library, include/ and src/: the very sources that the controller's FMU was compiled from."""
-    path = native.fmu("controller", 3)
-    try:
-        with zipfile.ZipFile(path) as fmu:
-            names = [name.removeprefix(SOURCES) for name in fmu.namelist() if name.startswith(SOURCES)]
-            found = {_place(name): fmu.read(SOURCES + name) for name in names if _place(name)}
-    except (OSError, zipfile.BadZipFile) as error:
-        raise FileError(path, f"is not a usable FMU: {error}") from None
-    if not found:
-        raise FileError(path, "has no sources of the C library")
-    return found
-
-
-def _place(name: str) -> str:
-    """Where a file of the FMU's sources belongs; "" for those that are not the C library's."""
-    if name.startswith("giveway/"):
-        return f"c_core/include/{name}"
-    return f"c_core/src/{name}" if name.startswith("gw_") and name.endswith(".c") else ""
-
-
-def firmware_files(settings: Settings, recording: Recording) -> dict[str, bytes]:
-    """Path below the folder to content."""
+def program_files(settings: Settings) -> dict[str, bytes]:
+    """Path below the folder to content: what a program needs that replays no recording."""
     fixed = {path.relative_to(PROGRAMS).as_posix(): path.read_bytes() for path in PROGRAMS.rglob("*") if path.is_file()}
     written = {
         "robot_config.h": config_header(settings),
         "robot_config.c": config_source(settings),
         "controller_words.h": words_header(),
         "controller_words.c": words_source(),
-        "recorded_collision.h": recording.header(),
-        "recorded_collision.c": recording.source(),
     }
     return core_files() | fixed | {name: text.encode() for name, text in written.items()}
+
+
+def firmware_files(settings: Settings, recording: Recording) -> dict[str, bytes]:
+    """The same and the recording."""
+    recorded = {"recorded_collision.h": recording.header(), "recorded_collision.c": recording.source()}
+    return program_files(settings) | {name: text.encode() for name, text in recorded.items()}
 
 
 def check_folder(folder: Path, force: bool) -> None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from giveway.robot.variables import Value, VariableTable
 
-__all__ = ["FmuFile", "Instance", "open_fmu"]
+__all__ = ["FmuFile", "Instance", "dtypes", "open_fmu"]
 
 _log = logging.getLogger(__name__)
 
@@ -45,6 +45,11 @@ _DTYPES: dict[int, dict[str, Any]] = {
     3: {"real": np.float64, "integer": np.int32, "boolean": np.bool_},
     2: {"real": np.float64, "integer": np.int32, "boolean": np.int32},
 }
+
+
+def dtypes(fmi_version: int) -> Mapping[str, Any]:
+    """By kind, the numpy type in which this FMI version exchanges variables."""
+    return _DTYPES[fmi_version]
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from __future__ import annotations
 import ctypes
 import logging
 import time
-from collections.abc import Callable, Mapping
-from contextlib import ExitStack
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from giveway.scenario.scenario import Scenario
 
-__all__ = ["Binary", "Progress", "Record", "plan_table", "push_table", "simulate"]
+__all__ = ["Binary", "OpenController", "Progress", "Record", "Stepped", "plan_table", "push_table", "simulate"]
 
 _log = logging.getLogger(__name__)
 
@@ -78,6 +78,23 @@ class Binary(Protocol):
     def sha256(self) -> str: ...
 
 
+class Stepped(Protocol):
+    """What the master steps; `Instance` is one."""
+
+    @property
+    def file(self) -> Binary: ...
+    def initialise(self, parameters: dict[str, Value], table: VariableTable, start_time_s: float = 0.0, /) -> None: ...
+    def dtype(self, kind: str) -> Any: ...
+    def check(self, status: int, time_s: float) -> None: ...
+    def getter(self, kind: str, references: Sequence[int]) -> Callable[[int], int]: ...
+    def setter(self, kind: str, references: Sequence[int]) -> Callable[[int], int]: ...
+    def stepper(self) -> Callable[[float, float], int]: ...
+
+
+OpenController = Callable[[], AbstractContextManager[Stepped]]
+"""Opens what takes the place of the controller's FMU for one run."""
+
+
 @dataclass
 class Record:
     """The output of one run, before it is labelled.
@@ -110,7 +127,7 @@ class _Traces:
     nor exchanging makes a copy.
     """
 
-    def __init__(self, instance: Instance, variables: VariableTable, first: dict[str, tuple[str, ...]], rows: int):
+    def __init__(self, instance: Stepped, variables: VariableTable, first: dict[str, tuple[str, ...]], rows: int):
         self.names: dict[str, list[str]] = {}
         self.arrays: dict[str, NDArray[Any]] = {}
         self.base: dict[str, int] = {}
@@ -135,7 +152,7 @@ class _Traces:
             real(real_at + k * real_row) | integer(integer_at + k * integer_row) | boolean(boolean_at + k * boolean_row)
         )
 
-    def sender(self, receiver: Instance, to: VariableTable, names: dict[str, tuple[str, ...]]) -> Callable[[int], int]:
+    def sender(self, receiver: Stepped, to: VariableTable, names: dict[str, tuple[str, ...]]) -> Callable[[int], int]:
         """A function that passes the first values of row k to ``receiver`` and returns the or-ed FMI status."""
         used = [kind for kind in KINDS if names[kind]]
         ports = [
@@ -161,8 +178,14 @@ class _Traces:
         return found
 
 
-def simulate(scenario: Scenario, progress: Progress | None = None, *, profile: bool = False) -> Record:
-    """Run ``scenario`` and return its traces.
+def simulate(
+    scenario: Scenario,
+    progress: Progress | None = None,
+    *,
+    profile: bool = False,
+    controller: OpenController | None = None,
+) -> Record:
+    """Run ``scenario`` and return its traces; ``controller`` takes the place of the controller's FMU.
 
     KeyboardInterrupt ends the run cleanly and keeps what was computed. An FMU's error is raised as SimulationError
     with the simulated time and the FMU's own message.
@@ -170,21 +193,27 @@ def simulate(scenario: Scenario, progress: Progress | None = None, *, profile: b
     tables = {model: table(model) for model in native.MODELS}
     scenario.check_traces(sum(len(variables.select("output")) for variables in tables.values()))
     parameters = {model: scenario.parameters(model) for model in native.MODELS}
-    files = {model: open_fmu(native.fmu(model, scenario.fmi_version)) for model in native.MODELS}
-    for model, file in files.items():
+    fmus = {model: open_fmu(native.fmu(model, scenario.fmi_version)) for model in native.MODELS}
+    for model, file in fmus.items():
         file.check_matches(tables[model])
     with ExitStack() as stack:
-        instances = {model: stack.enter_context(Instance(files[model], model)) for model in native.MODELS}
+        instances: dict[str, Stepped] = {}
+        for model in native.MODELS:
+            if model == "controller" and controller is not None:
+                instances[model] = stack.enter_context(controller())
+            else:
+                instances[model] = stack.enter_context(Instance(fmus[model], model))
         for model, instance in instances.items():
             instance.initialise(parameters[model], tables[model])
         record = _loop(scenario, instances, tables, progress, profile)
+    files = {model: instance.file for model, instance in instances.items()}
     record.parameters, record.files, record.fmi_version = parameters, files, scenario.fmi_version
     return record
 
 
 def _loop(
     scenario: Scenario,
-    instances: dict[str, Instance],
+    instances: dict[str, Stepped],
     tables: dict[str, VariableTable],
     progress: Progress | None,
     profile: bool,
@@ -262,7 +291,7 @@ def _loop(
 
 
 def _plan_port(
-    scenario: Scenario, controller: Instance, variables: VariableTable
+    scenario: Scenario, controller: Stepped, variables: VariableTable
 ) -> tuple[NDArray[np.float64], Callable[[int], int]]:
     """The plan as a table over path time, and the port that sets one row of it."""
     plan = plan_table(scenario)
@@ -270,7 +299,7 @@ def _plan_port(
 
 
 def _push_port(
-    push: NDArray[np.float64] | None, testbed: Instance, variables: VariableTable
+    push: NDArray[np.float64] | None, testbed: Stepped, variables: VariableTable
 ) -> tuple[Callable[[int], int], int, int]:
     """Port, address and row size of the external push; a port that does nothing if there is none."""
     if push is None:

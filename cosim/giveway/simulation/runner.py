@@ -21,7 +21,7 @@ from giveway.robot.variables import Value, table
 from giveway.scenario.plan import Pushes, TimedPush
 from giveway.scenario.plan_limits import check_plan_of
 from giveway.simulation import master, metrics, native_engine
-from giveway.simulation.master import Progress, Record
+from giveway.simulation.master import OpenController, Progress, Record
 from giveway.simulation.push_response import push_metrics, responses_of
 from giveway.simulation.result import SCHEMA_VERSION, Result
 from giveway.simulation.run_warnings import RunWarning, warnings_of
@@ -40,11 +40,18 @@ ENGINES: Mapping[Engine, Callable[[Scenario, Progress | None], Record]] = {
 EXCHANGE_ORDER = "sequential: sensors, controller, plant"
 
 
-def run(scenario: Scenario, progress: Progress | None = None, engine: Engine = "fmu") -> Result:
-    """Run ``scenario``; see `giveway.run`."""
+def run(
+    scenario: Scenario,
+    progress: Progress | None = None,
+    engine: Engine = "fmu",
+    controller: OpenController | None = None,
+) -> Result:
+    """Run ``scenario``; see `giveway.run`. ``controller`` takes the place of its FMU."""
     if engine not in ENGINES:
         raise UnknownNameError("engine", engine, ENGINES)
     check_plan_of(scenario)
+    if controller is not None:
+        return judge(scenario, master.simulate(scenario, progress, controller=controller))
     return judge(scenario, ENGINES[engine](scenario, progress))
 
 
