@@ -6,7 +6,6 @@ for. It leaves the interpreter free (the GIL is released) and ends cleanly on Ct
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ import numpy as np
 from giveway.base import native
 from giveway.base.checks import whole
 from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.base.system import processors
 from giveway.library.batch_library import (
     LANES,
     METHODS,
@@ -112,7 +112,7 @@ class Prepared:
     ) -> xarray.Dataset:
         """Run them all, as `run_many`; traces of the previous call are overwritten."""
         if threads is None:
-            threads = min(len(os.sched_getaffinity(0)), THREADS_MAX)
+            threads = min(processors(), THREADS_MAX)
         whole("threads", threads, 1, THREADS_MAX)
         chosen = options(threads, method, lanes, plant_step_s)
 

@@ -7,6 +7,7 @@ They are in one folder: ``giveway/native`` of the installed package, or else the
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 from giveway.base.errors import NativeMissingError, UnknownNameError
@@ -18,6 +19,7 @@ MODELS = ("controller", "testbed")  # the models of an experiment
 COMPONENTS = ("drivetrain", "bumper")  # components for a user's own robot
 DEFAULT_ROBOT = "trikey.toml"
 TABLE_ENDING = ".variables.toml"
+BATCH_LIBRARY = "giveway_batch" + {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 
 def file(name: str) -> Path:
@@ -38,8 +40,8 @@ def fmu(model: str, fmi_version: int) -> Path:
 
 
 def batch_library() -> Path:
-    """Path of libgiveway_batch."""
-    return file("giveway_batch.so")
+    """Path of the batch library."""
+    return file(BATCH_LIBRARY)
 
 
 def variables(model: str) -> Path:

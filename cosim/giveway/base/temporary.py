@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import fcntl
 import os
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
+from giveway.base import system
 from giveway.base.errors import WriteError
 
 __all__ = ["temporary_folder"]
@@ -21,14 +22,19 @@ _UNLOCKED = "giveway-new-"  # until it is locked it has another name, so that no
 def temporary_folder() -> Path:
     """A new folder; those that killed processes left behind are removed.
 
-    A process holds a lock on its folders, which ends with it however it ends.
+    A process holds a lock on its folders, which ends with it however it ends. On Windows, where folders cannot be
+    locked, those of killed processes stay.
     """
     parent = Path(tempfile.gettempdir())
-    _remove_abandoned(parent)
+    if sys.platform != "win32":
+        _remove_abandoned(parent)
     try:
         folder = Path(tempfile.mkdtemp(prefix=_UNLOCKED))
-        with contextlib.suppress(OSError):  # a disk without locks, where nobody can tell: there a killed one's stays
-            _lock(folder)  # open until the end of the process
+        if sys.platform != "win32":
+            with contextlib.suppress(
+                OSError
+            ):  # a disk without locks, where nobody can tell: there a killed one's stays
+                _lock(folder)  # open until the end of the process
         folder = folder.rename(parent / folder.name.replace(_UNLOCKED, _PREFIX, 1))
     except OSError as error:
         raise WriteError(parent, error) from error
@@ -50,7 +56,7 @@ def _lock(folder: Path) -> int:
     """A descriptor that holds the lock; OSError if another process has it, or if this is no folder."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        system.lock(descriptor)
     except OSError:
         os.close(descriptor)
         raise

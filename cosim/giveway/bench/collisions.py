@@ -11,7 +11,6 @@ import dataclasses
 import functools
 import json
 import os
-import resource
 import subprocess
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -267,5 +266,7 @@ def scale(counts: Sequence[int], progress: Callable[[str, float], None] | None =
                 raise KeyboardInterrupt
         elapsed = time.perf_counter() - started
         rate = count / elapsed
+        import resource
+
         memory_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         yield (f"{count:,}", f"{rate:.0f}", f"{elapsed:.1f}", f"{memory_mb:.0f}")

@@ -74,7 +74,7 @@ def _native_files() -> Iterator[Finding]:
         f"giveway_{model}_fmi{version}.fmu" for model in (*native.MODELS, *native.COMPONENTS) for version in (3, 2)
     ]
     names += [f"{model}.variables.toml" for model in (*native.MODELS, *native.COMPONENTS)]
-    names += ["giveway_batch.so", "giveway_batch.wasm", native.DEFAULT_ROBOT]
+    names += [native.BATCH_LIBRARY, "giveway_batch.wasm", native.DEFAULT_ROBOT]
     if missing := [name for name in names if not _is_there(name)]:
         words = f"{', '.join(missing)} not found"
         yield Finding("native files", WRONG, words, f"install giveway again, or set {native.ENVIRONMENT_VARIABLE}")

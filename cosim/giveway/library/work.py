@@ -5,13 +5,13 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import hashlib
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from giveway.base.errors import SimulationError
+from giveway.base.system import processors
 from giveway.library.batch_library import (
     MESSAGE_SIZE,
     OK,
@@ -35,7 +35,7 @@ WAIT_S = 0.1
 
 def default_threads() -> int:
     """One per processor that this process may use."""
-    return min(len(os.sched_getaffinity(0)), THREADS_MAX)
+    return min(processors(), THREADS_MAX)
 
 
 def result_columns() -> list[tuple[str, str]]:

@@ -11,7 +11,6 @@ same in both is taken from the old parts. Studies whose folders lie side by side
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import re
@@ -22,6 +21,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.base import system
 from giveway.base.errors import FileError, WriteError, system_words
 from giveway.base.files import check_file, read_json, replace_file, write_text
 
@@ -103,7 +103,7 @@ class Store:
     def _take_lock(self) -> IO[str]:
         lock = (self.folder / LOCK_FILE).open("a+", encoding="utf-8")
         try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            system.lock(lock.fileno())
         except OSError:
             lock.seek(0)
             owner = lock.read().strip() or "unknown"
@@ -173,11 +173,7 @@ class Store:
         except WriteError as error:
             hint = "all parts before it are kept; the same command goes on"
             raise WriteError(path, error.cause, hint) from error
-        handle = os.open(self.parts_folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+        system.write_through(self.parts_folder)
         return path
 
     def all_parts(self) -> Iterator[Path]:
