@@ -10,7 +10,7 @@ BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm pages studio film
-.PHONY: product compile-product compile-all native-tests
+.PHONY: docs product compile-product compile-all native-tests
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -30,7 +30,7 @@ test: build ## every test but the deep ones, which `make verify` runs
 native-tests:
 	$(BIN)/ctest --test-dir build --output-on-failure --progress -j $(JOBS)
 
-verify: build build/verify/tools-installed build/verify/modelica-installed build/verify/second-simulator-installed ## every claim of c_core's README, by provers and checkers, and the deep tests; ONLY=misra for one
+verify: build .venv/docs-packages-installed build/verify/tools-installed build/verify/modelica-installed build/verify/second-simulator-installed ## every claim of c_core's README, by provers and checkers, and the deep tests; ONLY=misra for one
 	$(BIN)/python -m verify $(addprefix --only ,$(ONLY))
 
 fuzz: build build/verify/tools-installed ## fuzz c_core for an hour per harness and real type; `make verify` does it for a minute
@@ -84,6 +84,9 @@ studio: product ## the studio: collisions computed in the browser while you drag
 film: product .venv/test-packages-installed ## the README's moving picture of the studio, docs/studio.webp
 	$(BIN)/python -m web.film
 
+docs: product .venv/docs-packages-installed ## the documentation site, out/docs/index.html: tutorials, reference from the sources; offline
+	$(BIN)/python -m docs
+
 platforms: product ## run the FMUs of `make fmus ALL=1` on their platforms (wine, qemu) and check those that cannot run here
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	bash fmu/platforms/system_packages.sh
@@ -125,7 +128,7 @@ format: .venv/test-packages-installed ## format C, C++ and Python in place
 	$(BIN)/clang-format -i $(C_SOURCES)
 
 # The first one is the others' yardstick: what stands in several has one version.
-LOCKS := requirements cmake/requirements tests/requirements
+LOCKS := requirements cmake/requirements tests/requirements docs/requirements
 OTHER_LOCKS := verify/requirements verify/modelica/requirements verify/second_simulator/requirements bench/requirements importers/requirements
 
 lock: $(LOCKS:=.in) $(OTHER_LOCKS:=.in) ## new requirements.lock files (needs uv)
@@ -135,6 +138,7 @@ lock: $(LOCKS:=.in) $(OTHER_LOCKS:=.in) ## new requirements.lock files (needs uv
 	        verify/modelica/*) python=3.12;; \
 	        cmake/*) options="--no-deps --constraint requirements.lock";; \
 	        tests/*) options="--constraint requirements.lock";; \
+	        docs/*) options="--constraint requirements.lock --constraint tests/requirements.lock";; \
 	    esac; \
 	    uv pip compile --universal --python-version $$python --generate-hashes --no-annotate --no-header --upgrade \
 	        --no-emit-index-url --no-emit-find-links --quiet $$options $$name.in --output-file $$name.lock && \
@@ -179,6 +183,12 @@ PIP_INSTALL = $(BIN)/pip install --quiet --no-compile
 .venv/test-packages-installed: tests/requirements.lock .venv/package-installed
 	@echo "installing Python packages: $$(grep -c == tests/requirements.lock) of tests/requirements.lock"
 	@$(PIP_INSTALL) --require-hashes -r tests/requirements.lock
+	@touch $@
+
+# Beside what the tests need: a deep test builds the site.
+.venv/docs-packages-installed: docs/requirements.lock .venv/test-packages-installed
+	@echo "installing Python packages: $$(grep -c == docs/requirements.lock) of docs/requirements.lock"
+	@$(PIP_INSTALL) --require-hashes -r docs/requirements.lock
 	@touch $@
 
 # What bundles and checks the pages of web/.

@@ -29,6 +29,7 @@ def scenarios() -> dict[str, giveway.Scenario]:
     base = short()
     return {
         "default": base,
+        "start values": giveway.Scenario("resting", 0.5),
         "paper": giveway.experiment("moving").scenario("none", preset="paper"),
         "two periods per step": dataclasses.replace(base, step_s=2e-3),
         "an IMU that the controller uses": short(

@@ -58,7 +58,8 @@ class _Begin:
             raise FileError(path, "has no line of heads", "a log begins with them: time [s], torque_0 [N.m], ...")
         self.line, cells = heads
         self.heads = [_head(path, self.line, position, cell) for position, cell in enumerate(cells, 1)]
-        parameters = parameters_of(path, stated) if stated else None
+        ours = bool(stated) or step_s is not None  # a run with the start values states no parameter
+        parameters = parameters_of(path, stated) if ours else None
         self.origin = Origin(parameters, step_s)
 
 
