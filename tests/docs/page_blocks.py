@@ -26,7 +26,7 @@ from giveway.cli import _main
 ROOT = Path(__file__).parents[2]
 SITE = ROOT / "docs" / "site"
 SHOWN = {"", "text", "c", "toml", "csv", "json", "modelica"}  # languages of blocks that nobody runs
-_FENCE = re.compile(r"^(?P<fence>`{3,})(?P<language>\{?[\w-]*\}?)[ ]*(?P<argument>[\w-]*)$")
+_FENCE = re.compile(r"^(?P<fence>`{3,})(?P<language>\{?[\w-]*\}?)[ ]*(?P<argument>[^`]*)$")
 _FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
