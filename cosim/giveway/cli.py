@@ -21,7 +21,17 @@ import typer
 from giveway import __version__
 from giveway.base.errors import ClusterError, GivewayError, SimulationError, WriteError, one_line
 from giveway.base.failures import DEBUG_VARIABLE, unforeseen
-from giveway.base.terminal import FAILED, INTERRUPTED, WRONG_INPUT
+from giveway.base.output_options import with_output_options
+from giveway.base.terminal import (
+    DONE,
+    EXIT_CODES,
+    FAILED,
+    INTERRUPTED,
+    WRONG_INPUT,
+    begin_output,
+    end_output,
+    is_quiet,
+)
 from giveway.bench.command import bench
 from giveway.crowd.command import crowd_app
 from giveway.detectability.command import detectability
@@ -44,6 +54,7 @@ __all__ = ["app", "main"]
 app = typer.Typer(
     name="giveway",
     help="Collision reflexes for omnidirectional robot bases: run experiments, look at variables, measure speed.",
+    epilog="Exit codes. " + ". ".join(f"{code}: {meaning}" for code, meaning in EXIT_CODES.items()) + ".",
     no_args_is_help=True,
     add_completion=True,
     pretty_exceptions_enable=False,
@@ -99,6 +110,9 @@ def _options(
         logging.basicConfig(stream=sys.stderr, level=logging.DEBUG, format="%(name)s: %(message)s")
 
 
+with_output_options(app)
+
+
 def main() -> None:
     """Entry point. Wrong input gives one line on stderr and exit code 2; a run that fails exits with 1."""
     sys.exit(_main(sys.argv[1:]))
@@ -112,7 +126,7 @@ def _main(arguments: list[str]) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning
-            code = app(args=arguments, standalone_mode=False, obj=settings)
+            code = _answered(arguments, settings)
         sys.stdout.flush()
     except GivewayError as error:
         simulated = isinstance(error, SimulationError) and error.time_s > 0.0
@@ -132,7 +146,19 @@ def _main(arguments: list[str]) -> int:
         if settings.debug:
             traceback.print_exception(error)
         return _fail(unforeseen(error, arguments), FAILED)
-    return code if isinstance(code, int) else 0
+    return code
+
+
+def _answered(arguments: list[str], settings: _Settings) -> int:
+    """Exit code of a command; errors come as exceptions, and then there is no JSON document."""
+    begin_output()
+    ended = False
+    try:
+        code = app(args=arguments, standalone_mode=False, obj=settings)
+        ended = True
+    finally:
+        end_output(ended)
+    return code if isinstance(code, int) else DONE
 
 
 def _leave_stdout() -> None:
@@ -151,7 +177,8 @@ def _show_warning(
 ) -> None:
     """A warning as one line on stderr; warnings that users cannot act on go to the log."""
     if issubclass(category, FutureWarning):
-        typer.echo(f"giveway: {one_line(str(message))}", err=True)
+        if not is_quiet():
+            typer.echo(f"giveway: {one_line(str(message))}", err=True)
     else:
         logging.getLogger("giveway").debug("%s:%d: %s: %s", filename, lineno, category.__name__, message)
 

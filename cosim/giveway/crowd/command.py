@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from giveway.base.options import RobotOption, ThreadsOption
-from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, working
+from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, print_written, working
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -174,7 +174,7 @@ def _all(
         typer.echo(f"{over} runs ended when the robot tipped over; they count until then")
     for record in failed[:10]:
         typer.echo(f"hit {record['number']}: {record['status']}: {record['message']}", err=True)
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+    print_written(*written)
     if interrupted:
         typer.echo("Interrupted; all parts but the one under way are kept. The same command goes on.", err=True)
         raise typer.Exit(INTERRUPTED)
@@ -243,7 +243,7 @@ def _one(
             typer.echo(f"{name}: {', '.join(f'{time:.3f}' for time in record['judged'][name]) or 'none'}")
     if record["lifts"]:
         typer.echo("Wheels: " + ", ".join(f"{name} {value:g}" for name, value in record["lifts"].items()))
-    typer.echo(f"Written: {folder / 'report.html'}")
+    print_written(folder / "report.html")
 
 
 def _report(scenario: Scenario, what: str, record: Mapping[str, object], folder: Path) -> None:
@@ -343,7 +343,7 @@ def _endure(
             typer.echo(f"{group}: most alarms in {', '.join(f'{n} ({count})' for n, count in one['worst'])}")
     path = out / "table.json"
     write_text(path, json.dumps({"schema_version": 1, "draw": draw, "groups": found}, indent=1) + "\n")
-    typer.echo(f"Written: {path}")
+    print_written(path)
     if interrupted:
         typer.echo("Interrupted; all parts but the one under way are kept. The same command goes on.", err=True)
         raise typer.Exit(INTERRUPTED)
@@ -370,7 +370,7 @@ def _one_drive(
     _, scenario = drive(draw, group, number, controller, imu, robot)
     record = compute(draw, group, controller, [number], 1, lambda _done: None, imu, robot)[0]
     _report(scenario, f"Free motion of robot {number} ({group}): {record['detections']} false alarms.", record, folder)
-    typer.echo(f"Written: {folder / 'report.html'}")
+    print_written(folder / "report.html")
 
 
 @crowd_app.command("curves")
@@ -437,4 +437,4 @@ def _curves(
     tables, paths = write(out, about, hits.records, quiet.records)
     for title, header, rows in tables:
         print_columns(title, header, rows)
-    typer.echo(f"Written: {', '.join(str(path) for path in paths)}")
+    print_written(*paths)

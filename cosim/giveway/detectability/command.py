@@ -9,7 +9,7 @@ import typer
 
 from giveway.base import native
 from giveway.base.options import ThreadsOption
-from giveway.base.terminal import print_columns, progress_bars
+from giveway.base.terminal import print_columns, print_written, progress_bars
 
 __all__ = ["detectability"]
 
@@ -66,4 +66,4 @@ def detectability(
             write_json(folder / "table.json", found)
             write_csv(folder / "smallest.csv", found)
             write_figure(folder / "polar.png", found)
-        typer.echo(f"Written: {', '.join(str(out / name) for name in ('table.json', 'smallest.csv', 'polar.png'))}")
+        print_written(*(out / name for name in ("table.json", "smallest.csv", "polar.png")))

@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-from typing import Annotated
 
 import typer
 
-from giveway.base.terminal import FAILED, print_columns
+from giveway.base.terminal import FAILED, print_columns, print_document, wants_json
 
 __all__ = ["doctor"]
 
 SCHEMA_VERSION = 1  # of `giveway doctor --json`
 
 
-def doctor(as_json: Annotated[bool, typer.Option("--json", help="The findings as JSON on stdout.")] = False) -> None:
+def doctor() -> None:
     """Say what is installed here, and whether a run has the bits it should have; exit code 1 if something is wrong."""
     from giveway.doctor.findings import WRONG, examine
 
     found = list(examine())
-    if as_json:
+    if wants_json():
         findings = [dataclasses.asdict(one) for one in found]
-        typer.echo(json.dumps({"schema_version": SCHEMA_VERSION, "findings": findings}, indent=2))
+        print_document({"schema_version": SCHEMA_VERSION, "findings": findings})
     else:
         rows = [(one.about, one.state, one.found, one.advice) for one in found]
         print_columns("giveway on this machine", ("", "state", "found", "what to do"), rows)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from giveway.base.options import RobotOption
-from giveway.base.terminal import print_columns, progress_bars, working
+from giveway.base.terminal import print_columns, print_written, progress_bars, working
 
 if TYPE_CHECKING:
     from giveway.drivetrain.frequency_response import Sweep
@@ -62,4 +62,4 @@ def drivetrain(
     if out is not None:
         with working("picture"):
             written = write_results(out, title, analysis, sweeps)
-        typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+        print_written(*written)

@@ -9,7 +9,7 @@ import typer
 
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.base.options import FmiOption, RobotOption
-from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, progress_bars
+from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, print_written, progress_bars, wants_json
 from giveway.robot.presets import DEFAULT, check_preset
 from giveway.scenario.scenario import BUMPERS
 
@@ -104,7 +104,7 @@ def run(
     print_results(scenario.name, {scenario.bumper: result})
     if result.judgement is not None:
         typer.echo(str(result.judgement))
-    typer.echo(f"Written: {out / 'report.html'}" + ("" if log is None else f" and {log}"))
+    print_written(out / "report.html", *([] if log is None else [log]))
     if result.interrupted:
         typer.echo(f"Interrupted at t = {result.manifest['simulated_s']:.3f} s; what was computed is kept.", err=True)
         raise typer.Exit(INTERRUPTED)
@@ -152,7 +152,7 @@ def demo(
             write_summary(folder / "summary.json", results)
         progress("report", 1.0)
     print_results(name, results)
-    typer.echo(f"Written: {out / 'report.html'}, {out / 'overview.png'} and {out / 'summary.json'}")
+    print_written(*(out / name for name in ("report.html", "overview.png", "summary.json")))
 
 
 def reproduce(
@@ -183,7 +183,7 @@ def reproduce(
             typer.echo(f"MISS {chapter.experiment.name}: {row.quantity}: {row.reason or 'reason not yet known'}")
     for line in found.summary():
         typer.echo(line)
-    typer.echo(f"Written: {out / 'report.html'} and {out / 'table.json'}")
+    print_written(out / "report.html", out / "table.json")
     if found.interrupted:
         typer.echo(f"Interrupted; not run: {', '.join(found.interrupted)}. What was found is kept.", err=True)
         raise typer.Exit(INTERRUPTED)
@@ -195,6 +195,11 @@ def list_experiments() -> None:
     """List the experiments."""
     from giveway import experiments
 
+    if wants_json():
+        found = experiments.all_experiments().values()
+        rows = [(one.name, one.summary, ", ".join(one.bumpers), str(one.is_single_run)) for one in found]
+        print_columns("Experiments", ("name", "summary", "bumpers", "single run"), rows)
+        return
     for experiment in experiments.all_experiments().values():
         bumpers = f" Bumpers: {', '.join(experiment.bumpers)}." if experiment.bumpers else ""
         robots = "" if experiment.is_single_run else " Of Trikey alone, several runs: `giveway reproduce`."

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from giveway.base.options import RobotOption
-from giveway.base.terminal import print_columns, progress_bars
+from giveway.base.terminal import print_columns, print_written, progress_bars
 
 __all__ = ["fit"]
 
@@ -47,4 +47,4 @@ def fit(
     print_columns("Targets; residuals in tolerances", record.TARGET_HEADER, record.target_rows(found))
     print_columns("Parameters; deviations in factors", record.PARAMETER_HEADER, record.parameter_rows(found))
     typer.echo(f"Singular values: {', '.join(f'{value:.2f}' for value in found.singular_values)}")
-    typer.echo(f"Written: {out} and {residuals}")
+    print_written(out, residuals)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from itertools import islice
 from pathlib import Path
 from typing import Annotated
@@ -11,7 +10,7 @@ import typer
 
 from giveway.base.errors import GivewayError
 from giveway.base.options import RobotOption
-from giveway.base.terminal import FAILED, print_columns, progress_bar
+from giveway.base.terminal import FAILED, print_columns, print_document, print_written, progress_bar, wants_json
 from giveway.fmu_tools.limits import Limits
 
 __all__ = ["fmu_app", "ssp"]
@@ -21,8 +20,7 @@ SCHEMA_VERSION = 1  # of `fmu check --json`
 
 fmu_app = typer.Typer(
     name="fmu",
-    help="Check, describe and run an FMU: anybody's, FMI 2 or 3. Exit codes: 0; 1: a fault was found, or a run failed "
-    "on its way; 2: wrong input, or a file that is refused; 130: interrupted.",
+    help="Check, describe and run an FMU: anybody's, FMI 2 or 3.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -42,7 +40,6 @@ DEFAULT = Limits()
 def check(
     file: Annotated[list[Path], typer.Argument(metavar="FILE.fmu...", help="The FMUs.")],
     strict: Annotated[bool, typer.Option("--strict", help="Warnings and notes count as faults.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The findings as JSON on stdout.")] = False,
     unpacked: UnpackedOption = DEFAULT.unpacked_mb,
     entries: EntriesOption = DEFAULT.entries,
     xml: XmlOption = DEFAULT.xml_mb,
@@ -61,7 +58,7 @@ def check(
     for path in file:
         found = check_fmu(path, limits)
         counts = {s: sum(finding.severity is s for finding in found) for s in Severity}
-        if as_json:
+        if wants_json():
             findings = [{"check": f.check, "severity": f.severity.value, "text": f.text} for f in found]
             totals = {f"{severity.value}s": count for severity, count in counts.items()}
             documents.append({"file": str(path), **totals, "findings": findings})
@@ -71,8 +68,8 @@ def check(
             totals_text = ", ".join(f"{count} {severity.value}s" for severity, count in counts.items())
             typer.echo(f"{path.name}: {len(CHECKS)} checks, {totals_text}")
         failed = failed or counts[Severity.FAULT] > 0 or (strict and bool(found))
-    if as_json:
-        typer.echo(json.dumps({"schema_version": SCHEMA_VERSION, "files": documents}, indent=2))
+    if wants_json():
+        print_document({"schema_version": SCHEMA_VERSION, "files": documents})
     if failed:
         raise typer.Exit(FAILED)
 
@@ -96,7 +93,9 @@ def info(
     if variables or grep:
         found = variable_rows(description, grep)
         first = list(islice(found, LONGEST_TABLE + 1))
-        if len(first) <= LONGEST_TABLE:
+        if wants_json():
+            print_columns(f"Variables of {file.name}", VARIABLE_HEADER, [*first, *found])
+        elif len(first) <= LONGEST_TABLE:
             print_columns(f"{len(first)} variables", VARIABLE_HEADER, first)
         else:  # the layout of a whole table takes much time and memory
             for row in (VARIABLE_HEADER, *first):
@@ -159,7 +158,7 @@ def run(
     typer.echo(
         f"{found.interface}: {len(found.traces)} rows of {len(found.units)} variables to {found.traces['time'][-1]:g} s"
     )
-    typer.echo(f"Written: {out}")
+    print_written(out)
     if found.stopped:
         raise _failed(found.stopped)
 
@@ -181,4 +180,4 @@ def ssp(
     from giveway.robot.robot_file import read_robot
 
     write_ssp(out, None if robot is None else read_robot(robot), sequential=sequential)
-    typer.echo(f"Written: {out}")
+    print_written(out)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from giveway.base.terminal import print_columns
+from giveway.base.terminal import print_columns, print_written
 
 __all__ = ["calibrate"]
 
@@ -25,4 +25,4 @@ def calibrate(
     calibration, written = calibrate_robot(logs, robot, out)
     title = f"Roller friction (28) from {', '.join(log.name for log in calibration.logs)}"
     print_columns(title, ("", "value", "95 % interval", "unit"), table_rows(calibration))
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+    print_written(*written)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from giveway.base import native
-from giveway.base.terminal import WRONG_INPUT, print_columns
+from giveway.base.terminal import WRONG_INPUT, print_columns, print_written, wants_json
 
 if TYPE_CHECKING:
     from giveway.own_robot.checked import Checked
@@ -71,7 +71,7 @@ def new(
         checked = check(temporary)
         if not checked.usable:
             raise GivewayError("giveway robot new", checked.refused.replace(str(temporary), str(file)), "other sizes")
-    typer.echo(f"Written: {file}")
+    print_written(file)
     _say(check(file), brief=True)
 
 
@@ -81,9 +81,8 @@ def _ask(question: Question) -> str | None:
 
     unit = f" [{question.unit}]" if question.unit not in ("", "1") else ""
     while True:
-        text = str(
-            typer.prompt(f"{question.text}{unit}" + ("" if question.needed else " (empty: estimate)"), default="")
-        )
+        asked = f"{question.text}{unit}" + ("" if question.needed else " (empty: estimate)")
+        text = str(typer.prompt(asked, default="", err=True))
         if not text.strip():
             if not question.needed:
                 return None
@@ -118,7 +117,7 @@ def check_file_of_robot(
         raise typer.Exit(WRONG_INPUT)
     if out is not None:
         write(out, checked)
-        typer.echo(f"Written: {out}")
+        print_written(out)
 
 
 def _say(checked: Checked, brief: bool = False) -> None:
@@ -153,6 +152,10 @@ def list_robots() -> None:
     """List the shipped robots: `--robot NAME` takes each of them."""
     from giveway.robot.robot_file import read_robot
 
-    for name, path in native.robots().items():
-        robot = read_robot(path)
+    found = {name: read_robot(path) for name, path in native.robots().items()}
+    if wants_json():
+        rows = [(name, robot.name, f"{robot.value('base.mass'):g}") for name, robot in found.items()]
+        print_columns("Shipped robots", ("name", "robot", "mass, kg"), rows)
+        return
+    for name, robot in found.items():
         typer.echo(f"{name}: {robot.name}, {robot.value('base.mass'):g} kg")

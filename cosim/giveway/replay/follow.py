@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import typer
 
-from giveway.base.terminal import print_warnings
+from giveway.base.terminal import print_document, print_warnings, wants_json
 from giveway.replay.csv_log import LineLog
 from giveway.replay.play import Played, Replay
 from giveway.replay.told import wrong_lines
@@ -46,7 +46,10 @@ def follow_lines(wishes: Wishes, choice_of: Callable[[Source], tuple[Choice, str
 
 def _tell(played: Played | None) -> None:
     for detection in () if played is None else played.detections:
-        _say(detection.words)
+        if wants_json():
+            print_document(vars(detection), indent=None)
+        else:
+            _say(detection.words)
 
 
 def _say(text: str) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from giveway.base.files import check_output, replace_folder, write_text
-from giveway.base.terminal import print_warnings
+from giveway.base.terminal import print_warnings, print_written
 from giveway.base.version import VERSION
 from giveway.library.replay import controller_outputs
 from giveway.replay.play import OUTPUTS, Choice, Replay
@@ -57,7 +57,7 @@ def play_into(folder: Path, source: Source, wishes: Wishes, choice: Choice, robo
         write_text(temporary / "manifest.json", json.dumps(_manifest(replay, robot, ended), indent=2) + "\n")
         wall_s, cpu_s = time.perf_counter() - started[0], time.process_time() - started[1]
     _print(replay, robot)
-    typer.echo(f"Written: {folder / 'report.html'}, replay.parquet, replay.mcap and manifest.json")
+    print_written(*(folder / name for name in ("report.html", "replay.parquet", "replay.mcap", "manifest.json")))
     played_s = replay.did.steps * choice.step_s
     speed = f"{played_s / wall_s:.0f} times real time ({cpu_s:.2f} s of processor time)"
     typer.echo(f"Played {played_s:.6g} s in {wall_s:.2f} s, report included: {speed}")

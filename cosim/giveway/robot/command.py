@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from giveway.base.table_document import Shown
 from giveway.base.terminal import print_columns
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from giveway.robot.variables import Value, Variable
 
 __all__ = ["variables"]
 
@@ -25,9 +31,11 @@ def variables(
     other = preset_values(preset, model)
     wanted = grep.lower()
     chosen = [v for v in table(model) if wanted in v.name.lower() or wanted in v.description.lower()]
-    rows = [
-        (v.name, v.causality, "" if v.start is None else f"{other.get(v.name, v.start)}", v.allowed, v.description)
-        for v in chosen
-    ]
+    rows = [(v.name, v.causality, _start(v, other), Shown(v.allowed, v.range), v.description) for v in chosen]
     title = f"{counted(len(chosen), 'variable')} of {model}" + ("" if preset == DEFAULT else f", preset {preset}")
     print_columns(title, ("name", "kind", "start", "allowed", "meaning"), rows)
+
+
+def _start(variable: Variable, preset: Mapping[str, Value]) -> Shown:
+    start = preset.get(variable.name, variable.start)
+    return Shown("" if start is None else f"{start}", start)

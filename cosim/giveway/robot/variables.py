@@ -54,6 +54,13 @@ class Variable:
             return f"{kind}, at most {high:g}{unit}"
         return f"{kind} from {low:g} to {high:g}{unit}"
 
+    @property
+    def range(self) -> dict[str, float | str]:
+        """The same for a program: type, unit and what limits there are."""
+        limits = {"minimum": self.minimum, "maximum": self.maximum}
+        stated = {name: limit for name, limit in limits.items() if math.isfinite(limit) and self.type != "boolean"}
+        return {"type": self.type, "unit": self.unit or "1", **stated}
+
 
 class VariableTable:
     """All variables of one model, by name and in the order of their references."""

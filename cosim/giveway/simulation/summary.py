@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base.files import write_text
+from giveway.base.table_document import Shown
 from giveway.library.recorded import windows
 from giveway.robot.presets import DEFAULT, PAPER, PRESETS
 from giveway.simulation.metrics import Metric
@@ -82,9 +83,10 @@ def warning_lines(results: Mapping[str, Result]) -> list[str]:
 
 def cell(metric: Metric) -> str:
     """A metric as text: ``value (truth)``, with "-" if it did not happen."""
+    text = number(metric.value, metric.decimals)
     if metric.truth is None or metric.truth == 0.0:  # an error's truth is zero by definition: not worth printing
-        return number(metric.value, metric.decimals)
-    return f"{number(metric.value, metric.decimals)} ({number(metric.truth, metric.decimals)})"
+        return Shown(text, metric.value)
+    return Shown(f"{text} ({number(metric.truth, metric.decimals)})", {"value": metric.value, "truth": metric.truth})
 
 
 def number(value: float | None, decimals: int | None) -> str:

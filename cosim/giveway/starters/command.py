@@ -1,4 +1,4 @@
-"""The commands `giveway new scenario` and `giveway new study`."""
+"""The commands `giveway new scenario`, `new study` and `new robot`, which is `giveway robot new`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from giveway.base.terminal import print_written
+from giveway.own_robot.command import new
 
 __all__ = ["new_app"]
 
@@ -26,6 +29,9 @@ def study(file: _Target = None) -> None:
     _write("study", file, "giveway sweep {file}")
 
 
+new_app.command("robot")(new)
+
+
 def _write(kind: str, given: Path | None, use: str) -> None:
     from giveway.base.errors import FileError
     from giveway.base.files import check_file, write_text
@@ -38,4 +44,5 @@ def _write(kind: str, given: Path | None, use: str) -> None:
         raise FileError(file, "is no name of a TOML file", f"give one that ends in .toml, such as {kind}.toml")
     text = (Path(__file__).parent / f"{kind}.toml").read_text(encoding="utf-8")
     write_text(file, text.replace("FILE", str(file)))
-    typer.echo(f"Written: {file}; run it with: {use.format(file=file)}")
+    print_written(file)
+    typer.echo(f"Run it with: {use.format(file=file)}")

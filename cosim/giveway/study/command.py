@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from giveway.base.options import DaskOption, ThreadsOption
-from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, working
+from giveway.base.terminal import (
+    INTERRUPTED,
+    print_columns,
+    print_document,
+    print_written,
+    progress_bars,
+    wants_json,
+    working,
+)
 
 if TYPE_CHECKING:
     from giveway.study.answers import Answers
@@ -81,7 +89,7 @@ def _write_and_print(folder: Path, threads: int | None) -> None:
     except KeyboardInterrupt:
         _interrupted(f"all runs are stored. `giveway study show {folder}` shows the answers.")
     _print_answers(found)
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+    print_written(*written)
 
 
 def optimise_designs(
@@ -124,23 +132,20 @@ def study_show(
     _print_answers(found)
     with working(messages.REPORT) as progress:
         written = messages.write_all(found, simulate_chosen=False, progress=lambda _name, share: progress(share))
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+    print_written(*written)
 
 
 @study_app.command("compare")
 def study_compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="Folder of a study.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another one.")],
-    as_json: Annotated[bool, typer.Option("--json", help="The comparison as JSON on stdout.")] = False,
 ) -> None:
     """Compare two studies: what was asked otherwise, the recommended designs side by side, and their margins."""
-    import json
-
     from giveway.study import compare
 
     found = compare.compare(_load(first), _load(second))
-    if as_json:
-        typer.echo(json.dumps({"schema_version": 1, **found.document()}, indent=2))
+    if wants_json():
+        print_document({"schema_version": 1, **found.document()})
         return
     print_columns(
         "Compared", ("", "study", ""), [(x, *rest) for x, *rest in zip("AB", found.names, found.titles, strict=True)]
@@ -183,7 +188,7 @@ def study_evidence(
     header, *rows = summary(told)
     print_columns(f"Design {told.design}: worst case by speed", header, rows)
     typer.echo(NOTICE)
-    typer.echo(f"Written: {' and '.join(str(path) for path in written)}")
+    print_written(*written)
 
 
 def _numbers(option: str, text: str | None) -> list[float] | None:
@@ -260,7 +265,7 @@ def study_run(
         results = simulate(found.setup, found.runs, folder, design)
     for name, result in results.items():
         print_results(f"design {design}, {name}", {result.manifest["scenario"]["bumper"]: result})
-    typer.echo(f"Written: {folder / CHOSEN / f'design-{design}'}")
+    print_written(folder / CHOSEN / f"design-{design}")
 
 
 @study_app.command("export")
@@ -285,7 +290,7 @@ def study_export(
         export_table(found, out)
     else:
         export_design(found, design, out, collision=collision, model=model)
-    typer.echo(f"Written: {out}")
+    print_written(out)
 
 
 @study_app.command("gallery")

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from giveway.base.terminal import console_on, is_quiet, shows_progress
 from giveway.base.words import counted
 from giveway.study.engine import Outcome, Progress, Report
 
@@ -27,23 +28,24 @@ SURE = "how sure"  # what `certainty.make_sure` does
 @contextmanager
 def showing(name: str) -> Iterator[Report]:
     """Progress on stderr with rate and time left: a bar at a terminal, else a line every few seconds."""
-    if not sys.stderr.isatty():
+    if not shows_progress():
         said = time.monotonic()
 
         def say(progress: Progress) -> None:
             nonlocal said
+            if is_quiet():
+                return
             if progress.done == progress.runs or time.monotonic() - said >= SAY_EVERY_S:
                 said = time.monotonic()
                 print(f"{name}: {_words(progress)}", file=sys.stderr, flush=True)
 
         yield say
         return
-    from rich.console import Console
     from rich.progress import BarColumn, TextColumn
     from rich.progress import Progress as Bars
 
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[words]}"))
-    with Bars(*columns, console=Console(stderr=True)) as bars:
+    with Bars(*columns, console=console_on(stderr=True)) as bars:
         task = bars.add_task(name, total=None, words="")
 
         def draw(progress: Progress) -> None:
