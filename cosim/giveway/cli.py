@@ -45,6 +45,7 @@ from giveway.identification.command import calibrate
 from giveway.own_robot.command import robot_app
 from giveway.replay.command import replay
 from giveway.robot.command import variables
+from giveway.schemas.command import schema
 from giveway.starters.command import new_app
 from giveway.studio.command import studio
 from giveway.study.command import optimise_designs, study_app, sweep_designs
@@ -71,6 +72,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "optimise": optimise_designs,
     "doctor": doctor,
     "firmware": firmware,
+    "schema": schema,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

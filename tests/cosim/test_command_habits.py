@@ -89,7 +89,7 @@ def test_lists_are_rows(cli: Cli) -> None:
 def test_commands_without_tables_say_what_they_wrote(cli: Cli, tmp_path: Path) -> None:
     found = documents(cli("new", "scenario", "--json").stdout)
     assert (found["tables"], found["written"]) == ([], ["scenario.toml"])
-    assert found["notes"] == ["Run it with: giveway run scenario.toml --out out/first"]
+    assert found["notes"] == ["run it with: giveway run scenario.toml --out out/first"]
     assert folder_content(tmp_path) == ["scenario.toml"]
 
 

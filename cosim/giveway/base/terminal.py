@@ -125,13 +125,15 @@ def print_document(document: Any, indent: int | None = 2) -> None:
     (_output.stdout or sys.stdout).flush()
 
 
-def print_written(*paths: Path) -> None:
-    """The files that a command has written."""
+def print_written(*paths: Path, then: str = "") -> None:
+    """The files that a command has written; ``then``: what to do with them."""
     if _output.json:
         _output.written += [str(path) for path in paths]
+        if then:
+            typer.echo(then)
         return
     *first, last = (str(path) for path in paths)
-    typer.echo(f"Written: {', '.join(first)}{' and ' if first else ''}{last}")
+    typer.echo(f"Written: {', '.join(first)}{' and ' if first else ''}{last}{'; ' if then else ''}{then}")
 
 
 def console_on(stderr: bool = False, width: int | None = None) -> Console:

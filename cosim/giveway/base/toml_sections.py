@@ -12,6 +12,7 @@ from typing import Any
 
 from giveway.base.checks import finite
 from giveway.base.errors import FileError, GivewayError, InputFileError, UnknownNameError
+from giveway.base.shapes import Rows, Table, Variants
 from giveway.base.toml_lines import line_of
 
 __all__ = ["Section", "lines_named", "read_toml", "renamed"]
@@ -66,21 +67,45 @@ def renamed(section: str, **names: str) -> Iterator[None]:
 class Section:
     """One table of the file; errors of every reader name the key, the value found and the allowed values."""
 
-    def __init__(self, name: str, values: Any, known: Sequence[str] | None) -> None:
-        """``known``: the keys it may have; None: any."""
+    def __init__(self, name: str, values: Any, known: Sequence[str] | Table | None) -> None:
+        """``known``: the keys it may have; with their shapes, by which the values are checked; None: any."""
         if not isinstance(values, dict):
             raise GivewayError(name, values, "a table")
         self.name, self.values = name, values
-        if known is not None:
+        self._shapes = known.keys if isinstance(known, Table) else {}
+        keys = known.keys if isinstance(known, Table) else known
+        if keys is not None:
             for key in values:
-                if key not in known:
-                    raise UnknownNameError(self.full(key), key, known)
+                if key not in keys:
+                    raise UnknownNameError(self.full(key), key, keys)
+        for key, shape in self._shapes.items():
+            if key in values:
+                shape.check(self.full(key), values[key])
 
     def full(self, key: str) -> str:
         return f"{self.name}.{key}" if self.name else key
 
-    def table(self, key: str, known: Sequence[str]) -> Section | None:
-        return Section(self.full(key), self.values[key], known) if key in self.values else None
+    def table(self, key: str, known: Sequence[str] | None = None) -> Section | None:
+        """The table at ``key``, None if it is not there; ``known``: its keys, where no shape has them."""
+        if key not in self.values:
+            return None
+        name, values, shape = self.full(key), self.values[key], self._shapes.get(key)
+        if isinstance(shape, Variants):
+            word = Section(name, values, None).choice(shape.key, shape.tables)
+            return Section(name, values, shape.table(word))
+        return Section(name, values, shape if isinstance(shape, Table) else known)
+
+    def rows(self, key: str) -> list[Section]:
+        """The tables ``[[key]]``."""
+        shape, entries = self._shapes[key], self.values.get(key, [])
+        assert isinstance(shape, Rows)
+        if not isinstance(entries, list):
+            raise GivewayError(self.full(key), entries, f"one or more [[{key}]]")
+        return [Section(f"{self.full(key)}[{index}]", entry, shape.row) for index, entry in enumerate(entries)]
+
+    def whole(self, key: str, default: int) -> int:
+        """A whole number, whose shape has its range."""
+        return int(self.values.get(key, default))
 
     def required(self, key: str, allowed: str) -> Any:
         if key not in self.values:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from giveway.base import native
+from giveway.base.terminal import print_written
 from giveway.robot.presets import DEFAULT
 
 __all__ = ["firmware"]
@@ -50,4 +51,4 @@ def firmware(
         )
     felt = "which the controller notices" if recording.hits else "which the controller does NOT notice"
     typer.echo(f"Recorded: {len(recording.counter)} ticks of a collision at {recording.speed_mps:g} m/s, {felt}.")
-    typer.echo(f"Written: {out}; build and test it with: make -C {out} test")
+    print_written(out, then=f"build and test it with: make -C {out} test")

@@ -19,6 +19,7 @@ __all__ = ["robot_text"]
 
 DIGITS, WIDTH = 3, 120
 HEAD = """\
+#:schema robot.schema.json
 # Every number of this robot with its unit, source and confidence, as `giveway robot new` wrote it: look through what
 # `giveway robot check` lists, replace each estimate by a better number, and say where that comes from.
 # provenance: given (you measured it), sourced (found in a data sheet), fitted (to measurements), assumed (estimated).

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -18,18 +18,18 @@ from typing import Any
 from giveway.base import native
 from giveway.base.checks import finite
 from giveway.base.errors import FileError, GivewayError, InputFileError, nearest_names
+from giveway.base.shapes import Choice, Flag, Shape, Table, Text, Version
 from giveway.base.toml_lines import line_of
 from giveway.base.toml_sections import Section, lines_named, read_toml
 from giveway.base.units import factor
 from giveway.robot.motor_current import MOTOR, MOTOR_CURRENT, SENSING, from_motor, stated_by
 from giveway.robot.table_files import entry_unit, read_table_file, robot_paths
 
-__all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot"]
+__all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot", "robot_shape"]
 
 SCHEMA_VERSION = 1
 PROVENANCE = ("given", "sourced", "fitted", "assumed")
 CONFIDENCE = ("high", "medium", "low")
-_KEYS = ("value", "unit", "source", "confidence", "provenance", "note")
 _HEADER = ("schema_version", "robot")  # entries that are not numbers
 EQUIPMENT = ("imu",)
 """Parts that a robot may have and a robot file may leave out."""
@@ -166,13 +166,11 @@ def read_robot(path: Path) -> Robot:
     text, document = read_toml(path, "give the path of a robot file (TOML)")
     with lines_named(path, text):
         known = _known()
-        top = Section("", document, (*_HEADER, *dict.fromkeys(name.partition(".")[0] for name in known)))
-        version = top.required("schema_version", str(SCHEMA_VERSION))
-        if version != SCHEMA_VERSION:
-            raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
-        header = top.table("robot", ("name",))
+        top = Section("", document, robot_shape())
+        top.required("schema_version", str(SCHEMA_VERSION))
+        header = top.table("robot")
         name = "" if header is None else header.text("name", "")
-        entries = {name: _entry(name, values, known[name]) for name, values in _stated(document, known)}
+        entries = {name: _entry(name, values, known[name]) for name, values in _stated(top)}
         x, y = entries.get("outline.x"), entries.get("outline.y")
         if x is not None and y is not None and len(x.values) != len(y.values):
             allowed = f"as many as outline.x has, {len(x.values)}: every corner has both"
@@ -180,21 +178,88 @@ def read_robot(path: Path) -> Robot:
     return Robot(path, text, name, entries)
 
 
-def _stated(document: Mapping[str, Any], known: Mapping[str, _Known]) -> Iterator[tuple[str, Any]]:
+def _stated(top: Section) -> Iterator[tuple[str, Any]]:
     """Name and table of every entry, in the order of the file."""
-    for part, values in document.items():
-        if part in _HEADER:
-            continue
-        below = [name.removeprefix(f"{part}.") for name in known if name.startswith(f"{part}.")]
-        section = Section(part, values, list(dict.fromkeys(name.partition(".")[0] for name in below)))
-        for key in section.values:
+    for part in top.values:
+        section = top.table(part) if part not in _HEADER else None
+        for key in section.values if section is not None else ():
+            assert section is not None
             if part not in SETTINGS:
                 yield section.full(key), section.values[key]
                 continue
-            names = [name.partition(".")[2] for name in below if name.startswith(f"{key}.")]
-            group = Section(section.full(key), section.values[key], names)
-            for name in group.values:
-                yield group.full(name), group.values[name]
+            group = section.table(key)
+            assert group is not None
+            yield from ((group.full(name), value) for name, value in group.values.items())
+
+
+@functools.cache
+def robot_shape() -> Table:
+    """What a robot file may hold."""
+    parts: dict[str, dict[str, Shape]] = {}
+    settings: dict[str, dict[str, dict[str, Shape]]] = {}
+    for name, known in _known().items():
+        part, _, key = name.partition(".")
+        if part in SETTINGS:
+            group, _, setting = key.partition(".")
+            settings.setdefault(part, {}).setdefault(group, {})[setting] = _entry_shape(known)
+        else:
+            parts.setdefault(part, {})[key] = _entry_shape(known)
+    about = "parameters of this model that have start values of their own"
+    return Table(
+        "a robot, each number with its unit and where it comes from",
+        {
+            "schema_version": Version("of this format", SCHEMA_VERSION),
+            "robot": Table("", {"name": Text("what it is called")}),
+            **{part: Table("", keys) for part, keys in parts.items()},
+            **{
+                model: Table(about, {key: Table("", one) for key, one in found.items()})
+                for model, found in settings.items()
+            },
+        },
+        ("schema_version",),
+    )
+
+
+def _entry_shape(known: _Known) -> Table:
+    """The table of an entry."""
+    alone = known.is_flag or bool(known.words)
+    value: Shape = Choice("", known.words) if known.words else Flag() if known.is_flag else _Values("", known)
+    keys = {
+        "value": value,
+        "unit": Text("left out" if alone else f"{known.unit}, or a unit of the same kind"),
+        "provenance": Choice("where it comes from", PROVENANCE),
+        "confidence": Choice("how sure it is", CONFIDENCE),
+        "source": Text("in words"),
+        "note": Text("in words"),
+    }
+    return Table("", keys, ("value",) if alone else ("value", "unit"))
+
+
+@dataclass(frozen=True)
+class _Values(Shape):
+    """A number, or a list of them."""
+
+    known: _Known = field(default_factory=lambda: _Known(""))
+
+    @property
+    def _least(self) -> int:
+        return self.known.least or 1
+
+    def check(self, field: str, value: Any) -> None:
+        count = self.known.count
+        if isinstance(value, list) and not (count is not None and self._least <= len(value) <= count):
+            numbers = f"{count} numbers" if self.known.least == count else f"1 to {count} numbers"
+            raise GivewayError(field, value, "one number" if count is None else f"a list of {numbers}")
+        for index, item in enumerate(value if isinstance(value, list) else [value]):
+            finite(f"{field}[{index}]" if isinstance(value, list) else field, item)
+
+    def schema(self) -> dict[str, Any]:
+        number = {"type": "number"}
+        if self.known.count is None:
+            return number
+        return {
+            "anyOf": [number, {"type": "array", "items": number, "minItems": self._least, "maxItems": self.known.count}]
+        }
 
 
 def _entry(name: str, values: Any, known: _Known) -> Entry:
@@ -204,7 +269,7 @@ def _entry(name: str, values: Any, known: _Known) -> Entry:
         alone = known.is_flag or known.words
         stated = "value = ..." if alone else f'value = ..., unit = "{unit}"'
         raise GivewayError(name, values, f"a table with value{'' if alone else ' and unit'}, {name} = {{ {stated} }}")
-    section = Section(name, values, _KEYS)
+    section = Section(name, values, _entry_shape(known))
     if known.words:
         word = section.choice("value", known.words)
         if "unit" in section.values:
@@ -217,11 +282,6 @@ def _entry(name: str, values: Any, known: _Known) -> Entry:
     stated = section.required("value", "a finite number" if count is None else f"up to {count} finite numbers")
     items = stated if isinstance(stated, list) else [stated]
     field = section.full("value")
-    if isinstance(stated, list) and not (count is not None and (known.least or 1) <= len(stated) <= count):
-        numbers = f"{count} numbers" if known.least == count else f"1 to {count} numbers"
-        raise GivewayError(field, stated, "one number" if count is None else f"a list of {numbers}")
-    for index, item in enumerate(items):
-        finite(f"{field}[{index}]" if isinstance(stated, list) else field, item)
     section.required("unit", f'"{unit}"' + (", or a unit of the same kind" if unit != "1" else ""))
     stated_unit = section.text("unit")
     scale = 1.0 if stated_unit == unit else factor(section.full("unit"), stated_unit, unit)

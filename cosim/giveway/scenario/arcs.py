@@ -35,8 +35,8 @@ EVERY_WHEEL: tuple[Wheels, ...] = (
 """Each wheel alone, and each two of them: arcs about six points, after which all rollers are known."""
 
 REST_S = 0.5  # before an arc, for the controller's tare
-MAXIMUM_SWING_RAD = 100.0
-MAXIMUM_FREQUENCY_HZ = 100.0
+MINIMUM_SWING_RAD, MAXIMUM_SWING_RAD = 1e-3, 100.0
+MINIMUM_FREQUENCY_HZ, MAXIMUM_FREQUENCY_HZ = 1e-4, 100.0
 MAXIMUM_SWINGS = 10_000
 MAXIMUM_LENGTH_M = 10.0
 LEAST_TURN = 1e-6  # of the wheels' shares together: below it the base goes straight on, about no point
@@ -146,8 +146,8 @@ class Arcs:
             if abs(sum(wheels)) < LEAST_TURN:
                 allowed = "shares whose sum is not 0: the robot turns about a point"
                 raise GivewayError("Arcs.wheels", list(wheels), allowed)
-        finite("Arcs.swing_rad", self.swing_rad, 1e-3, MAXIMUM_SWING_RAD, "rad")
-        finite("Arcs.frequency_hz", self.frequency_hz, 1e-4, MAXIMUM_FREQUENCY_HZ, "Hz")
+        finite("Arcs.swing_rad", self.swing_rad, MINIMUM_SWING_RAD, MAXIMUM_SWING_RAD, "rad")
+        finite("Arcs.frequency_hz", self.frequency_hz, MINIMUM_FREQUENCY_HZ, MAXIMUM_FREQUENCY_HZ, "Hz")
         whole("Arcs.swings", self.swings, 1, MAXIMUM_SWINGS)
         finite("Arcs.rest_s", self.rest_s, 0.0, MAXIMUM_TIME_S, "s")
         for name in ("wheel_radius_m", "wheel_distance_m"):

@@ -14,48 +14,29 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base import native
-from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.base.units import factor
 from giveway.robot.presets import DEFAULT, PRESETS
 from giveway.robot.variables import Value, table
-from giveway.robot.wheels import WHEELS
-from giveway.scenario.arcs import EVERY_WHEEL, MAXIMUM_SWINGS, Arcs, wheels_of
+from giveway.scenario.arcs import EVERY_WHEEL, Arcs, wheels_of
 from giveway.scenario.plan import Circle, Plan, Pushes, Rest, Straight, TimedPush, start_values
 from giveway.scenario.plan_limits import check_plan_of
 from giveway.scenario.scenario import BUMPERS, Scenario
+from giveway.scenario.scenario_shape import SCHEMA_VERSION, scenario_shape
 from giveway.scenario.stated_bumper import law_of, stated_bumper
 from giveway.scenario.stated_contact import StatedContact
 
 __all__ = ["PLAN_KEYS", "SET_BY", "read_scenario", "scalars", "scenario_of"]
 
-SCHEMA_VERSION = 1
-NAME_MAX = 80
 START_ACCELERATION_MPS2 = 0.2
 MEETING_S = 0.5
-PLANS = ("rest", "straight", "circle", "arcs")
 SWING_RAD, SWING_HZ, SWINGS, STANDING_S = 1.5, 0.1, 2, 1.0  # of arcs
-
-_TOP = (
-    "schema_version", "name", "duration", "bumper", "robot", "preset", "seed", "body_region", "judge_as",
-    "contact_area",
-    "plan", "collision", "push", "testbed", "controller",
-)  # fmt: skip
-_POSE = ("x", "y", "heading")
 PLAN_KEYS = {  # fields of plans, by the file's keys
     "speed_mps": "speed",
     "acceleration_mps2": "acceleration",
     "frequency_hz": "frequency",
 }
-_PLAN_KEYS = {
-    "rest": _POSE,
-    "straight": (*_POSE, "speed", "direction", "acceleration"),
-    "circle": ("diameter", "speed", "centre", "start", "heading", "turning", "acceleration"),
-    "arcs": (*_POSE, "wheels", "swing", "frequency", "swings", "rest"),
-}
-_COLLISION_KEYS = ("mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
-_PUSH_KEYS = ("force", "direction", "point", "start", "duration", "ramp")
 # Parameters that a key of the file sets; [testbed] must not set them again.
 SET_BY = {
     "bumper.kind": "bumper",
@@ -101,17 +82,15 @@ def scenario_of(
     preset: str | None = None,
 ) -> Scenario:
     """The scenario of ``document``, as if read from the file ``path``; errors name its keys, without lines."""
-    top = Section("", document, _TOP)
-    version = top.required("schema_version", "1")
-    if version != SCHEMA_VERSION:
-        raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+    top = Section("", document, scenario_shape())
+    top.required("schema_version", str(SCHEMA_VERSION))
     seed = top.values.get("seed")
     if robot is None and "robot" in top.values:
         robot = native.robot_file("robot", top.text("robot"), path.parent)
         if not robot.is_file():
             allowed = "a robot file, its path seen from this file, or the name of a shipped robot"
             raise GivewayError("robot", top.values["robot"], allowed)
-    collision, pushes = top.table("collision", _COLLISION_KEYS), _pushes(top)
+    collision, pushes = top.table("collision"), _pushes(top)
     stated = collision is None and _states_slider(top)
     collides = stated or collision is not None
     if not collides and law_of(top.values.get("bumper", "none")) != "none":
@@ -143,8 +122,6 @@ def scenario_of(
             contact_area_m2=_area_m2(top),
             preset=preset or top.choice("preset", PRESETS, DEFAULT),
         )
-    if not 1 <= len(bare.name) <= NAME_MAX:
-        raise GivewayError("name", bare.name, f"1 to {NAME_MAX} characters")
     for index, push in enumerate(pushes.pushes if pushes is not None else ()):
         if push.start_s >= bare.duration_s:
             allowed = f"a start before the end of the run at {bare.duration_s:g} s"
@@ -170,10 +147,8 @@ def _bumper(top: Section, folder: Path, instead: str | None) -> tuple[str, dict[
 
 
 def _plan(top: Section, robot: Path | None) -> Plan:
-    kind = "rest"
-    if "plan" in top.values:
-        kind = Section("plan", top.values["plan"], None).choice("kind", PLANS)
-    section = top.table("plan", ("kind", *_PLAN_KEYS[kind])) or Section("plan", {}, None)
+    section = top.table("plan") or Section("plan", {"kind": "rest"}, None)
+    kind = section.text("kind")
     heading = section.angle("heading", 0.0)
     if kind == "rest":
         with renamed("plan", x_m="x", y_m="y"):
@@ -194,14 +169,13 @@ def _plan(top: Section, robot: Path | None) -> Plan:
 
 def _arcs(section: Section, heading_rad: float, robot: Path | None) -> Arcs:
     """The wheels are those of the robot file."""
-    swings = whole(section.full("swings"), section.values.get("swings", SWINGS), 1, MAXIMUM_SWINGS)
     fields = {"swing_rad": "swing", "rest_s": "rest", "x_m": "x", "y_m": "y", "wheels": "wheels"}
     with renamed("plan", **fields, **PLAN_KEYS):
         return Arcs(
             _shares(section),
             section.angle("swing", SWING_RAD),
             section.number("frequency", SWING_HZ),
-            swings,
+            section.whole("swings", SWINGS),
             section.number("rest", STANDING_S),
             *wheels_of(robot),
             section.number("x", 0.0),
@@ -214,24 +188,15 @@ def _shares(section: Section) -> tuple[tuple[float, float, float], ...]:
     """For each arc the share of the swing of each wheel."""
     if "wheels" not in section.values:
         return EVERY_WHEEL
-    found, field = section.values["wheels"], section.full("wheels")
-    allowed = "a list of arcs, each the share of the swing of every wheel: [[1, 0, 0], [1, 1, 0]]"
-    if not isinstance(found, list) or not all(isinstance(arc, list) and len(arc) == WHEELS for arc in found):
-        raise GivewayError(field, found, allowed)
-    shares = [tuple(finite(field, share) for share in arc) for arc in found]
-    return tuple((a, b, c) for a, b, c in shares)
+    return tuple((float(a), float(b), float(c)) for a, b, c in section.values["wheels"])
 
 
 def _pushes(top: Section) -> Pushes | None:
     if "push" not in top.values:
         return None
-    entries = top.values["push"]
-    if not isinstance(entries, list):
-        raise GivewayError("push", entries, "one or more [[push]]")
     names = {"force_n": "force", "start_s": "start", "duration_s": "duration", "ramp_s": "ramp"}
     pushes: list[TimedPush] = []
-    for index, entry in enumerate(entries):
-        section = Section(f"push[{index}]", entry, _PUSH_KEYS)
+    for section in top.rows("push"):
         point = section.pair("point")
         with renamed(section.name, point_x_m="point", point_y_m="point", **names):
             pushes.append(
@@ -259,16 +224,15 @@ def _overrides(top: Section, model: str, stated: bool) -> dict[str, Value]:
 
     ``stated``: what collides is stated here; so are seed and start, where no key of the file has them.
     """
-    values = top.values.get(model, {})
-    if not isinstance(values, dict):
-        raise GivewayError(model, values, "a table")
     found: dict[str, Value] = {}
-    for name, value in scalars(values):
+    for name, value in scalars(top.values.get(model, {})):
         key = SET_BY.get(name, "") if model == "testbed" else ""
         if key and not (stated and key != "bumper" and key.partition(".")[0] not in top.values):
             raise GivewayError(f"{model}.{name}", value, f"one place to set it: {SET_BY[name]}")
         try:
             found[name] = table(model).check(name, value)
+            if isinstance(value, str) or isinstance(value, bool) != isinstance(found[name], bool):
+                raise GivewayError(name, value, table(model)[name].allowed)
         except GivewayError as error:
             error.field = f"{model}.{name}"
             raise
@@ -318,7 +282,7 @@ def _collision(section: Section, bare: Scenario) -> tuple[dict[str, Value], Stat
 
 def _area_m2(top: Section) -> float | None:
     """The area of the contact, stated with its unit."""
-    section = top.table("contact_area", ("value", "unit"))
+    section = top.table("contact_area")
     if section is None:
         return None
     section.required("unit", '"cm2", or another unit of an area')

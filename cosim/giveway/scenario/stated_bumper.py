@@ -12,6 +12,7 @@ damping, friction of the guide, preload and what else a law can do without are 0
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.base.checks import finite
 from giveway.base.errors import GivewayError
+from giveway.base.shapes import Either, Measure, Number, Shape, Table, Text, Variants
 from giveway.base.toml_sections import Section
 from giveway.base.units import factor
 from giveway.robot.variables import table
@@ -27,7 +29,7 @@ from giveway.scenario.scenario import BUMPERS, ROBOT_BUMPERS
 if TYPE_CHECKING:
     from giveway.robot.variables import Value
 
-__all__ = ["COMMON", "FILE", "LAW", "NUMBERS", "law_of", "stated_bumper"]
+__all__ = ["COMMON", "FILE", "LAW", "NUMBERS", "bumper_shape", "law_of", "stated_bumper"]
 
 LAW, FILE = "law", "file"
 COMMON = ("travel", "plate_mass", "damping", "guide_friction", "guide_friction_speed", "stop_stiffness",
@@ -69,6 +71,29 @@ _NOT_STATED = {
 _COMPRESSED, _STROKE = "force_compressed", "stroke"
 
 
+@functools.cache
+def bumper_shape() -> Variants:
+    """The table ``[bumper]``: the keys of each law."""
+    return Variants("a bumper as its data sheets state it", LAW, {law: _law_shape(law) for law in BUMPERS})
+
+
+def _law_shape(law: str) -> Table:
+    parameters = {**_OF_LAW[law], **({key: key for key in COMMON} if law != "none" else {})}
+    if law == "gas":
+        parameters |= {_COMPRESSED: "gas_force", _STROKE: "gas_length"}
+    keys: dict[str, Shape] = {key: _number_shape(f"bumper.{parameter}") for key, parameter in parameters.items()}
+    if law == "table":
+        keys[FILE] = Text("CSV: travel, speed, force; its path seen from this file")
+    return Table("", keys, _NEEDED.get(law, ()))
+
+
+def _number_shape(parameter: str) -> Shape:
+    """A number in the parameter's unit, or with a unit of its own."""
+    variable = table("testbed")[parameter]
+    plain = Number(variable.description, variable.minimum, variable.maximum, variable.unit)
+    return Either(variable.description, (plain, Measure("")))
+
+
 def law_of(stated: Any) -> str:
     """The law of ``bumper``, a name or a table, as far as it is one."""
     return str(stated.get(LAW, "")) if isinstance(stated, Mapping) else str(stated)
@@ -82,13 +107,7 @@ def stated_bumper(values: Any, folder: Path, name: str = "bumper") -> tuple[str,
         InputFileError: something in a measured table is wrong.
     """
     law = Section(name, values, None).choice(LAW, BUMPERS)
-    known = (
-        LAW,
-        *_OF_LAW[law],
-        *((_COMPRESSED, _STROKE) if law == "gas" else ()),
-        *((FILE,) if law == "table" else ()),
-    )
-    section = Section(name, values, (*known, *(COMMON if law != "none" else ())))
+    section = Section(name, values, bumper_shape().table(law))
     for key in _NEEDED.get(law, ()):
         section.required(key, f'{{ value = ..., unit = "..." }}: a bumper with the law {law} has it')
     found: dict[str, Value] = {}

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base.files import write_text
+from giveway.base.shapes import Either, Nothing, Number, Rows, Table, Text, Version
 from giveway.base.table_document import Shown
 from giveway.library.recorded import windows
 from giveway.robot.presets import DEFAULT, PAPER, PRESETS
@@ -15,6 +16,7 @@ from giveway.simulation.metrics import Metric
 from giveway.simulation.result import Result
 
 __all__ = [
+    "SUMMARY",
     "cell",
     "false_detection_line",
     "preset_line",
@@ -26,6 +28,32 @@ __all__ = [
 ]
 
 SCHEMA_VERSION = 1
+_NUMBER = Either("null: it did not happen, or is not known", (Number(), Nothing()))
+SUMMARY = Table(
+    "the results of giveway demo",
+    {
+        "schema_version": Version("of this format", SCHEMA_VERSION),
+        "rows": Rows(
+            "a number of a run each",
+            Table(
+                "",
+                {
+                    "bumper": Text("of the run"),
+                    "name": Text("what it is"),
+                    "value": _NUMBER,
+                    "unit": Text("of value and truth; 1: without"),
+                    "truth": _NUMBER,
+                },
+                ("bumper", "name", "value", "unit", "truth"),
+            ),
+        ),
+        "warnings": Rows(
+            "deviations from the request",
+            Table("", {"bumper": Text(), "code": Text(), "text": Text()}, ("bumper", "code", "text")),
+        ),
+    },
+    ("schema_version", "rows", "warnings"),
+)
 NOT_IN_ROWS = ("contact point x", "contact point y")  # of a push: the location error suffices, and rows are long
 
 

@@ -44,5 +44,4 @@ def _write(kind: str, given: Path | None, use: str) -> None:
         raise FileError(file, "is no name of a TOML file", f"give one that ends in .toml, such as {kind}.toml")
     text = (Path(__file__).parent / f"{kind}.toml").read_text(encoding="utf-8")
     write_text(file, text.replace("FILE", str(file)))
-    print_written(file)
-    typer.echo(f"Run it with: {use.format(file=file)}")
+    print_written(file, then=f"run it with: {use.format(file=file)}")

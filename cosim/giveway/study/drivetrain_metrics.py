@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.base.checks import whole
 from giveway.base.errors import GivewayError
+from giveway.base.shapes import Choice, Table, Whole
 from giveway.base.toml_sections import Section
 from giveway.scenario.scenario import BUMPERS
 from giveway.study.metrics import DRIVETRAIN, IMPACT_FORCE, INERTIA, SMALLEST_PUSH, all_metrics, usual_sense
@@ -38,17 +38,23 @@ __all__ = ["derived", "drivetrain_plan_of", "metrics_shown", "wanted"]
 
 LOADS = ("base", "wheel")
 DELAY_MAX = 64
+DRIVETRAIN_TABLE = Table(
+    "shows the metrics of the drivetrain",
+    {
+        "load": Choice("of the linear model", LOADS),
+        "servo_delay": Whole("ticks of 0.5 ms", 0, DELAY_MAX),
+    },
+)
 LINEAR = ("torque bandwidth", "first resonance", "servo gain margin", "servo phase margin", "servo delay margin")
 WHEELS = 3
 
 
 def drivetrain_plan_of(top: Section) -> DrivetrainPlan:
     """The checked table, or what stands for it."""
-    section = top.table("drivetrain", ("load", "servo_delay"))
+    section = top.table("drivetrain")
     if section is None:
         return DrivetrainPlan()
-    delay = whole(section.full("servo_delay"), section.values.get("servo_delay", 0), 0, DELAY_MAX)
-    return DrivetrainPlan(section.choice("load", LOADS, LOADS[0]), delay, True)
+    return DrivetrainPlan(section.choice("load", LOADS, LOADS[0]), section.whole("servo_delay", 0), True)
 
 
 def metrics_shown(plan: DrivetrainPlan, cases: Sequence[Case]) -> list[Goal]:

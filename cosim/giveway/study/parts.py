@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.base.checks import whole
 from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.base.shapes import List, Names, Table, Text, Whole
 from giveway.base.toml_sections import Section
 from giveway.scenario.scenario_file import scalars
 from giveway.study.catalogue import MAKER, MASS, PRICE, Catalogue, read_catalogue
@@ -40,8 +40,22 @@ __all__ = [
     "parts_of",
 ]
 
-PARTS = ("name", "catalogue", "count", "sets", "at_most", "at_least", "only", "nominal")
 COUNT_MAX = 1000
+_PAIRS = 'a table: { "testbed.bumper.spring_rate" = "rate" }'
+PARTS = Table(
+    "",
+    {
+        "name": Text("what is chosen, such as spring"),
+        "catalogue": Text("CSV file, a part per line; its path seen from this file"),
+        "count": Whole("how many are built in (1)", 1, COUNT_MAX),
+        "sets": Names("quantities, each with the column of its value", _PAIRS),
+        "at_most": Names("quantities that a part limits, each with the column of the limit", _PAIRS),
+        "at_least": Names("quantities that a part limits, each with the column of the limit", _PAIRS),
+        "only": List("the parts admitted", Text(), "a list of parts' names", 1),
+        "nominal": Text("the part while another quantity varies (one-at-a-time)"),
+    },
+    ("name", "catalogue"),
+)
 _NAME = re.compile(r"[^\W\d][\w -]{0,39}")
 _COLUMN = re.compile(r"(.*?)(?:\s*([*/])\s*count)?")
 _TAKEN = ("run", "design", "tolerance sample", "collision", "key", "status", "message", "warnings", "simulated",
@@ -123,11 +137,10 @@ def choices_of(varied: Sequence[Varied]) -> list[PartChoice]:
     return [one.parts for one in varied if one.parts is not None]
 
 
-def parts_of(entries: Sequence[Any], folder: Path) -> tuple[Varied, ...]:
-    """The choices that the tables ``entries`` state; catalogues' paths start at ``folder``."""
+def parts_of(sections: Sequence[Section], folder: Path) -> tuple[Varied, ...]:
+    """The choices that the tables ``[[parts]]`` state; catalogues' paths start at ``folder``."""
     found: list[Varied] = []
-    for index, entry in enumerate(entries):
-        section = Section(f"parts[{index}]", entry, PARTS)
+    for section in sections:
         choice = _choice(section, folder)
         if choice.name in [one.quantity.name for one in found]:
             raise GivewayError(section.full("name"), choice.name, "a name of its own")
@@ -153,7 +166,7 @@ def _choice(section: Section, folder: Path) -> PartChoice:
         raise GivewayError(section.full("catalogue"), section.values["catalogue"], "a CSV file, seen from this file")
     catalogue = read_catalogue(file)
     parts = _only(section, catalogue)
-    count = whole(section.full("count"), section.values.get("count", 1), 1, COUNT_MAX)
+    count = section.whole("count", 1)
     settings = [_setting(field, name, text, catalogue, parts, count) for field, name, text in _pairs(section, "sets")]
     limits = [
         PartLimit(*_limit(field, name, text, catalogue, parts, sense))
@@ -171,8 +184,6 @@ def _only(section: Section, catalogue: Catalogue) -> tuple[int, ...]:
     if "only" not in section.values:
         return tuple(range(len(catalogue.lines)))
     names = section.values["only"]
-    if not isinstance(names, list) or not names:
-        raise GivewayError(section.full("only"), names, "a list of parts' names")
     for index, name in enumerate(names):
         field = f"{section.full('only')}[{index}]"
         if name not in catalogue.names:
@@ -184,11 +195,8 @@ def _only(section: Section, catalogue: Catalogue) -> tuple[int, ...]:
 
 def _pairs(section: Section, key: str) -> list[tuple[str, str, str]]:
     """Field, quantity and column's name of each line of a table of the parts."""
-    values = section.values.get(key, {})
-    if not isinstance(values, dict):
-        raise GivewayError(section.full(key), values, 'a table: { "testbed.bumper.spring_rate" = "rate" }')
     found = []
-    for name, column in scalars(values):
+    for name, column in scalars(section.values.get(key, {})):
         field = f"{section.full(key)}.{name}"
         if not isinstance(column, str):
             raise GivewayError(field, column, "the name of a column in quotes")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from giveway.base.checks import finite, whole
 from giveway.base.errors import GivewayError
+from giveway.base.shapes import List, Number, Table, Whole
 from giveway.base.toml_sections import Section
 
 if TYPE_CHECKING:
@@ -15,10 +16,19 @@ if TYPE_CHECKING:
 
 __all__ = ["OPTIMISE", "OPTIMISED", "SearchPlan", "search_plan_of"]
 
-OPTIMISE = ("designs", "population", "patience", "growth", "reference")
 OPTIMISED = "optimised"
 """The kind of designs that a search makes."""
-DESIGNS_MAX, POPULATION_MAX = 1_000_000, 4096
+DESIGNS_MAX, POPULATION_MIN, POPULATION_MAX = 1_000_000, 4, 4096
+OPTIMISE = Table(
+    "the search of giveway optimise",
+    {
+        "designs": Whole("at most so many", POPULATION_MIN, DESIGNS_MAX),
+        "population": Whole("designs of a generation", POPULATION_MIN, POPULATION_MAX),
+        "patience": Whole("generations with less growth, after which it ends", 1, DESIGNS_MAX),
+        "growth": Number("of the hypervolume, as a share", 0.0, 1.0),
+        "reference": List("point of the hypervolume: a value of each objective", Number(), "a list of numbers"),
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -42,7 +52,7 @@ class SearchPlan:
 
 def search_plan_of(top: Section, objectives: Sequence[Goal]) -> SearchPlan:
     """The checked table, or what stands for it."""
-    section = top.table("optimise", OPTIMISE) or Section("optimise", {}, OPTIMISE)
+    section = top.table("optimise") or Section("optimise", {}, OPTIMISE)
     values, default = section.values, SearchPlan()
     reference = None
     if "reference" in values:
@@ -55,8 +65,7 @@ def search_plan_of(top: Section, objectives: Sequence[Goal]) -> SearchPlan:
             finite(f"{section.full('reference')}[{index}]", value, unit=unit)
             for index, (value, unit) in enumerate(zip(given, units, strict=True))
         )
-    population = whole(section.full("population"), values.get("population", default.population), 4, POPULATION_MAX)
+    population = section.whole("population", default.population)
     designs = whole(section.full("designs"), values.get("designs", default.designs), population, DESIGNS_MAX)
-    growth = finite(section.full("growth"), values.get("growth", default.growth), 0.0, 1.0)
-    patience = whole(section.full("patience"), values.get("patience", default.patience), 1, DESIGNS_MAX)
+    patience, growth = section.whole("patience", default.patience), section.number("growth", default.growth)
     return SearchPlan(designs, population, patience, growth, reference)

@@ -7,31 +7,35 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from giveway.base.checks import finite, whole
-from giveway.base.errors import GivewayError, UnknownNameError
+from giveway.base.errors import GivewayError
+from giveway.base.shapes import Choice, Either, Flag, List, Number, Rows, Shape, Table, Text, Version, Whole
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.library.batch_library import METHODS, PLANT_STEP_RANGE_S
 from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan_of
 from giveway.scenario.scenario import Scenario
 from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
+from giveway.scenario.scenario_shape import NAME_MAX, collision_shape, scenario_keys
 from giveway.simulation.run_warnings import plan_speed
 from giveway.study.distributions import Varied
-from giveway.study.drivetrain_metrics import drivetrain_plan_of, metrics_shown, wanted
+from giveway.study.drivetrain_metrics import DRIVETRAIN_TABLE, drivetrain_plan_of, metrics_shown, wanted
 from giveway.study.influences import INFLUENCES
 from giveway.study.metrics import Metric, find_metric, usual_sense
 from giveway.study.part_rules import part_rules
-from giveway.study.parts import SUMS, PartChoice, choices_of, known_sums, part_metric, parts_of
+from giveway.study.parts import PARTS, SUMS, PartChoice, choices_of, known_sums, part_metric, parts_of
 from giveway.study.quantities import Quantity, columns
 from giveway.study.runs import COVER
-from giveway.study.search_plan import OPTIMISED, search_plan_of
+from giveway.study.search_plan import OPTIMISE, OPTIMISED, search_plan_of
 from giveway.study.setup import Case, Constraint, Goal, Hit, Setup
-from giveway.study.sure_plan import sure_plan_of
+from giveway.study.sure_plan import SURE, sure_plan_of
 from giveway.study.variations import (
+    DESIGNS,
+    ROBOTS,
     TOLERANCE,
     VARY,
     crowd_of,
@@ -43,23 +47,75 @@ from giveway.study.variations import (
     written_unit,
 )
 
-__all__ = ["check", "read"]
+__all__ = ["check", "read", "study_shape"]
 
 SCHEMA_VERSION = 1
-_TOP = (
-    "schema_version", "name", "seed", "method", "plant_step", "part_runs", "scenario", "collision", "designs", "vary",
-    "parts", "tolerances", "tolerance", "sure", "drivetrain", "objective", "constraint", "optimise", "report",
-)  # fmt: skip
-_SCENARIO = (
-    "duration", "bumper", "robot", "seed", "body_region", "judge_as", "contact_area", "preset", "plan", "push",
-    "testbed", "controller",
-)  # fmt: skip
-_COLLISION = ("name", "mass", "speed", "point", "edge", "offset", "direction", "time", "rope", "height")
-_GOAL = ("metric", "collisions", "tolerances")
+COLLISION_NAME_MAX = 40
 OVER_COLLISIONS, OVER_TOLERANCES = ("worst", "mean"), ("worst", "mean", "nominal")
 TOLERANCE_KINDS = ("sobol", "latin-hypercube", "corners")
 SAMPLES_MAX, PART_MAX, CHOSEN_MAX, CORNERS_MAX = 1_000_000, 65_536, 20, 12
 LIMITS = ("transient limit", "lasting limit")
+SENSES = ("minimise", "maximise")
+
+_GOAL: dict[str, Shape] = {
+    "metric": Text("what is judged, such as peak force of the run"),
+    "collisions": Choice("over all collisions (worst)", OVER_COLLISIONS),
+    "tolerances": Choice("over the tolerances' samples (worst)", OVER_TOLERANCES),
+}
+_OBJECTIVE = Table(
+    "what is wanted",
+    {**_GOAL, "goal": Choice("(minimise)", SENSES), "weight": Number("in the ranking (1)", 0.0, 1e6)},
+    ("metric",),
+)
+_LIMIT = Either("in unit, or a limit of the scenario's body region", (Number(), Choice("", LIMITS)))
+_CONSTRAINT = Table(
+    "what must be kept", {**_GOAL, "minimum": _LIMIT, "maximum": _LIMIT, "unit": Text("of the limit")}, ("metric",)
+)
+_TOLERANCES = Table(
+    "how designs are tried within their tolerances",
+    {
+        "kind": Choice("of samples", TOLERANCE_KINDS),
+        "samples": Whole("of each design (16)", 1, SAMPLES_MAX),
+        "noise_seeds": Flag("sensor noise of its own for every sample"),
+        "robot": Choice("whose robot a sample has", ROBOTS),
+    },
+)
+_REPORT = Table(
+    "what the report shows besides",
+    {
+        "metrics": List("", Text(), "a list of metrics"),
+        "chosen": Whole("how many of the best designs get traces (3)", 0, CHOSEN_MAX),
+    },
+)
+
+
+@functools.cache
+def study_shape() -> Table:
+    """The whole file."""
+    collision = collision_shape()
+    named = {"name": Text("a name of its own", COLLISION_NAME_MAX), **collision.keys}
+    keys: dict[str, Shape] = {
+        "schema_version": Version("of this format", SCHEMA_VERSION),
+        "name": Text("what it is called", NAME_MAX),
+        "seed": Whole("of the samplers (1)"),
+        "method": Choice("of integration", METHODS),
+        "plant_step": Number("with fixed steps; left out: as each run needs", *PLANT_STEP_RANGE_S, "s"),
+        "part_runs": Whole("runs per stored part; 0: 5 s of work", 0, PART_MAX),
+        "scenario": Table("what all designs share", scenario_keys(), ("duration",)),
+        "collision": Rows("every design goes through all of them", Table("", named, collision.needed)),
+        "designs": DESIGNS,
+        "vary": Rows("", VARY),
+        "parts": Rows("parts chosen from catalogues", PARTS),
+        "tolerances": _TOLERANCES,
+        "tolerance": Rows("", TOLERANCE),
+        "sure": SURE,
+        "drivetrain": DRIVETRAIN_TABLE,
+        "objective": Rows("", _OBJECTIVE),
+        "constraint": Rows("", _CONSTRAINT),
+        "optimise": OPTIMISE,
+        "report": _REPORT,
+    }
+    return Table("a study for giveway sweep and giveway optimise", keys, ("schema_version", "scenario"))
 
 
 def read(path: Path | str, search: bool = False) -> Setup:
@@ -81,22 +137,16 @@ def check(
     document: Mapping[str, Any], folder: Path, name: str = "study", text: str | None = None, path: Path | None = None
 ) -> Setup:
     """The study that ``document`` describes; relative paths in it start at ``folder``. Errors name its keys."""
-    top = Section("", dict(document), _TOP)
-    version = top.required("schema_version", "1")
-    if version != SCHEMA_VERSION:
-        raise GivewayError("schema_version", version, str(SCHEMA_VERSION))
+    top = Section("", dict(document), study_shape())
+    top.required("schema_version", str(SCHEMA_VERSION))
     method = top.choice("method", METHODS, METHODS[0])
     cases = _cases(top, folder)
-    varied = tuple(varied_of(Section(f"vary[{i}]", one, VARY)) for i, one in enumerate(_list(top, "vary")))
+    varied = tuple(varied_of(section) for section in top.rows("vary"))
     refuse_twice("vary", [one.quantity.name for one in varied])
-    varied = (*parts_of(_list(top, "parts"), folder), *varied)
-    tolerances = tuple(
-        tolerance_of(Section(f"tolerance[{i}]", one, TOLERANCE)) for i, one in enumerate(_list(top, "tolerance"))
-    )
+    varied = (*parts_of(top.rows("parts"), folder), *varied)
+    tolerances = tuple(tolerance_of(section) for section in top.rows("tolerance"))
     refuse_twice("tolerance", [one.quantity.name for one in tolerances])
-    objectives = tuple(
-        _objective(f"objective[{i}]", one, choices_of(varied)) for i, one in enumerate(_list(top, "objective"))
-    )
+    objectives = tuple(_objective(section, choices_of(varied)) for section in top.rows("objective"))
     search = search_plan_of(top, objectives)
     plan, varied = designs_of(top, varied, folder)
     if plan.kind == OPTIMISED:
@@ -123,7 +173,7 @@ def check(
     _check_plans(cases, [*quantities, *(one.quantity for one in tolerances)])
     if plan.kind == "one-at-a-time":
         varied = tuple(_with_nominal(one, cases) for one in varied)
-    drawn = top.table("tolerances", ("kind", "samples", "noise_seeds", "robot")) or Section("tolerances", {}, None)
+    drawn = top.table("tolerances") or Section("tolerances", {}, None)
     kind = drawn.choice("kind", TOLERANCE_KINDS, "sobol")
     noise = drawn.flag("noise_seeds", False)
     if kind == "corners" and len(tolerances) > CORNERS_MAX:
@@ -134,15 +184,13 @@ def check(
                 raise GivewayError("tolerances.kind", kind, f"sobol: {tolerance.quantity.name} has no ends")
     crowd = crowd_of(drawn, cases, varied, tolerances, bool(tolerances or noise))
     spread = bool(tolerances or noise or crowd)
-    count = whole("tolerances.samples", drawn.values.get("samples", 16), 1, SAMPLES_MAX) if spread else 0
-    report = top.table("report", ("chosen", "metrics")) or Section("report", {}, None)
+    count = drawn.whole("samples", 16) if spread else 0
+    report = top.table("report") or Section("report", {}, None)
     judged = cases[0].scenario
     title = top.text("name", name)
-    if not 1 <= len(title) <= 80:
-        raise GivewayError("name", title, "1 to 80 characters")
-    constraints = tuple(
-        _constraint(f"constraint[{i}]", one, judged, choices) for i, one in enumerate(_list(top, "constraint"))
-    )
+    if not 1 <= len(title) <= NAME_MAX:  # of a file without a name: that of the file
+        raise GivewayError("name", title, f"1 to {NAME_MAX} characters")
+    constraints = tuple(_constraint(section, judged, choices) for section in top.rows("constraint"))
     drivetrain = drivetrain_plan_of(top)
     asked_for = _shown(report, choices)
     about_drivetrain = metrics_shown(drivetrain, cases)
@@ -157,7 +205,7 @@ def check(
         folder=folder,
         method=method,
         plant_step_s=_plant_step(top, method),
-        seed=whole("seed", top.values.get("seed", 1), 0, 2**31 - 1),
+        seed=top.whole("seed", 1),
         cases=cases,
         varied=varied,
         plan=plan,
@@ -175,8 +223,8 @@ def check(
             *_speeds(cases),
             *asked_for,
         ),
-        chosen=whole("report.chosen", report.values.get("chosen", 3), 0, CHOSEN_MAX),
-        part_runs=whole("part_runs", top.values.get("part_runs", 0), 0, PART_MAX),
+        chosen=report.whole("chosen", 3),
+        part_runs=top.whole("part_runs", 0),
         search=search,
         drivetrain=drivetrain,
         derived=derived,
@@ -211,29 +259,21 @@ def _plant_step(top: Section, method: str) -> float | None:
         return None
     if method == METHODS[0]:
         raise GivewayError("plant_step", top.values["plant_step"], f"none with the method {method}")
-    return finite("plant_step", top.values["plant_step"], *PLANT_STEP_RANGE_S, "s")
-
-
-def _list(top: Section, key: str) -> list[Any]:
-    found = top.values.get(key, [])
-    if not isinstance(found, list):
-        raise GivewayError(key, found, f"one or more [[{key}]]")
-    return found
+    return top.number("plant_step")
 
 
 def _cases(top: Section, folder: Path) -> tuple[Case, ...]:
-    shared = top.table("scenario", _SCENARIO) or Section("scenario", top.required("scenario", "a table"), _SCENARIO)
-    collisions = _list(top, "collision")
+    top.required("scenario", "a table")
+    shared = top.table("scenario")
+    assert shared is not None
+    collisions = top.rows("collision")
     if not collisions:
         return (_case("", dict(shared.values), None, folder),)
     cases: list[Case] = []
-    for index, entry in enumerate(collisions):
-        section = Section(f"collision[{index}]", entry, _COLLISION)
+    for index, section in enumerate(collisions):
         name = section.text("name", f"collision {index + 1}")
         if name in [case.name for case in cases]:
             raise GivewayError(f"{section.name}.name", name, "a name of its own")
-        if not 1 <= len(name) <= 40:
-            raise GivewayError(f"{section.name}.name", name, "1 to 40 characters")
         hit = {key: value for key, value in section.values.items() if key != "name"}
         cases.append(_case(name, dict(shared.values), hit, folder, section.name))
     return tuple(cases)
@@ -249,7 +289,7 @@ def _case(name: str, shared: dict[str, Any], hit: dict[str, Any] | None, folder:
     except GivewayError as error:
         if error.field.startswith("collision.") or error.field == "collision":
             error.field = error.field.replace("collision", field, 1)
-        elif error.field.split(".")[0].split("[")[0] in _SCENARIO:
+        elif error.field.split(".")[0].split("[")[0] in scenario_keys():
             error.field = f"scenario.{error.field}"
         raise
     if hit is None:
@@ -326,11 +366,9 @@ def _nominal(quantity: Quantity, case: Case) -> float | None:
     }.get(quantity.name)
 
 
-def _objective(field: str, entry: Any, choices: Sequence[PartChoice]) -> Goal:
-    section = Section(field, entry, (*_GOAL, "goal", "weight"))
-    sense = 1 if section.choice("goal", ("minimise", "maximise"), "minimise") == "minimise" else -1
-    weight = finite(section.full("weight"), section.number("weight", 1.0), 0.0, 1e6)
-    return _goal(section, choices, sense, weight)
+def _objective(section: Section, choices: Sequence[PartChoice]) -> Goal:
+    sense = 1 if section.choice("goal", SENSES, SENSES[0]) == SENSES[0] else -1
+    return _goal(section, choices, sense, section.number("weight", 1.0))
 
 
 def _metric(field: str, name: str, choices: Sequence[PartChoice]) -> Metric:
@@ -349,8 +387,7 @@ def _goal(section: Section, choices: Sequence[PartChoice], sense: int, weight: f
     )
 
 
-def _constraint(field: str, entry: Any, judged: Scenario, choices: Sequence[PartChoice]) -> Constraint:
-    section = Section(field, entry, (*_GOAL, "minimum", "maximum", "unit"))
+def _constraint(section: Section, judged: Scenario, choices: Sequence[PartChoice]) -> Constraint:
     if ("minimum" in section.values) == ("maximum" in section.values):
         raise GivewayError(section.full("maximum"), "nothing or both", "one of minimum and maximum")
     goal = _goal(section, choices, 1 if "maximum" in section.values else -1)
@@ -358,8 +395,6 @@ def _constraint(field: str, entry: Any, judged: Scenario, choices: Sequence[Part
     value = section.values[key]
     written = written_unit(section, goal.metric.unit)
     if isinstance(value, str):
-        if value not in LIMITS:
-            raise UnknownNameError(section.full(key), value, LIMITS)
         if judged.judged is None:
             raise GivewayError(section.full(key), value, "a number, or a body_region in [scenario]")
         number = judged.judged.force_limits(judged.contact_area_m2)[LIMITS.index(value)]
@@ -379,7 +414,5 @@ def _speeds(cases: Sequence[Case]) -> Iterator[Goal]:
 
 def _shown(report: Section, choices: Sequence[PartChoice]) -> tuple[Goal, ...]:
     names = report.values.get("metrics", [])
-    if not isinstance(names, list):
-        raise GivewayError("report.metrics", names, "a list of metrics")
-    found = [_metric(f"report.metrics[{i}]", str(name), choices) for i, name in enumerate(names)]
+    found = [_metric(f"report.metrics[{i}]", name, choices) for i, name in enumerate(names)]
     return tuple(Goal(metric, usual_sense(metric)) for metric in found)

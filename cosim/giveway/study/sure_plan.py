@@ -5,13 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from giveway.base.checks import whole
+from giveway.base.shapes import Choice, Flag, Table, Whole
 from giveway.base.toml_sections import Section
 
 __all__ = ["METHODS", "SURE", "SurePlan", "checked_runs", "sure_plan_of"]
 
-SURE = ("probability", "method", "runs", "designs", "indices")
 METHODS = ("subset", "plain")
 RUNS_MIN, RUNS_MAX, DESIGNS_MAX, INDICES_MAX = 1000, 20_000_000, 20, 1_000_000
+SURE = Table(
+    "how sure the best designs are, within the tolerances",
+    {
+        "probability": Flag("how probable it is that a limit is exceeded (true)"),
+        "method": Choice("of sampling", METHODS),
+        "runs": Whole("samples at most for each design", RUNS_MIN, RUNS_MAX),
+        "designs": Whole("how many of the best", 1, DESIGNS_MAX),
+        "indices": Whole("base samples of the Sobol' indices; 0: none", 0, INDICES_MAX),
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -40,16 +50,12 @@ def checked_runs(field: str, value: object) -> int:
 
 def sure_plan_of(top: Section) -> SurePlan:
     """The checked table, or what stands for it."""
-    section = top.table("sure", SURE) or Section("sure", {}, SURE)
-    values, default = section.values, SurePlan()
-
-    def number(key: str, low: int, high: int) -> int:
-        return whole(section.full(key), values.get(key, getattr(default, key)), low, high)
-
+    section = top.table("sure") or Section("sure", {}, SURE)
+    default = SurePlan()
     return SurePlan(
         section.flag("probability", default.probability),
         section.choice("method", METHODS, default.method),
-        checked_runs(section.full("runs"), values.get("runs", default.runs)),
-        number("designs", 1, DESIGNS_MAX),
-        number("indices", 0, INDICES_MAX),
+        section.whole("runs", default.runs),
+        section.whole("designs", default.designs),
+        section.whole("indices", default.indices),
     )

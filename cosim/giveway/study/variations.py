@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from giveway.base.checks import finite, whole
+from giveway.base.checks import finite
 from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.base.shapes import Choice, Either, Flag, List, Number, Shape, Table, Text, Variants, Whole
 from giveway.base.toml_sections import Section
 from giveway.base.units import WrittenUnit, factor
 from giveway.robot.population import Quantity as RobotQuantity
@@ -25,6 +26,8 @@ from giveway.study.quantities import Quantity, columns, find, value_of
 from giveway.study.setup import Case
 
 __all__ = [
+    "DESIGNS",
+    "ROBOTS",
     "TOLERANCE",
     "VARY",
     "crowd_of",
@@ -36,13 +39,55 @@ __all__ = [
     "written_unit",
 ]
 
-# Keys of the tables.
 _SPREAD = ("low", "high", "mode", "mean", "sigma")
-VARY = ("quantity", "also", "unit", "nominal", "values", "levels", "scale", "distribution", *_SPREAD)
-TOLERANCE = ("quantity", "also", "unit", "relative", "absolute", "deviation", "distribution", *_SPREAD)
 SYMMETRIC = ("uniform", "normal", "triangular")  # distributions between two ends alone
 LEVELS_MAX = 100_000
 ROBOTS = ("file", "crowd")  # whose robot a tolerance sample has
+_OPTIONS: dict[str, Shape] = {
+    "count": Whole("of designs; of sobol-indices times quantities + 2", 2, design_module.COUNT_MAX),
+    "trajectories": Whole("of the Morris method (20)", 2, 10_000),
+    "grid": Whole("levels per quantity, even (4)", 2, 100),
+    "file": Text("CSV: a line of quantities, name [unit], then one design per line"),
+}
+_SCALES = ("linear", "log")
+_DEVIATIONS = ("none", "relative", "absolute")
+_VALUE = Either("", (Number(), Flag(), Text()))
+_QUANTITY: dict[str, Shape] = {
+    "quantity": Text("a parameter, a number of the robot file (robot. ...), or of the hit (collision. ...)"),
+    "also": List("parameters that get the same value", Text(), "a list of quantities"),
+    "unit": Text('of the numbers here, such as "N/mm"'),
+    "distribution": Choice("", tuple(DISTRIBUTIONS)),
+    **{key: Number() for key in _SPREAD},
+}
+VARY = Table(
+    "what varies",
+    {
+        **_QUANTITY,
+        "nominal": Either("while another quantity varies (one-at-a-time)", _VALUE.shapes),
+        "values": List("", _VALUE, "a list with at least one value", 1),
+        "levels": Whole("values between low and high", 2, LEVELS_MAX),
+        "scale": Choice("", _SCALES),
+    },
+    ("quantity",),
+)
+TOLERANCE = Table(
+    "what deviates",
+    {
+        **_QUANTITY,
+        "relative": Number("0.3: +-30 %"),
+        "absolute": Number("+- so much"),
+        "deviation": Choice("of what the distribution is: of the quantity itself, or of its deviation", _DEVIATIONS),
+    },
+    ("quantity",),
+)
+DESIGNS = Variants(
+    "which designs there are",
+    "kind",
+    {
+        kind: Table("", {key: _OPTIONS[key] for key in keys}, tuple(key for key in keys if key in ("count", "file")))
+        for kind, keys in design_module.OPTIONS.items()
+    },
+)
 
 
 def refuse_twice(table: str, names: Sequence[str]) -> None:
@@ -54,10 +99,7 @@ def refuse_twice(table: str, names: Sequence[str]) -> None:
 def _quantity(section: Section) -> Quantity:
     """The quantity of a table, and those that ``also`` have its value."""
     quantity = find(section.full("quantity"), section.text("quantity", section.values.get("quantity", "")))
-    others = section.values.get("also", [])
-    if not isinstance(others, list):
-        raise GivewayError(section.full("also"), others, "a list of quantities")
-    for index, name in enumerate(others):
+    for index, name in enumerate(section.values.get("also", [])):
         field = f"{section.full('also')}[{index}]"
         other = find(field, str(name))
         if not (quantity.columns and other.columns) or (other.kind, other.unit) != (quantity.kind, quantity.unit):
@@ -96,8 +138,6 @@ def varied_of(section: Section) -> Varied:
             if key in section.values:
                 raise GivewayError(section.full(key), section.values[key], "nothing: the values are listed")
         values = section.values["values"]
-        if not isinstance(values, list) or not values:
-            raise GivewayError(section.full("values"), values, "a list with at least one value")
         levels = tuple(value_of(section.full("values"), value, quantity, scale) for value in values)
         return Varied(quantity, nominal, levels, written=written, field=section.name)
     kind = section.text("distribution", "loguniform" if _logarithmic(section) else "uniform")
@@ -108,7 +148,7 @@ def varied_of(section: Section) -> Varied:
         value_of(where, value, quantity, 1.0, whole_needed=False)
     levels = ()
     if "levels" in section.values:
-        count = whole(section.full("levels"), section.values["levels"], 2, LEVELS_MAX)
+        count = section.whole("levels", 0)
         space = np.geomspace if kind == "loguniform" else np.linspace
         found = space(spread.low, spread.high, count)
         found = np.rint(found) if quantity.kind == "integer" else found
@@ -119,7 +159,7 @@ def varied_of(section: Section) -> Varied:
 def _logarithmic(section: Section) -> bool:
     if "scale" in section.values and "distribution" in section.values:
         raise GivewayError(section.full("scale"), section.values["scale"], "nothing beside a distribution")
-    return section.choice("scale", ("linear", "log"), "linear") == "log"
+    return section.choice("scale", _SCALES, "linear") == "log"
 
 
 def tolerance_of(section: Section) -> Tolerance:
@@ -157,7 +197,7 @@ def _tolerance_unit(section: Section, quantity: Quantity, relative: bool) -> tup
 
 def _stated_spread(section: Section, quantity: Quantity) -> Tolerance:
     """A tolerance whose distribution is stated: of the quantity itself, or of its ``deviation``."""
-    of = section.choice("deviation", ("none", "relative", "absolute"), "none")
+    of = section.choice("deviation", _DEVIATIONS, "none")
     kind = section.choice("distribution", tuple(DISTRIBUTIONS))
     relative, replaces = of == "relative", of == "none"
     scale, written = _tolerance_unit(section, quantity, relative)
@@ -230,9 +270,8 @@ def _is_number(section: Section, key: str) -> bool:
 
 def designs_of(top: Section, varied: tuple[Varied, ...], folder: Path) -> tuple[DesignPlan, tuple[Varied, ...]]:
     """Which designs are made of what varies; a CSV file of designs says itself what varies besides parts."""
-    values = top.values.get("designs", {"kind": "factorial"})
-    kind = Section("designs", values, None).choice("kind", design_module.KINDS)
-    section = Section("designs", values, ("kind", *design_module.OPTIONS[kind]))
+    section = top.table("designs") or Section("designs", {"kind": "factorial"}, None)
+    kind = section.text("kind")
     if kind == "csv":
         for one in varied:
             if one.parts is None:
@@ -251,11 +290,9 @@ def designs_of(top: Section, varied: tuple[Varied, ...], folder: Path) -> tuple[
                 raise GivewayError(f"{one.field}.levels", "nothing", f"levels or values: {kind} needs them")
     plan = DesignPlan(
         kind,
-        count=whole("designs.count", section.required("count", "a whole number"), 2, design_module.COUNT_MAX)
-        if "count" in design_module.OPTIONS[kind]
-        else 0,
-        trajectories=whole("designs.trajectories", section.values.get("trajectories", 20), 2, 10_000),
-        grid=whole("designs.grid", section.values.get("grid", 4), 2, 100),
+        count=int(section.required("count", "a whole number")) if "count" in design_module.OPTIONS[kind] else 0,
+        trajectories=section.whole("trajectories", 20),
+        grid=section.whole("grid", 4),
     )
     if plan.grid % 2:
         raise GivewayError("designs.grid", plan.grid, "an even number of levels")
