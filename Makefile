@@ -40,7 +40,7 @@ mutate: build build/verify/tools-installed ## every mutant of c_core (`make veri
 	$(BIN)/python -m verify.mutation
 	$(BIN)/python -m verify.mutation.rooms
 
-importers: product build/importers/tools-installed ## the FMUs in other people's importers; writes the table in fmu/README.md
+importers: product build/importers/tools-installed ## the FMUs in other people's importers; writes the table in docs/site/reference/importers.md
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	$(BIN)/python -m importers
 

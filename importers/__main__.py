@@ -1,6 +1,7 @@
 """`python -m importers`: from the repository's root; `make importers` prepares what it needs.
 
-Writes importers/results.json and the table in fmu/README.md; exits with 1 if an importer did not behave as expected.
+Writes importers/results.json and the table in docs/site/reference/importers.md; exits with 1 if an importer did
+not behave as expected.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ MODELS = ("controller", "testbed", "drivetrain", "bumper")
 def main() -> int:
     parser = argparse.ArgumentParser(prog="importers", description="Try the FMUs in other people's importers.")
     parser.add_argument("--python", type=Path, default=ROOT / "build/importers/tools/bin/python")
-    parser.add_argument("--dry", action="store_true", help="print the table; leave the README and the results alone")
+    parser.add_argument("--dry", action="store_true", help="print the table; leave the page and the results alone")
     options = parser.parse_args()
     work, fmus = ROOT / "build/importers/work", ROOT / "out/fmus"  # the files that `make fmus ALL=1` makes for users
     work.mkdir(parents=True, exist_ok=True)
@@ -39,8 +40,8 @@ def main() -> int:
     print(markdown(results))
     if not options.dry:
         write_results(ROOT / "importers/results.json", results)
-        readme = ROOT / "fmu/README.md"
-        readme.write_text(put_into(readme.read_text(encoding="utf-8"), results), encoding="utf-8")
+        page = ROOT / "docs/site/reference/importers.md"
+        page.write_text(put_into(page.read_text(encoding="utf-8"), results), encoding="utf-8")
     missed = [f"{name}, {column}" for name, cells in results.items() for column, c in cells.items() if not c["met"]]
     for name in missed:
         print(f"not as expected: {name}")

@@ -1,4 +1,4 @@
-"""The results as a file, and as the table in fmu/README.md."""
+"""The results as a file, and as the table in docs/site/reference/importers.md."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def markdown(results: Results) -> str:
     return "\n".join(lines)
 
 
-def put_into(readme: str, results: Results) -> str:
-    """``readme`` with the table in place of the one between the marks."""
-    before, found, rest = readme.partition(BEGIN)
+def put_into(page: str, results: Results) -> str:
+    """``page`` with the table in place of the one between the marks."""
+    before, found, rest = page.partition(BEGIN)
     _, ended, after = rest.partition(END)
     if not found or not ended:
-        raise SystemExit(f"importers: the README has no lines {BEGIN} and {END}")
+        raise SystemExit(f"importers: the page has no lines {BEGIN} and {END}")
     return before + markdown(results) + after
 
 

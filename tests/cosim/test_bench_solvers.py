@@ -1,4 +1,4 @@
-"""Cost and error of the integration methods: what the bench measures is sound, and the README shows it."""
+"""Cost and error of the integration methods: what the bench measures is sound, and a page shows it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from giveway.bench.solvers import HEADER, METHODS, SWEEPS, Measurement, measure_solvers
 
-README = Path(__file__).parents[2] / "fmu" / "README.md"
+PAGE = Path(__file__).parents[2] / "docs/site/explanation/decisions/explicit_runge_kutta.md"
 BEGIN, END = "<!-- table: giveway bench -->\n", "<!-- end of table -->"
 
 
@@ -35,8 +35,8 @@ def test_bdf_bears_stiffness_and_the_others_do_not(measured: dict[tuple[str, flo
     assert growth["Adams"] > 10
 
 
-def test_readme_shows_the_measured_table(measured: dict[tuple[str, float, str], Measurement]) -> None:
-    text = README.read_text(encoding="utf-8")
+def test_the_page_shows_the_measured_table(measured: dict[tuple[str, float, str], Measurement]) -> None:
+    text = PAGE.read_text(encoding="utf-8")
     lines = text.split(BEGIN)[1].split(END)[0].splitlines()
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
     assert tuple(rows[0]) == HEADER

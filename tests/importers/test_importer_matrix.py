@@ -13,14 +13,14 @@ from importers.matrix import IMPORTERS, Importer, run_cell
 from importers.table import BEGIN, END, markdown, put_into, read_results
 
 ROOT = Path(__file__).parents[2]
-README = (ROOT / "fmu/README.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/site/reference/importers.md").read_text(encoding="utf-8")
 
 
-def test_the_readme_has_the_committed_results() -> None:
+def test_the_page_has_the_committed_results() -> None:
     results = read_results(ROOT / "importers/results.json")
-    assert markdown(results) in README
-    assert put_into(README, results) == README
-    assert put_into(README.replace("| all; same bits", "| all"), results) == README, "the planted fault"
+    assert markdown(results) in PAGE
+    assert put_into(PAGE, results) == PAGE
+    assert put_into(PAGE.replace("| all; same bits", "| all"), results) == PAGE, "the planted fault"
 
 
 def test_the_results_are_of_these_importers_and_as_expected() -> None:
@@ -30,9 +30,9 @@ def test_the_results_are_of_these_importers_and_as_expected() -> None:
     assert all(cell["text"] for cells in results.values() for cell in cells.values())
 
 
-def test_a_readme_without_marks_is_refused() -> None:
+def test_a_page_without_marks_is_refused() -> None:
     with pytest.raises(SystemExit, match="has no lines"):
-        put_into(README.replace(BEGIN, "").replace(END, ""), {})
+        put_into(PAGE.replace(BEGIN, "").replace(END, ""), {})
 
 
 HEAD = 'import json, sys, ctypes, time\njob = json.load(open(sys.argv[1]))\nprint(\'{"stage": "load"}\', flush=True)\n'
