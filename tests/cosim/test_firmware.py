@@ -19,6 +19,7 @@ from giveway.firmware.config_source import config_source
 from giveway.firmware.core import core_files
 from giveway.firmware.settings import Settings
 from giveway.robot.variables import table
+from giveway.scenario.scenario import Scenario
 
 ROOT = Path(__file__).parents[2]
 ROBOTS = sorted(native.robots())
@@ -130,6 +131,15 @@ def test_each_field_has_value_unit_and_origin() -> None:
         "From delivery.toml, the number of corners. */\n",
     ):
         assert words in text
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_values_are_those_of_a_run(robot: str, preset: str) -> None:
+    path, assigned = native.robots()[robot], {"contact.minimum_force": 3.25, "controller.drives_enabled": False}
+    scenario = Scenario("any", 1.0, robot=path, preset=preset, controller=assigned)
+    start = {variable.name: variable.start for variable in table("controller").select("parameter")}
+    assert Settings.of(path, preset, assigned).parameters() == start | scenario.parameters("controller")
 
 
 def test_the_library_is_that_of_the_repository() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import random
 import signal
 import subprocess
 from collections.abc import Callable, Iterator
@@ -17,9 +18,11 @@ import pytest
 from cosim_helpers import Cli, folder_content
 from giveway.base.errors import GivewayError, SimulationError
 from giveway.firmware import in_the_loop
+from giveway.firmware.folder import program_files
 from giveway.firmware.frames import Frame, Kind
 from giveway.firmware.in_the_loop import Program, SerialController, controller_of
 from giveway.firmware.lines import ProgramLine
+from giveway.firmware.settings import Settings
 from giveway.robot.variables import table
 from giveway.scenario.plan import Straight
 from giveway.simulation.fmu import Instance, open_fmu
@@ -105,6 +108,15 @@ def test_a_program_has_the_bits_of_the_fmu(what: str, host: OpenController, with
 
 def test_with_fmi_2(host: OpenController, with_fmu: dict[str, Record]) -> None:
     assert_same_bits(run("hit", controller_as(host, 2), 2), with_fmu["hit"], MODES["hit"])
+
+
+def test_with_accelerometer_and_gyro() -> None:
+    """And with the numbers of another robot."""
+    delivery = giveway.base.native.robots()["delivery"]
+    scenario = giveway.experiment("motionless").scenario("none", robot=delivery, duration_s=0.5)
+    expected = simulate(scenario)
+    assert expected.traces["controller.imu.trusted"].any()
+    assert_same_bits(simulate(scenario, controller=controller_of(scenario, "host")), expected, MODES["hit"])
 
 
 def controller_as(opened: OpenController, fmi_version: int) -> OpenController:
@@ -228,6 +240,31 @@ def test_a_tick_before_the_start_is_refused(host: OpenController) -> None:
         assert controller.stepper()(0.0, 1e-3) != 0
         with pytest.raises(SimulationError, match="a tick came before a start that went well"):
             controller.check(3, 0.0)
+
+
+@pytest.mark.deep
+def test_any_bytes_are_survived(tmp_path: Path) -> None:
+    """With the sanitizers of gcc, and afterwards a question is answered as ever."""
+    for name, content in program_files(Settings.of(giveway.base.native.robot())).items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    flags = "CFLAGS=-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
+    places = ("BUILD=build", "CORE_BUILD=build", "build/host/serial")
+    subprocess.run(["make", "-sj2", "-C", tmp_path, flags, *places], check=True, timeout=300)
+    draw = random.Random(1)
+    parts = []
+    for number in range(20_000):
+        body = draw.randbytes(4 * draw.choice([0, 1, 24, 24, 24, 255]))
+        frame = bytearray(Frame(draw.choice([*Kind, draw.randrange(256)]), number, body).encoded())
+        if draw.random() < 0.3:
+            frame[draw.randrange(len(frame))] ^= 1 << draw.randrange(8)
+        parts.append(bytes(frame[: draw.randrange(len(frame))] if draw.random() < 0.1 else frame))
+    last = Frame(Kind.START, 123456).encoded()
+    data = b"".join(parts) + bytes(2000) + last  # the zeros end what was cut off
+    done = subprocess.run([tmp_path / "build" / "host" / "serial"], input=data, capture_output=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count(b"gwt") > 500
+    assert done.stdout[-28:-20] == b"gws" + bytes([4]) + (123456).to_bytes(4, "little")
 
 
 def test_no_process_is_left(host: OpenController) -> None:

@@ -82,6 +82,10 @@ def test_the_wheel_holds_the_native_parts_and_is_for_linux_and_any_python(wheel:
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     assert {Path(name).name for name in names if name.startswith("giveway/native/")} == NATIVE
+    c_files = ROOT / "cosim" / "giveway" / "firmware" / "c"
+    fixed = [path.relative_to(c_files.parents[2]).as_posix() for path in c_files.rglob("*") if path.is_file()]
+    assert len(fixed) > 10
+    assert set(fixed) <= set(names)
     assert not [name for name in names if "__pycache__" in name or name.startswith(("tests/", "cosim/", "build/"))]
 
 
