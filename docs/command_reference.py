@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from giveway.base.terminal import EXIT_CODES
+
 from docs.markdown import paragraphs, table
 
 __all__ = ["pages"]
@@ -16,6 +18,8 @@ HEAD = """# Command line
 `giveway COMMAND --help` says the same at a terminal. `giveway --install-completion` completes commands and options in
 bash, zsh and fish.
 
+## Exit codes
+
 """
 
 
@@ -25,7 +29,8 @@ def pages(root: Path) -> dict[str, str]:
     from giveway.cli import app
 
     group = typer.main.get_command(app)
-    return {"reference/command_line.md": HEAD + "".join(_sections("giveway", group))}
+    codes = table(("code", ""), ((f"`{code}`", paragraphs(meaning)) for code, meaning in EXIT_CODES.items()))
+    return {"reference/command_line.md": f"{HEAD}{codes}\n{''.join(_sections('giveway', group))}"}
 
 
 def _sections(name: str, command: Any) -> Iterator[str]:

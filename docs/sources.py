@@ -6,7 +6,7 @@ import re
 import shutil
 from pathlib import Path
 
-from docs import c_reference, command_reference, metric_reference, proofs, variable_reference
+from docs import c_reference, command_reference, file_reference, metric_reference, proofs, variable_reference
 
 __all__ = ["ROOT", "gather", "generated_pages"]
 
@@ -23,7 +23,7 @@ INCLUDED = {
 def generated_pages() -> dict[str, str]:
     """Markdown of every page that is made from sources, by its path below the site."""
     pages = {page: _included(name) for page, name in INCLUDED.items()}
-    for module in (c_reference, command_reference, metric_reference, proofs, variable_reference):
+    for module in (c_reference, command_reference, file_reference, metric_reference, proofs, variable_reference):
         pages |= module.pages(ROOT)
     return pages
 

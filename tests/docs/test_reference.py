@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 from giveway.library.batch_library import native_metrics
+from giveway.schemas.documents import document
 from giveway.study.metrics import DRIVETRAIN
 
-from docs import c_reference, command_reference, metric_reference, proofs, sources, variable_reference
+from docs import c_reference, command_reference, file_reference, metric_reference, proofs, sources, variable_reference
 
 ROOT = Path(__file__).parents[2]
 HEADERS = sorted((ROOT / "c_core" / "include" / "giveway").glob("*.h"))
@@ -69,6 +70,14 @@ def test_formulas_are_of_metrics_and_every_metric_is_there() -> None:
     assert set(DRIVETRAIN) <= set(metric_reference.formulas()), "their definition is the formula"
     page = metric_reference.pages(ROOT)["reference/metrics.md"]
     assert re.findall(r"^`([^`]+)`, \S+\n: ", page, re.MULTILINE) == names
+
+
+@pytest.mark.parametrize("kind", ["scenario", "study", "robot"])
+def test_every_key_of_a_file_is_there(kind: str) -> None:
+    page = file_reference.pages(ROOT)[f"reference/files/{kind}.md"]
+    properties = document(kind)["properties"]
+    assert set(properties) <= set(re.findall(r"^\| `([^`]+)` \| ", page, re.MULTILINE))
+    assert "|  |  |" not in page.partition("## `")[0], "a key says neither what is allowed nor what it means"
 
 
 def test_every_rung_has_its_claim() -> None:
