@@ -15,7 +15,7 @@ from giveway.paper.printed import NOT_JUDGED, RESULTS
 from giveway.robot.robot_file import read_robot
 
 ROOT = Path(__file__).parents[2]
-README = ROOT / "cosim" / "README.md"
+PAGE = ROOT / "docs/site/explanation/paper_numbers.md"
 
 
 def test_ten_of_the_fits_quantities_are_the_papers() -> None:
@@ -71,6 +71,6 @@ def test_a_number_that_the_paper_does_not_print_cannot_be_matched(monkeypatch: p
 
 
 def test_the_docs_name_what_no_row_judges() -> None:
-    text = " ".join(README.read_text(encoding="utf-8").split())
+    text = " ".join(PAGE.read_text(encoding="utf-8").split())
     for what, why in NOT_JUDGED.items():
-        assert f"- {what}: {why}" in text, f"cosim/README.md should say: - {what}: {why}"
+        assert f"- {what}: {why}" in text, f"{PAGE.name} should say: - {what}: {why}"

@@ -162,9 +162,9 @@ def test_noise_that_hides_the_stiffnesses_is_refused() -> None:
         calibrate(three(), BASE, torque_sigma_nm=0.1)
 
 
-def test_the_readme_calibrates() -> None:
-    readme = Path(__file__).parents[2] / "cosim" / "README.md"
-    block = next(text for text in readme.read_text(encoding="utf-8").split("```python")[1:] if "calibrate(" in text)
+def test_the_page_calibrates() -> None:
+    page = Path(__file__).parents[2] / "docs/site/how_to/calibrate_rollers_at_rest.md"
+    block = next(text for text in page.read_text(encoding="utf-8").split("```python")[1:] if "calibrate(" in text)
     names: dict[str, Any] = {"giveway": giveway}
     exec(block.split("```")[0], names)
     # Its torques are those of 22, 30 and 26 kN/m, printed to 0.01 N m: noise of 0.003 N m where 0.005 is assumed.

@@ -146,16 +146,16 @@ def test_the_sensor_figure_s_labels_say_what_it_draws(sensors: Answers, trade: S
 
 
 @pytest.mark.parametrize("name", ["magnetic_latch", "sensor_stiffness"])
-def test_the_readme_says_what_its_pictures_found(name: str) -> None:
-    """docs/study_*.png are made by `giveway study gallery` and carry their finding; the room's README repeats it."""
+def test_the_page_says_what_its_pictures_found(name: str) -> None:
+    """docs/study_*.png are made by `giveway study gallery` and carry their finding; the page repeats it."""
     with Image.open(ROOT / "docs" / f"study_{name}.png") as picture:
         finding = picture.info["Description"]
-    text = " ".join((ROOT / "cosim" / "README.md").read_text(encoding="utf-8").split())
+    text = " ".join((ROOT / "docs/site/how_to/studies.md").read_text(encoding="utf-8").split())
     assert finding in text
 
 
-def test_the_readme_s_ten_lines_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = (ROOT / "cosim" / "README.md").read_text(encoding="utf-8")
+def test_the_page_s_ten_lines_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (ROOT / "docs/site/how_to/studies.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n([^`]*giveway\.Study[^`]*)```", text)
     monkeypatch.chdir(tmp_path)
     names: dict[str, Answers] = {}

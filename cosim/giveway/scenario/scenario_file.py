@@ -1,4 +1,4 @@
-"""A user's own scenario as a TOML file; `cosim/README.md` lists its keys, `examples/` has files to start from.
+"""A user's own scenario as a TOML file; `giveway schema scenario` lists its keys, `examples/` has files to start from.
 
 Points are on the robot (base frame, m), directions and headings in the world (degrees). Instead of [collision] the
 file may state what collides by the testbed's parameters, ``slider.present = true`` and the others, to the last bit. A

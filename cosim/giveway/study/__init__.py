@@ -10,7 +10,7 @@
     answers = study.run("out/latch")
     print(answers.table())
 
-The keywords are the keys of a study file (`cosim/README.md`).
+The keywords are the keys of a study file (`giveway schema study`).
 """
 
 from __future__ import annotations

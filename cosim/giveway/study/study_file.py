@@ -1,6 +1,6 @@
 """Study files: TOML, checked so that a wrong one is refused with file, line and key before anything runs.
 
-`cosim/README.md` lists the keys. What a scenario file says at its top is the table ``[scenario]`` here, and its
+`giveway schema study` lists the keys. What a scenario file says at its top is the table ``[scenario]`` here, and its
 ``[collision]`` is one of several ``[[collision]]``; ranges and names are checked where scenarios are.
 """
 
