@@ -89,12 +89,13 @@ function(giveway_add_fmu)
   if(GIVEWAY_NATIVE_FMUS)
     giveway_pack_fmu(${_module} TARGET fmu_${ARG_NAME} FOLDER "${_folder}" LICENCES ${_licences} ${_contents})
   else()
-    # What zig puts into libraries: its own run-time routines, and those of MinGW-w64 for Windows.
+    # What zig puts into libraries: its own run-time routines, templates of libc++, and those of MinGW-w64 and musl for
+    # Windows.
     get_filename_component(_zig "${GIVEWAY_ZIG}" DIRECTORY)
-    list(APPEND _licences "zig.txt=${_zig}/LICENSE")
+    list(APPEND _licences "zig.txt=${_zig}/LICENSE" "libcxx.txt=${_zig}/lib/libcxx/LICENSE.TXT")
     giveway_pack_fmu(${_module} TARGET fmu_${ARG_NAME} FOLDER "${_folder}" PLATFORMS ${GIVEWAY_SYSTEM} LICENCES ${_licences}
                      ${_contents})
-    list(APPEND _licences "mingw-w64.txt=${_zig}/lib/libc/mingw/COPYING")
+    list(APPEND _licences "mingw-w64.txt=${_zig}/lib/libc/mingw/COPYING" "musl.txt=${_zig}/lib/libc/musl/COPYRIGHT")
     giveway_pack_fmu(${_module} TARGET fmu_${ARG_NAME}_all FOLDER "${_folder}_all" PLATFORMS ${GIVEWAY_PLATFORMS}
                      LICENCES ${_licences} ${_contents})
     add_dependencies(fmus_all fmu_${ARG_NAME}_all)

@@ -19,6 +19,11 @@ endfunction()
 
 # Linked as C: no C++ runtime goes into the binary; shell/heap.cpp is all of it that is needed.
 function(giveway_link_fmu MODULE)
+  giveway_link_alone(${MODULE} "${PROJECT_SOURCE_DIR}/fmu/shell/exports.map")
+endfunction()
+
+# The same for any library; MAP says what a library for Linux exports.
+function(giveway_link_alone MODULE MAP)
   giveway_fmu_suffix("${GIVEWAY_SYSTEM}" _suffix)
   set_target_properties(${MODULE} PROPERTIES PREFIX "" SUFFIX ${_suffix} LINKER_LANGUAGE C)
   if(CMAKE_SYSTEM_NAME STREQUAL "Windows")
@@ -30,9 +35,8 @@ function(giveway_link_fmu MODULE)
     # Without this name the library would be known by the path it was linked to.
     target_link_options(${MODULE} PRIVATE -dynamiclib "-Wl,-install_name,@rpath/${MODULE}${_suffix}" -Wl,-dead_strip -s)
   else()
-    set(_map "${PROJECT_SOURCE_DIR}/fmu/shell/exports.map")
     target_link_options(${MODULE} PRIVATE -static-libgcc -Wl,--gc-sections -Wl,--as-needed -Wl,--no-undefined
-                        -Wl,--build-id=none -s "-Wl,--version-script=${_map}")
-    set_property(TARGET ${MODULE} APPEND PROPERTY LINK_DEPENDS "${_map}")
+                        -Wl,--build-id=none -s "-Wl,--version-script=${MAP}")
+    set_property(TARGET ${MODULE} APPEND PROPERTY LINK_DEPENDS "${MAP}")
   endif()
 endfunction()

@@ -27,6 +27,7 @@ endfunction()
 
 # The build trees, as targets platform_PLATFORM; one is built when a file from it is wanted. MODULE...: all FMUs.
 function(giveway_add_platforms)
+  add_custom_target(batch_all)
   foreach(_platform IN LISTS GIVEWAY_PLATFORMS)
     set(_libraries "")
     foreach(_module IN LISTS ARGN)
@@ -34,8 +35,17 @@ function(giveway_add_platforms)
       list(APPEND _libraries "${_library}")
     endforeach()
     giveway_add_platform(${_platform} fmu_binaries ${_libraries})
+    # For the wheels, in the same tree after the FMUs.
+    ExternalProject_Add_Step(platform_${_platform} batch COMMAND ${GIVEWAY_PLATFORM_BUILD} --target giveway_batch
+                             DEPENDEES build EXCLUDE_FROM_MAIN ON ALWAYS ON USES_TERMINAL ON)
+    ExternalProject_Add_StepTargets(platform_${_platform} batch)
+    add_dependencies(batch_all platform_${_platform}-batch)
   endforeach()
 endfunction()
+
+set(_zig_cache "${CMAKE_BINARY_DIR}/platforms/zig-cache")
+set(GIVEWAY_PLATFORM_BUILD "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_zig_cache}" "ZIG_LOCAL_CACHE_DIR=${_zig_cache}"
+                           "NINJA_STATUS=[FMUs %f/%t] " "${CMAKE_COMMAND}" --build <BINARY_DIR>)
 
 # The tree of a platform, which makes TARGET and with it the files.
 function(giveway_add_platform PLATFORM TARGET)
@@ -53,8 +63,7 @@ function(giveway_add_platform PLATFORM TARGET)
                # One link at a time: with an empty cache two that make zig's run-time routines can wait for each
                # other's lock for ever.
                -DCMAKE_JOB_POOLS=linking=1 -DCMAKE_JOB_POOL_LINK=linking
-    BUILD_COMMAND "${CMAKE_COMMAND}" -E env "ZIG_GLOBAL_CACHE_DIR=${_folder}/zig-cache" "ZIG_LOCAL_CACHE_DIR=${_folder}/zig-cache"
-                  "NINJA_STATUS=[FMUs %f/%t] " "${CMAKE_COMMAND}" --build <BINARY_DIR> --target ${TARGET}
+    BUILD_COMMAND ${GIVEWAY_PLATFORM_BUILD} --target ${TARGET}
     BUILD_ALWAYS ON # that tree knows what has changed
     USES_TERMINAL_BUILD ON # one after the other: each takes all processors
     BUILD_BYPRODUCTS ${ARGN}

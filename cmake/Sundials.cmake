@@ -9,10 +9,13 @@ set(GIVEWAY_SUNDIALS_VENDOR "${CMAKE_BINARY_DIR}/sundials-source"
     CACHE PATH "where the SUNDIALS sources are fetched to; several build trees can share it")
 set(_sundials_vendor "${GIVEWAY_SUNDIALS_VENDOR}")
 set(GIVEWAY_SUNDIALS_SOURCE "${_sundials_vendor}/sundials-sys-0.6.2/vendor")
+set(_sundials_in_archive "${PROJECT_SOURCE_DIR}/vendor/sundials") # of the source archive (release/sdist.py)
 set(_sundials_lock "${CMAKE_CURRENT_LIST_DIR}/sundials/Cargo.lock")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_sundials_lock}")
 
-if(NOT EXISTS "${GIVEWAY_SUNDIALS_SOURCE}/LICENSE"
+if(EXISTS "${_sundials_in_archive}/LICENSE")
+  set(GIVEWAY_SUNDIALS_SOURCE "${_sundials_in_archive}")
+elseif(NOT EXISTS "${GIVEWAY_SUNDIALS_SOURCE}/LICENSE"
    OR "${_sundials_lock}" IS_NEWER_THAN "${_sundials_vendor}/fetched")
   find_program(GIVEWAY_CARGO cargo DOC "cargo, to fetch the SUNDIALS sources")
   if(NOT GIVEWAY_CARGO)

@@ -12,7 +12,7 @@ from typing import Any
 
 import lief
 
-__all__ = ["inspected"]
+__all__ = ["FMI2_FOLDERS", "inspect", "inspected"]
 
 lief.logging.disable()
 
@@ -97,8 +97,11 @@ def _macho(binary: Any) -> dict[str, Any]:
     return {"exported": exported, "imported": imported, "needed": needed, "since": since, "faults": faults}
 
 
-def inspect(data: bytes, platform: str, wanted: set[str]) -> dict[str, Any]:
-    """Figures and faults of one library that claims to be for ``platform``."""
+def inspect(data: bytes, platform: str, wanted: set[str], besides: re.Pattern[str] | None = None) -> dict[str, Any]:
+    """Figures and faults of one library that claims to be for ``platform``.
+
+    ``wanted``: what it exports; ``besides``: what else than the C library it may need.
+    """
     machine, system = platform.split("-")
     reader = {"linux": (lief.ELF, _elf), "windows": (lief.PE, _pe), "darwin": (lief.MachO, _macho)}[system]
     binary = reader[0].parse(data)
@@ -123,11 +126,12 @@ def inspect(data: bytes, platform: str, wanted: set[str]) -> dict[str, Any]:
         faults.append(f"is for the processor {processor}")
     if found["exported"] != wanted:
         odd = sorted(found["exported"] ^ wanted)
-        faults.append(f"exports {len(found['exported'])} functions, not the {len(wanted)} of FMI: {', '.join(odd[:3])}")
+        faults.append(f"exports {len(found['exported'])} functions, not the {len(wanted)} wanted: {', '.join(odd[:3])}")
     late = sorted(found["imported"] & AT_EXIT)
     if late:
         faults.append(f"registers code for the end of the process ({', '.join(late)}), when the library may be gone")
     foreign = [name for name in found["needed"] if not C_LIBRARIES[system].fullmatch(name)]
+    foreign = [name for name in foreign if besides is None or not besides.fullmatch(name)]
     if foreign:
         faults.append(f"needs {', '.join(foreign)}")
     return {
