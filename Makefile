@@ -9,8 +9,8 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm pages studio film
-.PHONY: docs product compile-product compile-all native-tests
+.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm pages studio film wheels release
+.PHONY: docs product build-for-all compile-product compile-all native-tests
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -91,6 +91,18 @@ platforms: product ## run the FMUs of `make fmus ALL=1` on their platforms (wine
 	@$(MAKE) --no-print-directory fmus ALL=1 > /dev/null
 	bash fmu/platforms/system_packages.sh
 	$(BIN)/python -m fmu.platforms
+
+# All platforms' FMUs and batch libraries, each compiled once in its own tree (cmake/FmuPlatforms.cmake).
+build-for-all: product
+	@$(COMPILE) --target fmus_all batch_all
+
+wheels: build-for-all ## wheels for Linux (x86-64, ARM64), Windows and macOS (Intel, Apple), in dist
+	@$(BIN)/python -m release wheels
+
+release: build-for-all ## wheels, source archive, FMUs, their bills of materials and checks, in dist; uploads nothing
+	@$(BIN)/python -m release all
+	bash fmu/platforms/system_packages.sh
+	@$(BIN)/python -m release.abroad
 
 # What users get: FMUs, tables, robot file, batch library, and .venv/bin/giveway. Python packages are installed while it
 # compiles; the install step copies what the Python package needs beside it. Ninja does nothing when nothing changed.

@@ -1,0 +1,1 @@
+"""Wheels, source archive and bills of materials in dist/: see __main__.py and README.md."""
