@@ -27,8 +27,8 @@ struct Electronics {
 
 extern "C" {
 
-// `numbers`: in the order in which they are read here, and in electronics.py. `torque`: of the sensors and of the motors,
-// the same for drives at rest. Null if the servos refuse them.
+// `numbers`: in the order in which they are read here, and in electronics.py. `torque`: of the sensors and of the
+// motors, the same for drives at rest. Null if the servos refuse them.
 void *second_simulator_drives(const double *numbers, std::uint32_t seed, const double *motor_angle,
                               const double *wheel_speed, const double *torque, int enable)
 {
