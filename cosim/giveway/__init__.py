@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from giveway.simulation.runner import Engine
     from giveway.study import Study
     from giveway.study.answers import Answers
+    from giveway.tuning.tuned import tune
 
 __all__ = [
     "Answers",
@@ -42,6 +43,7 @@ __all__ = [
     "load",
     "read_scenario",
     "run",
+    "tune",
 ]
 
 __version__ = VERSION
@@ -99,6 +101,7 @@ _LATER = {
     "Result": "giveway.simulation.result",
     "Study": "giveway.study",
     "batch": "giveway.batch",
+    "tune": "giveway.tuning.tuned",
 }
 
 

@@ -49,6 +49,7 @@ from giveway.schemas.command import schema
 from giveway.starters.command import new_app
 from giveway.studio.command import studio
 from giveway.study.command import optimise_designs, study_app, sweep_designs
+from giveway.tuning.command import tune
 
 __all__ = ["app", "main"]
 
@@ -73,6 +74,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "doctor": doctor,
     "firmware": firmware,
     "schema": schema,
+    "tune": tune,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import difflib
 from pathlib import Path
 
@@ -41,6 +42,25 @@ def test_comments_and_odd_layouts_stay(tmp_path: Path) -> None:
     new = changed_robot(tmp_path / "robot.toml", {"roller.radius": NEW, "servo.kp": NEW})
     for kept in ("# mine", "schema_version = 1 # first", "# inline", "unit = 'mm'"):
         assert kept in new
+
+
+def test_a_setting_is_added_at_the_end_and_then_replaced(tmp_path: Path) -> None:
+    new = dataclasses.replace(NEW, value=2.5, unit="N", note='of "logs"')
+    names = ("controller.channels.fast_rest", "controller.channels.slow_rest")
+    first = tmp_path / "first.toml"
+    first.write_text(changed_robot(native.robot(), dict.fromkeys(names, new)), encoding="utf-8")
+    assert first.read_text(encoding="utf-8").startswith(native.robot().read_text(encoding="utf-8").rstrip("\n"))
+    read = read_robot(first)
+    assert [read.value(name) for name in names] == [2.5, 2.5]
+    assert read[names[0]].note == 'of "logs"'
+    second = changed_robot(first, {names[0]: dataclasses.replace(new, value=3.5)})
+    assert second == first.read_text(encoding="utf-8").replace("value = 2.5", "value = 3.5", 1)
+    inline = tmp_path / "inline.toml"
+    text = native.robot().read_text(encoding="utf-8")
+    entry = '{ value = 1.0, unit = "N" }'
+    inline.write_text(f"{text}\n[controller]\nchannels = {{ fast_rest = {entry} }}\n", encoding="utf-8")
+    with pytest.raises(FileError, match=r"controller\.channels\.slow_rest cannot be added"):
+        changed_robot(inline, {names[1]: new})
 
 
 def test_what_is_not_there_is_not_added() -> None:

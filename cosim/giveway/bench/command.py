@@ -22,6 +22,9 @@ def bench(
     probability: Annotated[
         bool, typer.Option("--probability", help="Only: do intervals of rare probabilities hold what is known?")
     ] = False,
+    tune: Annotated[
+        int, typer.Option("--tune", metavar="ROBOTS", help="Only: do thresholds tuned on logs keep what they promise?")
+    ] = 0,
     optimum: Annotated[
         Path | None,
         typer.Option("--optimum", metavar="STUDY.toml", help="Only: what a search finds, against an even sample."),
@@ -56,6 +59,9 @@ def bench(
     if probability:
         _measure_probabilities()
         return
+    if tune:
+        _judge_tuning(tune)
+        return
     if optimum is not None:
         _compare_searches(optimum, out, sample, runs, seeds)
         return
@@ -87,6 +93,27 @@ def _measure_sweeps() -> None:
     title = f"{sweeps.DESIGNS:,} bumpers, runs of 0.6 s over fixed steps, median of {sweeps.ROUNDS}"
     print_columns(title, sweeps.HEADER, found.rows())
     typer.echo("\n".join(found.in_words(threads)))
+
+
+def _judge_tuning(robots: int) -> None:
+    """Six minutes of logs for each robot of the judging draw, and as many fresh ones."""
+    import time
+
+    from giveway.base.checks import whole
+    from giveway.crowd.crowd import ROBOTS_MAX
+    from giveway.library.work import default_threads
+    from giveway.tuning.judged import HEADER, MINUTES, PER_HOUR, judge, rows
+
+    whole("--tune", robots, 1, ROBOTS_MAX)
+    cpu_s = time.process_time()
+    with progress_bars(["robots"]) as progress:
+        found = judge("judging", robots, MINUTES, PER_HOUR, default_threads(),
+                      lambda done: progress("robots", done / robots))  # fmt: skip
+    print_columns("Thresholds tuned on logs of robots of the crowd", HEADER, rows(found, PER_HOUR))
+    for one in [one for one in found if not one.holds]:
+        told = one.refused or f"{one.alarms} alarms, foretold {one.fewest} to {one.most}"
+        typer.echo(f"robot {one.number}: {told}")
+    typer.echo(f"{(time.process_time() - cpu_s) / 60.0:.1f} minutes of one core")
 
 
 def _measure_probabilities() -> None:

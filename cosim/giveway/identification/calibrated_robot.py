@@ -7,13 +7,13 @@ from pathlib import Path
 
 from giveway.base.errors import GivewayError
 from giveway.base.files import check_file, replace_files
-from giveway.identification.motion_log import MotionLog, pieces, read_log
+from giveway.identification.motion_log import pieces, read_log
 from giveway.identification.roller_friction import Calibration, Estimate
 from giveway.identification.roller_friction import calibrate as calibrate_rollers
 from giveway.robot.changes import NewValue, changed_robot
 from giveway.robot.robot_file import read_robot
 
-__all__ = ["calibrate_robot", "table_rows"]
+__all__ = ["calibrate_robot", "friction_values", "table_rows"]
 
 COULOMB, SLOPE = "roller.coulomb_torque", "roller.tanh_slope"
 HASH_DIGITS = 12  # digits of sha256: enough to distinguish logs
@@ -36,7 +36,8 @@ def calibrate_robot(logs: Sequence[Path], robot: Path, out: Path) -> tuple[Calib
     parameters = read_robot(robot)
     read = [read_log(path, parameters) for path in logs]
     calibration = calibrate_rollers([piece for log in read for piece in pieces(log)], parameters)
-    text = changed_robot(robot, _new_values(calibration, read))
+    names = ", ".join(f"{log.name} (sha256 {log.sha256[:HASH_DIGITS]})" for log in read)
+    text = changed_robot(robot, friction_values(calibration, f"giveway calibrate: free motion in {names}"))
     from giveway.identification.figures import write_residuals
 
     with replace_files(picture, out) as (new_picture, new_robot):
@@ -62,8 +63,8 @@ def _row(name: str, estimate: Estimate, unit: str) -> tuple[str, str, str, str]:
     return name, f"{estimate.value:.4g}", f"{estimate.low:.4g} to {estimate.high:.4g}", unit
 
 
-def _new_values(calibration: Calibration, logs: Sequence[MotionLog]) -> dict[str, NewValue]:
-    names = ", ".join(f"{log.name} (sha256 {log.sha256[:HASH_DIGITS]})" for log in logs)
+def friction_values(calibration: Calibration, source: str) -> dict[str, NewValue]:
+    """What a robot file says of the rollers' friction, found as ``source`` says."""
     symbols = {
         COULOMB: ("B_r", calibration.coulomb_torque_nm, "N m"),
         SLOPE: ("alpha", calibration.tanh_slope_s_rad, "s/rad"),
@@ -71,7 +72,7 @@ def _new_values(calibration: Calibration, logs: Sequence[MotionLog]) -> dict[str
     return {
         key: NewValue(
             value=float(f"{estimate.value:.{DIGITS}g}"),
-            source=f"giveway calibrate: free motion in {names}",
+            source=source,
             confidence="high",
             provenance="fitted",
             note=f"{symbol} of (28); 95 % interval {estimate.low:.4g} to {estimate.high:.4g} {unit}",

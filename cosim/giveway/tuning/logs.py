@@ -1,0 +1,179 @@
+"""Logs of a robot, ready to be replayed many times: the controller's inputs at every step.
+
+A log without a plan gets one from its wheels, since the controller tells rest from motion by what is planned, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.base.checks import finite
+from giveway.base.csv_rows import check_widths, number_of, read_rows
+from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.identification.torque_model import TorqueModel
+from giveway.library.replay import ReplayedController
+from giveway.replay.mapping import Wishes
+from giveway.replay.play import Choice, Replay, open_log
+from giveway.replay.source import file_hash
+from giveway.robot.variables import Value
+from giveway.scenario.plan import PLAN_INPUTS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.robot.robot_file import Robot
+
+__all__ = ["Log", "Push", "read_log", "read_pushes", "with_plan"]
+
+STANDING_S = 0.25  # before and after the last count of an encoder a wheel counts as moving
+SMOOTHING_S = 0.03  # of the plan that is made from the wheels
+AROUND_PUSH_S = 2.0  # after a push, until the robot is undisturbed again
+BEFORE_PUSH_S = 0.2
+TRACKING = 1  # the controller's mode in which it looks for hits
+
+
+@dataclass(frozen=True)
+class Push:
+    """A time in which something pushed the robot, s of the log."""
+
+    start_s: float
+    end_s: float
+
+
+@dataclass(frozen=True)
+class Log:
+    """One log.
+
+    Attributes:
+        name: for messages.
+        step_s: of the controller.
+        inputs: of the controller by name, each of shape (n,).
+        angle_rad: of the motors at the wheel axle, (n, wheels).
+        torque_nm: (n, wheels).
+        pushes: what is known to have pushed it.
+        sha256: of the file.
+        as_logged: each step is a row of the log, nothing was interpolated.
+        said: what was assumed.
+    """
+
+    name: str
+    step_s: float
+    inputs: Mapping[str, NDArray[Any]]
+    angle_rad: NDArray[np.float64]
+    torque_nm: NDArray[np.float64]
+    pushes: tuple[Push, ...] = ()
+    sha256: str = ""
+    as_logged: bool = True
+    said: tuple[str, ...] = field(default=())
+
+    @property
+    def steps(self) -> int:
+        return len(self.torque_nm)
+
+    @property
+    def duration_s(self) -> float:
+        return self.steps * self.step_s
+
+    def moving(self) -> NDArray[np.bool_]:
+        """Whether a wheel turns, or did `STANDING_S` ago."""
+        from scipy.ndimage import maximum_filter1d
+
+        turned = np.abs(np.diff(self.angle_rad, axis=0, prepend=self.angle_rad[:1])).max(axis=1) > 1e-9
+        return np.asarray(maximum_filter1d(turned, 2 * round(STANDING_S / self.step_s) + 1))
+
+    def free(self) -> NDArray[np.bool_]:
+        """Whether nothing is known to push it."""
+        found = np.ones(self.steps, dtype=np.bool_)
+        for push in self.pushes:
+            begin = max(0, round((push.start_s - BEFORE_PUSH_S) / self.step_s))
+            found[begin : round((push.end_s + AROUND_PUSH_S) / self.step_s)] = False
+        return found
+
+    def replayed(self, parameters: Mapping[str, Value], outputs: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """Outputs of the controller with ``parameters`` on this log."""
+        with ReplayedController(parameters, self.step_s, outputs) as controller:
+            return controller.play(self.inputs)
+
+
+def read_log(path: Path, robot: Robot, parameters: Mapping[str, Value], wishes: Wishes | None = None) -> Log:
+    """Read ``path`` as `giveway replay` does; FileError or GivewayError name what is wrong, and where."""
+    wishes = wishes or Wishes()
+    source = open_log(path, wishes, None, "motor_angle", "torque")
+    stated = {name for name, _ in robot.entries()}
+    constant = None
+    if {"motor.torque_constant", "motor.gear_ratio"} <= stated:
+        constant = float(robot.value("motor.torque_constant")) * float(robot.value("motor.gear_ratio"))
+    step_s = float(parameters.get("controller.period", 1e-3))
+    choice = Choice(parameters, step_s, torque_constant=constant)
+    with Replay(source, wishes, choice) as replay:
+        played = [one.steps for one in replay.all()]
+        if not played:
+            raise FileError(path, "has no step", "a log of some minutes")
+        if replay.findings.wrong:
+            raise FileError(path, replay.findings.wrong[0], "`giveway replay` shows what the log holds")
+        has_plan = replay.inputs.has_plan
+        as_logged = replay.did.way in ("as-is", "rows")
+    log = Log(
+        path.name,
+        step_s,
+        {name: np.concatenate([steps.inputs[name] for steps in played]) for name in played[0].inputs},
+        np.concatenate([steps.angle_rad for steps in played]),
+        np.concatenate([steps.torque_nm for steps in played]),
+        sha256=file_hash(path),
+        as_logged=as_logged,
+    )
+    if has_plan:
+        return log
+    said = (f"{path.name} has no plan: the plan was taken to be the motion of its wheels",)
+    return replace(with_plan(log, robot), said=said)
+
+
+def with_plan(log: Log, robot: Robot) -> Log:
+    """``log`` with the motion of its wheels as the planned one."""
+    from scipy.ndimage import gaussian_filter1d
+
+    model = TorqueModel.of(robot)
+    angle = gaussian_filter1d(log.angle_rad, SMOOTHING_S / log.step_s, axis=0, mode="nearest")
+    twist = np.gradient(angle, log.step_s, axis=0) @ np.linalg.inv(model.wheel_jacobian).T
+    standing = ~log.moving()
+    twist[standing] = 0.0
+    theta = np.cumsum(twist[:, 2]) * log.step_s
+    cos, sin = np.cos(theta), np.sin(theta)
+    rates = np.stack([cos * twist[:, 0] - sin * twist[:, 1], sin * twist[:, 0] + cos * twist[:, 1], twist[:, 2]])
+    places = np.cumsum(rates, axis=1) * log.step_s
+    growth = np.gradient(rates, log.step_s, axis=1)
+    columns = np.concatenate([places, rates, growth])
+    return replace(log, inputs={**log.inputs, **dict(zip(PLAN_INPUTS, columns, strict=True))})
+
+
+def read_pushes(path: Path, logs: Sequence[str]) -> dict[str, tuple[Push, ...]]:
+    """By the log's name the pushes in ``path``: a CSV file with the columns start [s], end [s], and log if several."""
+    rows = read_rows(path, "times of pushes")
+    if not rows:
+        raise FileError(path, "is empty", "heads first: start [s],end [s], and log if there are several logs")
+    check_widths(path, rows)
+    (line, head), *others = rows
+    needed = ["start [s]", "end [s]", *(["log"] if len(logs) > 1 else [])]
+    for name in needed:
+        if name not in head:
+            raise FileError(path, f"line {line}: there is no column {name}", f"needed: {', '.join(needed)}")
+    found: dict[str, list[Push]] = {name: [] for name in logs}
+    for line, row in others:
+        cells = dict(zip(head, row, strict=True))
+        try:
+            start, end = (number_of(name, cells[name]) for name in needed[:2])
+            finite("start [s]", start, 0.0)
+            if end <= start:
+                raise GivewayError("end [s]", end, f"above the start, {start:g} s")
+            log = cells.get("log", logs[0])
+            if log not in found:
+                raise GivewayError("log", log, ", ".join(logs))
+        except GivewayError as error:
+            raise InputFileError(path, line, error) from None
+        found[log].append(Push(start, end))
+    return {name: tuple(pushes) for name, pushes in found.items()}

@@ -1,0 +1,259 @@
+"""`giveway tune`: the statistics of rare peaks against known ones, thresholds from logs, and every wrong input."""
+
+from __future__ import annotations
+
+import dataclasses
+import html.parser
+import math
+from pathlib import Path
+
+import giveway
+import numpy as np
+import pytest
+from cosim_helpers import Cli
+from giveway import batch
+from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.replay.run_log import write_log
+from giveway.robot.robot_file import read_robot
+from giveway.robot.variables import table
+from giveway.tuning.identified import identify
+from giveway.tuning.judged import logs_of
+from giveway.tuning.logs import Log, Push, read_log, read_pushes, with_plan
+from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
+from giveway.tuning.thresholds import NAMES, alarms_in, choose, settings_of
+from giveway.tuning.tuned import check_hours
+
+ROOT = Path(__file__).parents[2]
+TRIKEY = ROOT / "robots" / "trikey.toml"
+
+# Two arcs with a rest before each: enough for friction, noise and a rate of some alarms per hour.
+ARCS = """
+schema_version = 1
+name = "arcs"
+duration = 65.0
+seed = 3
+[plan]
+kind = "arcs"
+wheels = [[1, 0, 0], [1, 1, 0]]
+swings = 3
+rest = 2.5
+[controller]
+detector.kind = 1
+detector.impulse_threshold = 1000.0
+"""
+
+
+@pytest.fixture(scope="module")
+def arcs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of a run."""
+    folder = tmp_path_factory.mktemp("tuning")
+    (folder / "arcs.toml").write_text(ARCS, encoding="utf-8")
+    path = folder / "arcs.parquet"
+    write_log(path, batch.run(giveway.read_scenario(folder / "arcs.toml")))
+    return path
+
+
+@pytest.fixture(scope="module")
+def logs() -> list[Log]:
+    """Two minutes of a robot of the crowd."""
+    return logs_of("tuning", 0, 2.0, 0, 1)
+
+
+def parameters() -> dict[str, float | int | bool]:
+    return table("controller").robot_values(read_robot(TRIKEY))
+
+
+def exponential(rng: np.random.Generator, hours: float, bunch: int = 1) -> Peaks:
+    """300 peaks per hour, or bunches of them, with heights 0.5 plus an exponential of mean 0.1."""
+    count = rng.poisson(300.0 * hours / bunch) * bunch
+    times = np.repeat(np.sort(rng.uniform(0.0, 3600.0 * hours, count // bunch)), bunch)
+    heights = 0.5 + np.repeat(rng.exponential(0.1, count // bunch), bunch) + rng.uniform(0.0, 1e-3, count)
+    return Peaks(times, heights, np.zeros(count, dtype=np.bool_), 3600.0 * hours)
+
+
+def test_peaks_lie_apart_and_count_only_where_they_may() -> None:
+    time = np.arange(0.0, 20.0, 0.001)
+    series = 0.1 + 0.9 * np.exp(-(((time - 5.3) / 0.05) ** 2)) + 0.7 * np.exp(-(((time - 5.6) / 0.05) ** 2))
+    series += 0.6 * np.exp(-(((time - 12.5) / 0.05) ** 2)) + 5.0 * np.exp(-(((time - 17.5) / 0.05) ** 2))
+    counts = time < 16.0
+    alarms = np.zeros_like(counts)
+    alarms[12500] = True
+    found = peaks_of(series, counts, alarms, 0.001)
+    high = found.heights > 0.5
+    assert found.heights[high] == pytest.approx([1.0, 0.7], abs=1e-3)  # the second one of 5 s belongs to the first
+    assert found.alarmed[high].tolist() == [False, True]
+    assert found.duration_s == pytest.approx(16.0)
+    both = joined([found, found])
+    assert both.duration_s == pytest.approx(32.0)
+    assert both.above(0.5) == 4
+
+
+def test_the_rate_of_known_peaks_lies_in_its_interval() -> None:
+    """300/h exp(-(u - 0.5)/0.1) above u; 40 logs: 95 % miss more than 5 of them once in 70 times."""
+    rng = np.random.default_rng(7)
+    truth = 300.0 * math.exp(-(1.0 - 0.5) / 0.1)
+    tails = [Tail(exponential(rng, 0.5)) for _ in range(40)]
+    held = sum(tail.rate(1.0)[1] <= truth <= tail.rate(1.0)[2] for tail in tails)
+    assert held >= 35
+    assert sum(tail.upper(1.0) >= truth for tail in tails) >= 35
+    width = np.median([tail.rate(1.0)[2] / tail.rate(1.0)[0] for tail in tails])
+    assert width < 8.0  # not so wide that it says nothing
+
+
+def test_peaks_that_an_alarm_cut_off_count_as_higher() -> None:
+    rng = np.random.default_rng(3)
+    whole = exponential(rng, 2.0)
+    cut = dataclasses.replace(whole, heights=np.minimum(whole.heights, 0.8), alarmed=whole.heights > 0.8)
+    truth = 300.0 * math.exp(-(1.0 - 0.5) / 0.1)
+    low, high = Tail(cut).rate(1.0)[1:]
+    assert low < truth < high
+    forgotten = Tail(dataclasses.replace(cut, alarmed=np.zeros_like(cut.alarmed)))
+    assert forgotten.rate(1.0)[0] < 0.5 * Tail(cut).rate(1.0)[0]
+
+
+def test_bunches_make_it_less_sure() -> None:
+    rng = np.random.default_rng(5)
+    alone, bunched = Tail(exponential(rng, 1.0)), Tail(exponential(rng, 1.0, bunch=6))
+    assert alone.bunching < 2.0
+    assert bunched.bunching > 3.0
+    spread = [tail.rate(1.0)[2] / max(tail.rate(1.0)[1], 1e-9) for tail in (alone, bunched)]
+    assert spread[1] > spread[0]
+
+
+def test_a_level_keeps_to_its_rate_and_no_more_is_promised_than_the_hours_allow() -> None:
+    tail = Tail(exponential(np.random.default_rng(1), 1.0))
+    for rate in (20.0, 2.0, 0.5):
+        assert tail.upper(tail.level(rate)) == pytest.approx(rate, rel=0.02)
+    assert tail.upper(50.0) == pytest.approx(1.0 / EXTRAPOLATION)
+    low, high = tail.counts(tail.base, 1.0)
+    assert low < tail.peaks.above(tail.base) < high
+
+
+def test_a_rate_that_the_hours_do_not_support_is_refused() -> None:
+    assert hours_to_count(0.1) == pytest.approx(30.0, rel=0.01)  # the rule of three
+    check_hours(1.0, 0.1)
+    with pytest.raises(GivewayError) as caught:
+        check_hours(0.5, 0.1)
+    said = str(caught.value)
+    assert "--false-alarms: 0.1/h is not allowed; allowed: at least 0.2/h with 0.5 h" in said
+    assert "takes 1 h of logs, and 30 h" in said
+
+
+def test_thresholds_of_a_robot_keep_to_the_rate_on_its_logs(logs: list[Log]) -> None:
+    chosen = choose(logs, {}, 200.0)
+    assert set(chosen.thresholds) == set(NAMES)
+    assert chosen.upper_per_hour <= 200.0
+    alarms, hours = alarms_in(logs, dict(chosen.thresholds))
+    assert alarms <= 200.0 * hours + 3.0 * math.sqrt(200.0 * hours)
+    before = settings_of({})
+    assert any(chosen.thresholds[name] < before[name] for name in NAMES)  # a whole crowd's are higher than one robot's
+    quieter = choose(logs, {}, 4.0 / EXTRAPOLATION / chosen.tail.peaks.hours)
+    assert quieter.alarms <= chosen.alarms
+
+
+def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:
+    log = logs[0]
+    own = {name: values for name, values in log.inputs.items() if not name.startswith("plan.")}
+    made = with_plan(dataclasses.replace(log, inputs=own), read_robot(TRIKEY))
+    rows = slice(200, None)
+    made_mps, planned_mps = (np.hypot(one.inputs["plan.vx"], one.inputs["plan.vy"])[rows] for one in (made, log))
+    # The robot differs from its file, and lags its plan; it goes 0.4 m/s at most.
+    assert np.abs(made_mps - planned_mps).max() < 0.08
+    assert alarms_in([made], {})[0] == 0
+
+
+def test_what_logs_say_of_a_robot(arcs: Path) -> None:
+    robot = read_robot(TRIKEY)
+    log = read_log(arcs, robot, parameters())
+    assert log.as_logged
+    assert log.said == ()
+    found = identify([log], robot)
+    assert found.friction is not None, found.why
+    assert found.friction.coulomb_torque_nm.value == pytest.approx(0.2, rel=0.05)
+    assert found.noise_nm == pytest.approx(float(robot.value("drivetrain.torque_noise")), rel=0.1)
+
+
+def test_a_robot_file_from_a_log(process: Cli, arcs: Path, tmp_path: Path) -> None:
+    out, report = tmp_path / "new.toml", tmp_path / "tuned.html"
+    answer = process(
+        "tune", str(arcs), "--robot", str(TRIKEY), "--false-alarms", "30/h", "--no-smallest",
+        "--out", str(out), "--report", str(report),
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    for words in ("channels.fast_rest", "upper 95 % bound", "EXTRAPOLATED", "roller friction B_r"):
+        assert words in answer.stdout
+    robot = read_robot(out)
+    values = table("controller").robot_values(robot)
+    assert values["channels.fast_rest"] != 3.0
+    text = out.read_text(encoding="utf-8")
+    assert "arcs.parquet (sha256 " in text
+    assert "for 30 false alarms per hour; upper 95 % bound" in text
+    old = TRIKEY.read_text(encoding="utf-8")
+    assert all(line in text for line in old.splitlines() if line.startswith("#"))
+    page = report.read_text(encoding="utf-8")
+    html.parser.HTMLParser().feed(page)
+    assert "EXTRAPOLATED" in page
+
+
+WRONG: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "rate": (("--false-alarms", "rare"), ("--false-alarms: rare", "0.1/h")),
+    "rate per day": (("--false-alarms", "1/d"), ("--false-alarms: 1/d", "0.1/h")),
+    "no rate": (("--false-alarms", "0/h"), ("--false-alarms: 0.0", "1/h")),
+    "too few hours": (("--false-alarms", "0.1/h"), ("--false-alarms: 0.1/h", "at least", "h of logs")),
+    "over the old file": (("--false-alarms", "30/h", "--out", str(TRIKEY)), ("--out", "another file")),
+    "no robot file": (("--false-alarms", "30/h", "--out", "new.txt"), ("--out: new.txt", ".toml")),
+    "no page": (("--false-alarms", "30/h", "--report", "page.pdf"), ("--report: page.pdf", ".html")),
+    "no pushes": (("--false-alarms", "30/h", "--pushes", "none.csv"), ("none.csv", "no such file")),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_input_writes_nothing(name: str, cli: Cli, arcs: Path, tmp_path: Path) -> None:
+    arguments, words = WRONG[name]
+    extra = () if "--out" in arguments else ("--out", "new.toml")
+    answer = cli("tune", str(arcs), "--robot", str(TRIKEY), *arguments, *extra, "--no-smallest")
+    assert answer.returncode == 2
+    for word in words:
+        assert word in answer.stderr, answer.stderr
+    assert not list(tmp_path.glob("new.*"))
+
+
+def test_the_same_log_twice_is_refused(cli: Cli, arcs: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.parquet"
+    copy.write_bytes(arcs.read_bytes())
+    for second, words in ((arcs, "each log once"), (copy, "the same content as arcs.parquet")):
+        answer = cli("tune", str(arcs), str(second), "--robot", str(TRIKEY), "--false-alarms", "30/h")
+        assert answer.returncode == 2
+        assert words in answer.stderr
+
+
+def test_marked_pushes(tmp_path: Path) -> None:
+    path = tmp_path / "pushes.csv"
+    path.write_text("# by hand\nstart [s],end [s]\n2,2.5\n4,4.5\n", encoding="utf-8")
+    assert read_pushes(path, ["a.csv"]) == {"a.csv": (Push(2.0, 2.5), Push(4.0, 4.5))}
+    for text, line, words in (
+        ("start [s],end [s]\n2,1\n", 2, ("end [s]: 1.0", "above the start")),
+        ("start [s],end [s]\n2,x\n", 2, ("end [s]: x",)),
+        ("start [s],end [s]\n-2,1\n", 2, ("start [s]: -2.0",)),
+        ("start [s],end [s]\n2,3\n2\n", 3, ("columns",)),
+    ):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(InputFileError) as caught:
+            read_pushes(path, ["a.csv"])
+        assert f"pushes.csv:{line}:" in str(caught.value)
+        assert all(word in str(caught.value) for word in words)
+    path.write_text("start [s],end [s]\n2,3\n", encoding="utf-8")
+    with pytest.raises(FileError, match="there is no column log"):
+        read_pushes(path, ["a.csv", "b.csv"])
+    path.write_text("log,start [s],end [s]\nc.csv,2,3\n", encoding="utf-8")
+    with pytest.raises(InputFileError, match=r"log: c\.csv"):
+        read_pushes(path, ["a.csv", "b.csv"])
+
+
+def test_what_pushes_does_not_count(logs: list[Log]) -> None:
+    marked = dataclasses.replace(logs[0], pushes=(Push(5.0, 6.0),))
+    free = marked.free()
+    assert not free[5000]
+    assert not free[7900]
+    assert free[4700]
+    assert free[8100]
