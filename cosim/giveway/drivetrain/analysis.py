@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.base.in_notebooks import ShownInNotebooks
 from giveway.drivetrain.model import (
     CURRENT,
     ENVIRONMENT,
@@ -119,7 +120,7 @@ class Margins:
 
 
 @dataclass(frozen=True)
-class Analysis:
+class Analysis(ShownInNotebooks):
     """The complete analysis of one linear drivetrain.
 
     Attributes:

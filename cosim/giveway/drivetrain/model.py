@@ -36,6 +36,7 @@ import numpy as np
 
 from giveway.base import native
 from giveway.base.errors import GivewayError
+from giveway.base.in_notebooks import ShownInNotebooks
 from giveway.robot.robot_file import Robot, read_robot
 from giveway.robot.variables import table
 
@@ -70,7 +71,7 @@ LOADS = ("base", "wheel", "locked")
 
 
 @dataclass(frozen=True)
-class Drivetrain:
+class Drivetrain(ShownInNotebooks):
     """The numbers of one drivetrain and its load, reflected to the wheel axle.
 
     Attributes:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from giveway.drivetrain.analysis import Analysis
     from giveway.drivetrain.frequency_response import Sweep
 
-__all__ = ["check_results", "write_picture", "write_results"]
+__all__ = ["check_results", "picture", "write_picture", "write_results"]
 
 FILES = (".png", ".svg", ".json")
 
@@ -73,8 +73,14 @@ def _write(path: Path, title: str, analysis: Analysis, sweeps: Sequence[Sweep]) 
 
 
 def write_picture(path: Path, title: str, analysis: Analysis, sweeps: Sequence[Sweep] = ()) -> None:
-    """Write ``path`` (.png or .svg): one column per source of the sensed torque, one for the servo loop and the
-    poles."""
+    """Write ``path`` (.png or .svg): `picture`."""
+    with context(STYLE):
+        date = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+        picture(title, analysis, sweeps).savefig(path, dpi=120, metadata=date)
+
+
+def picture(title: str, analysis: Analysis, sweeps: Sequence[Sweep] = ()) -> Figure:
+    """One column per source of the sensed torque, one for the servo loop and the poles."""
     sources = [source for source in SIGN if any(source in case.channels for case in analysis.cases.values())]
     columns = len(sources) + 1
     with context(STYLE):
@@ -88,8 +94,7 @@ def write_picture(path: Path, title: str, analysis: Analysis, sweeps: Sequence[S
         _poles(grid[2, -1], analysis)
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-        date = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        figure.savefig(path, dpi=120, metadata=date)
+    return figure
 
 
 def _bode(gain: Axes, phase: Axes, source: str, analysis: Analysis, sweeps: Sequence[Sweep]) -> None:

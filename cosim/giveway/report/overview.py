@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from giveway.simulation.result import Result
 
-__all__ = ["numbers", "write_overview"]
+__all__ = ["numbers", "overview", "write_overview"]
 
 INK = "#2b2f36"
 ESCAPED_S = 2.0  # the last of the three poses, after contact
@@ -34,7 +34,14 @@ WHEEL_WIDTH_M = 0.04
 
 
 def write_overview(path: Path, results: Mapping[str, Result]) -> None:
-    """Write a PNG of ``results`` (by label): top view of the last one, contact force and escape of all."""
+    """Write a PNG of `overview`."""
+    with context(STYLE):
+        # The picture contains its numbers, so that an outdated copy can be recognised.
+        overview(results).savefig(path, dpi=130, metadata={"Software": None, "Description": numbers(results)})
+
+
+def overview(results: Mapping[str, Result]) -> Figure:
+    """Of ``results`` (by label): top view of the last one, contact force and escape of all."""
     runs = [Run(label, result) for label, result in results.items()]
     with context(STYLE):
         figure = Figure(figsize=(10.5, 4.6), layout="constrained")
@@ -42,8 +49,7 @@ def write_overview(path: Path, results: Mapping[str, Result]) -> None:
         _top_view(figure.add_subplot(grid[:, 0]), runs[-1])
         _forces(figure.add_subplot(grid[0, 1]), runs)
         _escapes(figure.add_subplot(grid[1, 1]), runs)
-        # The picture contains its numbers, so that an outdated copy can be recognised.
-        figure.savefig(path, dpi=130, metadata={"Software": None, "Description": numbers(results)})
+    return figure
 
 
 def numbers(results: Mapping[str, Result]) -> str:

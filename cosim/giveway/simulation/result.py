@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.base.errors import FileError
 from giveway.base.files import read_json, replace_folder, write_text
+from giveway.base.in_notebooks import ShownInNotebooks
 from giveway.scenario.body_regions import Judgement, judge
 from giveway.simulation.metric_names import RENAMED, current_name
 from giveway.simulation.metrics import Metric
@@ -27,7 +28,7 @@ METRICS_FILE = "metrics.json"
 
 
 @dataclass(frozen=True)
-class Result:
+class Result(ShownInNotebooks):
     """One run.
 
     Attributes:

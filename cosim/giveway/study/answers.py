@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from giveway.base.errors import GivewayError
+from giveway.base.in_notebooks import ShownInNotebooks
 from giveway.base.units import WrittenUnit
 from giveway.simulation.run_warnings import SEPARATOR
 from giveway.study import frames
@@ -91,7 +92,7 @@ class Sensitivities(list[Sensitivity]):
 
 
 @dataclass(frozen=True)
-class Answers:
+class Answers(ShownInNotebooks):
     """What came out, one row per design.
 
     Attributes:
