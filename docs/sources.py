@@ -32,6 +32,7 @@ def gather(folder: Path) -> None:
     """Fill ``folder``, which is emptied before, with all pages."""
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(SITE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    (folder / "pictures").mkdir(exist_ok=True)
     for picture in sorted((ROOT / "docs").glob("*.png")) + sorted((ROOT / "docs").glob("*.webp")):
         shutil.copy(picture, folder / "pictures" / picture.name)
     for name, text in generated_pages().items():
