@@ -4,7 +4,8 @@
     ```python       is executed; names stay for the page's next block
     ```{code-block} toml       with a `:caption:`, is written to the file of that name
 
-A block in another language shows something and runs nothing, or has a line `% not run: why` above it.
+A block in another language, or one that is indented, shows something and runs nothing; any other is run, or
+has a line `% not run: why` above it.
 """
 
 from __future__ import annotations
