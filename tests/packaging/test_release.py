@@ -114,16 +114,24 @@ def test_libraries_of_other_platforms_have_the_same_bits(wheels: list[Path]) -> 
     subprocess.run([sys.executable, "-m", "release.abroad"], cwd=ROOT, check=True, timeout=3600)
 
 
+def interpreter(version: str) -> Path:
+    """On PATH, or of pyenv; otherwise the test is skipped, and says which one is missing."""
+    folders = sorted(Path.home().glob(f".pyenv/versions/{version}.*/bin"))
+    for folder in (None, *folders):
+        found = shutil.which(f"python{version}", path=folder and str(folder))
+        if (
+            found
+            and subprocess.run([found, "-c", "import ensurepip"], check=False, capture_output=True).returncode == 0
+        ):
+            return Path(found)
+    pytest.skip(f"no Python {version} on this machine")
+
+
 @pytest.mark.deep
 @pytest.mark.parametrize("version", ["3.11", "3.12", "3.13"])
 def test_a_bare_environment_runs_the_demonstration(wheels: list[Path], version: str, tmp_path: Path) -> None:
     """Away from the repository, and without compilers: PATH holds nothing but the environment."""
-    python = shutil.which(f"python{version}")
-    works = python is not None and subprocess.run([python, "-c", ""], check=False, capture_output=True).returncode == 0
-    if not works:
-        pytest.skip(f"no Python {version} on this machine")
-    assert python is not None
-    subprocess.run([python, "-m", "venv", tmp_path / "bare"], check=True)
+    subprocess.run([interpreter(version), "-m", "venv", tmp_path / "bare"], check=True)
     programs = tmp_path / "bare" / "bin"
     (wheel,) = (path for path in wheels if "manylinux_2_17_x86_64" in path.name)
     environment = {"PATH": str(programs), "HOME": str(tmp_path)}
