@@ -21,7 +21,7 @@ from giveway.tuning.judged import logs_of
 from giveway.tuning.logs import Log, Push, read_log, read_pushes, with_plan
 from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
 from giveway.tuning.thresholds import NAMES, alarms_in, choose, settings_of
-from giveway.tuning.tuned import check_hours
+from giveway.tuning.tuned import check_hours, noticed
 
 ROOT = Path(__file__).parents[2]
 TRIKEY = ROOT / "robots" / "trikey.toml"
@@ -248,6 +248,22 @@ def test_marked_pushes(tmp_path: Path) -> None:
     path.write_text("log,start [s],end [s]\nc.csv,2,3\n", encoding="utf-8")
     with pytest.raises(InputFileError, match=r"log: c\.csv"):
         read_pushes(path, ["a.csv", "b.csv"])
+
+
+def test_a_marked_push_is_noticed_and_is_no_false_alarm(logs: list[Log]) -> None:
+    """A torque on all wheels as of a turn, while the robot stands before its first leg or drives."""
+    begin, end = 8000, 8400
+    torque = {name: values.copy() for name, values in logs[1].inputs.items() if name.startswith("sensor.torque")}
+    for values in torque.values():
+        values[begin:end] += 2.0
+    unmarked = dataclasses.replace(logs[1], inputs={**logs[1].inputs, **torque})
+    marked = dataclasses.replace(unmarked, pushes=(Push(8.0, 8.4), Push(20.0, 20.2)))
+    first, second = (noticed(marked, push, {}) for push in marked.pushes)
+    assert first.delay_s is not None
+    assert 0.0 <= first.delay_s < 0.1
+    assert second.delay_s is None
+    assert alarms_in([unmarked], {})[0] == 1
+    assert alarms_in([marked], {})[0] == 0
 
 
 def test_what_pushes_does_not_count(logs: list[Log]) -> None:

@@ -23,8 +23,13 @@ def page_text(tuned: Tuned) -> str:
 
 def _table(one: Table) -> str:
     title, header, rows = one
-    head = "".join(f'<th scope="col">{html.escape(cell)}</th>' for cell in header)
-    lines = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    head = "".join(f'<th scope="col">{html.escape(cell)}</th>' if cell else "<td></td>" for cell in header)
+    lines = "".join(
+        f'<tr><th scope="row">{html.escape(first)}</th>'
+        + "".join(f"<td>{html.escape(cell)}</td>" for cell in others)
+        + "</tr>"
+        for first, *others in rows
+    )
     return (
         f'<section class="card wide"><h2>{html.escape(title)}</h2><div class="scroll" tabindex="0"><table>'
         f"<thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table></div></section>"

@@ -27,7 +27,7 @@ from giveway.tuning.thresholds import MOTION, NAMES, REST, Chosen, choose, setti
 if TYPE_CHECKING:
     from giveway.replay.mapping import Wishes
 
-__all__ = ["Noticed", "Tuned", "tune", "tune_robot"]
+__all__ = ["Noticed", "Tuned", "check_hours", "noticed", "tune", "tune_robot"]
 
 HASH_DIGITS = 12
 CHANNELS_KIND = 2
@@ -154,7 +154,7 @@ def tune(
         MappingProxyType(settings_of(parameters)),
         chosen,
         found,
-        tuple(_noticed(log, push, everything) for log in read for push in log.pushes),
+        tuple(noticed(log, push, everything) for log in read for push in log.pushes),
         tuple(said for log in read for said in log.said),
     )
 
@@ -190,7 +190,7 @@ def _believed(identified: Identified) -> dict[str, Value]:
     return found
 
 
-def _noticed(log: Log, push: Push, parameters: Mapping[str, Value]) -> Noticed:
+def noticed(log: Log, push: Push, parameters: Mapping[str, Value]) -> Noticed:
     """The first alarm in the time of ``push``, from a replay that ends with it."""
     found = log.replayed(parameters, ("detection.count",))["detection.count"]
     begin, end = (min(round(at / log.step_s), log.steps - 1) for at in (push.start_s, push.end_s))
