@@ -84,12 +84,13 @@ def keywords(method: object) -> set[str]:
 
 
 def test_the_keywords_are_all_keys_of_a_study_file() -> None:
-    assert keywords(Study.collision) == set(study_file._COLLISION)
-    assert keywords(Study.vary) == set(variations.VARY)
-    assert keywords(Study.parts) == set(parts.PARTS)
-    assert keywords(Study.optimise) == {*search_plan.OPTIMISE, *keywords(Study.run)}
-    assert keywords(Study.tolerance) == set(variations.TOLERANCE)
-    assert keywords(Study.sure) == set(sure_plan.SURE)
+    top = study_file.study_shape().keys
+    assert keywords(Study.collision) == set(top["collision"].row.keys)
+    assert keywords(Study.vary) == set(variations.VARY.keys)
+    assert keywords(Study.parts) == set(parts.PARTS.keys)
+    assert keywords(Study.optimise) == {*search_plan.OPTIMISE.keys, *keywords(Study.run)}
+    assert keywords(Study.tolerance) == set(variations.TOLERANCE.keys)
+    assert keywords(Study.sure) == set(sure_plan.SURE.keys)
     assert keywords(Study.designs) == {"kind", *(option for options in OPTIONS.values() for option in options)}
     goal = set(study_file._GOAL)
     assert keywords(Study.objective) == goal | {"goal", "weight"}
@@ -109,8 +110,8 @@ def test_the_keywords_are_all_keys_of_a_study_file() -> None:
         "optimise",
         "report",
     }
-    of_the_top = set(study_file._TOP) - tables - {"schema_version"}
-    assert keywords(Study) == of_the_top | set(study_file._SCENARIO) | {"noise_seed"}
+    of_the_top = set(top) - tables - {"schema_version"}
+    assert keywords(Study) == of_the_top | set(top["scenario"].keys) | {"noise_seed"}
 
 
 def test_values_may_be_an_array() -> None:
