@@ -189,6 +189,10 @@ def test_the_drawing_is_in_the_unit_of_its_labels() -> None:
         for line, wanted in ((over, centres), (centre, np.zeros((1, 2)))):
             assert same(read(above, "x", line.get_xdata()), wanted[:, 0])
             assert same(read(above, "y", line.get_ydata()), wanted[:, 1])
+        named = [text for text in above.texts if isinstance(text, Annotation) and text.get_text().isdigit()]
+        assert [text.get_text() for text in named] == ["0", "1", "2"]
+        for k, axis in enumerate("xy"):
+            assert same(read(above, axis, [text.xy[k] for text in named]), centres[:3, k])
         marks = [text for text in side.texts if isinstance(text, Annotation)]
         heights = sorted(float(read(side, "y", text.xy[1])) for text in marks)
         assert heights[:3] == pytest.approx([0.101, 0.2032, 0.414])  # clearance, wheel, centre of mass
