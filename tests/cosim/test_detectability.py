@@ -252,3 +252,15 @@ def test_wrong_input_is_one_line(words: tuple[str, ...], told: str, cli: Cli, tm
     assert len(done.stderr.splitlines()) == 1
     assert told in done.stderr
     assert folder_content(tmp_path) == []
+
+
+def test_a_light_robot_slides_far_without_its_rollers_friction(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its bristles at 5 m/s were too fast for the fixed steps, which are chosen before a push is known."""
+    monkeypatch.setattr(search, "STEPS", 2)
+    monkeypatch.setattr(found, "CAUSE_DIRECTIONS", 1)
+    sizes = ("--mass", "22 kg", "--wheel-radius", "3 in", "--wheel-distance", "220 mm", "--outline", "circle 0.45")
+    assert cli("robot", "new", "mine.toml", *sizes, "--height", "0.4 m").returncode == 0
+    few = ("--robots", "1", "--directions", "1", "--hours", "0.01")
+    done = cli("detectability", "mine.toml", *few)
+    assert done.returncode == 0, done.stderr
+    assert "with a hundredth of the rollers' friction" in done.stdout

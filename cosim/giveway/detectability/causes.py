@@ -68,8 +68,17 @@ def _gears(whose: Subject) -> Changed:
 
 
 def _rollers(whose: Subject) -> Changed:
+    # Their stiffness at rest, too: bristles that stay as stiff follow a sliding robot faster than fixed steps can.
     known = float(whose.controller["friction.coulomb_torque"])
-    return Changed(_each("roller.friction_scale", LEAST_FRICTION), {"friction.coulomb_torque": LEAST_FRICTION * known})
+    return Changed(
+        {**_each("roller.friction_scale", LEAST_FRICTION), **_least(whose.testbed, "testbed", "roller")},
+        {"friction.coulomb_torque": LEAST_FRICTION * known, **_least(whose.controller, "controller", "estimator")},
+    )
+
+
+def _least(values: Mapping[str, Value], model: str, group: str) -> dict[str, Value]:
+    names = [f"{group}.presliding_stiffness[{wheel}]" for wheel in range(WHEELS)]
+    return {name: max(LEAST_FRICTION * float(values[name]), table(model)[name].minimum) for name in names}
 
 
 def _thresholds(whose: Subject) -> Changed:
