@@ -12,11 +12,13 @@ from typing import Any
 
 import giveway
 import nbformat
+import numpy as np
 import pytest
+from figure_labels import check_panels, check_planted, curve
 from giveway.base.in_notebooks import ShownInNotebooks
 from giveway.drivetrain.analysis import analyse
 from giveway.drivetrain.model import read
-from giveway.notebook.page import html_of
+from giveway.notebook.page import _designs, _forces, html_of
 from giveway.scenario.plan import Pushes, TimedPush
 from giveway.simulation.result import Result
 from giveway.simulation.run_warnings import RunWarning
@@ -81,18 +83,32 @@ def test_texts_from_outside_are_escaped(short_run: Result) -> None:
 def test_a_run_of_pushes_shows_them() -> None:
     push = TimedPush(20.0, 0.0, -0.176, 0.0, 0.3, 0.2)
     scenario = giveway.Scenario("by hand", 0.7, bumper="none", push=Pushes((push,)))
-    page = shown(giveway.run(scenario, engine="native"))
+    result = giveway.run(scenario, engine="native")
+    page = shown(result)
     assert page.seen.count("table") == 2
     assert any("20 N at 0.3 s" in text for text in page.texts)
+    figure = _forces(result)
+    forces = [
+        np.hypot(*(result.traces[f"{name}_{axis}"].values for axis in "xy"))
+        for name in ("testbed.push.force", "controller.estimate.force")
+    ]
+    curves = [curve(result.traces["time"].values, "s", force, "N") for force in forces]
+    check_planted(figure, lambda: check_panels(figure, [curves]))
 
 
 def test_a_study_shows_its_designs(tmp_path: Path) -> None:
     study = small_study(name=EVIL).objective("peak force of the run").objective("detection time")
-    page = shown(study.run(tmp_path / "study", progress=False))
+    answers = study.run(tmp_path / "study", progress=False)
+    page = shown(answers)
     assert "script" not in page.seen
     assert any(text.startswith(EVIL) for text in page.texts)
     assert any(text.startswith("Recommended") for text in page.texts)
     assert len(page.images) == 1
+    figure = _designs(answers)
+    force, time_ms = answers.values[:, answers.columns[:2]].T
+    chosen = [slice(None), answers.pareto, answers.order[:1]]
+    curves = [curve(force[rows], "N", time_ms[rows], "ms") for rows in chosen]
+    check_planted(figure, lambda: check_panels(figure, [curves]))
 
 
 def test_a_study_without_a_winner_shows_itself(tmp_path: Path) -> None:

@@ -281,10 +281,10 @@ reference = [500.0]
 
 
 @pytest.mark.parametrize(("old", "new", "line", "words"), [
-    ("designs = 3000", "designs = 3", 17, "optimise.designs: 3 is not allowed; allowed: a whole number from 30 to"),
+    ("designs = 3000", "designs = 20", 17, "optimise.designs: 20 is not allowed; allowed: a whole number from 30 to"),
     ("population = 30", "population = 3", 18, "optimise.population: 3 is not allowed; allowed: a whole number from 4"),
     ("[500.0]", "[500.0, 1.0]", 19, "allowed: a list of 1 numbers, one for each objective"),
-    ("[500.0]", '["far"]', 19, "optimise.reference[0]: far is not allowed; allowed: a finite number N"),
+    ("[500.0]", '["far"]', 19, "optimise.reference[0]: far is not allowed; allowed: a finite number"),
     ("population", "populatoin", 18, "optimise.populatoin: populatoin is unknown"),
     ("[optimise]", "[optimise]\ngrowth = 2.0", 17, "optimise.growth: 2.0 is not allowed; allowed: a number from 0"),
 ])  # fmt: skip

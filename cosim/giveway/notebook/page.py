@@ -28,6 +28,7 @@ from giveway.simulation.summary import (
 from giveway.study import tables
 from giveway.study.advice import MARGIN_HEADER, advice
 from giveway.study.answers import Answers
+from giveway.study.figures import axis_label
 
 __all__ = ["html_of"]
 
@@ -130,7 +131,7 @@ def _forces(result: Result) -> Figure:
         ):
             x, y = (traces[f"{name}_{axis}"].values for axis in "xy")
             axes.plot(traces["time"].values, (x**2 + y**2) ** 0.5, label=label, color=colour)
-        axes.set(xlabel="time, s", ylabel="force from outside, N")
+        axes.set(xlabel="time (s)", ylabel="force from outside (N)")
         axes.legend()
     return figure
 
@@ -138,11 +139,12 @@ def _forces(result: Result) -> Figure:
 def _designs(answers: Answers) -> Figure:
     """All designs: the first two objectives, or the first over what varies first."""
     goals = answers.columns[:2]
-    names = [tables.goal_header(answers)[1 + len(answers.setup.varied) + j] for j in range(len(goals))]
+    names = [axis_label(answers.goal_name(j), answers.goal_unit(j).shown) for j in goals]
     values = [answers.shown_values(j) for j in goals]
     if len(goals) == 1 and answers.setup.varied:
+        first = answers.setup.varied[0]
         values.insert(0, answers.shown_designs(0))
-        names.insert(0, tables.goal_header(answers)[1])
+        names.insert(0, axis_label(first.quantity.name, first.unit.shown))
     across, up = (values * 2)[:2]
     with context(STYLE):
         figure = Figure(figsize=(6.4, 3.4), layout="constrained")
