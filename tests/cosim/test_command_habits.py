@@ -5,10 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import os
-import pty
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -23,6 +20,7 @@ from giveway.base.terminal import EXIT_CODES, FAILED, INTERRUPTED, WRONG_INPUT
 from giveway.cli import app
 from giveway.doctor import findings
 from giveway.simulation import runner
+from terminal_process import at_a_terminal
 
 PACKAGE = Path(giveway.__file__).parent
 RUN = ("run", "motionless", "--duration", "0.5", "--engine", "native", "--out", "run")
@@ -187,34 +185,20 @@ def test_exit_codes_are_told(cli: Cli) -> None:
     assert all(f"{code}: {words}" in said for code, words in EXIT_CODES.items())
 
 
-def at_a_terminal(*arguments: str, **environment: str) -> bytes:
-    """What a command shows where stdout is a terminal."""
-    ours, theirs = pty.openpty()
+def shown_at_a_terminal(*arguments: str, **environment: str) -> bytes:
     kept = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "FORCE_COLOR")}
-    command = [sys.executable, "-m", "giveway", *arguments]
-    with subprocess.Popen(command, stdout=theirs, env={**kept, "TERM": "xterm-256color", **environment}) as process:
-        os.close(theirs)
-        shown = b""
-        while True:
-            try:
-                part = os.read(ours, 4096)
-            except OSError:  # Linux says so when the other end is closed
-                break
-            if not part:
-                break
-            shown += part
-    os.close(ours)
-    assert process.returncode == 0
+    code, shown = at_a_terminal(arguments, "stdout", environment={**kept, "TERM": "xterm-256color", **environment})
+    assert code == 0
     return shown
 
 
 def test_colours_are_for_terminals_that_want_them(process: Cli) -> None:
     line = ("variables", "testbed", "--grep", "wall")
-    assert b"\x1b[" in at_a_terminal(*line)
-    assert b"\x1b" not in at_a_terminal(*line, NO_COLOR="1")
-    assert b"\x1b" not in at_a_terminal(*line, "--json")
+    assert b"\x1b[" in shown_at_a_terminal(*line)
+    assert b"\x1b" not in shown_at_a_terminal(*line, NO_COLOR="1")
+    assert b"\x1b" not in shown_at_a_terminal(*line, "--json")
     assert "\x1b" not in process(*line).stdout + process("--help").stdout
-    assert not re.search(rb"\x1b\[[\d;]*(3|4|9)\d", at_a_terminal("--help", NO_COLOR="1"))
+    assert not re.search(rb"\x1b\[[\d;]*(3|4|9)\d", shown_at_a_terminal("--help", NO_COLOR="1"))
 
 
 def test_a_new_robot_by_either_name(cli: Cli, tmp_path: Path) -> None:

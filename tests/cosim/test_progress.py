@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import pty
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,32 +16,14 @@ from giveway.study import answers
 from giveway.study.engine import Outcome, plan_runs
 from giveway.study.messages import overview, sizes
 from study_helpers import small_study
-
-
-def at_a_terminal(arguments: list[str], folder: Path) -> tuple[int, str]:
-    """Exit code and what the command line shows on a terminal of its own."""
-    ours, theirs = pty.openpty()
-    command = [sys.executable, "-m", "giveway", *arguments]
-    with subprocess.Popen(command, cwd=folder, stdin=theirs, stdout=subprocess.DEVNULL, stderr=theirs) as process:
-        os.close(theirs)
-        shown = b""
-        while True:
-            try:
-                part = os.read(ours, 4096)
-            except OSError:  # Linux says so when the other end is closed
-                break
-            if not part:
-                break
-            shown += part
-    os.close(ours)
-    return process.returncode, shown.decode()
+from terminal_process import at_a_terminal
 
 
 def test_a_run_shows_bars_at_a_terminal(tmp_path: Path) -> None:
-    code, shown = at_a_terminal(["run", "motionless", "--duration", "0.1", "--out", "out"], tmp_path)
+    code, shown = at_a_terminal(["run", "motionless", "--duration", "0.1", "--out", "out"], "stderr", folder=tmp_path)
     assert code == 0
     for word in ("simulation", "report", "100 %"):
-        assert word in shown
+        assert word in shown.decode()
 
 
 def test_elsewhere_every_part_of_the_work_is_a_line(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import contextlib
 import os
 import select
@@ -21,7 +22,7 @@ _CHUNK = 4096
 _END_S = 5.0  # a program that is told to end may take so long
 
 
-class _Line:
+class _Line(abc.ABC):
     """Reading and writing of file descriptors."""
 
     def __init__(self, reads: int, writes: int) -> None:
@@ -48,8 +49,9 @@ class _Line:
             raise LineError(self._gone(None))
         return data
 
+    @abc.abstractmethod
     def _gone(self, error: OSError | None) -> str:
-        raise NotImplementedError
+        """Why nothing comes any more."""
 
 
 class ProgramLine(_Line):
