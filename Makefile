@@ -231,8 +231,8 @@ build/importers/tools-installed: importers/requirements.lock importers/system_pa
 	@touch $@
 
 # A second Modelica tool; it needs Python 3.12.
-build/verify/modelica-installed: verify/modelica/requirements.lock verify/modelica/python312.sh build/verify/tools-installed
-	"$$(bash verify/modelica/python312.sh)" -m venv build/verify/modelica
+build/verify/modelica-installed: verify/modelica/requirements.lock verify/python.sh build/verify/tools-installed
+	"$$(bash verify/python.sh 3.12)" -m venv build/verify/modelica
 	build/verify/modelica/bin/pip install --quiet --require-hashes -r verify/modelica/requirements.lock
 	printf '#!/bin/sh\nexec "%s" "$$@"\n' "$(CURDIR)/build/verify/modelica/bin/python" > build/verify/tools/bin/modelica-python
 	chmod +x build/verify/tools/bin/modelica-python

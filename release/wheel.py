@@ -14,13 +14,14 @@ import tempfile
 import tomllib
 import zipfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from release import archives, sbom
 from release.parts import MODELS, ROOT, Part, parts_of
 from release.platforms import PLATFORMS, Platform
 
-__all__ = ["BUILD", "contents", "file_name", "gather", "metadata", "version", "write"]
+__all__ = ["BUILD", "Compiled", "contents", "file_name", "gather", "metadata", "version", "write"]
 
 BUILD = ROOT / "build"
 _DELIVERED = "giveway/native"
@@ -32,6 +33,19 @@ def version() -> str:
 
 
 Inputs = Mapping[str, bytes]
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """Where the compiled files of a wheel come from: the folder of the FMUs, and the batch library."""
+
+    fmus: Path
+    library: Path
+
+
+def _of_all(platform: Platform) -> Compiled:
+    """From the platforms' build trees."""
+    return Compiled(BUILD / "fmus_all", BUILD / "platforms" / platform.name / "binaries" / platform.library)
 
 
 def _python() -> dict[str, bytes]:
@@ -75,13 +89,13 @@ def gather() -> dict[str, bytes]:
     return found
 
 
-def _fmus(platform: Platform) -> dict[str, bytes]:
-    """The FMUs of `make fmus ALL=1` without the libraries of other platforms, with which a wheel would have 9 MB."""
+def _fmus(folder: Path, platform: Platform) -> dict[str, bytes]:
+    """The FMUs without the libraries of other platforms, with which a wheel would have 9 MB."""
     found = {}
     for model in MODELS:
         for fmi in (2, 3):
             name = f"giveway_{model}_fmi{fmi}.fmu"
-            found[f"{_DELIVERED}/{name}"] = _for_one(BUILD / "fmus_all" / name, fmi, platform)
+            found[f"{_DELIVERED}/{name}"] = _for_one(folder / name, fmi, platform)
     return found
 
 
@@ -123,12 +137,11 @@ def _licences(parts: Sequence[Part]) -> dict[str, bytes]:
     return found | {part.file: part.text().encode() for part in parts}
 
 
-def contents(common: Inputs, platform: Platform) -> dict[str, bytes]:
+def contents(common: Inputs, platform: Platform, compiled: Compiled) -> dict[str, bytes]:
     """All files of the wheel but RECORD."""
     found = dict(common)
-    library = BUILD / "platforms" / platform.name / "binaries" / platform.library
-    found[f"{_DELIVERED}/{platform.library}"] = library.read_bytes()
-    found |= _fmus(platform)
+    found[f"{_DELIVERED}/{platform.library}"] = compiled.library.read_bytes()
+    found |= _fmus(compiled.fmus, platform)
     parts, holds = _parts(platform)
     folder = f"giveway-{version()}.dist-info"
     licences = _licences(parts)
@@ -148,9 +161,9 @@ def file_name(platform: Platform) -> str:
     return f"giveway-{version()}-py3-none-{platform.tag}.whl"
 
 
-def write(common: Inputs, platform: Platform, folder: Path) -> Path:
-    """Write the wheel of ``platform`` to ``folder``."""
-    found = contents(common, platform)
+def write(common: Inputs, platform: Platform, folder: Path, compiled: Compiled | None = None) -> Path:
+    """Write the wheel of ``platform`` to ``folder``; ``compiled``: otherwise from the platforms' build trees."""
+    found = contents(common, platform, compiled or _of_all(platform))
     record = f"giveway-{version()}.dist-info/RECORD"
     found[record] = _record(found, record)
     path = folder / file_name(platform)

@@ -1,10 +1,9 @@
-"""The wheels of `make wheels`: the same bytes twice, faults found, and a demonstration in a bare environment."""
+"""The files of `make wheels` and `make release`: the same bytes twice, and faults found."""
 
 from __future__ import annotations
 
 import ast
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -14,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from release import archives, check, parts, sbom
+from release.platforms import PLATFORMS
 
 ROOT = Path(__file__).parents[2]
-DIST = ROOT / "dist"
 CONTENTS = {"b.txt": b"b" * 1000, "a/c.txt": b"c"}
 
 
@@ -84,69 +83,24 @@ def test_the_package_can_be_imported_where_there_is_no_posix() -> None:
         assert path.name == "system.py" or "sched_getaffinity" not in path.read_text(encoding="utf-8"), path
 
 
-@pytest.fixture(scope="module")
-def wheels() -> list[Path]:
-    """Made by `make wheels`; deep, because they are cross-compiled."""
-    subprocess.run(["make", "wheels"], cwd=ROOT, check=True, capture_output=True, timeout=7200)
-    return sorted(DIST.glob("giveway-*.whl"))
-
-
 @pytest.mark.deep
-def test_wheels_are_sound_reproducible_and_changed_ones_are_not(wheels: list[Path], tmp_path: Path) -> None:
-    assert len(wheels) == 5
-    before = {path.name: path.read_bytes() for path in wheels}
-    assert [fault for path in wheels for fault in check.faults(path)] == []
+def test_wheels_are_sound_reproducible_and_changed_ones_are_not(wheels: dict[str, Path], tmp_path: Path) -> None:
+    assert wheels.keys() == {platform.tag for platform in PLATFORMS}
+    before = {path.name: path.read_bytes() for path in wheels.values()}
+    assert [fault for path in wheels.values() for fault in check.faults(path)] == []
     subprocess.run([sys.executable, "-m", "release", "wheels"], cwd=ROOT, check=True, capture_output=True)
-    assert {path.name: path.read_bytes() for path in wheels} == before
+    assert {path.name: path.read_bytes() for path in wheels.values()} == before
     # One for ARM64 with the library of x86-64, and another under its name.
-    names = {path.stem.rpartition("-")[2]: path for path in wheels}
-    shutil.copy(names["manylinux_2_17_x86_64"], tmp_path / names["manylinux_2_17_aarch64"].name)
-    found = "; ".join(check.faults(tmp_path / names["manylinux_2_17_aarch64"].name))
+    wrong = tmp_path / wheels["manylinux_2_17_aarch64"].name
+    shutil.copy(wheels["manylinux_2_17_x86_64"], wrong)
+    found = "; ".join(check.faults(wrong))
     assert "WHEEL has the tags" in found
     assert "is for the processor" in found
 
 
 @pytest.mark.deep
-def test_libraries_of_other_platforms_have_the_same_bits(wheels: list[Path]) -> None:
+def test_libraries_of_other_platforms_have_the_same_bits(wheels: dict[str, Path]) -> None:
     """Under qemu and wine."""
-    assert len(wheels) == 5
+    assert wheels
     subprocess.run(["bash", "fmu/platforms/system_packages.sh"], cwd=ROOT, check=True, capture_output=True)
     subprocess.run([sys.executable, "-m", "release.abroad"], cwd=ROOT, check=True, timeout=3600)
-
-
-def interpreter(version: str) -> Path:
-    """On PATH, or of pyenv; otherwise the test is skipped, and says which one is missing."""
-    folders = sorted(Path.home().glob(f".pyenv/versions/{version}.*/bin"))
-    for folder in (None, *folders):
-        found = shutil.which(f"python{version}", path=folder and str(folder))
-        if (
-            found
-            and subprocess.run([found, "-c", "import ensurepip"], check=False, capture_output=True).returncode == 0
-        ):
-            return Path(found)
-    pytest.skip(f"no Python {version} on this machine")
-
-
-@pytest.mark.deep
-@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13"])
-def test_a_bare_environment_runs_the_demonstration(wheels: list[Path], version: str, tmp_path: Path) -> None:
-    """Away from the repository, and without compilers: PATH holds nothing but the environment."""
-    subprocess.run([interpreter(version), "-m", "venv", tmp_path / "bare"], check=True)
-    programs = tmp_path / "bare" / "bin"
-    (wheel,) = (path for path in wheels if "manylinux_2_17_x86_64" in path.name)
-    environment = {"PATH": str(programs), "HOME": str(tmp_path)}
-    environment |= {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "SSL_", "REQUESTS_"))}
-
-    def call(*command: object) -> str:
-        answer = subprocess.run(
-            [str(one) for one in command], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
-        )
-        assert answer.returncode == 0, answer.stdout + answer.stderr
-        return answer.stdout
-
-    call(programs / "pip", "install", "--quiet", "--only-binary", ":all:", wheel)
-    assert "detection time" in call(programs / "giveway", "demo", "--out", "demo")
-    assert (tmp_path / "demo" / "report.html").is_file()
-    doctor = call(programs / "giveway", "doctor")
-    assert "extra fmu" in doctor
-    assert "has the bits that it should have" in doctor
