@@ -28,7 +28,7 @@ COMMENT = {
 }
 PRAGMA = re.compile(r"  # (?:type: ignore|noqa|fmt: skip).*$")
 # Generated files, and names of users' files in examples.
-OTHERS = {"plant_parameters.hpp", "part.cpp", "mine.toml", "case.toml", "robot.toml"}
+OTHERS = {"plant_parameters.hpp", "part.cpp", "mine.toml", "case.toml", "robot.toml", "porter.toml", "tuned.toml"}
 OWN_TEST = "tests/test_lint_text.py"
 
 

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pyarrow
+import pyarrow.parquet
 import pytest
 from arc_logs import arc_log, csv_lines, sine
 from giveway.base import native
@@ -75,10 +77,35 @@ def test_the_log_of_a_run(robot: Robot, write: Callable[[list[str]], Path]) -> N
     wanted, found = read_log(write(own), robot), read_log(write([*comments, ",".join(heads), *own[1:]]), robot)
     for name in ("time_s", "wheel_angle_rad", "torque_nm"):
         np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
-    with pytest.raises(FileError, match=r"line 5: torque_1_nm is nan"):
+    with pytest.raises(FileError, match=r"line 5: torque_1 \[N\.m\] is nan"):
         read_log(write([*comments, ",".join(heads), own[1], "0.5,1,2,3,0.1,nan,0.2", *own[2:]]), robot)
     with pytest.raises(FileError, match=r"line 3: there is no column for torque_2"):
         read_log(write([*comments, ",".join(heads[:-1]), *own[1:]]), robot)
+
+
+def test_a_parquet_log_is_read_like_a_csv(robot: Robot, tmp_path: Path) -> None:
+    """As `giveway run --log` writes it, units beside the names; rows count from 1."""
+    columns = {"time": SHORT.time_s} | {f"encoder_{i}": np.rint(SHORT.wheel_angle_rad[:, i] * 1e3) for i in range(3)}
+    columns |= {f"torque_{i}": SHORT.torque_nm[:, i] for i in range(3)}
+    units = {"time": "s"} | {f"torque_{i}": "N.m" for i in range(3)}
+
+    def written(name: str) -> Path:
+        fields = [pyarrow.field(one, pyarrow.float64(), metadata={"units": units.get(one, "1")}) for one in columns]
+        path = tmp_path / name
+        pyarrow.parquet.write_table(pyarrow.table(list(columns.values()), schema=pyarrow.schema(fields)), path)
+        return path
+
+    lines = table(**{f"{name} [{units[name]}]" if name in units else name: one for name, one in columns.items()})
+    (tmp_path / "log.csv").write_text("\n".join(lines), encoding="utf-8")
+    wanted, found = read_log(tmp_path / "log.csv", robot), read_log(written("log.parquet"), robot)
+    for name in ("time_s", "wheel_angle_rad", "torque_nm"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
+    columns["torque_1"] = np.where(np.arange(len(SHORT.time_s)) == 6, math.nan, columns["torque_1"])
+    with pytest.raises(FileError, match=r"row 7: torque_1 \[N\.m\] is nan"):
+        read_log(written("nan.parquet"), robot)
+    del columns["torque_2"]
+    with pytest.raises(FileError, match="the columns: there is no column for torque_2"):
+        read_log(written("less.parquet"), robot)
 
 
 def test_a_log_is_cut_where_the_robot_stands() -> None:
@@ -172,5 +199,8 @@ def test_unreadable_files(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(FileError, match="no such file"):
         read_log(tmp_path / "none.csv", robot)
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00\x01" * 10)
-    with pytest.raises(FileError, match="cannot be read"):
+    with pytest.raises(FileError, match="cannot be read: it is no text; give a log as CSV or Parquet"):
         read_log(tmp_path / "binary.csv", robot)
+    (tmp_path / "broken.parquet").write_bytes(b"PAR1" * 10)
+    with pytest.raises(FileError, match=r"broken\.parquet: cannot be read: .*give a log as CSV or Parquet"):
+        read_log(tmp_path / "broken.parquet", robot)

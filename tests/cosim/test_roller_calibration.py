@@ -268,7 +268,7 @@ ARC = (1.0, 0.0, 0.0)
         (lambda: arc_log(ARC, zigzag((0.1, 0.25), 4.0), 32.0, noise_nm=0.3), "never slow"),
         (lambda: arc_log(ARC, zigzag((0.1, 0.1), 4.0), 32.0), "one speed only"),
         (lambda: arc_log(ARC, lambda t: 2.0 * t + 0.8 * np.sin(t), 30.0, noise_nm=0.3), "one way only"),
-        (lambda: arc_log(ARC, sine(0.5, 0.5), 4.0), "too short: "),
+        (lambda: arc_log(ARC, sine(0.5, 0.5), 4.0), "5 numbers need 10 ("),
         (lambda: arc_log(ARC, sine(1.5, 0.1), 20.0, noise_nm=8.0), "too noisy ("),
         (lambda: dataclasses.replace(GOOD, torque_nm=4.0 * np.roll(GOOD.torque_nm, 1250, axis=0)), "explains"),
         (lambda: arc_log(ARC, sine(1.5, 0.1), 0.3), "too short"),
@@ -310,6 +310,13 @@ def log_file(tmp_path: Path) -> Path:
     path = tmp_path / "drive.csv"
     path.write_text("\n".join(csv_lines(GOOD)))
     return path
+
+
+def test_an_unknown_shipped_robot_is_named(cli: Cli, log_file: Path, tmp_path: Path) -> None:
+    done = cli("calibrate", "drive.csv", "--robot", "triky", "--out", "new/mine.toml")
+    assert done.returncode == 2
+    assert "--robot: triky is unknown; allowed: delivery" in done.stderr
+    assert not (tmp_path / "new").exists()
 
 
 def test_command_writes_robot_file_and_picture(

@@ -44,7 +44,8 @@ def test_a_scenario_to_start_from_runs(process: Cli, tmp_path: Path) -> None:
 def test_a_study_to_start_from_is_checked(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     assert cli("new", "study", str(path)).returncode == 0
-    assert "216 runs" in cli("sweep", str(path), "--check").stdout  # 12 designs, 9 samples, 2 collisions
+    # 9 designs, 4 samples, 2 collisions, and none to tell how sure it is: half a minute on one slow processor.
+    assert cli("sweep", str(path), "--check").stdout.strip().endswith("72 runs")
 
 
 @pytest.mark.parametrize("kind", ["scenario", "study"])

@@ -68,6 +68,8 @@ WRONG = {  # what is replaced, by what, the line, and words of the message
     "no such side": ("edge = 0", "edge = 7", 11, ("collision[0].edge", "from 0 to 2")),
     "scenario out of range": ("duration = 0.7", "duration = -1.0", 5, ("scenario.duration", "0 to 3600")),
     "relative above one": ("relative = 0.1", "relative = 1.5", 25, ("tolerance[0].relative", "below 1")),
+    "samples of nothing": ('[[tolerance]]\nquantity = "testbed.bumper.spring_rate"\nrelative = 0.1',
+        "[tolerances]\nsamples = 3", 24, ("tolerances.samples: 3", "[[tolerance]]", "noise_seeds")),
     "tolerance twice": ('relative = 0.1', 'relative = 0.1\nabsolute = 3.0', 25, ("tolerance[0].relative", "one of")),
     "set by the collision": ("testbed.bumper.latch_force", "testbed.slider.mass", 18,
         ("vary[0].quantity", "collision.mass")),

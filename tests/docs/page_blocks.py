@@ -5,7 +5,8 @@
     ```{code-block} toml       with a `:caption:`, is written to the file of that name
 
 A block in another language, or one that is indented, shows something and runs nothing; any other is run, or
-has a line `% not run: why` above it.
+has a line `% not run: why` above it, `% takes long: why` (only the deep tests run it, and no block that needs it stands
+without), or `% needs PROGRAM, PROGRAM` (run where they are).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import doctest
 import io
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -62,12 +64,19 @@ def blocks(page: str) -> Iterator[Block]:
             yield Block(first + 1, fence["language"], above, "\n".join(body) + "\n")
 
 
-def run_page(name: str, folder: Path) -> None:
-    """Run the blocks of ``name`` in ``folder``; AssertionError with file and line of what went otherwise."""
+def run_page(name: str, folder: Path, *, whole: bool = True) -> None:
+    """Run the blocks of ``name`` in ``folder``; AssertionError with file and line of what went otherwise.
+
+    If not the ``whole`` page, without the blocks that take long.
+    """
     names: dict[str, object] = {}
     for block in blocks((SITE / name).read_text(encoding="utf-8")):
         where = f"docs/site/{name}:{block.line}"
-        if block.above.startswith("% not run: "):
+        if block.above.startswith("% not run: ") or (block.above.startswith("% takes long: ") and not whole):
+            continue
+        if block.above.startswith("% needs ") and not all(
+            map(shutil.which, block.above.removeprefix("% needs ").split(", "))
+        ):
             continue
         if block.caption:
             (folder / block.caption).write_text(block.text, encoding="utf-8")

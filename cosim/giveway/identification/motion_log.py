@@ -1,4 +1,4 @@
-"""A user's own log of wheel angles and wheel torques, from a CSV file.
+"""A user's own log of wheel angles and wheel torques, from a CSV or Parquet file.
 
 Columns are found by their names, in any order; other columns are ignored:
 
@@ -15,17 +15,16 @@ torque turns it towards positive angles.
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import itertools
 import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 from giveway.base.errors import FileError, nearest_names
+from giveway.identification.log_rows import LogRows, read_rows
 from giveway.robot.robot_file import Robot
 from giveway.robot.wheels import WHEELS
 
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["MotionLog", "behind_drivetrain", "counts_to_rad", "pieces", "read_log"]
 
-ROWS_MIN = 10  # a shorter file is wrong; the fit decides whether a log is long enough
 GAP_STEPS = 10.0  # a step longer than this many usual steps is a gap in the log
 COUNT_WRAP = 2.0**32
 STANDING_S = 0.8  # without motion: the robot stands between two arcs, it does not just turn back
@@ -78,32 +76,27 @@ def read_log(path: Path, robot: Robot) -> MotionLog:
     """Read ``path``; FileError names file, line and column of the fault.
 
     Args:
-        path: a CSV file with a header line; see the module for its columns.
+        path: a CSV file with a header line, or a Parquet file; see the module for its columns.
         robot: for encoder counts, and for the stiffness between motor and wheel.
     """
     import numpy as np
 
     try:
         content = path.read_bytes()
-        lines = content.decode("utf-8-sig").splitlines()
     except FileNotFoundError:
-        raise FileError(path, "no such file", "give the path of a log (CSV)") from None
-    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(path, "no such file", "give the path of a log (CSV, Parquet)") from None
+    except OSError as error:
         raise FileError(path, f"cannot be read: {error}") from None
-    comments = sum(1 for _ in itertools.takewhile(lambda line: line.startswith("#"), lines))
-    head = comments + 1
-    header = [_own_name(name.strip()) for name in next(csv.reader(lines[comments:head]), [])]
-    time = _find(path, head, header, r"time", _TIME)
+    rows = read_rows(path, content)
+    header = [_own_name(name.strip()) for name in rows.header]
+    time = _find(rows, header, r"time", _TIME)
     kind = "motor" if any(name.startswith("motor_angle_") for name in header) else "wheel"
-    angles = [
-        _find(path, head, header, f"{kind}_angle_{wheel}", dict.fromkeys(_ANGLE_UNITS, 1.0)) for wheel in range(WHEELS)
-    ]
-    torques = [_find(path, head, header, f"torque_{wheel}", _TORQUE) for wheel in range(WHEELS)]
-    columns = [time, *angles, *torques]
-    values, numbers = _values(path, lines, head, columns)
+    angles = [_find(rows, header, f"{kind}_angle_{wheel}", dict.fromkeys(_ANGLE_UNITS, 1.0)) for wheel in range(WHEELS)]
+    torques = [_find(rows, header, f"torque_{wheel}", _TORQUE) for wheel in range(WHEELS)]
+    values, numbers = rows.values([column.index for column in (time, *angles, *torques)])
 
     time_s = values[:, 0] * _TIME[time.unit]
-    _check_time(path, time_s, numbers)
+    _check_time(rows, time_s, numbers)
     torque = np.stack([values[:, 4 + i] * _TORQUE[column.unit] for i, column in enumerate(torques)], axis=1)
     angle = np.stack([_radians(values[:, 1 + i], column, robot) for i, column in enumerate(angles)], axis=1)
     if kind == "motor":
@@ -166,72 +159,43 @@ def _own_name(name: str) -> str:
     return f"{found[1]}_{found[2].replace('.', '').lower()}" if found else name
 
 
-def _find(path: Path, line: int, header: list[str], quantity: str, units: Mapping[str, float]) -> _Column:
+def _find(rows: LogRows, header: list[str], quantity: str, units: Mapping[str, float]) -> _Column:
     """The one column of ``quantity``; its unit is the end of its name."""
     allowed = " or ".join(f"{quantity}_{unit}" for unit in units)
     found = [i for i, name in enumerate(header) if re.fullmatch(rf"{quantity}(_[^_]*)?", name)]
     if not found:
         near = nearest_names(f"{quantity}_{next(iter(units))}", header)
         hint = f" (the header has {' and '.join(near)})" if near else ""
-        raise FileError(path, f"line {line}: there is no column for {quantity}{hint}", f"needed: {allowed}")
+        raise FileError(rows.path, f"{rows.head}: there is no column for {quantity}{hint}", f"needed: {allowed}")
     if len(found) > 1:
         names = " and ".join(header[i] for i in found)
-        raise FileError(path, f"line {line}: {names} say the same thing", f"give one of: {allowed}")
+        raise FileError(rows.path, f"{rows.head}: {names} say the same thing", f"give one of: {allowed}")
     name = header[found[0]]
     unit = name.removeprefix(quantity).removeprefix("_")
     if unit not in units:
         reason = (
-            f"line {line}: column {name} has the unit {unit}" if unit else f"line {line}: column {name} states no unit"
+            f"{rows.head}: column {name} has the unit {unit}" if unit else f"{rows.head}: column {name} states no unit"
         )
-        raise FileError(path, reason, f"allowed: {allowed}")
+        raise FileError(rows.path, reason, f"allowed: {allowed}")
     return _Column(name, found[0], unit)
 
 
-def _values(path: Path, lines: list[str], head: int, columns: list[_Column]) -> tuple[NDArray[np.float64], list[int]]:
-    """The wanted columns, shape (n, columns), and the number in the file of each of the n lines."""
-    import numpy as np
-
-    table: list[list[float]] = []
-    numbers: list[int] = []
-    last = max(column.index for column in columns)
-    for number, line in enumerate(lines[head:], head + 1):
-        if not line.strip():
-            continue
-        row = next(csv.reader([line]))
-        if len(row) <= last:
-            _refuse(path, number, f"{len(row)} values, but {columns[-1].name} and others need {last + 1}")
-        for column in columns:
-            if not _is_finite(row[column.index]):
-                text = row[column.index].strip()
-                _refuse(path, number, f"{column.name} is {text if text else 'empty'}, not a finite number")
-        table.append([float(row[column.index]) for column in columns])
-        numbers.append(number)
-    if len(table) < ROWS_MIN:
-        raise FileError(path, f"has {len(table)} lines of data", f"a log needs at least {ROWS_MIN}")
-    return np.array(table), numbers
-
-
-def _is_finite(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
-
-
-def _check_time(path: Path, time_s: NDArray[np.float64], numbers: list[int]) -> None:
+def _check_time(rows: LogRows, time_s: NDArray[np.float64], numbers: list[int]) -> None:
     import numpy as np
 
     steps = np.diff(time_s)
     back = np.flatnonzero(steps <= 0.0)
     if back.size:
         row = int(back[0]) + 1
-        _refuse(path, numbers[row], f"time goes from {time_s[row - 1]:.9g} s to {time_s[row]:.9g} s; it has to rise")
+        rows.refuse(numbers[row], f"time goes from {time_s[row - 1]:.9g} s to {time_s[row]:.9g} s; it has to rise")
     usual = float(np.median(steps))
     gaps = np.flatnonzero(steps > GAP_STEPS * usual)
     if gaps.size:
         row = int(gaps[0]) + 1
-        reason = f"{steps[row - 1]:.3g} s since the line before, {steps[row - 1] / usual:.0f} times the usual step"
-        _refuse(path, numbers[row], f"{reason}; give the pieces as logs of their own")
+        reason = (
+            f"{steps[row - 1]:.3g} s since the {rows.word} before, {steps[row - 1] / usual:.0f} times the usual step"
+        )
+        rows.refuse(numbers[row], f"{reason}; give the pieces as logs of their own")
 
 
 def _radians(values: NDArray[np.float64], column: _Column, robot: Robot) -> NDArray[np.float64]:
@@ -243,7 +207,3 @@ def _radians(values: NDArray[np.float64], column: _Column, robot: Robot) -> NDAr
     if column.unit == "deg":
         values = np.deg2rad(values)
     return np.asarray(np.unwrap(values))
-
-
-def _refuse(path: Path, line: int, reason: str) -> NoReturn:
-    raise FileError(path, f"line {line}: {reason}")

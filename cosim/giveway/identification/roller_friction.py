@@ -35,6 +35,7 @@ from giveway.base.errors import GivewayError, one_line
 from giveway.identification.disturbance import Limits, find_disturbance
 from giveway.identification.friction_curve import FrictionCurve, friction_curve
 from giveway.identification.roller_fit import (
+    BLOCKS_PER_PARAMETER,
     LONGEST_STEP_S,
     SMOOTHING_S,
     Fit,
@@ -337,8 +338,10 @@ def _too_little(
     if level and slowest * data.model.roller_radius_m <= NEAR_REST * data.zone.speed_mps:
         return _does_not_grow(found, curve, rim)
     if not enough_blocks(found):
-        blocks = f"{found.blocks} blocks of {found.block_s:.2g} s for {len(found.x)} numbers"
-        return f"too short: {seconds:.3g} s away from rest make {blocks}", "drive longer"
+        needed = BLOCKS_PER_PARAMETER * len(found.x)
+        blocks = f"{found.blocks} blocks of {found.block_s:.2g} s, and {len(found.x)} numbers need {needed:g}"
+        longer = f"drive longer, about {seconds * needed / max(found.blocks, 1):.0f} s in all"
+        return f"too short: {seconds:.3g} s away from rest make {blocks}", longer
     if fastest < ALIKE * slowest:
         return (
             f"one speed only, {rim * slowest:.3g} to {rim * fastest:.3g} mm/s: B_r and alpha show only together",

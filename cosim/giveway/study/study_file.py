@@ -184,6 +184,9 @@ def check(
                 raise GivewayError("tolerances.kind", kind, f"sobol: {tolerance.quantity.name} has no ends")
     crowd = crowd_of(drawn, cases, varied, tolerances, bool(tolerances or noise))
     spread = bool(tolerances or noise or crowd)
+    if "samples" in drawn.values and not spread:
+        allowed = 'with a [[tolerance]], noise_seeds = true or robot = "crowd": the samples would all be the same'
+        raise GivewayError("tolerances.samples", drawn.values["samples"], allowed)
     count = drawn.whole("samples", 16) if spread else 0
     report = top.table("report") or Section("report", {}, None)
     judged = cases[0].scenario

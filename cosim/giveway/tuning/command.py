@@ -21,7 +21,10 @@ def tune(
         list[Path],
         typer.Argument(metavar="LOG...", help="Logs in which nothing touched the robot: CSV, Parquet, MCAP."),
     ],
-    robot: Annotated[Path, typer.Option("--robot", metavar="FILE", help="Robot file (TOML) of the robot of the logs.")],
+    robot: Annotated[
+        str,
+        typer.Option("--robot", metavar="FILE|NAME", help="Robot file (TOML) of the logs' robot, or a shipped one."),
+    ],
     false_alarms: Annotated[
         str, typer.Option("--false-alarms", metavar="RATE", help="At most so many, with 95 % confidence: 0.1/h.")
     ],
@@ -50,7 +53,7 @@ def tune(
     from giveway.tuning.tuned import tune_robot
 
     rate = rate_of(false_alarms)
-    path = native.robot_file("--robot", str(robot), Path())
+    path = native.robot_file("--robot", robot)
     wishes = read_wishes(columns, (), None)
     used = default_threads() if threads is None else whole("--threads", threads, 1, THREADS_MAX)
     with working("tuning"):
