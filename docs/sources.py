@@ -19,8 +19,11 @@ INCLUDED = {
     "reference/third_party.md": "THIRD_PARTY.md",
 }
 
-# Programs of the repository that pages show, by their path below the site.
-SHOWN = {"programs/mps2_an386/main.c": "examples/firmware_mps2_an386/main.c"}
+# Programs and texts of the repository that pages show parts of, by their path below the site.
+SHOWN = {
+    "programs/mps2_an386/main.c": "examples/firmware_mps2_an386/main.c",
+    "texts/c_core.txt": "c_core/README.md",
+}
 
 
 def generated_pages() -> dict[str, str]:
@@ -38,9 +41,9 @@ def gather(folder: Path) -> None:
     (folder / "pictures").mkdir(exist_ok=True)
     for picture in sorted((ROOT / "docs").glob("*.png")) + sorted((ROOT / "docs").glob("*.webp")):
         shutil.copy(picture, folder / "pictures" / picture.name)
-    for name, program in SHOWN.items():
+    for name, shown in SHOWN.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / program, folder / name)
+        shutil.copy(ROOT / shown, folder / name)
     for name, text in generated_pages().items():
         path = folder / name
         if path.exists():

@@ -1,6 +1,6 @@
-"""What c_core costs on a microcontroller: flash, RAM, stack, instructions; and the table of it in c_core/README.md.
+"""What c_core costs on a microcontroller: flash, RAM, stack, instructions; and the tables of it in texts.
 
-`.venv/bin/python -m verify.footprint` prints the table.
+`.venv/bin/python -m verify.footprint` prints them.
 """
 
 from __future__ import annotations
@@ -106,6 +106,7 @@ PARTS = {
     "servo": 3,
 }
 SMALL = ("-Os", *FLAGS[1:])
+TABLE_FILE, PARTS_FILE = "c_core/README.md", "docs/site/reference/c_cost.md"
 
 
 def measure(context: Context, target: Target) -> Footprint:
@@ -131,16 +132,16 @@ def measure_parts(context: Context, target: Target) -> dict[str, tuple[int, int]
 
 
 def parts_table(parts: dict[str, tuple[int, int]]) -> str:
-    """The second table of c_core/README.md."""
+    """The table of `PARTS_FILE`."""
     lines = ["| Flash on Cortex-M4F, bytes: a program that calls | -O2 | -Os |", "|---|---:|---:|"]
     lines += [f"| {name} | {fast:,} | {small:,} |" for name, (fast, small) in parts.items()]
     return "".join(f"{line}\n" for line in lines)
 
 
 def check_parts(root: Path, parts: dict[str, tuple[int, int]]) -> None:
-    """`RungFailed` unless c_core/README.md shows this table."""
-    if parts_table(parts) not in (root / "c_core" / "README.md").read_text(encoding="utf-8"):
-        raise RungFailed(f"c_core/README.md does not show what was measured:\n{parts_table(parts)}")
+    """`RungFailed` unless `PARTS_FILE` shows this table."""
+    if parts_table(parts) not in (root / PARTS_FILE).read_text(encoding="utf-8"):
+        raise RungFailed(f"{PARTS_FILE} does not show what was measured:\n{parts_table(parts)}")
 
 
 def _link(
@@ -248,7 +249,7 @@ def _deepest(name: str, frames: dict[str, int], calls: dict[str, set[str]], path
 
 
 def table(measured: dict[str, Footprint]) -> str:
-    """The table of c_core/README.md."""
+    """The table of `TABLE_FILE`."""
     names = [name.replace("cortex-m", "Cortex-M").replace("4f", "4F") for name in measured]
     lines = [f"| | {' | '.join(names)} | target, M4F |", f"|---|{'---:|' * (len(names) + 1)}"]
     for field, text in ROWS.items():
@@ -258,22 +259,22 @@ def table(measured: dict[str, Footprint]) -> str:
 
 
 def check_table(root: Path, measured: dict[str, Footprint]) -> None:
-    """`RungFailed` unless c_core/README.md shows the numbers measured for these machines."""
-    readme = (root / "c_core" / "README.md").read_text(encoding="utf-8")
+    """`RungFailed` unless `TABLE_FILE` shows the numbers measured for these machines."""
+    readme = (root / TABLE_FILE).read_text(encoding="utf-8")
     shown = [_cells(line) for line in readme.splitlines() if line.startswith("| ")]
     (heading, *rows) = [_cells(line) for line in table(measured).splitlines() if not line.startswith("|---")]
     columns = next((cells for cells in shown if cells[-1:] == heading[-1:]), None)
     if columns is None:
-        raise RungFailed("c_core/README.md has no table of the footprint")
+        raise RungFailed(f"{TABLE_FILE} has no table of the footprint")
     wrong = []
     for row in rows:
         line = next((cells for cells in shown if cells[0] == row[0]), None)
         for name, value in zip(heading[1:], row[1:], strict=True):
             found = line[columns.index(name)] if line else "nothing"
             if found != value:
-                wrong.append(f"{row[0]}, {name}: measured {value}, c_core/README.md says {found}")
+                wrong.append(f"{row[0]}, {name}: measured {value}, {TABLE_FILE} says {found}")
     if wrong:
-        raise RungFailed("\n".join([*wrong, "python -m verify.footprint prints the table anew"]))
+        raise RungFailed("\n".join([*wrong, "python -m verify.footprint prints the tables anew"]))
 
 
 def _cells(line: str) -> list[str]:

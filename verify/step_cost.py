@@ -1,6 +1,7 @@
 """What a 1 ms step costs on this machine: c_core's against the same step written with Eigen.
 
-`.venv/bin/python -m verify.step_cost` prints the table of c_core/README.md, after `make build`; `make bench` does.
+`.venv/bin/python -m verify.step_cost` prints the table of docs/site/reference/c_cost.md, after `make build`, and `make
+bench` does.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def _instructions(context: Context, program: Path, function: str) -> float:
 
 
 def table(costs: dict[str, Cost]) -> str:
-    """The table of c_core/README.md."""
+    """The table of docs/site/reference/c_cost.md."""
     own, eigen = costs["c_core"], costs["eigen"]
     rows = (
         ("ns per step", own.nanoseconds, eigen.nanoseconds),

@@ -1,4 +1,4 @@
-"""What c_core costs on a Cortex-M4F is what its README says; `make verify` measures the other processors."""
+"""What c_core costs on a Cortex-M4F is what its texts say; `make verify` measures the other processors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from verify.targets import TARGETS
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_readme_shows_what_is_measured(tmp_path: Path) -> None:
+def test_the_texts_show_what_is_measured(tmp_path: Path) -> None:
     context = Context(ROOT, tmp_path, os.environ["PATH"])
     footprint.check_table(ROOT, {"cortex-m4f": footprint.measure(context, TARGETS["cortex-m4f"])})
     footprint.check_parts(ROOT, footprint.measure_parts(context, TARGETS["cortex-m4f"]))

@@ -1,4 +1,4 @@
-"""Flash, RAM, stack and instructions on Cortex-M equal those in c_core/README.md, and there is no recursion."""
+"""Flash, RAM, stack and instructions on Cortex-M equal those in the texts on c_core, and there is no recursion."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def check(context: Context) -> Figure:
 
 
 RUNG = Rung(
-    "flash, RAM, stack and instructions as the README says",
+    "flash, RAM, stack and instructions as the texts say",
     tuple(dict.fromkeys([footprint.SIZE, footprint.OBJDUMP, *[t for m in footprint.MACHINES for t in m.tools]])),
     check,
 )

@@ -1,4 +1,4 @@
-// The controller's 1 ms step written with Eigen, for the comparison of costs that c_core/README.md shows.
+// The controller's 1 ms step written with Eigen, for the comparison of costs that docs/site/reference/c_cost.md shows.
 //
 // It computes what gw_controller_step computes in the modes TARING, TRACKING and REACTING with the tanh friction, the
 // impulse detector and the frozen impulse, which suffices for a recorded collision. Fixed sizes, no heap, constant
