@@ -4,7 +4,8 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   parameter Parameters.Trikey robot "The robot's parameters";
   parameter SI.Time period=0.001 "Sample period";
   parameter Integer counts=robot.drivetrain_encoder_counts "Encoder counts per turn";
-  parameter SI.Torque resolution=robot.drivetrain_torque_sensor_resolution "Resolution of the torque sensors";
+  parameter SI.Torque resolution=robot.drivetrain_torque_sensor_resolution "Resolution of the torque signal";
+  parameter Boolean motor_current=false "The torque signal is that of the motors' currents";
   parameter Integer tare_ticks=100 "Samples of the initial tare; 0: no tare, the robot follows its plan from the start";
   parameter Integer rest_ticks=300 "Samples of slow planned motion until the robot counts as standing";
   parameter Integer retare_ticks=100 "Samples of the tare after a stop";
@@ -28,7 +29,7 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   parameter SI.Velocity follow_free=0.001 "Negligible correction towards the plan";
   parameter SI.Angle phi_start[3]=zeros(3) "Motor angles at the start";
   parameter SI.AngularVelocity w_start[3]=zeros(3) "Wheel speeds at the start";
-  parameter SI.Torque tau_start[3]=zeros(3) "Sensed torques at the start";
+  parameter SI.Torque tau_start[3]=zeros(3) "Torque signal at the start";
   constant SI.Angle turn=6.283185307179586 "One turn";
   constant Integer window=20 "Samples of the moving average";
   final parameter SI.Mass m_roll=1.5*(robot.wheel_inertia/robot.wheel_radius^2
@@ -39,6 +40,8 @@ block SampledController "Estimator, detector and admittance of the paper, sample
   final parameter SI.Length escape=robot.admittance_escape_impulse/robot.admittance_damping "Length of the escape (47)";
   Interfaces.TorqueInput tau_s[3] "Sensed torques"
     annotation (Placement(transformation(extent={{-110,17},{-90,37}})));
+  Interfaces.TorqueInput tau_m[3] "Torques of the motors, held by their servos"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
   Interfaces.AngleInput phi_m[3] "Motor angles"
     annotation (Placement(transformation(extent={{-110,-37},{-90,-17}})));
   input SI.Position plan_x[2] "Planned position at the path time, world frame";
@@ -52,6 +55,7 @@ block SampledController "Estimator, detector and admittance of the paper, sample
     annotation (Placement(transformation(extent={{90,-37},{110,-17}})));
   discrete Integer tick(start=-1, fixed=true) "Samples taken";
   discrete Integer path_ticks(start=0, fixed=true) "Samples of the plan's clock, which stands still during an escape";
+  discrete SI.Torque signal[3](each start=0, each fixed=true) "Torque signal of this sample, before it is rounded";
   discrete SI.Torque tau_now[3](start={resolution*floor(tau_start[i]/resolution + 0.5) for i in 1:3}, each fixed=true)
     "Torques of this sample, on the bus";
   discrete SI.Torque tau[3](each start=0, each fixed=true) "Torques as they arrive";
@@ -140,8 +144,10 @@ equation
     tick = pre(tick) + 1;
     // Sensors and bus: what arrives is one sample old.
     tau = pre(tau_now);
-    tau_now = {resolution*floor(tau_s[1]/resolution + 0.5), resolution*floor(tau_s[2]/resolution + 0.5),
-      resolution*floor(tau_s[3]/resolution + 0.5)};
+    // A current is that of the time before, as the servos change it at this instant.
+    signal = if not motor_current then tau_s else if tick == 0 then tau_start else pre(tau_m);
+    tau_now = {resolution*floor(signal[1]/resolution + 0.5), resolution*floor(signal[2]/resolution + 0.5),
+      resolution*floor(signal[3]/resolution + 0.5)};
     phi_now = {floor(phi_m[1]/turn*counts)*turn/counts, floor(phi_m[2]/turn*counts)*turn/counts,
       floor(phi_m[3]/turn*counts)*turn/counts};
     // Standstill and tares.
@@ -256,7 +262,8 @@ equation
     Documentation(info="<html>
 <p>The paper's steps of every millisecond, in its order:</p>
 <ol>
-<li>The torques arrive over the bus, one sample old.</li>
+<li>The torques arrive over the bus, one sample old. With <code>motor_current</code> they are those of the motors, as
+their currents show them.</li>
 <li>The estimator compares them with T|<sub>0</sub> (38), which is the tare at planned rest, and friction and inertia of
 the planned motion otherwise. The difference is the external wrench (40).</li>
 <li>The detector integrates the force vector, with a leak F<sub>0</sub> that covers the error of the estimate: s = I + F
