@@ -10,7 +10,7 @@ from typing import Any
 import giveway
 import numpy as np
 import pytest
-from giveway.base.errors import InputFileError
+from giveway.base.errors import GivewayError, InputFileError
 from giveway.drivetrain.analysis import analyse
 from giveway.drivetrain.model import read as linear
 from giveway.study import Study
@@ -107,6 +107,28 @@ def test_another_goal_takes_the_stored_runs_and_adds_its_column(tmp_path: Path) 
     slow = load(tmp_path / "out").values.copy()
     assert sweep(delayed.drivetrain(servo_delay=0).setup(), tmp_path / "out", threads=1).reused == 2
     assert (load(tmp_path / "out").values != slow).any()
+
+
+def test_by_motor_current_the_smallest_push_is_refused_and_the_bandwidth_another(tmp_path: Path) -> None:
+    sensing = "testbed.drivetrain.sensing"
+    by_current = Study("current", duration=0.3, method="fixed-step", testbed={"drivetrain.sensing": 1})
+    by_current.collision("front", speed=0.5, mass=9.08, edge=0, time=0.15).vary(STIFFNESS, values=[721.0])
+    shown = [goal.metric.name for goal in by_current.drivetrain().setup().shown]
+    assert "torque bandwidth" in shown
+    assert "smallest detectable push" not in shown
+    with pytest.raises(GivewayError, match=r"objective\[0\]\.metric: smallest detectable push .*giveway detectability"):
+        by_current.objective("smallest detectable push").setup()
+    # Designs that choose between both: what it cannot be said of is not ranked.
+    study = small().vary(sensing, values=[0, 1]).objective("smallest detectable push")
+    study.report(metrics=["torque bandwidth"], chosen=0)
+    answers = study.run(tmp_path / "out", threads=1, progress=False)
+    assert np.isnan(answers.values[:, 0]).tolist() == [False, True]
+    assert answers.feasible.tolist() == [True, False]
+    bandwidth = read_runs(tmp_path / "out", ["torque bandwidth"])["torque bandwidth"]
+    analyses = [analyse(*linear(), motor_current=chosen) for chosen in (False, True)]
+    wanted = [one.cases["servo"].channels["environment"].bandwidth_hz for one in analyses]
+    assert bandwidth == pytest.approx(wanted, rel=NEAR)
+    assert bandwidth[0] != pytest.approx(bandwidth[1], rel=0.01)
 
 
 def test_an_unstable_servo_is_no_design(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from giveway.drivetrain.analysis import analyse
 from giveway.drivetrain.many import ManyDrivetrains
 from giveway.drivetrain.model import (
+    CURRENT,
     ENVIRONMENT,
     SERVO_PERIOD_S,
     Drivetrain,
@@ -139,6 +140,24 @@ def test_margins_and_bandwidth_are_the_crossings_of_python_controls_curves(delay
         assert bandwidth[index] == pytest.approx(roots(above, coarse)[0], rel=EXACT)
         judged += 1
     assert judged > COUNT // 2
+
+
+def test_the_bandwidth_by_motor_current_is_that_of_the_servos_torque() -> None:
+    many = drawn(2)
+    by_current = np.arange(COUNT) % 2 == 0
+    bandwidth, behind = many.bandwidth_hz(by_current), many.bandwidth_hz()
+    coarse = np.geomspace(0.1, 200.0, 400)
+    assert np.array_equal(bandwidth[~by_current], behind[~by_current], equal_nan=True)
+    judged = np.flatnonzero(many.stable & by_current)
+    assert len(judged) > COUNT // 4
+    for index in judged:
+        one = single(many, int(index))
+
+        def above(f: NDArray[np.float64], one: tuple[Drivetrain, Servo] = one) -> NDArray[np.float64]:
+            return np.asarray(np.abs(response(*one, ENVIRONMENT, f, sink=CURRENT)) - math.sqrt(0.5))
+
+        assert bandwidth[index] == pytest.approx(roots(above, coarse)[0], rel=EXACT)
+        assert bandwidth[index] != pytest.approx(behind[index], rel=1e-3)
 
 
 def test_margins_are_where_the_simulated_loop_becomes_unstable() -> None:

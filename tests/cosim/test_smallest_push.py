@@ -58,6 +58,12 @@ def test_a_simulated_push_is_noticed_above_and_not_below(changes: dict[str, floa
     assert not noticed(0.8 * least, changes)  # noise and the drivetrain's swinging help it over the threshold
 
 
+def test_by_motor_current_it_would_promise_what_the_gears_hide() -> None:
+    """Why a study refuses it there: below the gears' stiction nothing of the push reaches the signal."""
+    least = float(smallest_push_n(*robot())[0])
+    assert not noticed(1.25 * least, {"testbed.drivetrain.sensing": 1})
+
+
 def test_softer_and_noisier_sensors_need_harder_pushes() -> None:
     found = [
         float(smallest_push._fast_channel_n(*robot(**stiff(k, noise)))[0])

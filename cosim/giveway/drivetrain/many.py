@@ -138,16 +138,27 @@ class ManyDrivetrains:
 
     def sensed(self, frequency_hz: Real, which: NDArray[np.intp]) -> Complex:
         """Sensed torque per torque of the environment under the servo, as `model.response`."""
-        s = 2j * np.pi * frequency_hz
-        z = np.exp(s * SERVO_PERIOD_S)
+        s = np.asarray(2j * np.pi * frequency_hz, dtype=np.complex128)
+        direct, per_motor, fed_back = self._torques(s, which)
+        hold = (1.0 - 1.0 / np.exp(s * SERVO_PERIOD_S)) / (s * SERVO_PERIOD_S)
+        return np.asarray(direct - per_motor * hold * fed_back)
+
+    def current(self, frequency_hz: Real, which: NDArray[np.intp]) -> Complex:
+        """The same of the servo's torque as the motor's current shows it, a tick late."""
+        s = np.asarray(2j * np.pi * frequency_hz, dtype=np.complex128)
+        return np.asarray(-np.exp(-s * SERVO_PERIOD_S) * self._torques(s, which)[2])
+
+    def _torques(self, s: Complex, which: NDArray[np.intp]) -> tuple[Complex, Complex, Complex]:
+        """Sensed torque per torque of the environment and of the motor without the servo, and the servo's torque
+        against a torque of the environment."""
         motor = self.motor_inertia[which] * s + self.gear_viscous[which]  # impedances over s
         load = self.load_inertia[which] * s
         spring = self.damping[which] * s + self.stiffness[which]
         bottom = s * motor * load + spring * (motor + load)
+        z = np.exp(s * SERVO_PERIOD_S)
         law = self._control_law(z, which)
-        hold = (1.0 - 1.0 / z) / (s * SERVO_PERIOD_S)
         fed_back = law / (1.0 + law * self._angle_per_torque(z, which)) * spring / (s * bottom)
-        return np.asarray(-spring * motor / bottom - spring * load / bottom * hold * fed_back)
+        return np.asarray(-spring * motor / bottom), np.asarray(spring * load / bottom), np.asarray(fed_back)
 
     @cached_property
     def poles(self) -> Complex:
@@ -234,13 +245,19 @@ class ManyDrivetrains:
         np.minimum.at(gain, which[grows], -20.0 * np.log10(-real[grows]))
         return LoopMargins(*(np.where(self.stable, one, np.nan) for one in (gain, phase, delay)))
 
-    def bandwidth_hz(self) -> Real:
-        """Lowest frequency at which the sensed torque is 3 dB below that at rest; NaN: unstable, or none is at rest."""
+    def bandwidth_hz(self, by_current: NDArray[np.bool_] | None = None) -> Real:
+        """Lowest frequency at which the sensed torque is 3 dB below that at rest; NaN: unstable, or none is at rest.
+
+        ``by_current``: which sense torque by the motor's current; None: none.
+        """
         grid = self._grid[:, :-1]
         everyone = np.arange(len(grid))
 
         def above(frequency: Real, which: NDArray[np.intp]) -> Real:
-            return np.asarray(np.log(np.abs(self.sensed(frequency, which))) + 0.5 * math.log(2.0))
+            seen = self.sensed(frequency, which)
+            if by_current is not None:
+                seen = np.where(by_current[which], self.current(frequency, which), seen)
+            return np.asarray(np.log(np.abs(seen)) + 0.5 * math.log(2.0))
 
         found = above(grid, everyone[:, None])
         # A motor that is held lets all of the torque through at rest; one that is not, nothing.

@@ -12,6 +12,10 @@ the mean of what a detector compares, noise left out, reaches the threshold:
 The noise is that of the torque signal: its standard deviation and its quantum, as a force of the wheels, and as a
 motion of the wheels that the encoder does not see (torque over stiffness), differentiated twice. Of what the controller
 believes, at least 40 % of the variance count.
+
+It is that of torque sensors. Where torque comes from the motors' current, the gears stand between: a push below their
+stiction does not reach the signal at all, and how far a gear slides, once the swinging base has broken it away, and on
+which wheels, no linear model says. `giveway.detectability` simulates such pushes.
 """
 
 from __future__ import annotations

@@ -21,6 +21,7 @@ import numpy as np
 from giveway.base.errors import GivewayError
 from giveway.base.shapes import Choice, Table, Whole
 from giveway.base.toml_sections import Section
+from giveway.robot.motor_current import SENSING
 from giveway.scenario.scenario import BUMPERS
 from giveway.study.metrics import DRIVETRAIN, IMPACT_FORCE, INERTIA, SMALLEST_PUSH, all_metrics, usual_sense
 from giveway.study.quantities import columns
@@ -47,6 +48,11 @@ DRIVETRAIN_TABLE = Table(
 )
 LINEAR = ("torque bandwidth", "first resonance", "servo gain margin", "servo phase margin", "servo delay margin")
 WHEELS = 3
+BY_CURRENT = 1  # of drivetrain.sensing
+NO_CURRENT = (
+    "robots with torque sensors: by motor current a push shows once a gear breaks away, which is no small signal; "
+    "giveway detectability searches with simulated pushes"
+)
 
 
 def drivetrain_plan_of(top: Section) -> DrivetrainPlan:
@@ -60,19 +66,30 @@ def drivetrain_plan_of(top: Section) -> DrivetrainPlan:
 def metrics_shown(plan: DrivetrainPlan, cases: Sequence[Case]) -> list[Goal]:
     """What the table of the answers shows besides."""
     known = all_metrics()
-    names = [name for name in DRIVETRAIN if plan.stated and (name != IMPACT_FORCE or cases[0].hit is not None)]
+    missing = [IMPACT_FORCE] if cases[0].hit is None else []
+    missing += [SMALLEST_PUSH] if _by_current(cases) else []
+    names = [name for name in DRIVETRAIN if plan.stated and name not in missing]
     return [Goal(known[name], usual_sense(known[name])) for name in names]
 
 
 def wanted(goals: Mapping[str, Sequence[Goal]], cases: Sequence[Case]) -> tuple[str, ...]:
     """Which of the metrics ``goals`` need, which are listed by the table of the study file."""
+    cannot = {IMPACT_FORCE: "nothing of a hit without [[collision]]"} if cases[0].hit is None else {}
+    if _by_current(cases):
+        cannot[SMALLEST_PUSH] = NO_CURRENT
     for table, listed in goals.items():
         for index, goal in enumerate(listed):
-            if goal.metric.name == IMPACT_FORCE and cases[0].hit is None:
+            if (why := cannot.get(goal.metric.name)) is not None:
                 field = f"{table}[{index}]" + ("" if table == "report.metrics" else ".metric")
-                raise GivewayError(field, IMPACT_FORCE, "nothing of a hit without [[collision]]")
+                raise GivewayError(field, goal.metric.name, why)
     asked = {goal.metric.name for listed in goals.values() for goal in listed}
     return tuple(name for name in DRIVETRAIN if name in asked)
+
+
+def _by_current(cases: Sequence[Case]) -> bool:
+    """Whether torque is the motors' current in a scenario of the study."""
+    usual = columns().start[columns().index[f"testbed.{SENSING}"]]
+    return any(case.scenario.parameters("testbed").get(SENSING, usual) == BY_CURRENT for case in cases)
 
 
 def derived(names: Sequence[str], plan: DrivetrainPlan, values: Real, stated: Stated) -> dict[str, tuple[Real, str]]:
@@ -112,14 +129,15 @@ def _linear(names: Sequence[str], plan: DrivetrainPlan, values: Real) -> dict[st
             testbed("drivetrain.gear_viscous") * friction,
             load,
             *(testbed(f"servo.{name}") for name in ("kp", "kd", "derivative_cutoff")),
+            testbed(SENSING),
         ],
         axis=1,
     )
     different, which = np.unique(numbers, axis=0, return_inverse=True)  # most runs of a design are of one drivetrain
-    models = ManyDrivetrains.of(different, plan.servo_delay)
+    models = ManyDrivetrains.of(different[:, :-1], plan.servo_delay)
     found: dict[str, Real] = {}
     if "torque bandwidth" in names:
-        found["torque bandwidth"] = models.bandwidth_hz()
+        found["torque bandwidth"] = models.bandwidth_hz(different[:, -1] == BY_CURRENT)
     if "first resonance" in names:
         found["first resonance"] = models.first_resonance_hz()
     if any(name.startswith("servo") for name in names):
@@ -134,7 +152,8 @@ def _smallest_push(values: Real) -> Real:
     from giveway.drivetrain.smallest_push import CONTROLLER, TESTBED, smallest_push_n
 
     controller = {name: _of(values, f"controller.{name}") for name in CONTROLLER}
-    return smallest_push_n(controller, {name: _of(values, f"testbed.{name}") for name in TESTBED})
+    found = smallest_push_n(controller, {name: _of(values, f"testbed.{name}") for name in TESTBED})
+    return np.where(_of(values, f"testbed.{SENSING}") == BY_CURRENT, np.nan, found)  # of designs that choose a current
 
 
 def _reflected_inertia(values: Real) -> Real:
