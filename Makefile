@@ -99,7 +99,7 @@ build-for-all: product
 wheels: build-for-all ## wheels for Linux (x86-64, ARM64), Windows and macOS (Intel, Apple), in dist
 	@$(BIN)/python -m release wheels
 
-release: build-for-all ## wheels, source archive, FMUs, their bills of materials and checks, in dist; uploads nothing
+release: build-for-all build/release/tools-installed ## wheels, source archive, FMUs, their bills of materials and checks, in dist; uploads nothing
 	@$(BIN)/python -m release all
 	bash fmu/platforms/system_packages.sh
 	@$(BIN)/python -m release.abroad
@@ -141,7 +141,7 @@ format: .venv/test-packages-installed ## format C, C++ and Python in place
 
 # The first one is the others' yardstick: what stands in several has one version.
 LOCKS := requirements cmake/requirements tests/requirements docs/requirements
-OTHER_LOCKS := verify/requirements verify/modelica/requirements verify/second_simulator/requirements bench/requirements importers/requirements
+OTHER_LOCKS := release/requirements verify/requirements verify/modelica/requirements verify/second_simulator/requirements bench/requirements importers/requirements
 
 lock: $(LOCKS:=.in) $(OTHER_LOCKS:=.in) ## new requirements.lock files (needs uv)
 	@for name in $(LOCKS) $(OTHER_LOCKS); do \
@@ -212,6 +212,13 @@ build/bench/tools-installed: bench/requirements.lock bench/system_packages.sh cm
 	@mkdir -p $(@D)
 	$(PYTHON) -m venv build/bench/tools
 	build/bench/tools/bin/pip install --quiet --require-hashes -r bench/requirements.lock
+	@touch $@
+
+build/release/tools-installed: release/requirements.lock
+	@echo "installing Python packages: $$(grep -c == release/requirements.lock) of release/requirements.lock"
+	@mkdir -p $(@D)
+	@$(PYTHON) -m venv build/release/tools
+	@build/release/tools/bin/pip install --quiet --no-compile --require-hashes -r release/requirements.lock
 	@touch $@
 
 build/verify/tools-installed: verify/requirements.lock verify/system_packages.sh cmake/packages.sh

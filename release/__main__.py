@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from release import check, sdist, wheel
+from release import check, outside, sdist, wheel
 from release.materials import write_fmus
 from release.parts import ROOT
 from release.platforms import PLATFORMS
@@ -52,7 +52,7 @@ def main(arguments: list[str]) -> int:
     faults = [f"{path.name}: {fault}" for path in written for fault in check.faults(path)]
     if what == "all":
         written += write_fmus(DIST)
-        faults += check.repository_faults()
+        faults += [*check.repository_faults(), *outside.faults(written)]
     for fault in faults:
         print(f"release: {fault}", file=sys.stderr)
     if faults:
