@@ -3,6 +3,7 @@
 import shutil
 from pathlib import Path
 
+import giveway
 import pytest
 from giveway_modelica.compiler import PACKAGE, classes
 from giveway_modelica.lint import findings
@@ -38,7 +39,7 @@ FAULTS = {
     ),
     "place of a connector": ("Components/Motor.mo", "Placement(", "Place(", "flange has no Placement"),
     "line": ("Components/Testbed.mo", "annotation (Line(", "annotation (Lines(", "no Line"),
-    "version": ("package.mo", 'version="0.1.0"', 'title="x"', "version="),
+    "version": ("package.mo", f'version="{giveway.__version__}"', 'title="x"', "version="),
     "uses": ("package.mo", "uses(", "used(", "uses"),
 }
 
