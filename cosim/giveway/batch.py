@@ -73,10 +73,10 @@ def run_many(
 
     ``method`` "event-exact" gives the bits of `giveway.run`. "fixed-step" computes ``lanes`` designs side by side (1, 4
     or 8; None: as many as the processor can) with fixed steps of ``plant_step_s`` (1e-6 to 5e-4 s; None: as each design
-    needs). It is several times faster, with the errors listed in fmu/batch/README.md, and each design has the same bits
-    with any lanes, threads and other scenarios. Its table tells for each run how it was computed: ``method`` (runs that
-    are not possible with fixed steps are event-exact) and ``plant step`` (s, 0 if event-exact); the attributes
-    ``method`` and ``lanes`` are those of the batch.
+    needs). It is several times faster, with the errors listed on the site's page "Fixed steps", and each design has the
+    same bits with any lanes, threads and other scenarios. Its table tells for each run how it was computed: ``method``
+    (runs that are not possible with fixed steps are event-exact) and ``plant step`` (s, 0 if event-exact); the
+    attributes ``method`` and ``lanes`` are those of the batch.
 
     Wrong scenarios are refused before anything runs. Ctrl-C ends the batch; finished runs are kept, the rest is
     "cancelled", and the attribute ``interrupted`` is true.

@@ -1,7 +1,7 @@
 """The step of the fixed-step method follows the stiffest element, whichever it is: each in turn is the only stiff one.
 
-A vibration w may turn by 0.2 rad in a step, a decay 1/s by 0.6 (README.md of fmu/batch); w^2 is stiffness over reduced
-mass, worked out here from the equations in fmu/plant/README.md.
+A vibration w may turn by 0.2 rad in a step, a decay 1/s by 0.6 (docs/site/explanation/fixed_steps.md); w^2 is
+stiffness over reduced mass, worked out here from the equations in fmu/plant/README.md.
 """
 
 from __future__ import annotations

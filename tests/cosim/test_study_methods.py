@@ -18,7 +18,7 @@ def test_fixed_steps_are_runs_of_their_own_and_close(tmp_path: Path) -> None:
     first, second = stored_runs(tmp_path / "exact"), stored_runs(tmp_path / "fixed")
     assert (first["plant step"] == 0.0).all()
     assert (second["plant step"] > 0.0).all()
-    # 0.5 %: what the method promises of the peak force (fmu/batch/README.md).
+    # 0.5 %: what the method promises of the peak force (docs/site/explanation/fixed_steps.md).
     np.testing.assert_allclose(second["peak force of the run"], first["peak force of the run"], rtol=5e-3)
     assert (second["peak force of the run"] != first["peak force of the run"]).any()
 

@@ -1,2 +1,2 @@
 """Mutation testing of c_core: small faults are planted one at a time, and the tests have to see them. See
-verify/README.md."""
+docs/site/explanation/mutants.md."""

@@ -1,1 +1,2 @@
-"""Mutation testing of the rooms outside c_core, in C++ and Python: all mutants in one build. See verify/README.md."""
+"""Mutation testing of the rooms outside c_core, in C++ and Python: all mutants in one build. See
+docs/site/explanation/mutants.md."""
