@@ -43,8 +43,9 @@ def test_the_rows_are_the_force_of_the_first_60_ms(findings: Findings) -> None:
     assert row(findings, "the latch raises it by, 5.2") == pytest.approx(100.0 * (magnetic / spring - 1.0))
 
 
-def test_the_readme_tells_what_it_costs(findings: Findings) -> None:
-    text = " ".join((Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8").split())
+def test_the_page_tells_what_it_costs(findings: Findings) -> None:
+    page = Path(__file__).parents[2] / "docs" / "site" / "explanation" / "paper_numbers.md"
+    text = " ".join(page.read_text(encoding="utf-8").split())
     for case in ("5.2", "0.2 m/s"):
         spring, magnetic = (row(findings, f"force of the first 60 ms, {case}, {one}") for one in KINDS)
         assert f"{magnetic:.0f} instead of {spring:.0f} N" in text

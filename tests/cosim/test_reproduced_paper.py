@@ -1,4 +1,4 @@
-"""The reproduction at full effort: the README tells its predictions and counts; every printed number has its row."""
+"""The reproduction at full effort: the site tells its predictions and counts; every printed number has its row."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from giveway.experiments.reproduction.reproduce import Reproduction, reproduce
 from giveway.paper.printed import RESULTS, Printed
 
-README = Path(__file__).parents[2] / "README.md"
+PAGE = Path(__file__).parents[2] / "docs" / "site" / "explanation" / "paper_numbers.md"
 BEGIN, END = "<!-- counts: giveway reproduce -->\n", "<!-- end of counts -->"
 
 
@@ -20,16 +20,16 @@ def reproduction() -> Reproduction:
     return found
 
 
-def readme() -> str:
-    return README.read_text(encoding="utf-8")
+def page() -> str:
+    return PAGE.read_text(encoding="utf-8")
 
 
-def test_the_readme_tells_every_prediction() -> None:
+def test_the_page_tells_every_prediction() -> None:
     found = reproduce(["motionless", "tipping", "moving"])  # which have them all: the deep test below counts them
     predicted = [row for _, row in found.rows() if row.kind == "predicted"]
-    assert f"- predicted: {sum(row.met is True for row in predicted)} met of {len(predicted)}\n" in readme()
+    assert f"- predicted: {sum(row.met is True for row in predicted)} met of {len(predicted)}\n" in page()
     for row in predicted:
-        assert f"{row.ours:.{row.decimals}f} instead of" in " ".join(readme().split()), row.quantity
+        assert f"{row.ours:.{row.decimals}f} instead of" in " ".join(page().split()), row.quantity
 
 
 @pytest.mark.deep
@@ -44,8 +44,8 @@ def test_every_miss_has_its_reason(reproduction: Reproduction) -> None:
 
 
 @pytest.mark.deep
-def test_the_readme_tells_the_counts(reproduction: Reproduction) -> None:
-    text = readme()
+def test_the_page_tells_the_counts(reproduction: Reproduction) -> None:
+    text = page()
     told = text[text.index(BEGIN) + len(BEGIN) : text.index(END)]
     expected = "".join(f"- {line}\n" for line in reproduction.summary())
-    assert told == expected, f"README.md should show\n{expected}"
+    assert told == expected, f"the page should show\n{expected}"

@@ -1,4 +1,4 @@
-"""The rooms of the package: every import goes down, and the map in the README names them from the ground up."""
+"""The rooms of the package: every import goes down, and the map on its page names them from the ground up."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import giveway
 import pytest
 
 PACKAGE = Path(giveway.__file__).parent
-README = PACKAGE.parent / "README.md"
+PAGE = PACKAGE.parents[1] / "docs" / "site" / "explanation" / "rooms.md"
 FOLDERS = sorted(path.parent for path in PACKAGE.rglob("__init__.py"))
 
 
 def rooms_in_order() -> list[str]:
-    """As the README has them; "" is the package itself, which the command line imports."""
-    text = README.read_text(encoding="utf-8").split("## Where things are")[1]
+    """As the page has them; "" is the package itself, which the command line imports."""
+    text = PAGE.read_text(encoding="utf-8")
     named = re.findall(r"^- `(\w+)(?:/|\.py)`", text, re.MULTILINE)
     return [*named[:-1], "", named[-1], "__main__"]
 

@@ -303,7 +303,7 @@ def study_gallery(
         "examples/studies"
     ),
 ) -> None:
-    """Run the example studies and draw the README's pictures of them."""
+    """Run the example studies and draw the pictures of them on the page of studies."""
     from giveway.study import messages
     from giveway.study.gallery import draw_all
 

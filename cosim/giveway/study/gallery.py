@@ -1,4 +1,4 @@
-"""The example studies and their pictures in the README; each comes with its finding in one sentence."""
+"""The example studies and their pictures on the page of studies; each comes with its finding in one sentence."""
 
 from __future__ import annotations
 
