@@ -76,6 +76,21 @@ def test_small_and_large_robots_are_plausible(
     assert table("controller").robot_values(found.robot)["imu.use"] == 1
 
 
+def test_a_robot_that_senses_by_motor_current(cli: Cli, tmp_path: Path) -> None:
+    """It has the currents' entries and none of torque sensors, and both models take it."""
+    done = cli(*NEW, "--torque-constant", "0.03 N.m/A", "--gear-ratio", "60", "--torque-limit", "18 N.m")
+    assert done.returncode == 0, done.stderr
+    assert "mine.toml: can be used; 0 doubts" in done.stdout
+    robot = read_robot(tmp_path / "mine.toml")
+    assert robot.motor_current
+    assert not [name for name, _ in robot.entries() if name.startswith(("drivetrain.torque_n", "drivetrain.torque_s"))]
+    assert robot.value("motor.current_range") == 14.0  # 1.4 * 18 N m / (60 * 0.03 N m/A)
+    testbed = table("testbed").robot_values(robot)
+    assert testbed["electronics.torque_noise"] == pytest.approx(0.056 * 60 * 0.03)
+    given = {name for name, entry in robot.entries() if entry.provenance == "given"}
+    assert {"motor.gear_ratio", "motor.torque_constant"} <= given
+
+
 def test_a_file_is_replaced_only_by_force(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text("years of work")
     done = cli(*NEW)
@@ -87,8 +102,17 @@ def test_a_file_is_replaced_only_by_force(cli: Cli, tmp_path: Path) -> None:
 
 
 WRONG_NEW = {
-    "nothing": (("robot", "new", "mine.toml"), ("--mass: nothing", "1 to 1000 kg", "needed")),
-    "no outline": (NEW[:9], ("--outline: nothing", "triangle SIDE", "needed")),
+    "nothing": (
+        ("robot", "new", "mine.toml"),
+        ("--mass, --wheel-radius, --wheel-distance, --outline, --height: nothing", '--mass "34.7 kg" --wheel-radius'),
+    ),
+    "no outline": (NEW[:9], ("--outline, --height: nothing", '--outline "circle 0.45"', "needed")),
+    "no ratio": ((*NEW, "--torque-constant", "0.03 N.m/A"), ("--gear-ratio: nothing", "with --torque-constant")),
+    "no constant": ((*NEW, "--gear-ratio", "20"), ("--torque-constant: nothing", "0.0001 to 100 N.m/A")),
+    "noise of two": (
+        (*NEW, "--torque-constant", "0.03", "--gear-ratio", "20", "--torque-noise", "0.1"),
+        ("--torque-noise: 0.1 N.m, with --torque-constant,", "motor.current_noise"),
+    ),
     "another kind": ((*NEW, "--mass", "3 m"), ("--mass: m ", "kg, or a unit of the same kind")),
     "negative": ((*NEW, "--mass", "-3"), ("--mass: -3.0", "1 to 1000 kg")),
     "words": ((*NEW, "--height", "tall"), ("--height: tall", "0.02 to 5 m")),
@@ -138,6 +162,18 @@ def test_at_a_terminal_it_asks_until_it_can_use_the_answer(
     assert "Mass of the robot with wheels and usual load, on a scale [kg]" in done.stdout + done.stderr
     robot = read_robot(tmp_path / "mine.toml")
     assert [robot.value(name) for name in ("base.mass", "wheel.radius", "drivetrain.torque_limit")] == [20.0, 0.05, 3.0]
+
+
+def test_at_a_terminal_it_asks_for_the_gear_of_a_motor_that_senses(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = ["20 kg", "50 mm", "0.2", "circle 45 cm", "0.3", "", "", "", "", "0.03 N.m/A", "20", ""]
+    monkeypatch.setattr("sys.stdin", Terminal("\n".join(answers) + "\n"))
+    done = cli("robot", "new", "mine.toml")
+    assert done.returncode == 0, done.stderr
+    assert "(empty: torque sensors)" in done.stderr
+    assert "sensed torque" not in done.stderr
+    assert read_robot(tmp_path / "mine.toml").motor_current
 
 
 def test_areas_and_radii_are_those_of_textbooks() -> None:

@@ -48,6 +48,26 @@ def test_a_study_to_start_from_is_checked(cli: Cli, tmp_path: Path) -> None:
     assert cli("sweep", str(path), "--check").stdout.strip().endswith("72 runs")
 
 
+def test_they_start_from_your_robot(cli: Cli, tmp_path: Path) -> None:
+    """A path is seen from the file, a shipped robot keeps its name; the study fits a small one, too."""
+    sizes = ("--mass", "8", "--wheel-radius", "0.058", "--wheel-distance", "0.15", "--height", "0.3")
+    (tmp_path / "robots").mkdir()
+    assert cli("robot", "new", "robots/mine.toml", *sizes, "--outline", "circle 0.36").returncode == 0
+    assert cli("new", "study", "studies.toml", "--robot", "robots/mine.toml").returncode == 0
+    assert 'robot = "robots/mine.toml" ' in (tmp_path / "studies.toml").read_text(encoding="utf-8")
+    assert "72 runs" in cli("sweep", "studies.toml", "--check").stdout
+    (tmp_path / "cases").mkdir()
+    assert cli("new", "scenario", "cases/one.toml", "--robot", "robots/mine.toml").returncode == 0
+    robot = giveway.read_scenario(tmp_path / "cases" / "one.toml").robot
+    assert robot is not None
+    assert robot.resolve() == tmp_path / "robots" / "mine.toml"
+    assert cli("new", "scenario", "two.toml", "--robot", "lekiwi").returncode == 0
+    assert 'robot = "lekiwi" ' in (tmp_path / "two.toml").read_text(encoding="utf-8")
+    for wrong in ("lekiwii", "none.toml", "studies.toml"):
+        assert cli("new", "study", "three.toml", "--robot", wrong).returncode == 2
+    assert not (tmp_path / "three.toml").exists()
+
+
 @pytest.mark.parametrize("kind", ["scenario", "study"])
 def test_each_option_can_be_taken(kind: str, tmp_path: Path) -> None:
     taken = options(kind)

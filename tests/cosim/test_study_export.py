@@ -137,10 +137,12 @@ def test_a_folder_says_all_by_itself(tmp_path: Path) -> None:
     designs.unlink()
     answers = load(tmp_path / "study")
     export_design(answers, 0, tmp_path / "design.toml")
-    scenario = giveway.read_scenario(tmp_path / "design.toml")
+    moved = tmp_path.rename(tmp_path.with_name("elsewhere"))  # robots are named as seen from the scenario
+    answers = load(moved / "study")
+    scenario = giveway.read_scenario(moved / "design.toml")
     assert scenario.parameters("testbed")["base.mass"] == 50.0
     peak = batch.run(scenario).metric("peak force of the run").value
-    assert stored_runs(tmp_path / "study")["peak force of the run"][0] == pytest.approx(peak, rel=1e-12)
+    assert stored_runs(moved / "study")["peak force of the run"][0] == pytest.approx(peak, rel=1e-12)
 
 
 def test_a_list_of_the_design_is_one_of_designs(answers: Answers, tmp_path: Path) -> None:

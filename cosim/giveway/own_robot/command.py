@@ -31,20 +31,24 @@ def new(
     name: Annotated[
         str | None, typer.Option("--name", help="What the robot is called; without it: as the file.")
     ] = None,
-    mass: Annotated[str | None, _flag("mass", '"34.7 kg", "76 lb"; a number alone is in SI units.')] = None,
-    wheel_radius: Annotated[str | None, _flag("wheel-radius", '"4 in", "101.6 mm", 0.1016')] = None,
-    wheel_distance: Annotated[str | None, _flag("wheel-distance", "From the centre to the wheels.")] = None,
+    mass: Annotated[str | None, _flag("mass", 'Needed: "34.7 kg", "76 lb"; a number alone is in SI units.')] = None,
+    wheel_radius: Annotated[str | None, _flag("wheel-radius", 'Needed: "4 in", "101.6 mm", 0.1016')] = None,
+    wheel_distance: Annotated[str | None, _flag("wheel-distance", "Needed: from the centre to the wheels.")] = None,
     outline: Annotated[
         str | None,
-        _flag("outline", '"circle 0.45", "triangle 0.61", "rectangle 0.5 x 0.4" or corners "x,y x,y x,y", in m.'),
+        _flag("outline", 'Needed: "circle 0.45", "triangle 0.61", "rectangle 0.5 x 0.4", corners "x,y x,y x,y", in m.'),
     ] = None,
-    height: Annotated[str | None, _flag("height", "Of the body's top above the floor.")] = None,
+    height: Annotated[str | None, _flag("height", "Needed: of the body's top above the floor.")] = None,
     clearance: Annotated[str | None, _flag("clearance", "Lowest height of the body.")] = None,
     com_height: Annotated[str | None, _flag("com-height", "Height of the centre of mass.")] = None,
     torque_limit: Annotated[str | None, _flag("torque-limit", "Of a drive, at its wheel.")] = None,
     gear_friction: Annotated[str | None, _flag("gear-friction", "At the wheel, unpowered.")] = None,
     torque_noise: Annotated[str | None, _flag("torque-noise", "Of the torque sensor at 1 kHz.")] = None,
     encoder_counts: Annotated[str | None, _flag("encoder-counts", "Per turn of the wheel.")] = None,
+    torque_constant: Annotated[
+        str | None, _flag("torque-constant", 'Of the motor, if its current is the torque sensor: "0.04 N.m/A".')
+    ] = None,
+    gear_ratio: Annotated[str | None, _flag("gear-ratio", "Of that motor to the wheel.")] = None,
     imu: Annotated[bool, typer.Option("--imu", help="It has accelerometer and gyro.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it is there.")] = False,
 ) -> None:
@@ -64,6 +68,7 @@ def new(
         **{"mass": mass, "wheel-radius": wheel_radius, "wheel-distance": wheel_distance, "outline": outline},
         **{"height": height, "clearance": clearance, "com-height": com_height, "torque-limit": torque_limit},
         **{"gear-friction": gear_friction, "torque-noise": torque_noise, "encoder-counts": encoder_counts},
+        **{"torque-constant": torque_constant, "gear-ratio": gear_ratio},
     }
     asked = measured(name or file.stem, answers, imu, _ask if sys.stdin.isatty() else lambda _question: None)
     with replace_file(file) as temporary:
@@ -81,7 +86,7 @@ def _ask(question: Question) -> str | None:
 
     unit = f" [{question.unit}]" if question.unit not in ("", "1") else ""
     while True:
-        asked = f"{question.text}{unit}" + ("" if question.needed else " (empty: estimate)")
+        asked = f"{question.text}{unit}" + ("" if question.needed else f" (empty: {question.otherwise})")
         text = str(typer.prompt(asked, default="", err=True))
         if not text.strip():
             if not question.needed:

@@ -49,6 +49,18 @@ class Known:
         return 2.5 * self.mass * 3.0 * self.radius / math.sqrt(3.0)
 
     @property
+    def by_current(self) -> bool:
+        """Whether torque comes from motor current."""
+        return self.asked.torque_constant is not None
+
+    @property
+    def current_range(self) -> float:
+        """What the current sensors measure to either side, A."""
+        assert self.asked.torque_constant is not None
+        assert self.asked.gear_ratio is not None
+        return 1.4 * self.torque_limit / (self.asked.torque_constant * self.asked.gear_ratio)
+
+    @property
     def drive_limit(self) -> float:
         """Acceleration that half of the drives' torque gives in the weakest direction, m/s2."""
         return 0.5 * math.sqrt(3.0) * self.torque_limit / self.radius / self.mass
@@ -56,13 +68,17 @@ class Known:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry: its value from `Known`, the rule in words, or ``asked``: the question that answers it."""
+    """An entry: its value from `Known`, the rule in words, or ``asked``: the question that answers it.
+
+    ``by_current``: only robots whose torque comes from motor current have it, or (False) only the others.
+    """
 
     name: str
     unit: str
-    value: Callable[[Known], Number | Sequence[float]]
+    value: Callable[[Known], Number | str | Sequence[float]]
     rule: str
     asked: str = ""
+    by_current: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -75,7 +91,7 @@ class Part:
     imu: bool = False
 
 
-def _same(value: Number) -> Callable[[Known], Number]:
+def _same(value: Number | str) -> Callable[[Known], Number | str]:
     return lambda _known: value
 
 
@@ -198,16 +214,34 @@ ENTRIES: tuple[Part, ...] = (
             ),
             Entry(
                 "drivetrain.torque_sensor_limit", "N.m", lambda k: 1.4 * k.torque_limit,
-                "1.4 times the torque limit: usable range to either side",
+                "1.4 times the torque limit: usable range to either side", by_current=False,
             ),
             Entry(
                 "drivetrain.torque_sensor_resolution", "N.m", lambda k: 2.8 * k.torque_limit / 4096.0,
-                "12 bit of the sensor's range",
+                "12 bit of the sensor's range", by_current=False,
             ),
             Entry(
                 "drivetrain.torque_noise", "N.m",
                 lambda k: k.asked.torque_noise if k.asked.torque_noise is not None else 1.5e-3 * k.torque_limit,
-                "0.15 % of the torque limit", "torque-noise",
+                "0.15 % of the torque limit", "torque-noise", by_current=False,
+            ),
+            Entry("drivetrain.sensing", "", _same("motor current"), "", "torque-constant", by_current=True),
+            Entry("motor.gear_ratio", "1", lambda k: k.asked.gear_ratio or 0.0, "", "gear-ratio", by_current=True),
+            Entry(
+                "motor.torque_constant", "N.m/A", lambda k: k.asked.torque_constant or 0.0, "", "torque-constant",
+                by_current=True,
+            ),
+            Entry(
+                "motor.current_range", "A", lambda k: k.current_range,
+                "1.4 times what the torque limit takes: usable range to either side", by_current=True,
+            ),
+            Entry(
+                "motor.current_resolution", "A", lambda k: k.current_range / 2048.0, "12 bit of the range",
+                by_current=True,
+            ),
+            Entry(
+                "motor.current_noise", "A", lambda k: 4e-3 * k.current_range,
+                "0.4 % of the range; log the current of a motor that holds still to measure it", by_current=True,
             ),
             Entry(
                 "drivetrain.encoder_counts", "1",

@@ -34,7 +34,8 @@ class Question:
         text: what it is, and how it is found.
         unit: of `Measured`; "" for the outline.
         low, high: allowed range in this unit.
-        needed: without it no file can be written; the others are estimated.
+        needed: without it no file can be written.
+        otherwise: what an empty answer means.
     """
 
     key: str
@@ -43,6 +44,7 @@ class Question:
     low: float = 0.0
     high: float = 0.0
     needed: bool = True
+    otherwise: str = "estimate"
 
     def read(self, field: str, text: str) -> Any:
         """The value that a user wrote: a number with or without a unit, or an outline."""
@@ -80,11 +82,25 @@ QUESTIONS: Mapping[str, Question] = {
         Question("com-height", "Height of the centre of mass; tilt the robot until it balances", "m", 0.01, 2.0, False),
         Question("torque-limit", "Largest torque of a drive at its wheel", "N.m", 0.01, 1000.0, False),
         Question("gear-friction", "Torque at the wheel that just turns the unpowered motor", "N.m", 0.0, 1000.0, False),
+        Question(
+            "torque-constant",
+            "Torque per ampere of a motor whose current is the sensor",
+            "N.m/A",
+            1e-4,
+            100.0,
+            needed=False,
+            otherwise="torque sensors",
+        ),
+        Question("gear-ratio", "Turns of that motor per turn of its wheel", "1", 1.0, 1000.0, False, "not known"),
         Question("torque-noise", "Standard deviation of the sensed torque at rest, at 1 kHz", "N.m", 0.0, 100.0, False),
         Question("encoder-counts", "Encoder counts per turn of the wheel", "1", 16, 1_000_000, False),
     )
 }
 """By flag, in the order in which they are asked."""
+
+EXAMPLES = {
+    "mass": "34.7 kg", "wheel-radius": "4 in", "wheel-distance": "240 mm", "outline": "circle 0.45", "height": "75 cm",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -103,6 +119,8 @@ class Measured:
     gear_friction: float | None = None
     torque_noise: float | None = None
     encoder_counts: float | None = None
+    torque_constant: float | None = None
+    gear_ratio: float | None = None
     imu: bool = False
 
 
@@ -111,19 +129,41 @@ def measured(
 ) -> Measured:
     """The answers, checked; ``ask`` gives the text for a question that ``answers`` leaves open, or None."""
     found: dict[str, Any] = {}
+    missing = []
     for key, question in QUESTIONS.items():
         text = answers.get(key)
-        text = ask(question) if text is None else text
+        text = ask(question) if text is None and _applies(key, found) else text
         if text is None and question.needed:
-            raise GivewayError(
-                f"--{key}", "nothing", f"{question.allowed if question.unit else OUTLINES}; it is needed"
-            )
+            missing.append(key)
         found[key.replace("-", "_")] = None if text is None else question.read(f"--{key}", text)
+    if missing:
+        flags = ", ".join(f"--{key}" for key in missing)
+        allowed = " ".join(f'--{key} "{EXAMPLES[key]}"' for key in missing)
+        raise GivewayError(flags, "nothing", f"what the robot is, such as {allowed}; it is needed")
+    _check_sensing(found)
     if found["clearance"] is not None and found["clearance"] >= found["height"]:
         raise GivewayError("--clearance", f"{found['clearance']:g} m", f"below --height, {found['height']:g} m")
     if found["com_height"] is not None and found["com_height"] >= found["height"]:
         raise GivewayError("--com-height", f"{found['com_height']:g} m", f"below --height, {found['height']:g} m")
     return Measured(name=name, imu=imu, **found)
+
+
+def _applies(key: str, found: Mapping[str, Any]) -> bool:
+    """Whether it is worth asking, after what was ``found``."""
+    by_current = found.get("torque_constant") is not None
+    return {"gear-ratio": by_current, "torque-noise": not by_current}.get(key, True)
+
+
+def _check_sensing(found: Mapping[str, Any]) -> None:
+    """A motor's current is a torque by constant and ratio; a torque sensor has neither."""
+    needs = {"torque_constant": "gear_ratio", "gear_ratio": "torque_constant"}
+    for key, other in needs.items():
+        if found[key] is None and found[other] is not None:
+            flag, stated = key.replace("_", "-"), other.replace("_", "-")
+            raise GivewayError(f"--{flag}", "nothing", f"{QUESTIONS[flag].allowed}; with --{stated} it is needed")
+    if found["torque_constant"] is not None and found["torque_noise"] is not None:
+        allowed = "torque sensors; the noise of a current is motor.current_noise in the file"
+        raise GivewayError("--torque-noise", f"{found['torque_noise']:g} N.m, with --torque-constant,", allowed)
 
 
 def outline_of(field: str, text: str) -> NDArray[np.float64]:

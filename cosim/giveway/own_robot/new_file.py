@@ -36,6 +36,8 @@ def robot_text(asked: Measured) -> str:
             continue
         lines += ["", f"# --- {part.heading}", *(f"# {line}" for line in part.remark.splitlines())]
         for entry in part.entries:
+            if entry.by_current not in (None, known.by_current):
+                continue
             lines += ["", *_lines(entry, known)]
     return "\n".join(lines) + "\n"
 
@@ -44,7 +46,7 @@ def _lines(entry: Entry, known: Known) -> Iterator[str]:
     given = bool(entry.asked) and getattr(known.asked, entry.asked.replace("-", "_")) is not None
     value = entry.value(known)
     question = QUESTIONS.get(entry.asked)
-    about = question.text if question is not None and question.unit else _description(entry.name)
+    about = question.text if question is not None and question.unit and entry.unit else _description(entry.name)
     yield from (f"# {line}" for line in textwrap.wrap(about, WIDTH - 2))
     yield f"[{entry.name}]"
     yield f"value = {_number(value, given)}"
@@ -73,6 +75,8 @@ def _description(name: str) -> str:
 def _number(value: object, exact: bool) -> str:
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, str):
+        return _quoted(value)
     if isinstance(value, int | list):
         return str(value)
     assert isinstance(value, float)

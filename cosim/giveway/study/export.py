@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import math
+import os
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -20,6 +22,8 @@ from giveway.study.parts import part_lines
 from giveway.study.runs import COVER
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from giveway.robot.variables import Value
@@ -62,7 +66,11 @@ def export_design(
     if collision is not None and collision not in names:
         raise UnknownNameError("--collision", collision, names)
     case = 0 if collision is None else names.index(collision)
-    writers = {".ssv": _ssv, ".toml": _toml, ".csv": _csv}
+    writers: dict[str, Callable[[Answers, int, int, str], str]] = {
+        ".ssv": _ssv,
+        ".toml": partial(_toml, folder=path.resolve().parent),
+        ".csv": _csv,
+    }
     if path.suffix not in writers:
         raise GivewayError("--out", path, "a file that ends in .ssv, .toml or .csv")
     if model not in MODELS:
@@ -140,6 +148,14 @@ def _truth(value: object) -> str:
     return "true" if value else "false"
 
 
+def _seen_from(folder: Path, file: Path) -> str:
+    """A relative path, so that both may move together; another drive has none."""
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:
+        return str(file)
+
+
 def _settings(answers: Answers, design: int, case: int) -> dict[str, dict[str, Value]]:
     return settings_of_run(answers.runs, design, 0, case)
 
@@ -153,7 +169,7 @@ def _csv(answers: Answers, design: int, _case: int, _model: str) -> str:
     return text.getvalue()
 
 
-def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
+def _toml(answers: Answers, design: int, case: int, _model: str, folder: Path) -> str:
     """The scenario file of one run at nominal values: what the study's own file says, and the design's values."""
     import tomlkit
 
@@ -180,7 +196,7 @@ def _toml(answers: Answers, design: int, case: int, _model: str) -> str:
     if bumper is not None:
         document["bumper"] = bumper
     if "robot" in document:
-        document["robot"] = str((answers.folder / "robot.toml").resolve())
+        document["robot"] = _seen_from(folder, (answers.folder / "robot.toml").resolve())
     for one in quantities:
         if one.name in INFLUENCES:
             changed |= INFLUENCES[one.name].factors.keys()
