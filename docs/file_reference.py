@@ -23,6 +23,9 @@ one. {doc}`/tutorials/choose_a_bumper` uses one.
 number is a table with `value`, `unit` and, if you like, `source`, `confidence`, `provenance` and `note`; units of the
 same kind are converted.
 """,
+    "variables": """`fmu/models/*/variables.toml` of the repository, for those who change an FMU: the one source of its
+variables. The code generator of the build refuses a wrong one with the entry and the key.
+""",
     "summary": "`giveway demo` leaves it in its folder.\n",
 }
 EDITORS = """
@@ -41,7 +44,7 @@ def pages(root: Path) -> dict[str, str]:
 def _page(kind: str) -> str:
     schema = document(kind)
     text = f"# {kind.capitalize()} file\n\n{INTRODUCTION.get(kind, '')}"
-    if kind != "summary":
+    if kind not in ("variables", "summary"):
         text += EDITORS.format(kind=kind)
     return text + "".join(_sections("", schema))
 

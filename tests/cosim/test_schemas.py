@@ -19,8 +19,12 @@ from giveway.robot.robot_file import read_robot, robot_shape
 from giveway.scenario.scenario_file import scenario_of
 from giveway.scenario.scenario_shape import scenario_shape
 from giveway.schemas.documents import KINDS, document
+from giveway.schemas.variable_table import SHARED_KEYS, variable_table_shape
 from giveway.starters import command as starters
 from giveway.study import study_file
+from giveway_codegen import table as codegen
+from giveway_codegen.errors import TableError
+from giveway_codegen.table import read_table
 from jsonschema import Draft202012Validator
 
 ROOT = Path(__file__).parents[2]
@@ -29,6 +33,7 @@ FILES = {
     "scenario": [*sorted(EXAMPLES.glob("*.toml")), Path(starters.__file__).parent / "scenario.toml"],
     "study": [*sorted((EXAMPLES / "studies").glob("*.toml")), Path(starters.__file__).parent / "study.toml"],
     "robot": sorted((ROOT / "robots").glob("*.toml")),
+    "variables": sorted((ROOT / "fmu" / "models").glob("*/variables.toml")),
 }
 NOTHING_IS = {"wrong": 1}, [[1]]  # no value may be one of these
 UNKNOWN = "unheard_of"
@@ -294,6 +299,106 @@ def test_wrong_robots_are_refused_by_both(schemas: dict[str, Draft202012Validato
         assert refused(read, one), name
 
 
+VARIABLES = """
+schema_version = 1
+[model]
+name = "lamp"
+description = "A lamp"
+step_size_s = 0.001
+[[variable]]
+reference = 1
+name = "lamp.power"
+count = 2
+causality = "input"
+type = "real"
+unit = "W"
+start = 1.0
+minimum = 0.0
+maximum = 9.0
+nominal = 2.0
+allow_nonfinite = true
+description = "Power"
+[[variable]]
+reference = 3
+name = "lamp.kind"
+causality = "parameter"
+type = "integer"
+start = 0
+minimum = 0
+maximum = 1
+plant = "LampKind"
+choices = ["red", "green"]
+paper = 1
+description = "Kind"
+[[variable]]
+reference = 4
+name = "lamp.on"
+causality = "output"
+type = "boolean"
+dependencies = ["lamp.power"]
+description = "On"
+[[state]]
+reference = 10
+name = "heat"
+unit = "J"
+nominal = 1.0
+dependencies = ["lamp.power"]
+description = "Heat"
+[[indicator]]
+reference = 20
+name = "melts"
+description = "Melts"
+"""
+CONTRADICTIONS = [  # which entry, keys that are added, keys that are taken away
+    (0, {"dependencies": ["heat"]}, ()), (0, {}, ("unit",)), (0, {}, ("start",)), (0, {"paper": 2.0}, ()),
+    (0, {"choices": ["a"]}, ()), (1, {"unit": "m"}, ()), (1, {"nominal": 1.0}, ()), (1, {"allow_nonfinite": True}, ()),
+    (2, {"start": True}, ()), (2, {"minimum": 0}, ()), (2, {}, ("description",)), (2, {}, ("causality",)),
+    (2, {"shared": "lamp.kind"}, ()), (0, {"name": "Lamp"}, ()), (1, {"choices": ["Red", "green"]}, ()),
+]  # fmt: skip
+
+
+def codegen_refuses(found: dict[str, Any], folder: Path) -> bool:
+    path = folder / "variables.toml"
+    path.write_text(tomlkit.dumps(found), encoding="utf-8")
+    try:
+        read_table(path, ROOT / "robots" / "trikey.toml")
+    except TableError:
+        return True
+    return False
+
+
+def test_wrong_variable_tables_are_refused_by_both(schemas: dict[str, Draft202012Validator], tmp_path: Path) -> None:
+    whole = tomllib.loads(VARIABLES)
+    schemas["variables"].validate(whole)
+    assert not codegen_refuses(whole, tmp_path)
+    # What is not even a table, or a table with another name, the generator does not look at.
+    tried = [
+        (name, one)
+        for name, one in mutations(whole, variable_table_shape())
+        if name.count(".") > 1 or name.startswith(("schema_version", "model.")) or name.endswith("unknown key")
+        if not name.startswith(":")
+    ]
+    for entry, added, taken in CONTRADICTIONS:
+        row = {key: value for key, value in (whole["variable"][entry] | added).items() if key not in taken}
+        tried.append((f"{entry}: {added} {taken}", changed(whole, ("variable", entry), lambda _, row=row: row)))
+    assert len(tried) > 90
+    for name, one in tried:
+        assert not schemas["variables"].is_valid(one), name
+        assert codegen_refuses(one, tmp_path), name
+
+
+def test_variable_tables_have_the_keys_of_the_code_generator() -> None:
+    shape = variable_table_shape()
+    rows = {name: one.row.keys for name, one in shape.keys.items() if isinstance(one, Rows)}
+    model = shape.keys["model"]
+    assert isinstance(model, Table)
+    assert set(model.keys) == codegen._MODEL_KEYS
+    assert set(rows["variable"]) == codegen._VARIABLE_KEYS | {"shared"}
+    assert set(rows["state"]) == codegen._STATE_KEYS
+    assert set(rows["indicator"]) == codegen._INDICATOR_KEYS
+    assert set(SHARED_KEYS) == codegen._SHARED_KEYS
+
+
 @pytest.mark.parametrize(("kind", "key"), [("scenario", "duraton"), ("study", "desgins"), ("robot", "whel")])
 def test_unknown_keys_suggest_the_nearest(kind: str, key: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
@@ -324,7 +429,7 @@ def test_the_command_writes_all(cli: Cli, tmp_path: Path) -> None:
     assert cli("schema").returncode == 2
 
 
-@pytest.mark.parametrize("kind", ["scenario", "study"])
+@pytest.mark.parametrize("kind", ["scenario", "study", "robot"])
 def test_files_to_start_from_name_their_schema(kind: str) -> None:
     for path in FILES[kind]:
         assert path.read_text(encoding="utf-8").startswith(f"#:schema {kind}.schema.json\n"), path

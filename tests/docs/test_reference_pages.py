@@ -72,7 +72,7 @@ def test_formulas_are_of_metrics_and_every_metric_is_there() -> None:
     assert re.findall(r"^`([^`]+)`, \S+\n: ", page, re.MULTILINE) == names
 
 
-@pytest.mark.parametrize("kind", ["scenario", "study", "robot"])
+@pytest.mark.parametrize("kind", ["scenario", "study", "robot", "variables"])
 def test_every_key_of_a_file_is_there(kind: str) -> None:
     page = file_reference.pages(ROOT)[f"reference/files/{kind}.md"]
     properties = document(kind)["properties"]

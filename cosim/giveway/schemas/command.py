@@ -15,7 +15,9 @@ __all__ = ["schema"]
 def schema(
     kind: Annotated[
         str | None,
-        typer.Argument(metavar="[KIND]", help="scenario, study, robot or summary; left out: all of them, with --out."),
+        typer.Argument(
+            metavar="[KIND]", help="scenario, study, robot, variables or summary; left out: all of them, with --out."
+        ),
     ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Write KIND.schema.json there, instead of to stdout.")

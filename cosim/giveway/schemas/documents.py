@@ -40,7 +40,19 @@ def _summary() -> Table:
     return SUMMARY
 
 
-KINDS: dict[str, Callable[[], Table]] = {"scenario": _scenario, "study": _study, "robot": _robot, "summary": _summary}
+def _variables() -> Table:
+    from giveway.schemas.variable_table import variable_table_shape
+
+    return variable_table_shape()
+
+
+KINDS: dict[str, Callable[[], Table]] = {
+    "scenario": _scenario,
+    "study": _study,
+    "robot": _robot,
+    "variables": _variables,
+    "summary": _summary,
+}
 
 
 def file_name(kind: str) -> str:
