@@ -51,11 +51,13 @@ def _page(kind: str) -> str:
 
 def _sections(name: str, node: Mapping[str, Any]) -> Iterator[str]:
     """A section for each table of the file, the outer ones first."""
-    properties: Mapping[str, Any] = node.get("properties", {})
+    only = _only_with(node)
+    properties = {key: only.get(key, (value, ""))[0] for key, value in node.get("properties", {}).items()}
     required = set(node.get("required", ()))
     inner = {key: _table_of(value) for key, value in properties.items()}
     rows = [
-        (f"`{key}`", _allowed(value, inner[key]), _words(value, key in required)) for key, value in properties.items()
+        (f"`{key}`", _allowed(value, inner[key]), _words(value, key in required) + only.get(key, ("", ""))[1])
+        for key, value in properties.items()
     ]
     if rows:
         title = f"`{name}`" if name else "Top"
@@ -65,6 +67,23 @@ def _sections(name: str, node: Mapping[str, Any]) -> Iterator[str]:
         if below is not None and key not in MODELS and not _is_quantity(below):
             path = f"{name.strip('[]')}.{key}" if name else key
             yield from _sections(f"[[{path}]]" if value.get("type") == "array" else f"[{path}]", below)
+
+
+def _only_with(node: Mapping[str, Any]) -> dict[str, tuple[Mapping[str, Any], str]]:
+    """Of a table whose keys depend on a word in it: what the other keys may be, and with which words."""
+    found: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
+    deciding = ""
+    cases = [one for one in node.get("allOf", ()) if any("const" in word for word in one["if"]["properties"].values())]
+    for case in cases:
+        ((deciding, word),) = case["if"]["properties"].items()
+        for key, value in case["then"]["properties"].items():
+            needed = " (needed)" if key in case["then"].get("required", ()) else ""
+            found.setdefault(key, (value, []))[1].append(f"`{word['const']}`{needed}")
+    found.pop(deciding, None)
+    return {
+        key: (value, "" if len(words) == len(cases) and "needed" not in str(words) else f"; with {', '.join(words)}")
+        for key, (value, words) in found.items()
+    }
 
 
 def _table_of(node: Mapping[str, Any]) -> Mapping[str, Any] | None:

@@ -80,6 +80,12 @@ def test_every_key_of_a_file_is_there(kind: str) -> None:
     assert "|  |  |" not in page.partition("## `")[0], "a key says neither what is allowed nor what it means"
 
 
+def test_keys_that_go_with_a_word_say_so() -> None:
+    page = file_reference.pages(ROOT)["reference/files/scenario.md"]
+    assert re.search(r"^\| `diameter` \| a number.* \| .*; with `circle` \(needed\) \|$", page, re.MULTILINE)
+    assert "|  |  |" not in page
+
+
 def test_every_rung_has_its_claim() -> None:
     page = proofs.pages(ROOT)["reference/verified.md"]
     rows = re.findall(r"^\| `(\w+)` \| (.+?) \| (.+) \|$", page, re.MULTILINE)
