@@ -16,6 +16,7 @@ from giveway.base.errors import GivewayError
 from giveway.cli import _main as cli_main
 from giveway.crowd import endurance, lifts, table
 from giveway.crowd.blow import Blow
+from giveway.crowd.command import ended_early
 from giveway.crowd.crowd import compute, crowd, limits_of
 from giveway.crowd.drive import Drive, Leg
 from giveway.crowd.hits import PATTERN, PER_ROBOT, Hit, hit
@@ -420,6 +421,33 @@ def test_one_plant_alone_has_the_same_numbers() -> None:
     assert alone[0]["group"] == "tipping"
 
 
+def test_hits_of_some_situations_alone_have_the_same_numbers(records: list[dict[str, Any]]) -> None:
+    work = crowd(DRAW, ROBOT + 1, {}, group="planar", situations=("stopping", "reacting"))
+    assert work.count == 2 * sum(group_of(number) == "planar" for number in range(ROBOT + 1))
+    assert work.compute([work.count - 2], 1, lambda _done: None) == records[8:9]
+    whole = crowd(DRAW, ROBOT + 1, {}, group="planar")
+    assert (whole.count, work.asked != whole.asked) == (work.count // 2 * PER_ROBOT, True)
+
+
+def test_robots_may_be_alike_in_a_parameter_and_are_hit_as_before() -> None:
+    same = {"electronics.encoder_counts": 85000, "floor.slope": 0.0}
+    drawn, alike = hit(DRAW, NUMBERS[0]).scenario, hit(DRAW, NUMBERS[0], same=same).scenario
+    assert drawn.testbed["floor.slope"] != 0.0
+    assert (dict(alike.testbed), alike.contact, alike.plan) == ({**drawn.testbed, **same}, drawn.contact, drawn.plan)
+    asked = crowd(DRAW, 1, {}, same=same).asked
+    assert asked["same"] == same  # another work than that of the robots as drawn
+    assert "same" not in crowd(DRAW, 1, {}).asked
+    for name in ("slider.mass", "contact.height", "imu.present"):
+        with pytest.raises(GivewayError, match=f"testbed.{name}"):
+            hit(DRAW, NUMBERS[0], same={name: 1})
+
+
+def test_a_refused_run_is_not_one_that_tipped_over() -> None:
+    ended = [("ok", {"contacts": []}), ("failed", {"contacts": []}), ("failed", None), ("refused", None)]
+    failed, over = ended_early([{"status": status, "judged": judged} for status, judged in ended])
+    assert ([one["status"] for one in failed], over) == (["failed", "refused"], 1)
+
+
 def test_a_calibrated_controller_believes_what_was_found_for_its_own_robot(records: list[dict[str, Any]]) -> None:
     own = {ROBOT: NO_REFLEX, ROBOT + 1: {}}
     blind = compute(DRAW, {}, NUMBERS[:1], 1, lambda _done: None, own)
@@ -449,7 +477,11 @@ def test_the_command_writes_tables_and_refuses_what_it_cannot_do(
         (["--robots", "0"], "--robots"),
         (["--threads", "0"], "--threads"),
         (["--group", "floating"], "floating"),
-        (["--set", "testbed.base.mass=40"], "testbed.base.mass"),
+        (["--set", "testbed.slider.mass=4"], "testbed.slider.mass"),
+        (["--set", "testbed.base.tipping=1"], "testbed.base.tipping"),
+        (["--set", "testbed.base.mass=40", "--calibrated"], "--calibrated"),
+        (["--situation", "asleep"], "asleep"),
+        (["endurance", "--set", "testbed.base.mass=40"], "testbed.base.mass"),
         (["--set", "controller.no=1"], "no"),
         (["--only", "-1"], "--only"),
         (["endurance", "--group", "floating"], "floating"),

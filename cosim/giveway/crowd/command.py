@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from giveway.robot.variables import Value
     from giveway.scenario.scenario import Scenario
 
-__all__ = ["crowd_app"]
+__all__ = ["crowd_app", "ended_early"]
 
 crowd_app = typer.Typer(name="crowd", help="Judge the reflex on many robots that are not its model.")
 
@@ -28,6 +28,12 @@ DrawOption = Annotated[
 SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="controller.NAME=VALUE", help="Set a parameter of the controller."),
+]
+SetAnyOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="MODEL.NAME=VALUE", help="Set a parameter of every controller, or of every robot (testbed.*)."
+    ),
 ]
 ImuOption = Annotated[bool, typer.Option("--imu", help="Of robots with accelerometer and gyro.")]
 
@@ -43,6 +49,10 @@ def crowd(
     group: Annotated[
         str | None, typer.Option("--group", help="Only the planar, tipping or single rollers robots among them.")
     ] = None,
+    situations: Annotated[
+        list[str] | None,
+        typer.Option("--situation", help="Only hits at rest, in motion, starting, stopping or reacting; repeat it."),
+    ] = None,
     imu: Annotated[
         bool | None,
         typer.Option("--imu/--no-imu", help="Only robots with accelerometer and gyro, or without; else both."),
@@ -50,7 +60,7 @@ def crowd(
     calibrated: Annotated[
         bool, typer.Option("--calibrated", help="Controllers know what `giveway calibrate` finds for their robots.")
     ] = False,
-    assignments: SetOption = None,
+    assignments: SetAnyOption = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Without it: out/crowd/DRAW, or out/crowd/hit-N.")
     ] = None,
@@ -63,20 +73,22 @@ def crowd(
     from giveway.base.errors import GivewayError, UnknownNameError
     from giveway.crowd.population import DRAWS
 
-    controller = _controller(assignments)
+    controller, same = _controller_and_robots(assignments)
     if draw not in DRAWS:
         raise UnknownNameError("--draw", draw, DRAWS)
+    if calibrated and same:
+        raise GivewayError("--calibrated", same, "no testbed.* beside it: its logs are of the robots as drawn")
     if calibrated and robot is not None:
         raise GivewayError("--calibrated", robot, "no --robot beside it: the logs of the calibration are Trikey's")
     _check_imu(robot, imu)
     base = OUT if robot is None else OUT / robot.stem
     if only is not None:
         folder = out or base / (f"hit-{only}-imu" if imu else f"hit-{only}")
-        _one(draw, only, controller, calibrated, bool(imu), robot, folder)
+        _one(draw, only, controller, calibrated, bool(imu), robot, same, folder)
     else:
         folder = out or base / (f"{draw}-calibrated" if calibrated else draw)
         imus = (False, *([True] if _has_imu(robot) else [])) if imu is None else (imu,)
-        _all(draw, robots, group, imus, controller, calibrated, robot, folder, threads)
+        _all(draw, robots, group, situations, imus, controller, calibrated, robot, same, folder, threads)
 
 
 def _has_imu(robot: Path | None) -> bool:
@@ -104,6 +116,16 @@ def _controller(assignments: list[str] | None) -> Mapping[str, Value]:
     return overrides["controller"]
 
 
+def _controller_and_robots(assignments: list[str] | None) -> tuple[Mapping[str, Value], Mapping[str, Value]]:
+    """Parameters of the controllers, and those of the testbed that all robots have alike."""
+    from giveway.crowd.population import check_same
+    from giveway.robot.variables import parse_assignments
+
+    overrides = parse_assignments(assignments or [])
+    check_same(overrides["testbed"])
+    return overrides["controller"], overrides["testbed"]
+
+
 def _threads(threads: int | None) -> int:
     from giveway.base.checks import whole
     from giveway.library.batch_library import THREADS_MAX
@@ -116,10 +138,12 @@ def _all(
     draw: str,
     robots: int,
     group: str | None,
+    situations: Sequence[str] | None,
     imus: Sequence[bool],
     controller: Mapping[str, Value],
     calibrated: bool,
     robot: Path | None,
+    same: Mapping[str, Value],
     folder: Path,
     threads: int | None,
 ) -> None:
@@ -142,7 +166,7 @@ def _all(
     )
     interrupted = False
     for imu in imus:
-        work = work_of(draw, robots, controller, found, group, imu, robot)
+        work = work_of(draw, robots, controller, found, group, imu, robot, same, situations)
         with showing(work.name) as progress:
             done = go_on(work, folder / "imu" if imu else folder, threads, progress)
         if done.ran:
@@ -159,7 +183,11 @@ def _all(
         if targets := target_rows(table, rows):
             print_columns(f"Targets: {table}", TARGET_HEADER, targets)
     simulated_h = sum(record["simulated_s"] for record in records) / 3600.0
-    settings = "".join(f" --set controller.{name}={value}" for name, value in controller.items())
+    settings = "".join(
+        f" --set {model}.{name}={value}"
+        for model, values in (("controller", controller), ("testbed", same))
+        for name, value in values.items()
+    )
     whose = f" --robot {robot}" if robot else ""
     again = f"giveway crowd --draw {draw} --only N{' --calibrated' if calibrated else ''}{whose}{settings}"
     notes = [
@@ -168,8 +196,7 @@ def _all(
         "`--imu` if its table is of robots with an IMU.",
     ]
     written = write(folder, title, notes, records)
-    failed = [record for record in records if not record["judged"]]
-    over = sum(record["status"] == "failed" for record in records) - len(failed)
+    failed, over = ended_early(records)
     if over:
         typer.echo(f"{over} runs ended when the robot tipped over; they count until then")
     for record in failed[:10]:
@@ -180,6 +207,12 @@ def _all(
         raise typer.Exit(INTERRUPTED)
     if failed:
         raise typer.Exit(FAILED)
+
+
+def ended_early(records: Sequence[Record]) -> tuple[list[Record], int]:
+    """The runs that could not be judged, and the number of those that count until the robot tipped over."""
+    failed = [record for record in records if not record["judged"]]
+    return failed, sum(record["status"] == "failed" for record in records if record["judged"])
 
 
 def _calibrate(draw: str, robots: int, folder: Path, threads: int) -> tuple[dict[int, dict[str, Value]], list[str]]:
@@ -208,6 +241,7 @@ def _one(
     calibrated: bool,
     imu: bool,
     robot: Path | None,
+    same: Mapping[str, Value],
     folder: Path,
 ) -> None:
     """One hit: its figures as in the crowd, and the usual report of the event-exact run."""
@@ -224,8 +258,8 @@ def _one(
 
         whose = number // PER_ROBOT
         controller = {**beliefs(calibrate(draw, [whose], 1, lambda _done: None))[whose], **controller}
-    one = hit(draw, number, controller, imu=imu, file=robot)
-    record = compute(draw, controller, [number], 1, lambda _done: None, imu=imu, robot=robot)[0]
+    one = hit(draw, number, controller, imu=imu, file=robot, same=same)
+    record = compute(draw, controller, [number], 1, lambda _done: None, imu=imu, robot=robot, same=same)[0]
     what = f"Robot {one.robot.number} ({one.robot.table}), {one.situation}, {one.kind}, bumper {one.bumper}."
     _report(one.scenario, what, record, folder)
     rows = [

@@ -12,7 +12,7 @@ from typing import Any
 from giveway import batch
 from giveway.base.errors import UnknownNameError
 from giveway.crowd.blow import Blow
-from giveway.crowd.hits import PER_ROBOT, Hit, hit
+from giveway.crowd.hits import PATTERN, PER_ROBOT, SITUATIONS, Hit, hit
 from giveway.crowd.judged import RECORDED, Judged, Limits, judge, limits
 from giveway.crowd.lifts import RECORDED as LOADS
 from giveway.crowd.lifts import lifts
@@ -52,13 +52,19 @@ def crowd(
     group: str | None = None,
     imu: bool = False,
     robot: Path | None = None,
+    same: Mapping[str, Value] | None = None,
+    situations: Sequence[str] | None = None,
 ) -> Work:
     """The work of the first ``robots`` robots of ``draw``, with these parameters of the controller.
 
     ``beliefs``: of each robot's own; without it every controller knows its robot by the robot file alone. ``group``:
     only the robots among them that have this plant of `GROUPS`. ``imu``: the same robots, each with an IMU. ``robot``:
-    the robot file that they differ from, and that their controllers believe; None: Trikey's.
+    the robot file that they differ from, and that their controllers believe; None: Trikey's. ``same``: as in `hit`.
+    ``situations``: only hits whose situation in `PATTERN` is one of these; None: all.
     """
+    for situation in situations or ():
+        if situation not in SITUATIONS:
+            raise UnknownNameError("--situation", situation, SITUATIONS)
     if group is not None and group not in GROUPS:
         raise UnknownNameError("group", group, GROUPS)
     asked: dict[str, Any] = {
@@ -70,13 +76,20 @@ def crowd(
     }
     if robot is not None:
         asked["robot"] = {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()}
+    if same:
+        asked["same"] = dict(same)
     if beliefs is not None:
         asked["beliefs"] = {str(number): dict(values) for number, values in sorted(beliefs.items())}
-    chosen = [number for number in range(robots) if group in (None, group_of(number))]
+    if situations:
+        asked["situations"] = list(situations)
+    places = [place for place, (situation, _) in enumerate(PATTERN) if situation in (situations or SITUATIONS)]
+    chosen = [
+        number * PER_ROBOT + place for number in range(robots) if group in (None, group_of(number)) for place in places
+    ]
 
     def run(indices: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
-        numbers = [chosen[index // PER_ROBOT] * PER_ROBOT + index % PER_ROBOT for index in indices]
-        return compute(draw, controller, numbers, threads, progress, beliefs, imu, robot)
+        numbers = [chosen[index] for index in indices]
+        return compute(draw, controller, numbers, threads, progress, beliefs, imu, robot, same)
 
     name = (
         f"crowd, {draw} draw"
@@ -84,7 +97,7 @@ def crowd(
         + ("" if beliefs is None else ", calibrated")
         + (", IMU" if imu else "")
     )
-    return Work(name, asked, len(chosen) * PER_ROBOT, PART_ROBOTS * PER_ROBOT, run, CODE)
+    return Work(name, asked, len(chosen), PART_ROBOTS * PER_ROBOT, run, CODE)
 
 
 def compute(
@@ -96,11 +109,13 @@ def compute(
     beliefs: Beliefs | None = None,
     imu: bool = False,
     robot: Path | None = None,
+    same: Mapping[str, Value] | None = None,
 ) -> list[Record]:
     """Records of the hits ``numbers``: each has the same bits alone and among others."""
     own = beliefs or {}
     hits = [
-        hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}, imu=imu, file=robot) for number in numbers
+        hit(draw, number, {**own.get(number // PER_ROBOT, {}), **controller}, imu=imu, file=robot, same=same)
+        for number in numbers
     ]
     records: dict[int, Record] = {}
     for alike in _alike(hits):

@@ -22,7 +22,16 @@ from giveway.base.errors import GivewayError
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.crowd.blow import Blow
 from giveway.crowd.drive import Drive, Leg, fastest, tare_s
-from giveway.crowd.population import DRAWS, GROUP_PATTERN, Robot, controller_of, robot, start_value, start_values
+from giveway.crowd.population import (
+    DRAWS,
+    GROUP_PATTERN,
+    Robot,
+    check_same,
+    controller_of,
+    robot,
+    start_value,
+    start_values,
+)
 from giveway.robot.variables import Value
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
 from giveway.scenario.plan import Plan, Pushes, Rest, TimedPush
@@ -32,7 +41,7 @@ from giveway.scenario.stated_contact import StatedContact
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["DRAWN", "PATTERN", "PER_ROBOT", "Hit", "hit"]
+__all__ = ["DRAWN", "PATTERN", "PER_ROBOT", "SITUATIONS", "Hit", "hit"]
 
 PATTERN: tuple[tuple[str, str], ...] = (
     ("rest", "free"),
@@ -51,6 +60,7 @@ PATTERN: tuple[tuple[str, str], ...] = (
 """Situation and kind of each robot's hits. The first ten are hits; ``rest or motion``: by the robot's number."""
 
 PER_ROBOT = len(PATTERN)
+SITUATIONS = tuple(dict.fromkeys(situation for situation, _ in PATTERN))
 
 DRAWN: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -125,13 +135,18 @@ def hit(
     *,
     imu: bool = False,
     file: Path | None = None,
+    same: Mapping[str, Value] | None = None,
 ) -> Hit:
     """Hit ``number`` of ``draw`` with these parameters of the controller; ``imu``: of a robot that has one.
 
     ``file``: robots of this robot file instead of Trikey's. What hits a lighter one is as much lighter, a push and a
     moment as much weaker, and none drives faster than `drive.SPEED_SHARE` of its limit or is hit above its body.
+    ``same``: parameters of the testbed that every robot has alike, whatever was drawn.
     """
     whose = robot(draw, number // PER_ROBOT, imu, file)
+    if same:
+        check_same(same)
+        whose = dataclasses.replace(whose, testbed=MappingProxyType({**whose.testbed, **same}))
     situation, kind = PATTERN[number % PER_ROBOT]
     if situation == "rest or motion":
         # Half of the robots of every plant, which repeat after ten.

@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from giveway.base.errors import UnknownNameError
+from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.robot.population import GROUPS, POPULATION, Quantity, quantities_of, start_value, start_values
 from giveway.robot.variables import Value
 
@@ -28,6 +28,7 @@ __all__ = [
     "TABLES",
     "Quantity",
     "Robot",
+    "check_same",
     "controller_of",
     "group_of",
     "robot",
@@ -126,6 +127,18 @@ def robot_of(draw: str, number: int, group: str, imu: bool = False, file: Path |
     elif file is not None:
         values["imu.present"] = False
     return Robot(number, group, MappingProxyType(values), imu, file)
+
+
+ROBOTS_OWN = ("base.", "wheel.", "roller.", "drivetrain.", "servo.", "electronics.", "floor.", "imu.")
+OF_THE_PLANT = ("base.tipping", "roller.arrangement", "imu.present")
+
+
+def check_same(same: Mapping[str, Value]) -> None:
+    """GivewayError if one of these parameters of the testbed is not the robot's, or is what its table is for."""
+    for name, value in same.items():
+        if not name.startswith(ROBOTS_OWN) or name in OF_THE_PLANT:
+            allowed = f"parameters of the robot ({', '.join(ROBOTS_OWN)}) but not {', '.join(OF_THE_PLANT)}"
+            raise GivewayError(f"testbed.{name}", value, allowed)
 
 
 def controller_of(whose: Robot, controller: Mapping[str, Value]) -> Mapping[str, Value]:
