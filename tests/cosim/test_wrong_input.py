@@ -11,7 +11,10 @@ from giveway.cli import main as cli_main
 
 RUN = ("run", "motionless", "--out", "out/run")
 WRONG = {
-    "unknown experiment": (("run", "motionles", "--out", "out/run"), ("motionles", "did you mean motionless?")),
+    "unknown experiment": (
+        ("run", "motionles", "--out", "out/run"),
+        ("motionles", "a scenario file (TOML)", "did you mean motionless?"),
+    ),
     "unknown bumper": ((*RUN, "--bumper", "magnetc"), ("--bumper", "magnetc", "foam, gas", "did you mean magnetic?")),
     "negative mass": ((*RUN, "--set", "testbed.base.mass=-3"), ("testbed.base.mass", "-3", "kg")),
     "unknown variable": ((*RUN, "--set", "testbed.base.mas=3"), ("base.mas", "did you mean base.mass")),

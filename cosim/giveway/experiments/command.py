@@ -228,6 +228,9 @@ def _scenario(what: str, bumper: str | None, robot: Path | None, preset: str | N
             raise UnknownNameError("--bumper", bumper, BUMPERS)
         scenario = read_scenario(what, bumper=bumper, robot=robot, preset=preset)
         return scenario, f"A scenario from the file {Path(what).name}."
+    names = experiments.all_experiments()
+    if what not in names:
+        raise UnknownNameError("experiment", what, [*names, "the path of a scenario file (TOML)"])
     chosen = experiments.get(what)
     if bumper is None:
         bumper = DEFAULT_BUMPER if DEFAULT_BUMPER in chosen.bumpers or not chosen.bumpers else chosen.bumpers[0]
