@@ -6,7 +6,15 @@ import re
 import shutil
 from pathlib import Path
 
-from docs import c_reference, command_reference, file_reference, metric_reference, proofs, variable_reference
+from docs import (
+    c_reference,
+    command_reference,
+    file_reference,
+    metric_reference,
+    proofs,
+    theory_figures,
+    variable_reference,
+)
 
 __all__ = ["ROOT", "gather", "generated_pages"]
 
@@ -41,6 +49,7 @@ def gather(folder: Path) -> None:
     (folder / "pictures").mkdir(exist_ok=True)
     for picture in sorted((ROOT / "docs").glob("*.png")) + sorted((ROOT / "docs").glob("*.webp")):
         shutil.copy(picture, folder / "pictures" / picture.name)
+    theory_figures.draw(ROOT, folder / "pictures")
     for name, shown in SHOWN.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / shown, folder / name)
