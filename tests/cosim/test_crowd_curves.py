@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from figure_labels import Curve as DrawnCurve
 from figure_labels import band, check_panels, check_planted, curve
+from giveway.base import native
 from giveway.cli import _main as cli_main
 from giveway.crowd.curves import curve as curve_module
 from giveway.crowd.curves import cusum, figure, glr, kalman, matched_filter, noise, work
 from giveway.crowd.curves.alarms import LOCKED, alarms, delay_ms
-from giveway.crowd.curves.candidates import CANDIDATES, FULL, OURS, RESIDUAL, scaled
+from giveway.crowd.curves.candidates import CANDIDATES, FULL, IMPULSE, OURS, RESIDUAL, scaled
 from giveway.crowd.curves.curve import at_level, curves, usable
 from giveway.crowd.curves.recorded import RESIDUAL_TRACES, record
 from giveway.crowd.curves.situations import MOTION, REST, SITUATIONS, STARTING, situations
@@ -344,3 +345,30 @@ def test_the_command_draws_goes_on_and_refuses_what_it_cannot_do(
         assert cli_main(["crowd", "curves", *wrong, "--out", str(tmp_path / "no")]) == 2, wrong
         assert said in capsys.readouterr().err
     assert not (tmp_path / "no").exists()
+
+
+def test_robots_of_another_file_are_driven_hit_and_judged_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
+    file = native.robots()["lekiwi"]
+    seen: list[tuple[Path | None, Path | None]] = []
+
+    class Enough(Exception):
+        pass
+
+    def recorded(scenarios: Any, *_others: Any) -> None:
+        seen.append((scenarios[0].robot, _others[-1]))
+        raise Enough
+
+    monkeypatch.setattr(work, "record", recorded)
+    monkeypatch.setattr(work, "_model", lambda *_asked: None)
+    of_file = [work.quiet_work("tuning", "planar", 0.01, {}, file), work.hits_work("tuning", "planar", 1 + 3, {}, file)]
+    for one in of_file:
+        with pytest.raises(Enough):
+            one.compute([0], 1, lambda _done: None)
+    assert seen == [(file, file), (file, file)]
+    usual = work.quiet_work("tuning", "planar", 0.01, {})
+    assert "robot" not in usual.asked  # what was stored before is still found
+    assert usual.asked != of_file[0].asked
+    # A threshold is scaled from the file's.
+    name = "detector.impulse_threshold"
+    assert scaled(IMPULSE, 2.0, {}, file)[name] == 2.0 * start_value(name, "controller", file)
+    assert scaled(IMPULSE, 2.0, {}, file)[name] != scaled(IMPULSE, 2.0, {})[name]

@@ -21,7 +21,7 @@ __all__ = ["crowd_app", "ended_early"]
 
 crowd_app = typer.Typer(name="crowd", help="Judge the reflex on many robots that are not its model.")
 
-OUT = Path("out/crowd")
+OUT, CURVES = Path("out/crowd"), Path("out/curves")
 DrawOption = Annotated[
     str, typer.Option("--draw", help="tuning, or judging: another seed, not looked at while a detector is chosen.")
 ]
@@ -78,8 +78,10 @@ def crowd(
         raise UnknownNameError("--draw", draw, DRAWS)
     if calibrated and same:
         raise GivewayError("--calibrated", same, "no testbed.* beside it: its logs are of the robots as drawn")
-    if calibrated and robot is not None:
-        raise GivewayError("--calibrated", robot, "no --robot beside it: the logs of the calibration are Trikey's")
+    if calibrated:
+        from giveway.crowd.calibrated import refuse_current
+
+        refuse_current(robot)
     _check_imu(robot, imu)
     base = OUT if robot is None else OUT / robot.stem
     if only is not None:
@@ -162,7 +164,9 @@ def _all(
     threads = _threads(threads)
     records: list[Record] = []
     found, notes = (
-        _calibrate(draw, robots, folder.with_name(f"{folder.name}-of-robots"), threads) if calibrated else (None, [])
+        _calibrate(draw, robots, robot, folder.with_name(f"{folder.name}-of-robots"), threads)
+        if calibrated
+        else (None, [])
     )
     interrupted = False
     for imu in imus:
@@ -215,13 +219,15 @@ def ended_early(records: Sequence[Record]) -> tuple[list[Record], int]:
     return failed, sum(record["status"] == "failed" for record in records if record["judged"])
 
 
-def _calibrate(draw: str, robots: int, folder: Path, threads: int) -> tuple[dict[int, dict[str, Value]], list[str]]:
+def _calibrate(
+    draw: str, robots: int, robot: Path | None, folder: Path, threads: int
+) -> tuple[dict[int, dict[str, Value]], list[str]]:
     """What the controllers believe after the calibration, and a sentence about it."""
     from giveway.crowd.calibrated import beliefs, calibrations
     from giveway.crowd.parts import go_on
     from giveway.study.messages import showing
 
-    work = calibrations(draw, robots)
+    work = calibrations(draw, robots, robot)
     with showing(work.name) as progress:
         done = go_on(work, folder, threads, progress)
     if done.interrupted:
@@ -257,7 +263,7 @@ def _one(
         from giveway.crowd.calibrated import compute as calibrate
 
         whose = number // PER_ROBOT
-        controller = {**beliefs(calibrate(draw, [whose], 1, lambda _done: None))[whose], **controller}
+        controller = {**beliefs(calibrate(draw, [whose], 1, lambda _done: None, robot))[whose], **controller}
     one = hit(draw, number, controller, imu=imu, file=robot, same=same)
     record = compute(draw, controller, [number], 1, lambda _done: None, imu=imu, robot=robot, same=same)[0]
     what = f"Robot {one.robot.number} ({one.robot.table}), {one.situation}, {one.kind}, bumper {one.bumper}."
@@ -416,10 +422,11 @@ def curves(
         str, typer.Option("--group", help="Only the planar, tipping or single rollers robots.")
     ] = "planar",
     assignments: SetOption = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for figure, tables and runs.")] = Path(
-        "out/curves"
-    ),
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Without it: out/curves, or out/curves/ROBOT.")
+    ] = None,
     threads: ThreadsOption = None,
+    robot: RobotOption = None,
 ) -> None:
     """Detectors compared: delay of hits against false alarms per hour. Goes on where it stopped."""
     from giveway.base.checks import finite, whole
@@ -434,11 +441,19 @@ def curves(
         raise UnknownNameError("--group", group, GROUPS)
     whole("--robots", robots, 1, ROBOTS_MAX)
     finite("--hours", hours, 1e-3, 1e5, "h")
-    _curves(draw, group, robots, hours, controller, out, _threads(threads))
+    folder = out or (CURVES if robot is None else CURVES / robot.stem)
+    _curves(draw, group, robots, hours, controller, robot, folder, _threads(threads))
 
 
 def _curves(
-    draw: str, group: str, robots: int, hours: float, controller: Mapping[str, Value], out: Path, threads: int
+    draw: str,
+    group: str,
+    robots: int,
+    hours: float,
+    controller: Mapping[str, Value],
+    robot: Path | None,
+    out: Path,
+    threads: int,
 ) -> None:
     from giveway.crowd.curves.result import write
     from giveway.crowd.curves.work import hits_work, quiet_work
@@ -447,8 +462,8 @@ def _curves(
 
     found = []
     for work, name in (
-        (quiet_work(draw, group, hours, controller), "free-motion"),
-        (hits_work(draw, group, robots, controller), "hits"),
+        (quiet_work(draw, group, hours, controller, robot), "free-motion"),
+        (hits_work(draw, group, robots, controller, robot), "hits"),
     ):
         with showing(work.name) as progress:
             done = go_on(work, out / name, threads, progress)
@@ -467,7 +482,8 @@ def _curves(
         f"{len(hits.records)} hits, {sum(one['simulated_s'] for one in quiet.records) / 3600.0:.3g} h without contact"
     )
     settings = "".join(f", {name} = {value}" for name, value in controller.items())
-    about = f"{group} robots of draw `{draw}`, {sizes}{settings}"
+    whose = "" if robot is None else f" of {robot.stem}"
+    about = f"{group} robots{whose} of draw `{draw}`, {sizes}{settings}"
     tables, paths = write(out, about, hits.records, quiet.records)
     for title, header, rows in tables:
         print_columns(title, header, rows)

@@ -22,7 +22,7 @@ from giveway.robot.presets import NO_REFLEX
 from giveway.robot.variables import Value
 from giveway.scenario.plan import Rest
 
-__all__ = ["ROBOTS_MAX", "compute", "crowd", "limits_of", "record_of"]
+__all__ = ["ROBOTS_MAX", "compute", "crowd", "limits_of", "record_of", "robot_asked"]
 
 ROBOTS_MAX = 100_000
 PART_ROBOTS = 32  # 300 MB of traces
@@ -75,7 +75,7 @@ def crowd(
         "controller": dict(controller),
     }
     if robot is not None:
-        asked["robot"] = {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()}
+        asked["robot"] = robot_asked(robot)
     if same:
         asked["same"] = dict(same)
     if beliefs is not None:
@@ -98,6 +98,11 @@ def crowd(
         + (", IMU" if imu else "")
     )
     return Work(name, asked, len(chosen), PART_ROBOTS * PER_ROBOT, run, CODE)
+
+
+def robot_asked(robot: Path) -> dict[str, str]:
+    """What stands for a robot file in the settings of a `Work`."""
+    return {"file": robot.name, "sha256": hashlib.sha256(robot.read_bytes()).hexdigest()}
 
 
 def compute(

@@ -23,6 +23,8 @@ from giveway.crowd.curves.situations import REST
 from giveway.crowd.population import start_value
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from giveway.robot.variables import Value
@@ -118,11 +120,16 @@ CANDIDATES: tuple[Candidate, ...] = (
 )
 
 
-def scaled(candidate: Candidate, scale: float, controller: Mapping[str, Value]) -> dict[str, Value]:
-    """The controller with this detector, and what ``controller`` sets, with all thresholds ``scale`` times as large."""
+def scaled(
+    candidate: Candidate, scale: float, controller: Mapping[str, Value], robot: Path | None = None
+) -> dict[str, Value]:
+    """The controller with this detector, and what ``controller`` sets, with all thresholds ``scale`` times as large.
+
+    ``robot``: whose file states the others; None: Trikey's.
+    """
     own: dict[str, Value] = {**(candidate.settings or {}), **controller}
     for name in candidate.scaled:
-        own[name] = scale * float(own.get(name, start_value(name, "controller")))
+        own[name] = scale * float(own.get(name, start_value(name, "controller", robot)))
     return own
 
 

@@ -16,6 +16,8 @@ from giveway.crowd.population import start_value
 from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from giveway.scenario.scenario import Scenario
@@ -67,8 +69,9 @@ def record(
     method: str,
     threads: int,
     progress: Callable[[int], None],
+    robot: Path | None = None,
 ) -> Recording:
-    """Run ``scenarios``, which last equally long, and keep ``traces``. Ctrl-C: `Interrupted`."""
+    """Run ``scenarios``, which last equally long and are of ``robot``, and keep ``traces``. Ctrl-C: `Interrupted`."""
     wanted = list(dict.fromkeys([*traces, *REFERENCE]))
     table = batch.Prepared(scenarios, traces=wanted).run(
         threads=threads, method=method, progress=lambda done, _of: progress(done)
@@ -78,7 +81,7 @@ def record(
     step_s = scenarios[0].step_s
     # What the controller finds in a tick belongs to the reference and the mode of the tick before.
     vx, vy, omega, mode = (_before(table[name].values) for name in REFERENCE)
-    rim = omega * start_value("wheel.distance")
+    rim = omega * start_value("wheel.distance", robot=robot)
     status, message = table["status"].values, table["message"].values
     failed = {index: str(message[index]) for index in range(len(scenarios)) if str(status[index]) != "ok"}
     rows = tuple(round(float(simulated) / step_s) + 1 for simulated in table["simulated"].values)

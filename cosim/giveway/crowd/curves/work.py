@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.crowd.crowd import limits_of
+from giveway.crowd.crowd import limits_of, robot_asked
 from giveway.crowd.curves.alarms import LOCKED, alarms, delay_ms
 from giveway.crowd.curves.candidates import (
     CANDIDATES,
@@ -30,6 +30,8 @@ from giveway.crowd.parts import Record, Work
 from giveway.crowd.population import DRAWS, group_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from giveway.robot.variables import Value
     from giveway.scenario.scenario import Scenario
 
@@ -66,28 +68,37 @@ ScenarioOf = Callable[[int, Mapping[str, "Value"]], "Scenario"]
 """The scenario of a number with these parameters of the controller."""
 
 
-def hits_work(draw: str, group: str, robots: int, controller: Mapping[str, Value]) -> Work:
-    """Hits of those among the first ``robots`` robots of ``draw`` that have the plant ``group``."""
+def hits_work(draw: str, group: str, robots: int, controller: Mapping[str, Value], robot: Path | None = None) -> Work:
+    """Hits of those among the first ``robots`` robots of ``draw`` that have the plant ``group``.
+
+    ``robot``: the robot file that they differ from, and that their controllers believe; None: Trikey's.
+    """
     chosen = [
         number * PER_ROBOT + place for number in range(robots) if group_of(number) == group for place in HIT_KINDS
     ]
 
     def run(indices: Sequence[int], threads: int, progress: Callable[[int], None]) -> list[Record]:
-        return _hits(draw, group, controller, [chosen[index] for index in indices], threads, progress)
+        return _hits(draw, group, controller, robot, [chosen[index] for index in indices], threads, progress)
 
     part = HIT_ROBOTS * len(HIT_KINDS)
-    return Work(f"curves, hits, {group}", _asked(draw, group, controller), len(chosen), part, run, CODE)
+    return Work(_name("hits", group, robot), _asked(draw, group, controller, robot), len(chosen), part, run, CODE)
 
 
-def quiet_work(draw: str, group: str, hours: float, controller: Mapping[str, Value]) -> Work:
+def quiet_work(draw: str, group: str, hours: float, controller: Mapping[str, Value], robot: Path | None = None) -> Work:
     """``hours`` of free motion, as in `giveway crowd endurance`."""
     count = math.ceil(hours * 3600.0 / RUN_S)
-    run = functools.partial(_quiet, draw, group, controller)
-    return Work(f"curves, free motion, {group}", _asked(draw, group, controller), count, QUIET_RUNS, run, CODE)
+    run = functools.partial(_quiet, draw, group, controller, robot)
+    asked = _asked(draw, group, controller, robot)
+    return Work(_name("free motion", group, robot), asked, count, QUIET_RUNS, run, CODE)
 
 
-def _asked(draw: str, group: str, controller: Mapping[str, Value]) -> dict[str, object]:
-    return {"draw": draw, "seed": DRAWS[draw], "group": group, "controller": dict(controller)}
+def _name(what: str, group: str, robot: Path | None) -> str:
+    return f"curves, {what}, {group}" + ("" if robot is None else f", {robot.stem}")
+
+
+def _asked(draw: str, group: str, controller: Mapping[str, Value], robot: Path | None) -> dict[str, object]:
+    asked = {"draw": draw, "seed": DRAWS[draw], "group": group, "controller": dict(controller)}
+    return asked if robot is None else {**asked, "robot": robot_asked(robot)}
 
 
 class _Runs:
@@ -100,8 +111,10 @@ class _Runs:
         group: str,
         threads: int,
         progress: Callable[[int], None],
+        robot: Path | None,
     ) -> None:
         self._of, self._numbers, self._threads, self._progress = of, numbers, threads, progress
+        self._robot = robot
         self._method = "event-exact" if group == "tipping" else "fixed-step"
         self._recorded = 0
         with_settings = [one for one in CANDIDATES if one.settings is not None]
@@ -114,16 +127,18 @@ class _Runs:
         def say(done: int) -> None:
             self._progress((before + done) // self._recordings)
 
-        found = record(scenarios, traces, self._method, self._threads, say)
+        found = record(scenarios, traces, self._method, self._threads, say, self._robot)
         self._recorded += 1
         return found
 
 
 @functools.lru_cache(maxsize=4)
-def _model(draw: str, group: str, threads: int) -> Model:
+def _model(draw: str, group: str, threads: int, robot: Path | None) -> Model:
     """The noise of `LEARNED_RUNS` quiet runs, each with a plan of its own."""
     numbers = range(LEARNED_FROM, LEARNED_FROM + SHARED * LEARNED_RUNS, SHARED)
-    runs = _Runs(lambda n, own: drive(draw, group, n, own)[1], numbers, group, threads, lambda _done: None)
+    runs = _Runs(
+        lambda n, own: drive(draw, group, n, own, robot=robot)[1], numbers, group, threads, lambda _done: None, robot
+    )
     found = runs.recorded(RESIDUAL, RESIDUAL_TRACES)
     good = [index for index in range(len(numbers)) if index not in found.failed]
     residual = found.residual()
@@ -144,14 +159,14 @@ Detected = Mapping[str, list[tuple[Recording, list[Rows]]]]
 """By candidate, for each of its thresholds: the runs, and of each the rows with a detection."""
 
 
-def _detected(runs: _Runs, controller: Mapping[str, Value]) -> Detected:
+def _detected(runs: _Runs, controller: Mapping[str, Value], robot: Path | None) -> Detected:
     """Of the candidates that react; ``controller`` sets parameters of them all."""
     found: dict[str, list[tuple[Recording, list[Rows]]]] = {}
     for one in CANDIDATES:
         if one.scaled:
             found[one.name] = []
             for scale in one.thresholds:
-                own = runs.recorded(scaled(one, scale, controller), (COUNT,))
+                own = runs.recorded(scaled(one, scale, controller, robot), (COUNT,))
                 counts = own.traces[COUNT]
                 rows = [np.flatnonzero(np.diff(count, prepend=count[:1]) > 0) for count in counts]
                 found[one.name].append((own, rows))
@@ -162,15 +177,16 @@ def _quiet(
     draw: str,
     group: str,
     controller: Mapping[str, Value],
+    robot: Path | None,
     numbers: Sequence[int],
     threads: int,
     progress: Callable[[int], None],
 ) -> list[Record]:
     """Per run: seconds in each situation, and alarms in each by candidate and threshold."""
-    runs = _Runs(lambda n, own: drive(draw, group, n, own)[1], numbers, group, threads, progress)
-    model = _model(draw, group, threads)
+    runs = _Runs(lambda n, own: drive(draw, group, n, own, robot=robot)[1], numbers, group, threads, progress, robot)
+    model = _model(draw, group, threads, robot)
     residual = runs.recorded(RESIDUAL, RESIDUAL_TRACES)
-    deaf, reacting = _deaf(runs, model, residual), _detected(runs, controller)
+    deaf, reacting = _deaf(runs, model, residual), _detected(runs, controller, robot)
     failed = [residual.failed, *(own.failed for runs_of in reacting.values() for own, _ in runs_of)]
     records = []
     for index, number in enumerate(numbers):
@@ -212,18 +228,19 @@ def _hits(
     draw: str,
     group: str,
     controller: Mapping[str, Value],
+    robot: Path | None,
     numbers: Sequence[int],
     threads: int,
     progress: Callable[[int], None],
 ) -> list[Record]:
     """Per hit: where its contact begins, and by candidate and threshold the delay; None: missed, `LOCKED`: no hit."""
-    runs = _Runs(lambda n, own: hit(draw, n, own).scenario, numbers, group, threads, progress)
-    model = _model(draw, group, threads)
+    runs = _Runs(lambda n, own: hit(draw, n, own, file=robot).scenario, numbers, group, threads, progress, robot)
+    model = _model(draw, group, threads, robot)
     residual = runs.recorded(RESIDUAL, (*RESIDUAL_TRACES, *RECORDED))
-    deaf, reacting = _deaf(runs, model, residual), _detected(runs, controller)
+    deaf, reacting = _deaf(runs, model, residual), _detected(runs, controller, robot)
     records = []
     for index, number in enumerate(numbers):
-        one = hit(draw, number, RESIDUAL)
+        one = hit(draw, number, RESIDUAL, file=robot)
         found: Record = {
             "number": number,
             "situation": one.situation,
