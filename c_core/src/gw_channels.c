@@ -16,6 +16,7 @@
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
+#define GEAR_MAX_N2 ((gw_real_t)1.0e12)
 #define FORCES_MAX_N2 ((gw_real_t)6.0e10) /* five of GW_BALANCE_MAX, and rounding */
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
@@ -88,6 +89,7 @@ void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *confi
     channels->rocking2 = config->rocking * config->rocking;
     channels->rocking_keep =
         gw_max(GW_ONE - (((GW_TWO * (gw_real_t)GW_SLOW_TICKS) * noise->period_s) / config->rocking_s), GW_ZERO);
+    channels->gear_keep = GW_ONE - gw_share_of((gw_real_t)GW_SLOW_TICKS * noise->period_s, config->slow_s);
     gw_follower_init(&channels->follower, &config->follower, noise->period_s * (gw_real_t)LEARN_TICKS);
     gw_fast_channel_init(&channels->fast, config, noise);
     gw_slow_channel_init(&channels->slow, config, noise);
@@ -106,6 +108,7 @@ void gw_channels_restart(gw_channels_t *channels)
     gw_slow_channel_restart(&channels->slow);
     channels->forces_n2 = GW_ZERO;
     channels->rocking_n2 = GW_ZERO;
+    channels->gear_n2 = GW_ZERO;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->tick = 0U;
@@ -132,7 +135,9 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
                 gw_within(channels->forces_n2, FORCES_MAX_N2) &&
                 gw_in_range(channels->rocking2, GW_ZERO, channels->config.rocking * channels->config.rocking) &&
                 gw_in_range(channels->rocking_keep, GW_ZERO, GW_ONE) &&
-                gw_in_range(channels->rocking_n2, GW_ZERO, ROCKING_MAX_N2) && (channels->calm_ticks <= CALM_TICKS) &&
+                gw_in_range(channels->rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
+                gw_in_range(channels->gear_keep, GW_HALF, GW_ONE) &&
+                gw_in_range(channels->gear_n2, GW_ZERO, GEAR_MAX_N2) && (channels->calm_ticks <= CALM_TICKS) &&
                 gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
                 gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
@@ -241,6 +246,14 @@ static void rock_on(gw_channels_t *channels)
     rock(channels, now_n.x - usual_n.x, now_n.y - usual_n.y);
 }
 
+/* An error of the gears' friction is in the low-passes for as long as they remember it. */
+static void doubt_gears(gw_channels_t *channels, gw_real_t now_n2)
+{
+    const gw_real_t multiple = channels->config.model_multiple;
+    const gw_real_t doubt_n2 = gw_max(channels->gear_keep * channels->gear_n2, (multiple * multiple) * now_n2);
+    channels->gear_n2 = gw_clamp(doubt_n2, GW_ZERO, GEAR_MAX_N2);
+}
+
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */
 static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                            const gw_balance_t *balance, gw_regime_t regime, gw_real_t fast)
@@ -248,13 +261,14 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
     const bool rests = (input->regime == GW_REGIME_REST) && (channels->calm_ticks >= CALM_TICKS);
     if ((channels->tick % DOUBT_TICKS) != 0U) {
         gw_fast_channel_doubt(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
-                              channels->forces_n2, channels->rocking_n2);
+                              channels->forces_n2, channels->rocking_n2, channels->gear_n2);
     } else if ((channels->tick % GW_SLOW_TICKS) == 0U) {
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
-                              rests ? GW_REGIME_REST : regime, channels->rocking_n2);
+                              rests ? GW_REGIME_REST : regime, channels->rocking_n2 + channels->gear_n2);
     } else {
         channels->forces_n2 = squares_of_forces(channels);
         rock_on(channels);
+        doubt_gears(channels, input->gear_n2);
         if ((!channels->active) && (input->regime != GW_REGIME_REST)) {
             gw_slow_channel_follow(&channels->slow, regime == GW_REGIME_MOTION);
         }

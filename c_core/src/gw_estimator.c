@@ -26,6 +26,7 @@ void gw_estimator_config_trikey(gw_estimator_config_t *config)
     config->friction_model = GW_FRICTION_TANH;
     config->aligned = 0U;
     gw_presliding_config_trikey(&config->presliding);
+    gw_gear_config_none(&config->gear);
 }
 
 void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
@@ -51,6 +52,7 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
     }
 #endif
     gw_presliding_config_check(&config->presliding, error);
+    gw_gear_config_check(&config->gear, error);
 }
 
 static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
@@ -62,6 +64,7 @@ static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
 #define PLANNED_SPEED_MAX ((gw_real_t)1.0e4)
 #define PLANNED_ACCELERATION_MAX ((gw_real_t)1.0e8)
 #define STEP_MAX ((gw_real_t)1.0e20) /* N, of a change of zeros: beyond any that a valid wrench has */
+#define GEAR_MAX_N2 ((gw_real_t)1.0e12)
 
 /* The same acceleration for a valid one, as provers need to be told. */
 static gw_acceleration_t known_acceleration(gw_acceleration_t acceleration)
@@ -570,6 +573,20 @@ static gw_wheels_t nominal_with_zero(gw_estimator_t *estimator, const gw_estimat
     return nominal;
 }
 
+/* Adds what gears take, if the torque signals show it. At rest the tare has what they hold. */
+static void add_gears(const gw_estimator_t *estimator, const gw_wheels_t *rates, gw_estimator_output_t *output)
+{
+    output->gear_n2 = GW_ZERO;
+    if (gw_gear_is_sensed(&estimator->config.gear)) {
+        const gw_real_t per_m = estimator->kinematics.per_wheel_radius;
+        const gw_real_t doubt_nm2 = gw_gear_add(&estimator->config.gear, rates, &output->nominal_nm);
+        if (!estimator->rest) {
+            /* Half of it along each axis, as the wheels point all around. */
+            output->gear_n2 = gw_min((GW_HALF * doubt_nm2) * (per_m * per_m), GEAR_MAX_N2);
+        }
+    }
+}
+
 /* Rates of the wheels and their derivatives, after this sample. */
 static void filter_rates(gw_estimator_t *estimator, const gw_estimator_input_t *input, const gw_wheels_t *torque_nm,
                          gw_twist_t planned_twist, gw_wheels_t *rates, gw_wheels_t *derivatives)
@@ -651,6 +668,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         output->measured_twist = measured_twist;
         output->nominal_nm =
             nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
+        add_gears(estimator, &rates, output);
         gw_wheels_t sensed_nm = torque_nm;
         align_torque(estimator, output->acceleration_source, &sensed_nm);
         output->wrench = gw_wrench_external(&estimator->kinematics, &output->nominal_nm, &sensed_nm);

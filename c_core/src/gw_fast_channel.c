@@ -279,13 +279,17 @@ static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
 
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2)
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2,
+                           gw_real_t gear_n2)
 {
-    channel->model_n2 =
+    const gw_real_t arm_m = kinematics->wheel_distance_m;
+    const gw_planar_covariance_t of_model =
         gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
                             (regime == GW_REGIME_REST) ? GW_ZERO : channel->sliding_n, config->presliding);
+    channel->model_n2 = gw_planar_raised(of_model, gear_n2);
     channel->rocking_n2 = rocking_n2;
-    channel->moment_nm2 = moment_of_model(config, &channel->model, forces_n2);
+    /* Each gear's error has the wheel's distance as its arm, and half of it is in each component of the force. */
+    channel->moment_nm2 = moment_of_model(config, &channel->model, forces_n2) + ((GW_TWO * gear_n2) * (arm_m * arm_m));
     channel->moment_noise_m2 = counts_alike(channel, regime, forces_n2)
                                    ? (COUNTING_ALIKE * channel->moment_per_force_m2)
                                    : channel->moment_per_force_m2;

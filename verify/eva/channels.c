@@ -53,6 +53,7 @@ static void part_step(void)
     input.reacting = any_flag();
     input.felt = any_flag();
     input.shaking_mps2_2 = draw_real(GW_ZERO, (gw_real_t)1.0e8);
+    input.gear_n2 = draw_real(GW_ZERO, (gw_real_t)1.0e12);
     draw_wrench(&output.mean_wrench, GW_WRENCH_MAX); /* written when it is refined, else kept */
     draw_channels(&channels);
     draw_kinematics(&kinematics);

@@ -14,6 +14,7 @@
 #include "giveway/gw_fast_channel.h"
 #include "giveway/gw_follower.h"
 #include "giveway/gw_friction.h"
+#include "giveway/gw_gear.h"
 #include "giveway/gw_imu.h"
 #include "giveway/gw_joint.h"
 #include "giveway/gw_kinematics.h"

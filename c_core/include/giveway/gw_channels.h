@@ -55,6 +55,8 @@ typedef struct {
     /* The acceleration in the balance comes from an IMU, which sees this vibration, (m/s2)^2. */
     bool felt;
     gw_real_t shaking_mps2_2;
+    /* Variance of a component of the force, from what gears may be wrong by, N^2, [0, 1e12]. */
+    gw_real_t gear_n2;
 } gw_channels_input_t;
 
 typedef struct {
@@ -80,7 +82,9 @@ typedef struct {
     gw_real_t rocking2;  /* square of config.rocking; 0 if the robot cannot lean */
     gw_real_t rocking_keep;
     gw_real_t rocking_n2; /* variance of what the rocking body does */
-    gw_wrench_t impulse;  /* N s, N m s */
+    gw_real_t gear_keep;
+    gw_real_t gear_n2;   /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it */
+    gw_wrench_t impulse; /* N s, N m s */
     gw_real_t impulse_s;
     uint32_t tick; /* counts the ticks of the tasks that not every tick has */
     uint32_t ticks_since_trip;

@@ -77,6 +77,12 @@ extern "C" {
     ROW(REAL, GW_FIELD_ESTIMATOR_STRIBECK_SPEED, "estimator.stribeck_speed", OF stribeck_speed_mps, 0.000001, 1) \
     ROW(REAL, GW_FIELD_ESTIMATOR_ELASTIC_FRACTION, "estimator.elastic_fraction", OF elastic_fraction, 0, 0.99)
 
+#define GW_GEAR_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_GEAR_COULOMB_TORQUE, "gear.coulomb_torque", OF coulomb_torque_nm, 0, 100) \
+    ROW(REAL, GW_FIELD_GEAR_VISCOUS_DAMPING, "gear.viscous_damping", OF viscous_nms_per_rad, 0, 100) \
+    ROW(REAL, GW_FIELD_GEAR_TANH_SLOPE, "gear.tanh_slope", OF tanh_slope_s_per_rad, 0, 1000) \
+    ROW(REAL, GW_FIELD_GEAR_UNCERTAINTY, "gear.uncertainty", OF uncertainty, 0, 1)
+
 #define GW_CONTACT_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_CONTACT_MINIMUM_FORCE, "contact.minimum_force", OF minimum_force_n, 0.001, 1000) \
     ROW(COUNT, GW_FIELD_OUTLINE_COUNT, "outline.count", OF vertex_count, 3, GW_OUTLINE_VERTEX_MAX) \
@@ -213,6 +219,7 @@ extern "C" {
     GW_SENSOR_CHECK_FIELDS(ROW, OF sensor_check.) \
     GW_ESTIMATOR_FIELDS(ROW, OF estimator.) \
     GW_PRESLIDING_FIELDS(ROW, OF estimator.presliding.) \
+    GW_GEAR_FIELDS(ROW, OF estimator.gear.) \
     GW_CONTACT_FIELDS(ROW, OF contact.) \
     GW_DETECTOR_FIELDS(ROW, OF detector.) \
     GW_CHANNELS_FIELDS(ROW, OF channels.) \

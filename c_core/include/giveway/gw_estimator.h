@@ -21,6 +21,7 @@
 
 #include "giveway/gw_balance.h"
 #include "giveway/gw_config.h"
+#include "giveway/gw_gear.h"
 #include "giveway/gw_imu.h"
 #include "giveway/gw_kinematics.h"
 #include "giveway/gw_lowpass.h"
@@ -81,6 +82,8 @@ typedef struct {
     uint32_t aligned;
     /* Read by GW_FRICTION_BRISTLE only, checked always. */
     gw_presliding_config_t presliding;
+    /* What the torque signals show beside the torque on the wheels: gears, or nothing. */
+    gw_gear_config_t gear;
 } gw_estimator_config_t;
 
 typedef struct {
@@ -126,6 +129,7 @@ typedef struct {
     uint32_t mean_samples;
     gw_wrench_sigma_t sigma; /* of wrench; that of a mean of n is sqrt(n) smaller */
     gw_wheels_t nominal_nm;  /* T|0 */
+    gw_real_t gear_n2;       /* variance of a component of the force, from what the gears may be wrong by; 0 at rest */
     gw_twist_t measured_twist;
     gw_regime_t regime;
     bool zero_changed; /* the robot came to rest or left it, or the acceleration has another source or zero */

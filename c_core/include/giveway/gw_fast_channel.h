@@ -90,10 +90,12 @@ GW_SMALL void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance
 /* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
 /* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
- * model's forces, not of their change; rocking_n2: variance of what the rocking body does. */
+ * model's forces, not of their change; rocking_n2: variance of what the rocking body does; gear_n2: of what gears may
+ * be wrong by, [0, 1e12]. */
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2);
+                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2,
+                           gw_real_t gear_n2);
 /* Is the force below this share of the smallest that counts at rest, squared? */
 bool gw_fast_channel_is_calm(const gw_fast_channel_t *channel, const gw_channels_config_t *config, gw_real_t share);
 /* One tick, in a regime. quiet: nothing touches, the noise may be followed. */

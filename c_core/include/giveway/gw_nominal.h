@@ -24,7 +24,8 @@ typedef struct {
     gw_real_t mass_kg;
     /* Yaw inertia about the centre, wheels included, kg m^2, [0.0001, 10000]. */
     gw_real_t yaw_inertia_kgm2;
-    /* Inertia of a wheel about its axle, kg m^2, [0, 10]. */
+    /* Inertia of a wheel about its axle, kg m^2, [0, 10]; with what stands between it and the torque signal: rotor and
+     * gear, if that is the motor's current. */
     gw_real_t wheel_inertia_kgm2;
     /* Inertia of the roller that touches the floor about its own axle, kg m^2, [0, 1]. */
     gw_real_t roller_inertia_kgm2;

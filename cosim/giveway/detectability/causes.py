@@ -14,7 +14,7 @@ from giveway.detectability.robots import Subject
 from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
 
-__all__ = ["CAUSES", "FRICTIONLESS_GEARS", "GEAR_CAUSE", "THRESHOLDS", "THRESHOLD_CAUSE", "Changed", "raised"]
+__all__ = ["CAUSES", "GEAR_CAUSE", "THRESHOLDS", "THRESHOLD_CAUSE", "Changed", "raised", "without_gears"]
 
 THRESHOLDS: Mapping[int, tuple[str, ...]] = MappingProxyType(
     {
@@ -50,10 +50,6 @@ def _each(name: str, value: Value) -> dict[str, Value]:
     return {f"{name}[{wheel}]": value for wheel in range(WHEELS)}
 
 
-FRICTIONLESS_GEARS: Mapping[str, Value] = MappingProxyType(_each("drivetrain.friction_scale", 0.0))
-"""As if the controller knew the gears' friction, for robots that drive."""
-
-
 def _noise(whose: Subject) -> Changed:
     believed = table("controller")["estimator.torque_noise"].minimum
     return Changed({"electronics.torque_noise": 0.0}, {"estimator.torque_noise": believed})
@@ -63,8 +59,19 @@ def _resolution(whose: Subject) -> Changed:
     return Changed({"electronics.torque_resolution": 0.0}, {})
 
 
+def _with_gears(whose: Subject, share: float) -> Changed:
+    names = ("gear.coulomb_torque", "gear.viscous_damping")
+    known = {name: share * float(whose.controller[name]) for name in names}
+    return Changed(_each("drivetrain.friction_scale", share), known)
+
+
 def _gears(whose: Subject) -> Changed:
-    return Changed(_each("drivetrain.friction_scale", LEAST_GEAR_FRICTION), {})
+    return _with_gears(whose, LEAST_GEAR_FRICTION)
+
+
+def without_gears(whose: Subject) -> Changed:
+    """No friction in the gears, as the controller knows."""
+    return _with_gears(whose, 0.0)
 
 
 def _rollers(whose: Subject) -> Changed:

@@ -14,7 +14,7 @@ import numpy as np
 from giveway.base.checks import finite, whole
 from giveway.crowd.statistics import Estimate, percentile, rate_upper_bound
 from giveway.detectability.alarms import Alarms, alarms
-from giveway.detectability.causes import CAUSES, FRICTIONLESS_GEARS, THRESHOLD_CAUSE, raised
+from giveway.detectability.causes import CAUSES, THRESHOLD_CAUSE, raised, without_gears
 from giveway.detectability.probes import KINDS, MOTION, PUSH, SITUATIONS, Drive, Probe, places
 from giveway.detectability.robots import SEED, Subject, differing
 from giveway.detectability.search import Smallest, smallest
@@ -171,7 +171,8 @@ def detect(whose: Subject, asked: Asked, threads: int, progress: Progress = lamb
         progress("causes", (1 + number) / len(CAUSES))
     gearless = None
     if whose.motor_current:
-        gearless = work.driven("causes", FRICTIONLESS_GEARS)
+        changed = without_gears(whose)
+        gearless = work.driven("causes", changed.testbed, changed.controller)
     return Detectability(
         whose, asked, work.probes, stated, chosen, MappingProxyType(base), MappingProxyType(causes), gearless
     )

@@ -115,8 +115,8 @@ def remarks(found: Detectability) -> list[str]:
         said.append(f"The smallest push {situation} is limited by {what}; {follow}.")
     if found.gearless is not None:
         said.append(
-            "The controller takes the motors' torque for that of the wheels: it has no model of the gears' friction "
-            "yet. Without any of it the same robots would have false alarms of "
+            "The controller knows the gears' friction from the file while they turn, and not what they hold at rest. "
+            "Without any friction in them the same robots would have false alarms of "
             f"{alarms_text(found.gearless)} (thresholds as they are). With a tenth of it they would "
             + ", ".join(
                 f"{situation} notice {number(found.causes[GEAR_CAUSE].values[situation], 'N')} instead of "

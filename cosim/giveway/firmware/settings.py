@@ -77,7 +77,7 @@ class Settings:
 
     def _origin(self, variable: Variable) -> str:
         """Name of the robot file's entry, what the file says of it."""
-        name = table("controller").robot_name(variable)
+        name = table("controller").robot_name(variable, self.robot)
         if name not in self.robot:
             return f"From {self.robot.path.name}, the number of corners."
         entry = self.robot[name]

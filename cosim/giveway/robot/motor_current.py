@@ -1,14 +1,15 @@
 """Torque from motor current: what a robot file states of the motors, and the torque signal that follows.
 
 The sensed torque of a wheel is the gear's ratio times the motor's torque constant times the sampled current, so the
-noise, the quantum and the range of the current are those of the torque signal by the same factor.
+noise, the quantum and the range of the current are those of the torque signal by the same factor. Between motor and
+wheel stand the gear's friction and the rotor's inertia: the controller is told of both.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["MOTOR", "MOTOR_CURRENT", "SENSING", "from_motor", "stated_by"]
+__all__ = ["GEAR", "MOTOR", "MOTOR_CURRENT", "SENSING", "from_motor", "stated_by"]
 
 SENSING, MOTOR_CURRENT = "drivetrain.sensing", "motor current"
 RATIO, CONSTANT = "motor.gear_ratio", "motor.torque_constant"
@@ -26,6 +27,12 @@ _TORQUE_SIGNAL = {
     "drivetrain.torque_sensor_resolution": "motor.current_resolution",
     "drivetrain.torque_sensor_limit": "motor.current_range",
 }
+GEAR: Mapping[str, tuple[str, ...]] = {
+    "controller.gear.coulomb_torque": ("drivetrain.gear_coulomb",),
+    "controller.gear.viscous_damping": ("drivetrain.gear_viscous",),
+    "controller.base.wheel_inertia": ("wheel.inertia", "drivetrain.motor_inertia"),
+}
+"""What the controller knows of gears and rotors: the sum of these entries."""
 
 
 def from_motor(motor: Mapping[str, float]) -> dict[str, float]:
@@ -35,5 +42,5 @@ def from_motor(motor: Mapping[str, float]) -> dict[str, float]:
 
 
 def stated_by(name: str) -> str:
-    """The entry of the motor that a number of the torque signal follows from."""
-    return _TORQUE_SIGNAL[name]
+    """What a number of the torque signal, or one that the controller knows of the gears, follows from."""
+    return " and ".join(GEAR[name]) if name in GEAR else _TORQUE_SIGNAL[name]

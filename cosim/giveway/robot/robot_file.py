@@ -22,7 +22,7 @@ from giveway.base.shapes import Choice, Flag, Shape, Table, Text, Version
 from giveway.base.toml_lines import line_of
 from giveway.base.toml_sections import Section, lines_named, read_toml
 from giveway.base.units import factor
-from giveway.robot.motor_current import MOTOR, MOTOR_CURRENT, SENSING, from_motor, stated_by
+from giveway.robot.motor_current import GEAR, MOTOR, MOTOR_CURRENT, SENSING, from_motor, stated_by
 from giveway.robot.table_files import entry_unit, read_table_file, robot_paths
 
 __all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot", "robot_shape"]
@@ -133,10 +133,12 @@ class Robot:
         values = ", ".join(f"{value:g}" for value in entry.values)
         converted = f" ({values} {entry.unit})" if entry.scale != 1.0 else ""
         cause = GivewayError(name, entry.text + converted, allowed)
-        return InputFileError(self.path, line_of(self._text, f"{self.follows_from(name) or name}.value"), cause)
+        stated = (self.follows_from(name) or name).partition(" ")[0]  # the first of several
+        return InputFileError(self.path, line_of(self._text, f"{stated}.value"), cause)
 
     def _follow(self) -> dict[str, Entry]:
-        """What follows from other entries: the torque signal's numbers from those of the motors' current."""
+        """What follows from other entries where torque is sensed by current: the torque signal's numbers from those of
+        the motors, and what the controller knows of the gears, unless the file states it, from the drivetrain's."""
         if not self.motor_current:
             return {}
         missing = [name for name in MOTOR if name not in self._entries]
@@ -148,11 +150,21 @@ class Robot:
             if name in self._entries:
                 allowed = f'left out: with {SENSING} = "{MOTOR_CURRENT}" it follows from {stated_by(name)}'
                 raise self.refusal(name, allowed)
-            stated = self._entries[stated_by(name)]
-            source = f"follows from {stated_by(name)}: {stated.source}"
-            remarks = (stated.provenance, stated.confidence, source, stated.note)
-            found[name] = Entry((value,), False, "N.m", f"{value:g} N.m", 1.0, *remarks)
+            found[name] = _derived(name, value, "N.m", self._entries[stated_by(name)])
+        for name, origins in GEAR.items():
+            # A file without one of them is refused by who needs it.
+            if name not in self._entries and all(origin in self._entries for origin in origins):
+                value = sum(float(self._entries[origin].values[0]) for origin in origins)
+                found[name] = _derived(name, value, self._entries[origins[-1]].unit, self._entries[origins[-1]])
         return found
+
+
+def _derived(name: str, value: float, unit: str, stated: Entry) -> Entry:
+    """The entry ``name`` with this value, and the remarks of the one ``stated`` that it follows from."""
+    source = f"follows from {stated_by(name)}: {stated.source}"
+    return Entry(
+        (value,), False, unit, f"{value:g} {unit}", 1.0, stated.provenance, stated.confidence, source, stated.note
+    )
 
 
 def read_robot(path: Path) -> Robot:

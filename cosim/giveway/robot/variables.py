@@ -108,7 +108,7 @@ class VariableTable:
 
     def robot_value(self, robot: Robot, variable: Variable) -> Value:
         """The checked value of ``variable`` in ``robot``; an error names the line of the robot file."""
-        path = self.robot_name(variable)
+        path = self.robot_name(variable, robot)
         try:
             stated = robot.value(path, variable.robot_index)
             return self.check(variable.name, bool(stated) if variable.type == "boolean" else stated)
@@ -117,15 +117,20 @@ class VariableTable:
                 raise  # the file does not have it
             raise robot.refusal(path, error.allowed) from None
 
-    def robot_name(self, variable: Variable) -> str:
-        """The entry of a robot file that states ``variable``: a number of the robot, or a setting of this model."""
-        return variable.robot_path or f"{self.model}.{variable.name.partition('[')[0]}"
+    def robot_name(self, variable: Variable, robot: Robot | None = None) -> str:
+        """The entry of a robot file that states ``variable``: a number of the robot, or a setting of this model.
+
+        In ``robot`` a setting that follows from several numbers counts more than one of them.
+        """
+        setting = f"{self.model}.{variable.name.partition('[')[0]}"
+        follows = robot is not None and setting in robot
+        return variable.robot_path if variable.robot_path is not None and not follows else setting
 
     def robot_values(self, robot: Robot) -> dict[str, Value]:
         """The values of ``robot`` for every parameter that it states."""
         values: dict[str, Value] = {}
         for variable in self:
-            name = self.robot_name(variable)
+            name = self.robot_name(variable, robot)
             if variable.robot_path is None and name not in robot:
                 continue
             if robot.does_without(name):

@@ -18,6 +18,7 @@ static void add_output(digest_t *digest, const gw_estimator_output_t *output)
     digest_twist(digest, output->measured_twist);
     digest_u32(digest, (uint32_t)output->regime);
     digest_bool(digest, output->zero_changed);
+    digest_real(digest, output->gear_n2);
 }
 
 /* Standing, creeping and moving in turn, with tares, wild torques and non-finite planned motions. */
@@ -75,6 +76,7 @@ digest_t drive_estimator(void)
             config.estimator.acceleration_source = (acceleration <= GW_SOURCE_ZERO) ? acceleration : 4U; /* refused */
             config.estimator.rest_ticks = 60U;
             config.estimator.retare_ticks = 40U;
+            config.estimator.gear.coulomb_torque_nm = (acceleration == GW_SOURCE_ZERO) ? (gw_real_t)0.3 : GW_ZERO;
             drive(&digest, &generator, &config);
         }
     }

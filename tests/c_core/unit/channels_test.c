@@ -580,6 +580,33 @@ static void rocking_is_bounded(void)
     CHECK(channels.rocking_n2 == R(1.0e12));
 }
 
+/* 2.5^2 of what the gears may be wrong by, and as long as the slow channel remembers: 1 - e^(-4 ms/0.05 s) less every
+ * four ticks. */
+static void an_error_of_gears_is_remembered(void)
+{
+    begin();
+    channels.tick = 3U; /* the slow channel is judged in the next one */
+    channels.slow.mean.residual.force_x_n = R(20.0);
+    input.gear_n2 = R(64.0);
+    tick();
+    CHECK(channels.gear_n2 == GW_ZERO);
+    const gw_real_t sure = channels.slow.statistic;
+    ticks(4U);
+    CHECK_NEAR(channels.gear_n2, R(400.0), R(400.0) * ROUNDING);
+    CHECK(channels.slow.statistic < (R(0.5) * sure)); /* 16 + 400 N^2 instead of 16 */
+    CHECK((channels.fast.model_n2.xx >= R(399.0)) && (channels.fast.model_n2.yy >= R(399.0)));
+    input.gear_n2 = GW_ZERO;
+    ticks(4U);
+    CHECK_NEAR(channels.gear_n2, R(400.0) * R(0.92311634638663576), R(400.0) * ROUNDING);
+    ticks(400U);
+    CHECK(channels.gear_n2 < R(1.0));
+    input.gear_n2 = R(1.0e12);
+    ticks(4U);
+    CHECK(channels.gear_n2 == R(1.0e12));
+    gw_channels_restart(&channels);
+    CHECK(channels.gear_n2 == GW_ZERO);
+}
+
 static void counters_stop_at_their_largest(void)
 {
     begin();
@@ -883,6 +910,8 @@ static void the_invariant_sees_every_member(void)
                                   &channels.rocking2,
                                   &channels.rocking_keep,
                                   &channels.rocking_n2,
+                                  &channels.gear_keep,
+                                  &channels.gear_n2,
                                   &channels.impulse.torque_nm,
                                   &channels.impulse_s};
     CHECK(!gw_channels_invariant_holds(NULL));
@@ -938,6 +967,7 @@ void suite_channels(void)
     unit_run("what_was_accelerated_rocks", what_was_accelerated_rocks);
     unit_run("what_was_pushed_rocks", what_was_pushed_rocks);
     unit_run("rocking_is_bounded", rocking_is_bounded);
+    unit_run("an_error_of_gears_is_remembered", an_error_of_gears_is_remembered);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
     unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
     unit_run("another_zero_takes_its_time", another_zero_takes_its_time);

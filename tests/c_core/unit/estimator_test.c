@@ -461,6 +461,59 @@ static void the_forces_of_the_model_are_told(void)
     CHECK_NEAR(output.forces.inertia_moment_nm, GW_TWO * estimator.nominal.total_yaw_inertia_kgm2, R(100.0) * ROUNDING);
 }
 
+/* T|0 of a wheel that turns has the friction of its gear. */
+static void the_friction_of_gears_is_in_the_model(void)
+{
+    gw_wheels_t nominal_nm[2];
+    gw_wheels_t rates;
+    for (uint32_t i = 0U; i < 2U; i++) {
+        gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);
+        set_robot();
+        robot.estimator.gear.coulomb_torque_nm = (i == 0U) ? GW_ZERO : R(0.4);
+        robot.estimator.gear.tanh_slope_s_per_rad = R(10.0);
+        CHECK_STATUS(init(), GW_STATUS_OK);
+        (void)step(&input, GW_STATUS_OK);
+        input.encoder_count[0] = 40;
+        input.encoder_count[2] = -4;
+        nominal_nm[i] = step(&input, GW_STATUS_OK).nominal_nm;
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            rates.wheel[k] = estimator.rate[k].rate_radps;
+        }
+    }
+    CHECK((rates.wheel[0] > R(0.5)) && (rates.wheel[1] == GW_ZERO) && (rates.wheel[2] < R(-0.05)));
+    for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+        unit_row(k);
+        CHECK_NEAR(nominal_nm[1].wheel[k] - nominal_nm[0].wheel[k], R(0.4) * gw_tanh(R(10.0) * rates.wheel[k]),
+                   ROUNDING);
+    }
+}
+
+static void the_doubt_of_gears_is_told(void)
+{
+    gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), ahead(R(0.1)));
+    set_robot();
+    robot.estimator.gear.viscous_nms_per_rad = R(0.5);
+    robot.estimator.gear.uncertainty = R(0.5);
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    (void)step(&input, GW_STATUS_OK);
+    input.encoder_count[1] = 40;
+    const gw_estimator_output_t moving = step(&input, GW_STATUS_OK);
+    const gw_wheels_t rates = {
+        {estimator.rate[0].rate_radps, estimator.rate[1].rate_radps, estimator.rate[2].rate_radps}};
+    gw_real_t doubt_nm2 = GW_ZERO;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        doubt_nm2 += R(0.0625) * (rates.wheel[i] * rates.wheel[i]);
+    }
+    CHECK(doubt_nm2 > R(0.001));
+    CHECK_NEAR(moving.gear_n2, R(50.0) * doubt_nm2, R(100.0) * ROUNDING); /* half of it over (0.1 m)^2 */
+    const gw_wheels_t zero = {{GW_ZERO, GW_ZERO, GW_ZERO}};
+    tare(zero); /* at rest */
+    input.planned_twist = still;
+    (void)step(&input, GW_STATUS_OK);
+    input.encoder_count[1] = 80;
+    CHECK(step(&input, GW_STATUS_OK).gear_n2 == GW_ZERO);
+}
+
 /* Any encoder, but none before the first sample or after a gap: then there is nothing to compare with. */
 static void it_is_told_that_a_wheel_turned(void)
 {
@@ -622,6 +675,8 @@ void suite_estimator(void)
     unit_run("aligned_filters_start_afresh_after_a_gap", aligned_filters_start_afresh_after_a_gap);
     unit_run("the_step_of_the_zero_is_told", the_step_of_the_zero_is_told);
     unit_run("the_forces_of_the_model_are_told", the_forces_of_the_model_are_told);
+    unit_run("the_friction_of_gears_is_in_the_model", the_friction_of_gears_is_in_the_model);
+    unit_run("the_doubt_of_gears_is_told", the_doubt_of_gears_is_told);
     unit_run("it_is_told_that_a_wheel_turned", it_is_told_that_a_wheel_turned);
     unit_run("what_is_beyond_any_robot_is_refused", what_is_beyond_any_robot_is_refused);
     unit_run("a_wrench_beyond_any_push_is_refused", a_wrench_beyond_any_push_is_refused);

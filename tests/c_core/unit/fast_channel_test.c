@@ -537,7 +537,8 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.model.inertia_n.x = R(30.0);
         channel.model.inertia_n.y = R(40.0);
         channel.model.inertia_moment_nm = R(10.0);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(30000.0), GW_ZERO);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(30000.0), GW_ZERO,
+                              GW_ZERO);
         const gw_planar_covariance_t m =
             gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model,
                                 (i == 0U) ? GW_ZERO : R(20.0), config.presliding);
@@ -569,7 +570,7 @@ static void rocking_widens_the_threshold_of_a_hit(void)
         channel.bank[2].force_x_n = R(24.0);
         channel.bank[2].force_y_n = R(18.0);
         gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_REST, GW_ZERO,
-                              (i == 0U) ? GW_ZERO : R(900.0));
+                              (i == 0U) ? GW_ZERO : R(900.0), GW_ZERO);
         steps(1U);
         CHECK(found.widest == 2U);
         statistics[i] = R(900.0) / found.statistic;
@@ -577,6 +578,22 @@ static void rocking_widens_the_threshold_of_a_hit(void)
     }
     CHECK_NEAR(statistics[1] - statistics[0], R(900.0), R(1.0e5) * ROUNDING);
     CHECK(releases[0] == releases[1]);
+}
+
+/* What gears may be wrong by widens it, too, and the end of a contact; each at the wheels' distance from the centre. */
+static void doubt_of_gears_is_one_of_the_model(void)
+{
+    const gw_real_t arm_m = kinematics.wheel_distance_m;
+    begin();
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, GW_ZERO, GW_ZERO,
+                          GW_ZERO);
+    const gw_fast_channel_t sure = channel;
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, GW_ZERO, GW_ZERO,
+                          R(900.0));
+    CHECK_NEAR(channel.model_n2.xx - sure.model_n2.xx, R(900.0), R(1.0e4) * ROUNDING);
+    CHECK_NEAR(channel.model_n2.yy - sure.model_n2.yy, R(900.0), R(1.0e4) * ROUNDING);
+    CHECK(channel.model_n2.xy == sure.model_n2.xy);
+    CHECK_NEAR(channel.moment_nm2 - sure.moment_nm2, R(1800.0) * (arm_m * arm_m), R(1.0e4) * ROUNDING);
 }
 
 /* Below this share of the square of 3 N, behind the second low-pass. */
@@ -616,7 +633,7 @@ static void wheels_that_turn_alike_count_alike(void)
         CHECK(channel.moment_noise_m2 == channel.moment_per_force_m2);
         gw_fast_channel_feel(&channel, rows[i].felt, GW_ZERO);
         gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, rows[i].forces_n2,
-                              GW_ZERO);
+                              GW_ZERO, GW_ZERO);
         unit_row(i);
         CHECK(channel.moment_noise_m2 == ((rows[i].alike ? R(3.0) : GW_ONE) * channel.moment_per_force_m2));
         /* What the levers add does not count here. */
@@ -684,7 +701,7 @@ static void any_robot_keeps_the_invariant(void)
             balance.model.inertia_n.x = sizes[(k / 3U) % 5U];
             gw_fast_channel_feel(&channel, (k % 2U) == 0U, sizes[k % 5U]);
             gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(5.0e10),
-                                  R(1.0e12));
+                                  R(1.0e12), R(1.0e12));
             step((gw_regime_t)(k % 3U), true);
             if ((k % 11U) == 0U) {
                 gw_fast_channel_release(&channel, &balance, &found, direction);
@@ -787,6 +804,7 @@ void suite_fast_channel(void)
     unit_run("a_restart_keeps_what_was_learned_of_the_noise", a_restart_keeps_what_was_learned_of_the_noise);
     unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
     unit_run("rocking_widens_the_threshold_of_a_hit", rocking_widens_the_threshold_of_a_hit);
+    unit_run("doubt_of_gears_is_one_of_the_model", doubt_of_gears_is_one_of_the_model);
     unit_run("calm_is_a_share_of_the_floor_at_rest", calm_is_a_share_of_the_floor_at_rest);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

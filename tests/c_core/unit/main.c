@@ -9,6 +9,7 @@ int main(void)
     suite_init();
     suite_kinematics();
     suite_friction();
+    suite_gear();
     suite_nominal();
     suite_rate_filter();
     suite_lowpass();

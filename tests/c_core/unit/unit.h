@@ -63,6 +63,7 @@ void suite_estimator(void);
 void suite_fast_channel(void);
 void suite_follower(void);
 void suite_friction(void);
+void suite_gear(void);
 void suite_imu(void);
 void suite_imu_use(void);
 void suite_init(void);
