@@ -200,7 +200,7 @@ def test_it_says_what_the_gears_cost(coarse: Detectability) -> None:
     assert [row[5] for row in record.rows(coarse.stated)] == ["0 %", "0 %", "100 %", "100 %"]
     assert record.rows(coarse.stated)[2][1:4] == ("none",) * 3
     text = " ".join(record.remarks(coarse))
-    assert "no model of the gears' friction yet" in text
+    assert "knows the gears' friction from the file while they turn" in text
     assert coarse.gearless is not None
     assert coarse.gearless.per_hour[0] < 0.1 * coarse.stated.alarms.per_hour[0]
     assert set(coarse.causes) == set(causes.CAUSES)

@@ -34,6 +34,55 @@ def test_the_torque_signal_follows_from_the_motors(tmp_path: Path) -> None:
     assert "drivetrain.torque_noise" not in dict(robot.entries())
 
 
+def test_the_controller_is_told_of_gears_and_rotors(tmp_path: Path) -> None:
+    robot = read_robot(trikey_by_current(tmp_path))
+    testbed, controller = (table(model).robot_values(robot) for model in ("testbed", "controller"))
+    assert controller["gear.coulomb_torque"] == testbed["drivetrain.gear_coulomb"] == COULOMB_NM
+    assert controller["gear.viscous_damping"] == testbed["drivetrain.gear_viscous"] == VISCOUS
+    both = testbed["wheel.inertia"] + testbed["drivetrain.motor_inertia"]
+    assert controller["base.wheel_inertia"] == pytest.approx(both, rel=1e-15)
+    assert robot.follows_from("controller.base.wheel_inertia") == "wheel.inertia and drivetrain.motor_inertia"
+    by_sensor = table("controller").robot_values(read_robot(native.robot()))
+    assert "gear.coulomb_torque" not in by_sensor
+    assert by_sensor["base.wheel_inertia"] == testbed["wheel.inertia"]
+
+
+def test_a_file_may_state_what_the_controller_believes(tmp_path: Path) -> None:
+    own = '[controller.gear.coulomb_torque]\nvalue = 1.5\nunit = "N.m"\n\n[motor.gear_ratio]'
+    robot = read_robot(trikey_by_current(tmp_path, ("[motor.gear_ratio]", own)))
+    assert table("controller").robot_values(robot)["gear.coulomb_torque"] == 1.5
+    assert table("testbed").robot_values(robot)["drivetrain.gear_coulomb"] == COULOMB_NM
+
+
+def test_a_rotor_that_is_too_heavy_is_told_by_its_line(tmp_path: Path) -> None:
+    path = trikey_by_current(tmp_path)
+    text = path.read_text(encoding="utf-8")
+    heavy = text.replace("[drivetrain.motor_inertia]\nvalue = 0.0523", "[drivetrain.motor_inertia]\nvalue = 11.0")
+    assert heavy != text
+    path.write_text(heavy, encoding="utf-8")
+    with pytest.raises(GivewayError, match=r"by_current\.toml:\d+: .*from 0 to 10 kg\.m2"):
+        table("controller").robot_values(read_robot(path))
+
+
+def test_steady_motion_leaves_no_force_in_the_estimate() -> None:
+    """The gears' friction is 27 N for each wheel; an encoder's counts make the servo's torque jump."""
+    plan = Straight(0.2, 0.5 * math.pi, acceleration_mps2=0.6)
+    own = {**QUIET, "slider.present": False, "rope.attached": False, "drivetrain.sensing": 1}
+    knows = {"gear.coulomb_torque": COULOMB_NM, "gear.viscous_damping": VISCOUS}
+    runs = [
+        giveway.Scenario("drive", 2.0, bumper="none", testbed=own, plan=plan,
+                         controller={"channels.fast_creep": 1000.0, "channels.fast_motion": 1000.0,
+                                     "channels.slow_creep": 1000.0, "channels.slow_motion": 1000.0, **more})
+        for more in ({}, knows)
+    ]  # fmt: skip
+    names = ("controller.estimate.force_x", "controller.estimate.force_y")
+    found = batch.run_many(runs, traces=names)
+    blind, knowing = np.hypot(*(found[name].values[:, -500:].mean(axis=1) for name in names))
+    # Along the second wheel: two thirds of the friction of one, a third of the two others, twice that of one in all.
+    assert blind == pytest.approx(2.0 * (COULOMB_NM + VISCOUS * 0.2 / RADIUS_M) / RADIUS_M, rel=0.1)
+    assert knowing < 0.1 * blind
+
+
 def test_units_of_current_are_converted(tmp_path: Path) -> None:
     amperes = trikey_by_current(tmp_path, ('value = 0.005\nunit = "A"', 'value = 5\nunit = "mA"'))
     value = read_robot(amperes).value("drivetrain.torque_sensor_resolution")
