@@ -58,7 +58,7 @@ def test_arm64_runs_the_demonstration_under_qemu(wheels: dict[str, Path], tmp_pa
     )  # fmt: skip
     assert "detection time" in python("-m", "giveway", "demo", "--out", "demo")
     assert (tmp_path / "demo" / "report.html").is_file()
-    assert "has the bits that it should have" in python("-m", "giveway", "doctor")
+    assert python("-m", "giveway", "doctor").count("has the bits that it should have") == 3  # batch library, FMI 3, FMI 2
     shutil.rmtree(installed)
 
 

@@ -22,6 +22,7 @@ import numpy as np
 from giveway.base.errors import FileError, SimulationError, WriteError
 from giveway.base.temporary import temporary_folder
 from giveway.simulation.fmi2_callbacks import fmi2_callbacks
+from giveway.simulation.fmi2_library import fmi2_library
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -161,7 +162,8 @@ class Instance:
                 slave3 = fmi3.FMU3Slave(**arguments)
                 slave3.instantiate(logMessage=lambda _env, status, _category, text: self._logged(status, text))
                 return slave3
-            slave2 = fmi2.FMU2Slave(**arguments)
+            library = fmi2_library(self.file.folder, self.file.identifier)
+            slave2 = fmi2.FMU2Slave(**arguments, libraryPath=library)
             slave2.instantiate(callbacks=self._fmi2_callbacks())
             return slave2
         except Exception as error:  # FMPy raises plain Exception
