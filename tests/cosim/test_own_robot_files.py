@@ -323,7 +323,7 @@ def test_what_is_missing_is_listed_at_once(cli: Cli, tmp_path: Path) -> None:
     ("old", "new", "words"),
     [
         ("value = 2.75", "value = 3.5", "drivetrain.gear_stiction"),  # below gear_coulomb, the first of both
-        ('value = 34.7\nunit = "kg"', 'value = 5e4\nunit = "kg"', "mine.toml:13: base.mass"),
+        ('value = 34.7\nunit = "kg"', 'value = 5e4\nunit = "kg"', "mine.toml:14: base.mass"),
     ],
 )
 def test_what_the_models_refuse_cannot_be_used(old: str, new: str, words: str, cli: Cli, tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 #include "../matrix_forms.h"
 #include "giveway/gw_friction.h"
+#include "giveway/gw_gear.h"
 #include "giveway/gw_math.h"
 #include "giveway/gw_wrench.h"
 #include "modules.h"
@@ -74,6 +75,24 @@ digest_t drive_friction(void)
         friction.tanh_slope_s_per_rad = generator_between(&generator, GW_ZERO, GW_TWO);
         const gw_wheels_t rates = generator_wheels(&generator, (gw_real_t)50.0);
         const gw_wheels_t torques = gw_friction_torques(&friction, &rates);
+        digest_wheels(&digest, &torques);
+    }
+    return digest;
+}
+
+digest_t drive_gear(void)
+{
+    digest_t digest = digest_begin();
+    generator_t generator = generator_begin(61U);
+    for (uint32_t i = 0U; i < 500U; i++) {
+        gw_gear_config_t gear;
+        gear.coulomb_torque_nm = generator_between(&generator, GW_ZERO, GW_TWO);
+        gear.viscous_nms_per_rad = generator_between(&generator, GW_ZERO, GW_ONE);
+        gear.tanh_slope_s_per_rad = generator_between(&generator, GW_ZERO, (gw_real_t)20.0);
+        gear.uncertainty = generator_between(&generator, GW_ZERO, GW_ONE);
+        const gw_wheels_t rates = generator_wheels(&generator, GW_TWO);
+        gw_wheels_t torques = generator_wheels(&generator, GW_ONE);
+        digest_real(&digest, gw_gear_add(&gear, &rates, &torques));
         digest_wheels(&digest, &torques);
     }
     return digest;

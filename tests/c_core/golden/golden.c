@@ -14,6 +14,7 @@ static const module_t modules[] = {
     {"vectors", drive_vectors},
     {"kinematics", drive_kinematics},
     {"friction", drive_friction},
+    {"gear", drive_gear},
     {"nominal", drive_nominal},
     {"wrench", drive_wrench},
     {"sum", drive_sum},

@@ -8,6 +8,7 @@ digest_t drive_math(void);
 digest_t drive_vectors(void);
 digest_t drive_kinematics(void);
 digest_t drive_friction(void);
+digest_t drive_gear(void);
 digest_t drive_nominal(void);
 digest_t drive_wrench(void);
 digest_t drive_sum(void);
