@@ -7,9 +7,11 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import scipy.optimize
 from arc_logs import ALPHA, B_R, R_W, STEP_S, Swing, arc_log, csv_lines, sine, world_torques
 from cosim_helpers import Cli, folder_content
 from giveway import batch
@@ -18,7 +20,7 @@ from giveway.base.errors import GivewayError
 from giveway.experiments.roller_calibration import ARCS, RECORDED, _change_s, arc_scenario, log_of
 from giveway.identification.disturbance import Limits, find_disturbance
 from giveway.identification.motion_log import MotionLog
-from giveway.identification.roller_fit import Fit, RestZone, Samples, fit, half_widths, prepare
+from giveway.identification.roller_fit import EVALUATIONS, Fit, RestZone, Samples, fit, half_widths, prepare
 from giveway.identification.roller_friction import (
     Calibration,
     Estimate,
@@ -290,6 +292,20 @@ def test_a_refused_log_counts_beside_a_good_one(robot: Robot) -> None:
     with pytest.raises(UnidentifiableError):
         calibrate([slow], robot)
     assert calibrate([GOOD, slow], robot).tanh_slope_s_rad.holds(ALPHA)
+
+
+def test_a_fit_that_stands_still_ends(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With tolerances that no step can meet, as where a parameter is not determined."""
+    solve, taken = scipy.optimize.least_squares, []
+
+    def never_content(*arguments: Any, **options: Any) -> Any:
+        found = solve(*arguments, **{**options, "ftol": None, "xtol": None, "gtol": 2.3e-16})
+        taken.append(found.nfev)
+        return found
+
+    monkeypatch.setattr(scipy.optimize, "least_squares", never_content)
+    assert calibrate([GOOD], robot).tanh_slope_s_rad.holds(ALPHA)
+    assert max(taken) == EVALUATIONS
 
 
 def test_saturated_samples_do_not_take_part(robot: Robot) -> None:

@@ -2,5 +2,5 @@
 
 `mjcf` makes the robot from the testbed's parameters, `electronics` puts the drives of our testbed around it, `loop`
 couples both with the controller. `closed_form` holds the robot against formulas, `situations` are what happens to it,
-`table` says what the reflexes did.
+`table` says what the reflexes did. `undisturbed` writes logs of the robot, on which `tuned` tries `giveway tune`.
 """

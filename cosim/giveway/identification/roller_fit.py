@@ -44,6 +44,7 @@ REST_SPEEDS = 4.0  # exp(-16): nothing is left of the Stribeck term
 REST_LENGTHS = 5.0  # exp(-5) = 0.7 %: the bristles have turned over
 ROBUST = 2.0  # residuals beyond two standard deviations lose weight (soft l1)
 ROUNDS = 3  # rounds of fitting and re-estimating each wheel's noise; the third has no visible effect
+EVALUATIONS = 100  # in a round; a fit that takes more stands still where something is not determined
 CORRELATIONS_PER_BLOCK = 3.0
 BLOCKS_PER_PARAMETER = 2  # with fewer blocks their scatter is unknown
 GAUSSIAN_MAD = 1.4826  # standard deviation over median absolute deviation
@@ -256,6 +257,7 @@ def fit(samples: Sequence[Samples], used: Sequence[NDArray[np.bool_]], model: To
             loss="soft_l1",
             f_scale=ROBUST,
             x_scale="jac",
+            max_nfev=EVALUATIONS,
         )
         x = np.asarray(found.x)
     residuals, gradient = problem.residuals(x), problem.jacobian(x)
