@@ -16,7 +16,7 @@ from giveway.base.errors import GivewayError
 from giveway.base.extras import MissingExtraError, extra
 from giveway.bench.known_fronts import PROBLEMS, part, real, searched
 from giveway.cli import _main
-from giveway.study import Study, study_file
+from giveway.study import Study, optimum, study_file
 from giveway.study.answers import load
 from giveway.study.designs import DesignPlan, make
 from giveway.study.distributions import Spread, Varied
@@ -350,6 +350,19 @@ def test_ctrl_c_keeps_what_is_stored_and_the_same_command_goes_on(tmp_path: Path
     assert "`giveway optimise s.toml --out s` goes on from there" in said
     assert len(stored_runs(tmp_path / "s")["run"]) >= 40
     assert not read_manifest(tmp_path / "s")["complete"]
+
+
+def test_ctrl_c_between_two_generations_is_answered_alike(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def pressed(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(optimum, "optimise", pressed)
+    (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert _main(["optimise", "s.toml", "--out", "s"]) == 130
+    assert "`giveway optimise s.toml --out s` goes on from there" in capsys.readouterr().err
 
 
 def test_at_the_command_line_it_says_why_it_ended(

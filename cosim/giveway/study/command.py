@@ -112,12 +112,15 @@ def optimise_designs(
     if check:
         typer.echo(messages.search_sizes(setup))
         return
-    with messages.showing(setup.name) as progress:
-        found = optimum.optimise(setup, folder, threads=threads, progress=progress, dask=dask)
+    goes_on = f"what is stored is kept. `{_again('optimise', study, out, dask)}` goes on from there."
+    try:
+        with messages.showing(setup.name) as progress:
+            found = optimum.optimise(setup, folder, threads=threads, progress=progress, dask=dask)
+    except KeyboardInterrupt:  # between two generations, where nothing runs
+        _interrupted(goes_on)
     typer.echo(messages.overview(setup, found.outcome))
     if found.outcome.interrupted:
-        again = _again("optimise", study, out, dask)
-        _interrupted(f"what is stored is kept. `{again}` goes on from there.")
+        _interrupted(goes_on)
     _write_and_print(folder, threads)
 
 
