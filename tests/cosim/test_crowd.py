@@ -442,6 +442,14 @@ def test_robots_may_be_alike_in_a_parameter_and_are_hit_as_before() -> None:
             hit(DRAW, NUMBERS[0], same={name: 1})
 
 
+def test_nothing_starts_inside_a_robot() -> None:
+    """The first draw of this leg stands 1 mm inside the robot, which starts beside it and comes round to it."""
+    one = hit("judging", 7674, imu=True)
+    assert (one.situation, one.kind) == ("motion", "clamped")
+    ran = batch.Prepared([one.scenario]).run(method="fixed-step")
+    assert ran["status"].values.tolist() == ["ok"]
+
+
 def test_a_refused_run_is_not_one_that_tipped_over() -> None:
     ended = [("ok", {"contacts": []}), ("failed", {"contacts": []}), ("failed", None), ("refused", None)]
     failed, over = ended_early([{"status": status, "judged": judged} for status, judged in ended])

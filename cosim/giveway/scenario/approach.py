@@ -41,6 +41,7 @@ __all__ = [
 ]
 
 ON_OUTLINE_M = 1e-3  # robot files give corners to micrometres; users give points to millimetres
+START_M = 1e-6  # a nose that starts deeper in the robot is refused by the testbed
 STILL_MPS = 1e-6
 SAMPLE_S, SAMPLE_M = 1e-3, 4e-3  # a disc of 20 mm that grazes over 4 mm penetrates by 0.1 mm
 SAMPLES_AT_ONCE = 200_000
@@ -363,7 +364,8 @@ def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: N
         from_base = centre.reshape(-1, 2) - poses[:, :2]
         seen = _turned(np.cos(poses[:, 2]), -np.sin(poses[:, 2]), from_base)
         outside = _outside(outline, seen).reshape(samples, -1)
-        touching = (outside < nose.radius[part] - ON_OUTLINE_M) & (duration[part] > 0.0)
+        depth = nose.radius[part] - outside
+        touching = ((depth > ON_OUTLINE_M) | ((time_s[:, part] <= 0.0) & (depth > START_M))) & (duration[part] > 0.0)
         for index in np.flatnonzero(touching.any(axis=0)):
             yield first + int(index), float(time_s[touching[:, index].argmax(), first + index])
 
