@@ -364,8 +364,8 @@ def _earlier_contacts(nose: _Nose, outline: Numbers, plan: Plan, path_start_s: N
         from_base = centre.reshape(-1, 2) - poses[:, :2]
         seen = _turned(np.cos(poses[:, 2]), -np.sin(poses[:, 2]), from_base)
         outside = _outside(outline, seen).reshape(samples, -1)
-        depth = nose.radius[part] - outside
-        touching = ((depth > ON_OUTLINE_M) | ((time_s[:, part] <= 0.0) & (depth > START_M))) & (duration[part] > 0.0)
+        allowed_m = np.where(time_s[:, part] > 0.0, ON_OUTLINE_M, START_M)
+        touching = (outside < nose.radius[part] - allowed_m) & (duration[part] > 0.0)
         for index in np.flatnonzero(touching.any(axis=0)):
             yield first + int(index), float(time_s[touching[:, index].argmax(), first + index])
 
