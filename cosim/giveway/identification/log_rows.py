@@ -6,6 +6,7 @@ import csv
 import io
 import itertools
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -22,7 +23,7 @@ ROWS_MIN = 10  # a shorter file is wrong; the fit decides whether a log is long 
 READ = "a log as CSV or Parquet (`giveway run --log` writes both)"
 
 
-class LogRows:
+class LogRows(ABC):
     """What is in a log file.
 
     Attributes:
@@ -47,8 +48,9 @@ class LogRows:
             raise FileError(self.path, f"has {len(values)} {self.word}s of data", f"a log needs at least {ROWS_MIN}")
         return values, numbers
 
+    @abstractmethod
     def _read(self, columns: Sequence[int]) -> tuple[NDArray[np.float64], list[int]]:
-        raise NotImplementedError
+        """As `values`, from the file, however few rows it has."""
 
 
 class CsvRows(LogRows):
