@@ -34,7 +34,7 @@ static void choose_channels(gw_controller_config_t *config)
     config->estimator.aligned = 1U;
     config->estimator.creep_speed_mps = (gw_real_t)0.04;
     config->detector.kind = GW_DETECTOR_CHANNELS;
-    config->channels.lever_m = (gw_real_t)0.015;
+    config->channels.lever_m = (gw_real_t)0.02;
     config->channels.rocking = (gw_real_t)0.3;
 }
 #else
@@ -166,9 +166,14 @@ static void init_channels(gw_controller_t *controller, const gw_controller_confi
     }
 }
 
-static void restart_channels(gw_controller_t *controller)
+/* What the channels knew before this mode, in which they did not look for hits. */
+static void restart_channels(gw_controller_t *controller, gw_mode_t before)
 {
-    gw_channels_restart(&controller->channels);
+    if (before == GW_MODE_FAULT) {
+        gw_channels_resume(&controller->channels);
+    } else {
+        gw_channels_restart(&controller->channels);
+    }
 }
 
 /* The force below which a push is not felt. While a contact lasts it is that of motion: what started the reaction is
@@ -263,9 +268,10 @@ static void init_channels(const gw_controller_t *controller, const gw_controller
     (void)config;
 }
 
-static void restart_channels(const gw_controller_t *controller)
+static void restart_channels(const gw_controller_t *controller, gw_mode_t before)
 {
     (void)controller;
+    (void)before;
 }
 
 static gw_real_t channels_leak(const gw_controller_t *controller)
@@ -620,7 +626,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
             gw_detector_reset(&controller->detector);
         }
         if (!looks_for_hits(before)) {
-            restart_channels(controller);
+            restart_channels(controller, before);
         }
         if (mode == GW_MODE_FAULT) {
             gw_estimator_restart(&controller->estimator);

@@ -59,6 +59,8 @@ static void part_step(void)
     draw_kinematics(&kinematics);
     if (any_flag()) {
         gw_channels_restart(&channels);
+    } else if (any_flag()) {
+        gw_channels_resume(&channels);
     } else {
         gw_channels_step(&channels, &kinematics, &input, &output);
         demand_real(output.statistic, GW_ZERO, (gw_real_t)1.0e10);
