@@ -408,6 +408,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
         take_zero_step(channels, input);
     }
     gw_fast_channel_feel(&channels->fast, input->felt, input->shaking_mps2_2);
+    gw_fast_channel_count(&channels->fast, input->counted);
     count_ticks(channels, input);
     if (channels->warm_up_ticks < WARM_UP_TICKS) {
         warm_up(channels, &balance);

@@ -33,6 +33,7 @@ static void choose_channels(gw_controller_config_t *config)
     config->estimator.friction_model = GW_FRICTION_BRISTLE;
     config->estimator.aligned = 1U;
     config->estimator.creep_speed_mps = (gw_real_t)0.04;
+    gw_motor_config_trikey(&config->estimator.motor);
     config->detector.kind = GW_DETECTOR_CHANNELS;
     config->channels.lever_m = (gw_real_t)0.02;
     config->channels.rocking = (gw_real_t)0.3;
@@ -128,6 +129,8 @@ static gw_channels_noise_t sensor_noise(const gw_controller_config_t *config, co
     noise.period_s = config->period_s;
     noise.cutoff_radps = config->estimator.rate_cutoff_radps;
     noise.encoder_step_m = estimator->rate_constants.rad_per_count * config->geometry.wheel_radius_m;
+    noise.observed_step_m =
+        gw_motor_is_known(&estimator->motor) ? (noise.encoder_step_m / GW_MOTOR_FINER) : noise.encoder_step_m;
     noise.twist_noise_m = twist_rad * config->geometry.wheel_radius_m;
     noise.force_noise_n = estimator->sigma.force_n;
     noise.sliding_n = config->friction.coulomb_torque_nm * estimator->kinematics.per_roller_radius;
@@ -243,6 +246,7 @@ static void detect_by_channels(gw_controller_t *controller)
     input.zero_changed = controller->estimate.zero_changed;
     input.regime = controller->estimate.regime;
     input.turned = controller->estimate.turned;
+    input.counted = controller->estimate.counted;
     input.enabled = true; /* otherwise they are not asked */
     input.felt = controller->estimate.acceleration_source == GW_SOURCE_IMU;
     input.shaking_mps2_2 = controller->felt.shaking_mps2_2;
@@ -733,6 +737,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
         gw_joint_hold(&controller->joint, &output->command);
     }
     output->enable = controller->drives_enabled && gw_joint_is_placed(&controller->joint);
+    gw_estimator_tell_command(&controller->estimator, &output->command, output->enable);
 }
 
 /* Where the mean wrench of the estimate acts. */

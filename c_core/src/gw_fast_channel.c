@@ -25,6 +25,9 @@
 #define NORMAL_SHARE ((gw_real_t)0.8)
 /* Variance of a sum of equal errors over that of independent ones. */
 #define COUNTING_ALIKE ((gw_real_t)GW_WHEEL_COUNT)
+#define COUNTED_TWICE GW_TWO /* along the wheel that counts there is twice the noise */
+#define COUNTED_KEEP ((gw_real_t)0.98)
+#define COUNTED_LITTLE ((gw_real_t)0.02)
 #define NOISE_TIME_S ((gw_real_t)3.0)
 #define NOISE_MIN_N2 ((gw_real_t)1.0e-9)
 #define NOISE_MAX_N2 ((gw_real_t)1.0e10)
@@ -169,7 +172,10 @@ void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t
     const gw_real_t twist_m = gw_min(noise->twist_noise_m, GW_ONE);
     const gw_real_t count_m = gw_min(noise->encoder_step_m, GW_ONE);
     const gw_real_t twist_m2 = GW_TWO_PER_WHEEL * (twist_m * twist_m);
+    const gw_real_t observed_m = gw_min(noise->observed_step_m, GW_ONE);
     const gw_real_t count_m2 = GW_TWO_PER_WHEEL * ((count_m * count_m) / (gw_real_t)12.0);
+    const gw_real_t observed_m2 = GW_TWO_PER_WHEEL * ((observed_m * observed_m) / (gw_real_t)12.0);
+    const gw_real_t coarser_m2 = gw_max(count_m2 - observed_m2, GW_ZERO);
     channel->sliding_n = gw_min(noise->sliding_n, GW_CHANGE_MAX);
     channel->mass2_kg2 = noise->mass_kg * noise->mass_kg;
     channel->moment_per_force_m2 =
@@ -187,8 +193,9 @@ void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t
             gw_min((noise->yaw_inertia_kgm2 * noise->yaw_inertia_kgm2) * felt_rate_share(noise, j), NOISE_MAX_N2);
         for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
             const bool counting = (set != (uint32_t)GW_REGIME_REST);
-            set_noise(channel, noise, set, j, counting ? (twist_m2 + count_m2) : twist_m2);
+            set_noise(channel, noise, set, j, counting ? (twist_m2 + observed_m2) : twist_m2);
         }
+        channel->count_n2[j] = gw_clamp(predicted_n2(noise, j, coarser_m2), GW_ZERO, NOISE_MAX_N2);
         for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
             channel->bank_share[sensor][j] = gw_share_of(noise->period_s, bank_s[sensor][j]);
         }
@@ -223,6 +230,7 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel)
     channel->held_share = GW_ZERO;
     channel->sensor = GW_BY_ENCODERS;
     channel->shaking_n2 = GW_ZERO;
+    channel->counted = GW_ZERO;
     channel->followed = 0U;
     clear_bank(channel);
 }
@@ -330,12 +338,21 @@ void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaki
     channel->shaking_n2 = felt ? gw_clamp(channel->mass2_kg2 * shaking_mps2_2, GW_ZERO, NOISE_MAX_N2) : GW_ZERO;
 }
 
+void gw_fast_channel_count(gw_fast_channel_t *channel, gw_real_t counted)
+{
+    channel->counted = gw_max(gw_min(COUNTED_TWICE * counted, GW_ONE), COUNTED_KEEP * channel->counted);
+}
+
 /* The noise that was followed, and no less than the vibration that an IMU sees now, which may have grown since. */
 static gw_real_t noise_of(const gw_fast_channel_t *channel, gw_regime_t regime, uint32_t j)
 {
     /* How much of it passes each low-pass: it is measured where it changes fast, 0.29 of it at 60 Hz. */
     static const gw_real_t passed[GW_BANK_COUNT] = {(gw_real_t)3.0, (gw_real_t)1.0, (gw_real_t)0.08, (gw_real_t)0.01};
-    return gw_max(channel->noise_n2[channel->sensor][regime][j], passed[j] * channel->shaking_n2);
+    gw_real_t noise_n2 = gw_max(channel->noise_n2[channel->sensor][regime][j], passed[j] * channel->shaking_n2);
+    if ((regime != GW_REGIME_REST) && (channel->sensor == GW_BY_ENCODERS)) {
+        noise_n2 += channel->counted * channel->count_n2[j];
+    }
+    return noise_n2;
 }
 
 /* Follows the noise of a low-pass: one in a tick is enough. */
@@ -343,7 +360,7 @@ static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
 {
     const uint32_t j = channel->followed;
     const gw_wrench_t *const felt = &channel->bank[j];
-    const gw_real_t before_n2 = noise_of(channel, regime, j);
+    const gw_real_t before_n2 = gw_max(channel->noise_n2[channel->sensor][regime][j], GW_ZERO);
     const gw_real_t square_n2 = GW_HALF * ((felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n));
     const gw_real_t clipped_n2 = gw_min(square_n2, NOISE_CLIP * before_n2);
     const gw_real_t after_n2 = before_n2 + (channel->noise_share * (clipped_n2 - before_n2));
@@ -449,7 +466,7 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
         }
     }
     hold(channel, &channel->bank[GW_BANK_COUNT - 1U], quiet);
-    if (quiet && (found->statistic < GW_HALF)) {
+    if (quiet && (found->statistic < GW_HALF) && ((channel->counted < COUNTED_LITTLE) || (regime == GW_REGIME_REST))) {
         follow_noise(channel, regime);
     }
     channel->followed = (channel->followed + 1U) % GW_BANK_COUNT;

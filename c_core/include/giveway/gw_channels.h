@@ -49,6 +49,8 @@ typedef struct {
     gw_regime_t regime;
     /* An encoder has moved. */
     bool turned;
+    /* Share of the wheels whose encoder counts are taken as they are, [0, 1]. */
+    gw_real_t counted;
     /* False: hits are not looked for. */
     bool enabled;
     /* The robot gives way. */
