@@ -166,6 +166,8 @@ static void set_noise(gw_fast_channel_t *channel, const gw_channels_noise_t *noi
 void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_channels_noise_t *noise)
 {
+    /* Over the noise that is predicted: the errors of counts last for a while, which the long low-passes see. */
+    static const gw_real_t count_share[GW_BANK_COUNT] = {GW_ONE, GW_ONE, GW_TWO, GW_TWO};
     const gw_real_t arm_m = noise->wheel_distance_m;
     const gw_real_t gyration_m2 = noise->yaw_inertia_kgm2 / noise->mass_kg;
     /* Of a position of the base: that of a wheel times 2/n, as the wheels add up. */
@@ -195,7 +197,7 @@ void gw_fast_channel_init(gw_fast_channel_t *channel, const gw_channels_config_t
             const bool counting = (set != (uint32_t)GW_REGIME_REST);
             set_noise(channel, noise, set, j, counting ? (twist_m2 + observed_m2) : twist_m2);
         }
-        channel->count_n2[j] = gw_clamp(predicted_n2(noise, j, coarser_m2), GW_ZERO, NOISE_MAX_N2);
+        channel->count_n2[j] = gw_clamp(count_share[j] * predicted_n2(noise, j, coarser_m2), GW_ZERO, NOISE_MAX_N2);
         for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
             channel->bank_share[sensor][j] = gw_share_of(noise->period_s, bank_s[sensor][j]);
         }

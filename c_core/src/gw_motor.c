@@ -2,6 +2,7 @@
 
 #include "giveway/gw_math.h"
 #include "giveway/gw_trikey.h"
+#include "giveway/gw_wrench.h"
 
 #if (GW_WITH_CHANNELS == 1)
 
