@@ -249,6 +249,7 @@ static bool shares_and_noise_hold(const gw_fast_channel_t *channel)
         gw_in_range(channel->moment_per_force_m2, GW_ZERO, MOMENT_PER_FORCE_MAX) &&
         gw_in_range(channel->moment_noise_m2, GW_ZERO, COUNTING_ALIKE * MOMENT_PER_FORCE_MAX);
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        holds = holds && gw_in_range(channel->count_n2[j], GW_ZERO, NOISE_MAX_N2);
         for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
             holds = holds && gw_in_range(channel->bank_share[sensor][j], GW_ZERO, GW_HALF) &&
                     gw_in_range(channel->gyro_noise_nm2[sensor][j], GW_ZERO, NOISE_MAX_N2);
@@ -274,7 +275,8 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
                 gw_wrench_is_within(&channel->held, HELD_MAX_N) && gw_within(channel->doubt_n.x, HELD_MAX_N) &&
                 gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_in_range(channel->held_share, GW_ZERO, GW_ONE) &&
                 (channel->followed < GW_BANK_COUNT) && (channel->sensor < GW_SENSOR_COUNT) &&
-                gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2);
+                gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2) &&
+                gw_in_range(channel->counted, GW_ZERO, GW_ONE);
         for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
             holds = holds && gw_wrench_is_within(&channel->bank[j], GW_CHANGE_MAX);
         }
@@ -346,11 +348,17 @@ void gw_fast_channel_count(gw_fast_channel_t *channel, gw_real_t counted)
 }
 
 /* The noise that was followed, and no less than the vibration that an IMU sees now, which may have grown since. */
-static gw_real_t noise_of(const gw_fast_channel_t *channel, gw_regime_t regime, uint32_t j)
+static gw_real_t followed_noise(const gw_fast_channel_t *channel, gw_regime_t regime, uint32_t j)
 {
     /* How much of it passes each low-pass: it is measured where it changes fast, 0.29 of it at 60 Hz. */
     static const gw_real_t passed[GW_BANK_COUNT] = {(gw_real_t)3.0, (gw_real_t)1.0, (gw_real_t)0.08, (gw_real_t)0.01};
-    gw_real_t noise_n2 = gw_max(channel->noise_n2[channel->sensor][regime][j], passed[j] * channel->shaking_n2);
+    return gw_max(channel->noise_n2[channel->sensor][regime][j], passed[j] * channel->shaking_n2);
+}
+
+/* The same, and what counts add that are taken as they are. */
+static gw_real_t noise_of(const gw_fast_channel_t *channel, gw_regime_t regime, uint32_t j)
+{
+    gw_real_t noise_n2 = followed_noise(channel, regime, j);
     if ((regime != GW_REGIME_REST) && (channel->sensor == GW_BY_ENCODERS)) {
         noise_n2 += channel->counted * channel->count_n2[j];
     }
@@ -362,7 +370,7 @@ static void follow_noise(gw_fast_channel_t *channel, gw_regime_t regime)
 {
     const uint32_t j = channel->followed;
     const gw_wrench_t *const felt = &channel->bank[j];
-    const gw_real_t before_n2 = gw_max(channel->noise_n2[channel->sensor][regime][j], GW_ZERO);
+    const gw_real_t before_n2 = followed_noise(channel, regime, j);
     const gw_real_t square_n2 = GW_HALF * ((felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n));
     const gw_real_t clipped_n2 = gw_min(square_n2, NOISE_CLIP * before_n2);
     const gw_real_t after_n2 = before_n2 + (channel->noise_share * (clipped_n2 - before_n2));
