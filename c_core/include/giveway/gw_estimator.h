@@ -144,7 +144,7 @@ typedef struct {
     gw_wrench_t zero_step; /* by how much the wrench jumped when the zero changed; kept until the next change */
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
-    bool turned; /* an encoder has moved since the last sample */
+    bool turned;       /* an encoder has moved since the last sample */
     gw_real_t counted; /* share of the wheels whose counts are taken as they are, [0, 1] */
 #endif
 } gw_estimator_output_t;

@@ -16,9 +16,17 @@ static gw_model_forces_t forces;
 static gw_wrench_t zero_step;
 static uint32_t trips;
 
-static const gw_channels_noise_t usual = {
-    PERIOD,  R(200.0), R(0.0001), R(0.000001), R(0.3),
-    SLIDING, R(35.0),  R(1.5),    R(0.25),     {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
+static const gw_channels_noise_t usual = {PERIOD,
+                                          R(200.0),
+                                          R(0.0001),
+                                          R(0.0001),
+                                          R(0.000001),
+                                          R(0.3),
+                                          SLIDING,
+                                          R(35.0),
+                                          R(1.5),
+                                          R(0.25),
+                                          {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
 
 /* At rest, with nothing that touches. The configuration may be changed before. */
 static void begin_with_config(void)

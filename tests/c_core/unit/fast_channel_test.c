@@ -11,9 +11,17 @@ static gw_balance_t balance;
 static gw_fast_found_t found;
 
 static const gw_balance_t no_balance;
-static const gw_channels_noise_t usual = {
-    PERIOD,  R(200.0), R(0.0001), R(0.00001), R(0.3),
-    R(20.0), R(35.0),  R(1.5),    R(0.25),    {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
+static const gw_channels_noise_t usual = {PERIOD,
+                                          R(200.0),
+                                          R(0.0001),
+                                          R(0.0001),
+                                          R(0.00001),
+                                          R(0.3),
+                                          R(20.0),
+                                          R(35.0),
+                                          R(1.5),
+                                          R(0.25),
+                                          {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
 
 static void begin_with(const gw_channels_noise_t *noise)
 {
@@ -220,6 +228,7 @@ static void the_noise_behind_the_bank_is_predicted(void)
         begin();
         answers(j, &of_force, &of_position);
         noise.encoder_step_m = GW_ZERO;
+        noise.observed_step_m = GW_ZERO;
         noise.twist_noise_m = GW_ZERO;
         begin_with(&noise);
         unit_row(j);
@@ -236,6 +245,7 @@ static void the_noise_behind_the_bank_is_predicted(void)
         CHECK_NEAR(n2[j] / twist_n2, GW_ONE, (j == 2U) ? R(0.07) : R(0.06)); /* steps of w T = 0.095 swing more */
         /* Counting is uniform noise of a step's width: besides, once the wheels turn. */
         noise.encoder_step_m = R(0.0001);
+        noise.observed_step_m = R(0.0001);
         begin_with(&noise);
         const gw_real_t counting = GW_ONE + (R(100.0) / R(12.0));
         CHECK_NEAR(channel.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j] / n2[j], in_motion[j] * counting,
@@ -715,6 +725,7 @@ static void any_robot_keeps_the_invariant(void)
         {R(0.1),
          R(5000.0),
          R(1.0e6),
+         R(0.1),
          R(1.0e6),
          R(1.0e6),
          R(1.0e9),
@@ -724,6 +735,7 @@ static void any_robot_keeps_the_invariant(void)
          {R(100.0), R(100.0), R(100.0), R(10.0), R(5000.0)}},
         {R(0.0001),
          R(1.0),
+         R(0.0),
          R(0.0),
          R(0.0),
          R(0.0),
