@@ -14,15 +14,21 @@
 #define SURPRISE_COUNTS ((gw_real_t)1.5)
 #define SURE_TICKS 30U /* before the observer is trusted again */
 #define SHARE_PER_TICK ((gw_real_t)0.03125)
-/* Limits of what is kept, beyond any motor's. */
+/* A lighter motor would only amplify what is not known. */
+#define INERTIA_MIN_KGM2 ((gw_real_t)1.0e-6)
+/* Below that of the stiffest drivetrain that is not rigid. */
+#define COMPLIANCE_MIN_RAD_PER_NM ((gw_real_t)0.95e-7)
 /* Near a whole number of counts in a tick their error does not change its sign for long, and then it jumps: a share of
  * what it is without the observer. */
 #define SAME_SHARE ((gw_real_t)0.35)
+/* Limits of what is kept, beyond any motor's. */
 #define RATE_MAX_RADPS ((gw_real_t)1.0e5)
 #define UNKNOWN_MAX_RADPS2 ((gw_real_t)1.0e7)
-#define SERVO_MAX_RADPS ((gw_real_t)2.0e10)
+#define SERVO_MAX_RADPS ((gw_real_t)3.5e13) /* the most that counts may move in a tick */
 #define COMMAND_MAX_RADPS ((gw_real_t)1.2e6)
 #define GAIN_MAX ((gw_real_t)1.0e9)
+#define COUNT_RATE_MIN ((gw_real_t)5.0e-5)
+#define COUNT_RATE_MAX ((gw_real_t)1.7e4)
 #define PERIOD_MIN_S ((gw_real_t)0.0001)
 #define PERIOD_MAX_S ((gw_real_t)0.1)
 #define COUNT_MIN_RAD ((gw_real_t)6.0e-6)
@@ -31,8 +37,6 @@
 #define PER_INERTIA_MAX ((gw_real_t)1.1e6)
 #define COUNTS_PER_TURN_MIN ((gw_real_t)4.0)
 #define COUNTS_PER_TURN_MAX ((gw_real_t)1.0e6)
-/* Counts in a tick: a fault beyond it. */
-#define COUNTS_MAX ((gw_real_t)1.0e6)
 
 void gw_motor_config_trikey(gw_motor_config_t *config)
 {
@@ -80,11 +84,12 @@ void gw_motor_init(gw_motor_t *motor, const gw_motor_config_t *config, const gw_
                    uint32_t encoder_counts)
 {
     static const gw_joint_command_t no_command = {0};
-    /* A lighter motor would only amplify what is not known. */
-    motor->known = (config->inertia_kgm2 >= (gw_real_t)1.0e-6) && (constants->compliance_rad_per_nm > GW_ZERO);
+    motor->known =
+        (config->inertia_kgm2 >= INERTIA_MIN_KGM2) && (constants->compliance_rad_per_nm >= COMPLIANCE_MIN_RAD_PER_NM);
     motor->config = *config;
     motor->period_s = constants->period_s;
     motor->rad_per_count = constants->rad_per_count;
+    motor->count_rate = constants->rad_per_count / constants->period_s;
     motor->stiffness_nm_per_rad = motor->known ? (GW_ONE / constants->compliance_rad_per_nm) : GW_ZERO;
     motor->per_inertia = motor->known ? (GW_ONE / config->inertia_kgm2) : GW_ZERO;
     motor->filter_gain =
@@ -134,6 +139,7 @@ bool gw_motor_invariant_holds(const gw_motor_t *motor)
         gw_motor_config_check(&motor->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_in_range(motor->period_s, PERIOD_MIN_S, PERIOD_MAX_S) &&
                 gw_in_range(motor->rad_per_count, COUNT_MIN_RAD, COUNT_MAX_RAD) &&
+                gw_in_range(motor->count_rate, COUNT_RATE_MIN, COUNT_RATE_MAX) &&
                 gw_in_range(motor->stiffness_nm_per_rad, GW_ZERO, STIFFNESS_MAX) &&
                 gw_in_range(motor->per_inertia, GW_ZERO, PER_INERTIA_MAX) &&
                 gw_in_range(motor->filter_gain, GW_ZERO, GW_ONE) &&
@@ -170,25 +176,38 @@ void gw_motor_command(gw_motor_t *motor, const gw_joint_command_t *command, bool
     }
 }
 
-/* Torque of the servo, the mean of its two ticks since the last sample. turned: rad since then. */
-static gw_real_t servo_torque(const gw_motor_t *motor, gw_motor_wheel_t *wheel, gw_real_t angle_rad,
-                              gw_real_t speed_radps, gw_real_t turned_rad)
+/* Its difference from an angle of less than a turn is less than one and a half. */
+static gw_real_t wrapped_once(gw_real_t angle_rad)
 {
-    const gw_motor_config_t *const config = &motor->config;
-    const gw_real_t limit_nm = config->torque_limit_nm;
-    const gw_real_t half_s = GW_HALF * motor->period_s;
-    const gw_real_t rate_radps = turned_rad / motor->period_s;
+    gw_real_t wrapped_rad = angle_rad;
+    if (angle_rad >= GW_PI) {
+        wrapped_rad = angle_rad - (GW_TWO * GW_PI);
+    } else if (angle_rad < -GW_PI) {
+        wrapped_rad = angle_rad + (GW_TWO * GW_PI);
+    } else {
+        /* no whole turn to take off */
+    }
+    return wrapped_rad;
+}
+
+/* Torque of the servo, the mean of its two ticks since the last sample, in which the wheel turned by so many counts. */
+static gw_real_t servo_torque(const gw_motor_t *motor, gw_motor_wheel_t *wheel, gw_real_t angle_rad,
+                              gw_real_t speed_radps, gw_real_t counts)
+{
+    const gw_real_t kp = motor->config.kp_nm_per_rad;
+    const gw_real_t kd = motor->config.kd_nms_per_rad;
+    const gw_real_t limit_nm = motor->config.torque_limit_nm;
+    const gw_real_t gain = motor->filter_gain;
+    const gw_real_t rate_radps = counts * motor->count_rate;
     const int32_t within_turn = wheel->count % (int32_t)motor->encoder_counts;
-    const gw_real_t error_rad = gw_wrap_angle(angle_rad - ((gw_real_t)within_turn * motor->rad_per_count));
-    const gw_real_t first_nm =
-        (config->kp_nm_per_rad * error_rad) + (config->kd_nms_per_rad * (speed_radps - wheel->servo_radps));
-    wheel->servo_radps += motor->filter_gain * (rate_radps - wheel->servo_radps);
-    const gw_real_t later_rad = (error_rad + (speed_radps * half_s)) - (GW_HALF * turned_rad);
-    const gw_real_t second_nm =
-        (config->kp_nm_per_rad * later_rad) + (config->kd_nms_per_rad * (speed_radps - wheel->servo_radps));
-    wheel->servo_radps =
-        gw_limited(wheel->servo_radps + (motor->filter_gain * (rate_radps - wheel->servo_radps)), SERVO_MAX_RADPS);
-    return GW_HALF * (gw_clamp(first_nm, -limit_nm, limit_nm) + gw_clamp(second_nm, -limit_nm, limit_nm));
+    const gw_real_t first_rad = wrapped_once(angle_rad - ((gw_real_t)within_turn * motor->rad_per_count));
+    const gw_real_t second_rad = first_rad + ((GW_HALF * motor->period_s) * (speed_radps - rate_radps));
+    const gw_real_t first_radps = wheel->servo_radps;
+    const gw_real_t second_radps = first_radps + (gain * (rate_radps - first_radps));
+    const gw_real_t first_nm = (kp * first_rad) + (kd * (speed_radps - first_radps));
+    const gw_real_t second_nm = (kp * second_rad) + (kd * (speed_radps - second_radps));
+    wheel->servo_radps = gw_known_within(second_radps + (gain * (rate_radps - second_radps)), SERVO_MAX_RADPS);
+    return GW_HALF * (gw_limited(first_nm, limit_nm) + gw_limited(second_nm, limit_nm));
 }
 
 /* One wheel: the observer's prediction, and its correction by the count. */
@@ -196,15 +215,15 @@ static void observe(const gw_motor_t *motor, gw_motor_wheel_t *wheel, gw_real_t 
                     gw_real_t turned_rad)
 {
     const gw_real_t period_s = motor->period_s;
-    const gw_real_t sliding = gw_clamp(wheel->rate_radps / SLOW_RADPS, -GW_ONE, GW_ONE);
+    const gw_real_t rate_radps = wheel->rate_radps;
+    const gw_real_t unknown_radps2 = wheel->unknown_radps2;
+    const gw_real_t sliding = gw_limited(rate_radps * (GW_ONE / SLOW_RADPS), GW_ONE);
     const gw_real_t sensed_nm = GW_HALF * (wheel->torque_nm + torque_nm);
     const gw_real_t net_nm = (motor_nm - (motor->config.coulomb_torque_nm * sliding)) - sensed_nm;
-    const gw_real_t acceleration_radps2 = (net_nm * motor->per_inertia) + wheel->unknown_radps2;
-    const gw_real_t gained_radps = period_s * acceleration_radps2;
-    const gw_real_t angle_rad =
-        (wheel->angle_rad + (period_s * (wheel->rate_radps + (GW_HALF * gained_radps)))) - turned_rad;
+    const gw_real_t gained_radps = period_s * ((net_nm * motor->per_inertia) + unknown_radps2);
+    const gw_real_t angle_rad = (wheel->angle_rad + (period_s * (rate_radps + (GW_HALF * gained_radps)))) - turned_rad;
     const bool surprised = gw_magnitude(angle_rad) > (SURPRISE_COUNTS * motor->rad_per_count);
-    const bool slow = gw_magnitude(wheel->rate_radps) < SLOW_RADPS;
+    const bool slow = gw_magnitude(rate_radps) < SLOW_RADPS;
     if (surprised || slow) {
         wheel->sure_ticks = 0U;
     } else if (wheel->sure_ticks < SURE_TICKS) {
@@ -213,10 +232,11 @@ static void observe(const gw_motor_t *motor, gw_motor_wheel_t *wheel, gw_real_t 
         /* it is trusted */
     }
     const bool trusted = wheel->sure_ticks >= SURE_TICKS;
-    const gw_motor_gains_t gains = trusted ? motor->slow : motor->quick;
-    wheel->angle_rad = gw_limited(angle_rad * (GW_ONE - gains.angle), GW_HALF * motor->rad_per_count);
-    wheel->rate_radps = gw_limited((wheel->rate_radps + gained_radps) - (gains.rate_per_s * angle_rad), RATE_MAX_RADPS);
-    wheel->unknown_radps2 = gw_limited(wheel->unknown_radps2 - (gains.unknown_per_s2 * angle_rad), UNKNOWN_MAX_RADPS2);
+    const gw_motor_gains_t *const gains = trusted ? &motor->slow : &motor->quick;
+    const gw_real_t corrected_radps = (rate_radps + gained_radps) - (gains->rate_per_s * angle_rad);
+    wheel->unknown_radps2 = gw_limited(unknown_radps2 - (gains->unknown_per_s2 * angle_rad), UNKNOWN_MAX_RADPS2);
+    wheel->angle_rad = gw_limited(angle_rad * (GW_ONE - gains->angle), GW_HALF * motor->rad_per_count);
+    wheel->rate_radps = gw_limited(corrected_radps, RATE_MAX_RADPS);
     wheel->share = gw_clamp(wheel->share + (trusted ? SHARE_PER_TICK : -SHARE_PER_TICK), GW_ZERO, GW_ONE);
 }
 
@@ -254,11 +274,11 @@ gw_wheels_t gw_motor_step(gw_motor_t *motor, const int32_t encoder_count[GW_WHEE
             gw_motor_wheel_t *const wheel = &motor->wheel[i];
             if (motor->started && follows) {
                 const int32_t moved = gw_count_difference(encoder_count[i], wheel->count);
-                const gw_real_t turned_rad = gw_limited((gw_real_t)moved, COUNTS_MAX) * motor->rad_per_count;
+                const gw_real_t counts = (gw_real_t)moved;
                 note_moved(wheel, moved);
                 const gw_real_t motor_nm = servo_torque(motor, wheel, motor->command[at].angle_rad[i],
-                                                        motor->command[at].speed_radps[i], turned_rad);
-                observe(motor, wheel, motor_nm, torque_nm->wheel[i], turned_rad);
+                                                        motor->command[at].speed_radps[i], counts);
+                observe(motor, wheel, motor_nm, torque_nm->wheel[i], counts * motor->rad_per_count);
                 const gw_real_t beyond_nm = (motor->stiffness_nm_per_rad * wheel->share) * wheel->angle_rad;
                 twist_nm.wheel[i] = gw_limited(torque_nm->wheel[i] - beyond_nm, GW_TORQUE_MAX);
                 rough += roughness(wheel);

@@ -75,6 +75,7 @@ typedef struct {
     gw_motor_config_t config;
     gw_real_t period_s;
     gw_real_t rad_per_count;
+    gw_real_t count_rate; /* rad/s of one count per tick */
     gw_real_t stiffness_nm_per_rad;
     gw_real_t per_inertia; /* 1/m */
     gw_real_t filter_gain; /* of the servo's speed filter */
