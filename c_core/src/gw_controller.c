@@ -259,6 +259,12 @@ static void detect_by_channels(gw_controller_t *controller)
     controller->detection.mean_wrench = controller->contact_found.mean_wrench;
     controller->detection.samples = 1U;
 }
+
+/* Where the motors are depends on what is sent to them. */
+static void tell_command(gw_controller_t *controller, const gw_controller_output_t *output)
+{
+    gw_estimator_tell_command(&controller->estimator, &output->command, output->enable);
+}
 #else
 static bool uses_channels(const gw_controller_t *controller)
 {
@@ -334,6 +340,12 @@ static bool is_imu_trusted(const gw_controller_t *controller)
 static void detect_by_channels(const gw_controller_t *controller)
 {
     (void)controller;
+}
+
+static void tell_command(const gw_controller_t *controller, const gw_controller_output_t *output)
+{
+    (void)controller;
+    (void)output;
 }
 #endif
 
@@ -737,7 +749,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
         gw_joint_hold(&controller->joint, &output->command);
     }
     output->enable = controller->drives_enabled && gw_joint_is_placed(&controller->joint);
-    gw_estimator_tell_command(&controller->estimator, &output->command, output->enable);
+    tell_command(controller, output);
 }
 
 /* Where the mean wrench of the estimate acts. */

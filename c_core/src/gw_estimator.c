@@ -246,11 +246,13 @@ static void restart_motor(gw_estimator_t *estimator)
     gw_motor_restart(&estimator->motor);
 }
 
-/* The torque whose twist leads from the counts to the wheels. */
-static gw_wheels_t twist_torques(gw_estimator_t *estimator, const gw_estimator_input_t *input,
-                                 const gw_wheels_t *torque_nm, gw_estimator_output_t *output)
+/* The torque whose twist leads from the counts to the wheels; in `place`, unless it is the sensed one. */
+static const gw_wheels_t *twist_torques(gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                                        const gw_wheels_t *torque_nm, gw_wheels_t *place, gw_estimator_output_t *output)
 {
-    return gw_motor_step(&estimator->motor, input->encoder_count, torque_nm, &output->counted);
+    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
+    *place = gw_motor_step(&estimator->motor, input->encoder_count, torque_nm, &output->counted);
+    return place;
 }
 
 void gw_estimator_tell_command(gw_estimator_t *estimator, const gw_joint_command_t *command, bool enabled)
@@ -373,20 +375,15 @@ static void restart_motor(const gw_estimator_t *estimator)
     (void)estimator;
 }
 
-static gw_wheels_t twist_torques(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
-                                 const gw_wheels_t *torque_nm, const gw_estimator_output_t *output)
+static const gw_wheels_t *twist_torques(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                                        const gw_wheels_t *torque_nm, const gw_wheels_t *place,
+                                        const gw_estimator_output_t *output)
 {
     (void)estimator;
     (void)input;
+    (void)place;
     (void)output;
-    return *torque_nm;
-}
-
-void gw_estimator_tell_command(gw_estimator_t *estimator, const gw_joint_command_t *command, bool enabled)
-{
-    (void)estimator;
-    (void)command;
-    (void)enabled;
+    return torque_nm;
 }
 
 static bool alignment_holds(const gw_estimator_t *estimator)
@@ -742,15 +739,15 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         output->regime = regime_of(estimator, speed_mps);
         gw_wheels_t rates;
         gw_wheels_t derivatives;
-        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
-        const gw_wheels_t twist_nm = twist_torques(estimator, input, &torque_nm, output);
-        filter_rates(estimator, input, &twist_nm, planned_twist, &rates, &derivatives);
+        gw_wheels_t twist_place;
+        const gw_wheels_t *const twist_nm = twist_torques(estimator, input, &torque_nm, &twist_place, output);
+        filter_rates(estimator, input, twist_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
         const gw_acceleration_t acceleration = chosen_acceleration(estimator, input, output->acceleration_source,
                                                                    planned_acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
-            nominal_with_zero(estimator, input, &twist_nm, planned_twist, measured_twist, acceleration, output);
+            nominal_with_zero(estimator, input, twist_nm, planned_twist, measured_twist, acceleration, output);
         add_gears(estimator, &rates, output);
         gw_wheels_t sensed_nm = torque_nm;
         align_torque(estimator, output->acceleration_source, &sensed_nm);
