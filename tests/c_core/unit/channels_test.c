@@ -913,6 +913,19 @@ static void a_restart_keeps_what_was_learned(void)
     CHECK((!output.active) && (!output.refined));
 }
 
+/* What counts add reaches the fast channel in every tick, also while the baseline is warming up. */
+static void what_is_counted_is_passed_on(void)
+{
+    gw_channels_config_trikey(&config);
+    begin_with_config();
+    input.counted = R(0.25);
+    tick();
+    CHECK(channels.fast.counted == GW_HALF);
+    input.counted = R(0.3);
+    ticks(WARM_UP);
+    CHECK(channels.fast.counted == R(0.6));
+}
+
 static void the_invariant_sees_every_member(void)
 {
     begin();
@@ -994,6 +1007,7 @@ void suite_channels(void)
     unit_run("the_mean_wrench_of_a_push_is_found", the_mean_wrench_of_a_push_is_found);
     unit_run("the_impulse_is_bounded", the_impulse_is_bounded);
     unit_run("a_restart_keeps_what_was_learned", a_restart_keeps_what_was_learned);
+    unit_run("what_is_counted_is_passed_on", what_is_counted_is_passed_on);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
     unit_run("a_low_pass_takes_over_a_share", a_low_pass_takes_over_a_share);
 }

@@ -189,6 +189,83 @@ static void a_push_that_lasts_is_one_hit_of_a_reaction(void)
     CHECK((!rig_output.detection_active) && (rig_controller.channels.slow.statistic > GW_ONE));
 }
 
+/* The preset of the paper's robot knows its motors, the paper's configuration does not. */
+static void the_default_preset_observes_its_motors(void)
+{
+    static gw_controller_config_t preset;
+    gw_motor_config_t expected;
+    gw_motor_config_trikey(&expected);
+    gw_controller_config_trikey(&preset);
+    CHECK((preset.estimator.motor.inertia_kgm2 == expected.inertia_kgm2) && (expected.inertia_kgm2 > GW_ZERO));
+    CHECK(preset.estimator.motor.delay_ticks == expected.delay_ticks);
+    gw_controller_config_paper(&preset);
+    CHECK(preset.estimator.motor.inertia_kgm2 == GW_ZERO);
+}
+
+/* Observed motors make the noise of wheels that turn smaller; what counts add is that of counts without it. */
+static void motors_that_are_known_are_observed(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        rig_with_channels();
+        rig_config.estimator.motor.inertia_kgm2 = (i == 0U) ? GW_ZERO : R(0.05);
+        rig_begin();
+        const gw_fast_channel_t *const fast = &rig_controller.channels.fast;
+        const gw_channels_noise_t noise = {
+            rig_config.period_s,
+            rig_config.estimator.rate_cutoff_radps,
+            rig_controller.estimator.rate_constants.rad_per_count * rig_config.geometry.wheel_radius_m,
+            rig_controller.estimator.rate_constants.rad_per_count * rig_config.geometry.wheel_radius_m /
+                ((i == 0U) ? GW_ONE : GW_MOTOR_FINER),
+            (rig_config.estimator.torque_noise_nm * rig_controller.estimator.rate_constants.compliance_rad_per_nm) *
+                rig_config.geometry.wheel_radius_m,
+            rig_controller.estimator.sigma.force_n,
+            GW_ZERO,
+            rig_controller.estimator.nominal.total_mass_kg,
+            rig_controller.estimator.nominal.total_yaw_inertia_kgm2,
+            rig_config.geometry.wheel_distance_m,
+            gw_imu_noise(&rig_controller.imu)};
+        static gw_fast_channel_t expected;
+        gw_fast_channel_init(&expected, &rig_config.channels, &noise);
+        for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+            unit_row((10U * i) + j);
+            CHECK_NEAR(fast->count_n2[j], expected.count_n2[j], expected.count_n2[j] * R(10.0) * ROUNDING);
+            CHECK_NEAR(fast->least_noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j],
+                       expected.least_noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j],
+                       expected.least_noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j] * R(10.0) * ROUNDING);
+        }
+        rig_until(GW_MODE_TRACKING, 10U);
+        rig_ticks(100U);
+        /* It stands: nothing is known between its counts. */
+        unit_row(i);
+        CHECK(rig_controller.estimate.counted == ((i == 0U) ? GW_ZERO : GW_ONE));
+        CHECK(fast->counted == rig_controller.estimate.counted);
+    }
+}
+
+/* What is sent in a tick is what the motors are told to follow, unless the drives are not enabled. */
+static void the_motors_are_told_what_is_sent(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        rig_with_channels();
+        gw_motor_config_trikey(&rig_config.estimator.motor);
+        rig_config.drives_enabled = (i == 0U);
+        rig_input.plan.twist.vx_mps = R(0.1);
+        rig_begin();
+        const gw_motor_t *const motor = &rig_controller.estimator.motor;
+        for (uint32_t tick = 1U; tick <= 30U; tick++) {
+            const uint32_t at = motor->next_command;
+            rig_tick(GW_STATUS_OK);
+            unit_row((100U * i) + tick);
+            CHECK(motor->commands == ((i == 1U) ? 0U : ((tick < GW_MOTOR_DELAY_MAX) ? tick : GW_MOTOR_DELAY_MAX)));
+            for (uint32_t k = 0U; (k < GW_WHEEL_COUNT) && (i == 0U); k++) {
+                CHECK(motor->command[at].angle_rad[k] == rig_output.command.angle_rad[k]);
+                CHECK(motor->command[at].speed_radps[k] == rig_output.command.speed_radps[k]);
+            }
+        }
+        CHECK((i == 1U) || (gw_abs(rig_output.command.speed_radps[1]) > GW_ZERO));
+    }
+}
+
 static void the_invariant_sees_the_channels(void)
 {
     rig_with_channels();
@@ -210,5 +287,8 @@ void suite_channels_use(void)
     unit_run("a_stop_in_a_contact_forgets_it", a_stop_in_a_contact_forgets_it);
     unit_run("a_force_that_is_no_contact_is_not_located", a_force_that_is_no_contact_is_not_located);
     unit_run("a_push_that_lasts_is_one_hit_of_a_reaction", a_push_that_lasts_is_one_hit_of_a_reaction);
+    unit_run("the_default_preset_observes_its_motors", the_default_preset_observes_its_motors);
+    unit_run("motors_that_are_known_are_observed", motors_that_are_known_are_observed);
+    unit_run("the_motors_are_told_what_is_sent", the_motors_are_told_what_is_sent);
     unit_run("the_invariant_sees_the_channels", the_invariant_sees_the_channels);
 }

@@ -526,6 +526,133 @@ static void vibration_that_an_imu_sees_counts_at_once(void)
     CHECK((channel.shaking_n2 == GW_ZERO) && (channel.sensor == GW_BY_ENCODERS));
 }
 
+/* Counts of one wheel of two make twice the noise along it; what is left of it fades with 50 ticks. */
+static void counts_add_noise_until_it_has_faded(void)
+{
+    const struct {
+        gw_real_t before;
+        gw_real_t counted;
+        gw_real_t after;
+    } rows[] = {
+        {R(0.0), R(0.0), R(0.0)},  {R(0.0), R(0.25), R(0.5)}, {R(0.0), R(0.5), R(1.0)}, {R(0.0), R(1.0), R(1.0)},
+        {R(1.0), R(0.0), R(0.98)}, {R(0.5), R(0.0), R(0.49)}, {R(0.5), R(0.3), R(0.6)}, {R(0.9), R(0.3), R(0.882)},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        CHECK(channel.counted == GW_ZERO);
+        channel.counted = rows[i].before;
+        gw_fast_channel_count(&channel, rows[i].counted);
+        unit_row(i);
+        CHECK_NEAR(channel.counted, rows[i].after, ROUNDING);
+        CHECK(gw_fast_channel_invariant_holds(&channel));
+        gw_fast_channel_restart(&channel);
+        CHECK(channel.counted == GW_ZERO);
+    }
+}
+
+/* 0.75 of it, where wheels turn and the acceleration is the encoders'. */
+static void noise_of_counts_widens_the_threshold(void)
+{
+    const struct {
+        gw_regime_t regime;
+        bool felt;
+        gw_real_t share;
+    } rows[] = {{GW_REGIME_REST, false, R(0.0)},
+                {GW_REGIME_CREEPING, false, R(0.75)},
+                {GW_REGIME_MOTION, false, R(0.75)},
+                {GW_REGIME_MOTION, true, R(0.0)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+            begin();
+            gw_fast_channel_feel(&channel, rows[i].felt, GW_ZERO);
+            for (uint32_t k = 0U; k < GW_BANK_COUNT; k++) {
+                channel.count_n2[k] = R(10.0) * (gw_real_t)(k + 1U);
+            }
+            channel.counted = R(0.75);
+            channel.bank[j].force_x_n = R(100.0);
+            step(rows[i].regime, false);
+            const gw_real_t own = rows[i].felt ? config.imu_noise_multiple : MULTIPLE;
+            const gw_real_t multiple2 = (((j >= 2U) && (!rows[i].felt)) ? R(0.8) : GW_ONE) * (own * own);
+            const gw_real_t floor_n = gw_force_floor(config.fast, rows[i].regime);
+            const gw_real_t n2 =
+                channel.noise_n2[channel.sensor][rows[i].regime][j] + (rows[i].share * (R(10.0) * (gw_real_t)(j + 1U)));
+            const gw_real_t x = channel.bank[j].force_x_n;
+            unit_row((10U * i) + j);
+            CHECK(found.widest == j);
+            CHECK_NEAR(found.statistic, (x * x) / ((multiple2 * n2) + (floor_n * floor_n)),
+                       found.statistic * R(10.0) * ROUNDING);
+        }
+    }
+}
+
+/* What counts add is no noise of the observed motors: it is not followed then, but at rest nothing counts. */
+static void noise_is_not_followed_while_counts_add_to_it(void)
+{
+    const struct {
+        gw_regime_t regime;
+        gw_real_t counted;
+        bool follows;
+    } rows[] = {{GW_REGIME_MOTION, R(0.0), true},   {GW_REGIME_MOTION, R(0.0199), true},
+                {GW_REGIME_MOTION, R(0.02), false}, {GW_REGIME_MOTION, R(1.0), false},
+                {GW_REGIME_CREEPING, R(0.0), true}, {GW_REGIME_CREEPING, R(1.0), false},
+                {GW_REGIME_REST, R(1.0), true}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        gw_real_t *const n2 = &channel.noise_n2[GW_BY_ENCODERS][rows[i].regime][0];
+        *n2 = GW_ONE;
+        channel.least_noise_n2[GW_BY_ENCODERS][rows[i].regime][0] = R(0.001);
+        channel.counted = rows[i].counted;
+        channel.followed = 0U;
+        step(rows[i].regime, true);
+        unit_row(i);
+        CHECK((*n2 < GW_ONE) == rows[i].follows);
+        CHECK(channel.followed == 1U);
+        /* It is followed from itself, whatever counts add: nothing is felt, so it shrinks by its share. */
+        CHECK_NEAR(*n2, rows[i].follows ? (GW_ONE - channel.noise_share) : GW_ONE, ROUNDING);
+    }
+}
+
+/* Steps of a quarter have a sixteenth of the variance; the other fifteen are what counts add, more to the longer
+ * low-passes, as their errors last. Coarser motors than counts add nothing. */
+static void observed_motors_are_less_noisy_than_counts(void)
+{
+    const gw_real_t count_share[GW_BANK_COUNT] = {R(1.0), R(1.0), R(2.0), R(2.0)};
+    gw_channels_noise_t noise = usual;
+    gw_channels_config_trikey(&config);
+    noise.force_noise_n = GW_ZERO;
+    noise.twist_noise_m = GW_ZERO;
+    begin_with(&noise);
+    const gw_fast_channel_t by_counts = channel;
+    noise.observed_step_m = noise.encoder_step_m / R(4.0);
+    begin_with(&noise);
+    const gw_fast_channel_t observed = channel;
+    noise.observed_step_m = GW_TWO * noise.encoder_step_m;
+    begin_with(&noise);
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        unit_row(j);
+        CHECK(by_counts.count_n2[j] == GW_ZERO);
+        CHECK(channel.count_n2[j] == GW_ZERO);
+        for (uint32_t set = 1U; set < GW_NOISE_SETS; set++) {
+            const gw_real_t least_n2 = by_counts.least_noise_n2[GW_BY_ENCODERS][set][j];
+            const gw_real_t first_n2 = by_counts.noise_n2[GW_BY_ENCODERS][set][j];
+            CHECK_NEAR(observed.least_noise_n2[GW_BY_ENCODERS][set][j], least_n2 / R(16.0), least_n2 * ROUNDING);
+            CHECK_NEAR(observed.noise_n2[GW_BY_ENCODERS][set][j], first_n2 / R(16.0), first_n2 * ROUNDING);
+            CHECK_NEAR(channel.noise_n2[GW_BY_ENCODERS][set][j], R(4.0) * first_n2, R(4.0) * first_n2 * ROUNDING);
+        }
+    }
+    /* The first guess in motion is this share of the prediction. */
+    const gw_real_t in_motion[GW_BANK_COUNT] = {R(1.0), R(1.0), R(1.4), R(0.5)};
+    for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+        const gw_real_t predicted_n2 = by_counts.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][j] / in_motion[j];
+        unit_row(j);
+        CHECK_NEAR(observed.count_n2[j], count_share[j] * (predicted_n2 * (R(15.0) / R(16.0))),
+                   observed.count_n2[j] * R(10.0) * ROUNDING);
+    }
+    /* At rest no wheel counts. */
+    CHECK(observed.noise_n2[GW_BY_ENCODERS][GW_REGIME_REST][0] ==
+          by_counts.noise_n2[GW_BY_ENCODERS][GW_REGIME_REST][0]);
+}
+
 /* The baseline jumps with the residual, so nothing changes; or what the longest low-pass holds becomes part of it. */
 static void another_zero_moves_the_baseline_along(void)
 {
@@ -758,6 +885,7 @@ static void any_robot_keeps_the_invariant(void)
             balance.model.friction_n.wheel[k % 3U] = sizes[(k / 2U) % 5U];
             balance.model.inertia_n.x = sizes[(k / 3U) % 5U];
             gw_fast_channel_feel(&channel, (k % 2U) == 0U, sizes[k % 5U]);
+            gw_fast_channel_count(&channel, (gw_real_t)(k % 13U) / R(12.0));
             gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(5.0e10),
                                   R(1.0e12), R(1.0e12));
             step((gw_regime_t)(k % 3U), true);
@@ -780,9 +908,13 @@ static void the_invariant_sees_every_member(void)
                                   &channel.model_share,
                                   &channel.noise_share,
                                   &channel.held_keep,
+                                  &channel.swing_share,
+                                  &channel.swing_loss,
                                   &channel.sliding_n,
                                   &channel.moment_per_force_m2,
                                   &channel.shaking_n2,
+                                  &channel.counted,
+                                  &channel.swing.force_y_n,
                                   &channel.baseline.residual.force_x_n,
                                   &channel.baseline.model.inertia_n.y,
                                   &channel.model.friction_n.wheel[2],
@@ -807,6 +939,11 @@ static void the_invariant_sees_every_member(void)
         CHECK(!gw_fast_channel_invariant_holds(&channel));
         channel = good;
     }
+    channel.counted = GW_ONE;
+    CHECK(gw_fast_channel_invariant_holds(&channel));
+    channel.counted = unit_above(GW_ONE);
+    CHECK(!gw_fast_channel_invariant_holds(&channel));
+    channel = good;
     channel.followed = GW_BANK_COUNT;
     CHECK(!gw_fast_channel_invariant_holds(&channel));
     channel = good;
@@ -815,6 +952,11 @@ static void the_invariant_sees_every_member(void)
     channel = good;
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
         unit_row(100U + j);
+        channel.count_n2[j] = unit_above(R(1.0e10));
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        channel.count_n2[j] = R(-1.0);
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        channel = good;
         channel.bank[j].torque_nm = unit_above(GW_CHANGE_MAX);
         CHECK(!gw_fast_channel_invariant_holds(&channel));
         channel = good;
@@ -855,6 +997,10 @@ void suite_fast_channel(void)
              what_the_model_does_not_know_may_be_left_of_a_contact);
     unit_run("all_of_a_contact_that_lasts_is_held", all_of_a_contact_that_lasts_is_held);
     unit_run("vibration_that_an_imu_sees_counts_at_once", vibration_that_an_imu_sees_counts_at_once);
+    unit_run("counts_add_noise_until_it_has_faded", counts_add_noise_until_it_has_faded);
+    unit_run("noise_of_counts_widens_the_threshold", noise_of_counts_widens_the_threshold);
+    unit_run("noise_is_not_followed_while_counts_add_to_it", noise_is_not_followed_while_counts_add_to_it);
+    unit_run("observed_motors_are_less_noisy_than_counts", observed_motors_are_less_noisy_than_counts);
     unit_run("another_zero_moves_the_baseline_along", another_zero_moves_the_baseline_along);
     unit_run("the_baseline_follows", the_baseline_follows);
     unit_run("known_friction_is_no_force", known_friction_is_no_force);
