@@ -250,7 +250,6 @@ static void restart_motor(gw_estimator_t *estimator)
 static const gw_wheels_t *twist_torques(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                                         const gw_wheels_t *torque_nm, gw_wheels_t *place, gw_estimator_output_t *output)
 {
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct from a call */
     *place = gw_motor_step(&estimator->motor, input->encoder_count, torque_nm, &output->counted);
     return place;
 }
