@@ -25,7 +25,6 @@
 #define NORMAL_SHARE ((gw_real_t)0.8)
 /* Variance of a sum of equal errors over that of independent ones. */
 #define COUNTING_ALIKE ((gw_real_t)GW_WHEEL_COUNT)
-#define COUNTED_TWICE GW_TWO /* along the wheel that counts there is twice the noise */
 #define COUNTED_KEEP ((gw_real_t)0.98)
 #define COUNTED_LITTLE ((gw_real_t)0.02)
 #define NOISE_TIME_S ((gw_real_t)3.0)
@@ -276,7 +275,7 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
                 gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_in_range(channel->held_share, GW_ZERO, GW_ONE) &&
                 (channel->followed < GW_BANK_COUNT) && (channel->sensor < GW_SENSOR_COUNT) &&
                 gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2) &&
-                gw_in_range(channel->counted, GW_ZERO, GW_ONE);
+                gw_in_range(channel->counted, GW_ZERO, GW_TWO);
         for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
             holds = holds && gw_wrench_is_within(&channel->bank[j], GW_CHANGE_MAX);
         }
@@ -344,7 +343,7 @@ void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaki
 
 void gw_fast_channel_count(gw_fast_channel_t *channel, gw_real_t counted)
 {
-    channel->counted = gw_max(gw_min(COUNTED_TWICE * counted, GW_ONE), COUNTED_KEEP * channel->counted);
+    channel->counted = gw_clamp(gw_max(counted, COUNTED_KEEP * channel->counted), GW_ZERO, GW_TWO);
 }
 
 /* The noise that was followed, and no less than the vibration that an IMU sees now, which may have grown since. */
@@ -355,11 +354,17 @@ static gw_real_t followed_noise(const gw_fast_channel_t *channel, gw_regime_t re
     return gw_max(channel->noise_n2[channel->sensor][regime][j], passed[j] * channel->shaking_n2);
 }
 
-/* The same, and what counts add that are taken as they are. */
+/* Do encoder counts matter? At rest they do not change. */
+static bool is_counting(const gw_fast_channel_t *channel, gw_regime_t regime)
+{
+    return (regime != GW_REGIME_REST) && (channel->sensor == GW_BY_ENCODERS);
+}
+
+/* The same, and what counts add. */
 static gw_real_t noise_of(const gw_fast_channel_t *channel, gw_regime_t regime, uint32_t j)
 {
     gw_real_t noise_n2 = followed_noise(channel, regime, j);
-    if ((regime != GW_REGIME_REST) && (channel->sensor == GW_BY_ENCODERS)) {
+    if (is_counting(channel, regime)) {
         noise_n2 += channel->counted * channel->count_n2[j];
     }
     return noise_n2;
@@ -476,7 +481,8 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
         }
     }
     hold(channel, &channel->bank[GW_BANK_COUNT - 1U], quiet);
-    if (quiet && (found->statistic < GW_HALF) && ((channel->counted < COUNTED_LITTLE) || (regime == GW_REGIME_REST))) {
+    const bool usual = (channel->counted < COUNTED_LITTLE) || (!is_counting(channel, regime));
+    if (quiet && usual && (found->statistic < GW_HALF)) {
         follow_noise(channel, regime);
     }
     channel->followed = (channel->followed + 1U) % GW_BANK_COUNT;

@@ -18,9 +18,6 @@
 #define INERTIA_MIN_KGM2 ((gw_real_t)1.0e-6)
 /* Below that of the stiffest drivetrain that is not rigid. */
 #define COMPLIANCE_MIN_RAD_PER_NM ((gw_real_t)0.95e-7)
-/* Near a whole number of counts in a tick their error does not change its sign for long, and then it jumps: a share of
- * what it is without the observer. */
-#define SAME_SHARE ((gw_real_t)0.35)
 /* Limits of what is kept, beyond any motor's. */
 #define RATE_MAX_RADPS ((gw_real_t)1.0e5)
 #define UNKNOWN_MAX_RADPS2 ((gw_real_t)1.0e7)
@@ -252,11 +249,19 @@ static void note_moved(gw_motor_wheel_t *wheel, int32_t moved)
     wheel->moved = moved;
 }
 
-/* How much of the counts' error is left of a wheel. */
-static gw_real_t roughness(const gw_motor_wheel_t *wheel)
+/* Variance of what is left of the counts' errors, over that without the observer. One wheel's is all along its rolling
+ * direction, where three wheels that err independently have two thirds more. */
+static gw_real_t left_of_counts(const gw_motor_t *motor)
 {
-    const gw_real_t counted = GW_ONE - wheel->share;
-    return (wheel->same_ticks >= GW_MOTOR_SAME_TICKS) ? gw_max(counted, SAME_SHARE) : counted;
+    static const gw_real_t jump_alike[GW_WHEEL_COUNT + 1U] = {GW_ZERO, (gw_real_t)0.35, GW_ONE, GW_ONE};
+    gw_real_t counted = GW_ZERO;
+    uint32_t alike = 0U;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_motor_wheel_t *const wheel = &motor->wheel[i];
+        counted += GW_ONE - wheel->share;
+        alike += ((wheel->same_ticks >= GW_MOTOR_SAME_TICKS) && (wheel->share > GW_ZERO)) ? 1U : 0U;
+    }
+    return gw_min(GW_TWO_PER_WHEEL * counted, GW_ONE) + jump_alike[alike];
 }
 
 gw_wheels_t gw_motor_step(gw_motor_t *motor, const int32_t encoder_count[GW_WHEEL_COUNT], const gw_wheels_t *torque_nm,
@@ -269,7 +274,6 @@ gw_wheels_t gw_motor_step(gw_motor_t *motor, const int32_t encoder_count[GW_WHEE
         const bool follows = motor->commands >= motor->config.delay_ticks;
         const uint32_t at =
             ((motor->next_command + GW_MOTOR_DELAY_MAX) - motor->config.delay_ticks) % GW_MOTOR_DELAY_MAX;
-        gw_real_t rough = GW_ZERO;
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             gw_motor_wheel_t *const wheel = &motor->wheel[i];
             if (motor->started && follows) {
@@ -281,15 +285,12 @@ gw_wheels_t gw_motor_step(gw_motor_t *motor, const int32_t encoder_count[GW_WHEE
                 observe(motor, wheel, motor_nm, torque_nm->wheel[i], counts * motor->rad_per_count);
                 const gw_real_t beyond_nm = (motor->stiffness_nm_per_rad * wheel->share) * wheel->angle_rad;
                 twist_nm.wheel[i] = gw_limited(torque_nm->wheel[i] - beyond_nm, GW_TORQUE_MAX);
-                rough += roughness(wheel);
-            } else {
-                rough += GW_ONE;
             }
             wheel->count = encoder_count[i];
             wheel->torque_nm = torque_nm->wheel[i];
         }
         motor->started = true;
-        *counted = rough / GW_WHEELS;
+        *counted = left_of_counts(motor);
     }
     return twist_nm;
 }

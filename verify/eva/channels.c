@@ -50,7 +50,7 @@ static void part_step(void)
     input.zero_changed = any_flag();
     input.regime = (gw_regime_t)draw_count(0U, (uint32_t)GW_REGIME_MOTION);
     input.turned = any_flag();
-    input.counted = draw_real(GW_ZERO, GW_ONE);
+    input.counted = draw_real(GW_ZERO, GW_TWO);
     input.enabled = any_flag();
     input.reacting = any_flag();
     input.felt = any_flag();

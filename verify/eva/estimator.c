@@ -68,7 +68,7 @@ static void part_step(void)
         hold_wrench(&output.zero_step, ZERO_STEP_MAX);
         hold_model_forces(&output.forces, GW_REAL_MAX);
         demand_real(output.gear_n2, GW_ZERO, (gw_real_t)1.0e12);
-        demand_real(output.counted, GW_ZERO, GW_ONE);
+        demand_real(output.counted, GW_ZERO, GW_TWO);
     } else if (kind == 1U) {
         (void)gw_estimator_tare(&estimator, &torque_nm);
     } else if (kind == 2U) {

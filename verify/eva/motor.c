@@ -33,7 +33,7 @@ static void part_step(void)
     } else {
         gw_wheels_t twist_nm = gw_motor_step(&motor, counts, &torque_nm, &counted);
         hold_wheels(&twist_nm, GW_TORQUE_MAX);
-        demand_real(counted, GW_ZERO, GW_ONE);
+        demand_real(counted, GW_ZERO, GW_TWO);
     }
     hold_motor(&motor);
     (void)gw_motor_invariant_holds(&motor);

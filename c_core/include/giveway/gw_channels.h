@@ -49,7 +49,7 @@ typedef struct {
     gw_regime_t regime;
     /* An encoder has moved. */
     bool turned;
-    /* Share of the wheels whose encoder counts are taken as they are, [0, 1]. */
+    /* Variance of what encoder counts add to the residual, over that of unobserved motors, [0, 2]: gw_motor.h. */
     gw_real_t counted;
     /* False: hits are not looked for. */
     bool enabled;

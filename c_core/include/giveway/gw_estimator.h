@@ -145,7 +145,7 @@ typedef struct {
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
     bool turned;       /* an encoder has moved since the last sample */
-    gw_real_t counted; /* share of the wheels whose counts are taken as they are, [0, 1] */
+    gw_real_t counted; /* of gw_motor_step; 0 if the motors are not known */
 #endif
 } gw_estimator_output_t;
 

@@ -55,7 +55,7 @@ typedef struct {
     gw_real_t least_noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
     gw_real_t noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
     gw_real_t count_n2[GW_BANK_COUNT]; /* what counts add that are taken as they are */
-    gw_real_t counted;                 /* the share of it that counts now */
+    gw_real_t counted;                 /* how many times of it now */
     gw_real_t mass2_kg2;
     gw_real_t shaking_n2; /* the vibration that an IMU sees, as a force */
     uint32_t sensor;      /* GW_BY_ENCODERS or GW_BY_IMU */
@@ -96,7 +96,7 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel);
 GW_SMALL void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
 /* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
-/* The share of the wheels whose encoder counts are taken as they are, [0, 1]. */
+/* Before each step: variance of what counts add, over that of unobserved motors, [0, 2]. */
 void gw_fast_channel_count(gw_fast_channel_t *channel, gw_real_t counted);
 /* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
  * model's forces, not of their change; rocking_n2: variance of what the rocking body does; gear_n2: of what gears may

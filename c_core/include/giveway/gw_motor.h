@@ -109,8 +109,9 @@ static inline bool gw_motor_is_known(const gw_motor_t *motor)
 /* What is sent to the drives in this tick. enabled: the servos follow it. */
 void gw_motor_command(gw_motor_t *motor, const gw_joint_command_t *command, bool enabled);
 /* One sample, |torque| <= GW_TORQUE_MAX. Returns the torque whose twist leads from the counts to the wheels: the sensed
- * one, less what the motor is beyond its count. counted: the share of the wheels whose counts are taken as they are,
- * [0, 1]. */
+ * one, less what the motor is beyond its count. counted: variance of what is left of the counts' errors, over that
+ * without the observer, [0, 2]: 1 for counts as they are, more near whole numbers of counts in a tick, as the errors of
+ * wheels that count alike do not change their sign for long, and then jump together. */
 gw_wheels_t gw_motor_step(gw_motor_t *motor, const int32_t encoder_count[GW_WHEEL_COUNT], const gw_wheels_t *torque_nm,
                           gw_real_t *counted);
 
