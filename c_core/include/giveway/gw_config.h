@@ -136,7 +136,7 @@ extern "C" {
 
 #define GW_MOTOR_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_MOTOR_INERTIA, "motor.inertia", OF inertia_kgm2, 0, 10) \
-    ROW(REAL, GW_FIELD_MOTOR_COULOMB_TORQUE, "motor.coulomb_torque", OF coulomb_torque_nm, 0, 100) \
+    ROW(REAL, GW_FIELD_MOTOR_COULOMB_TORQUE, "motor.coulomb_torque", OF coulomb_torque_nm, 0, 1000) \
     ROW(REAL, GW_FIELD_MOTOR_KP, "motor.kp", OF kp_nm_per_rad, 0, 1000000) \
     ROW(REAL, GW_FIELD_MOTOR_KD, "motor.kd", OF kd_nms_per_rad, 0, 100000) \
     ROW(REAL, GW_FIELD_MOTOR_TORQUE_LIMIT, "motor.torque_limit", OF torque_limit_nm, 0.01, 10000) \

@@ -37,7 +37,7 @@ typedef struct {
     /* Rotor and gear before the torque sensor, as seen at the wheel's axle, kg m^2, [0, 10]; 0: not known, counts are
      * taken as they are. */
     gw_real_t inertia_kgm2;
-    /* B_1, Coulomb friction of the gear, N m, [0, 100]. */
+    /* B_1, Coulomb friction of the gear, N m, [0, 1000]. */
     gw_real_t coulomb_torque_nm;
     /* The drive's servo: gains, N m/rad, [0, 1000000], and N m s/rad, [0, 100000]; torque limit, N m, [0.01, 10000];
      * corner of its speed filter, Hz, [0.1, 10000]. */
