@@ -698,6 +698,12 @@ static gw_regime_t regime_of(const gw_estimator_t *estimator, gw_real_t speed_mp
     return regime;
 }
 
+/* The acceleration comes from another source, or that one has another bias. */
+static bool has_other_zero(const gw_estimator_t *estimator, const gw_estimator_input_t *input, uint32_t source)
+{
+    return has_other_source(estimator, source) || has_other_bias(input, source);
+}
+
 /* The output of a tick that gives no estimate. */
 static void nothing_known(gw_estimator_output_t *output)
 {
@@ -727,8 +733,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         output->acceleration_source = source_of(estimator, input);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         tell_turns(estimator, input, output);
-        if (has_other_source(estimator, output->acceleration_source) ||
-            has_other_bias(input, output->acceleration_source)) {
+        if (has_other_zero(estimator, input, output->acceleration_source)) {
             output->zero_changed = true;
         }
         if (output->zero_changed) {
