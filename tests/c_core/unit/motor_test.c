@@ -166,14 +166,40 @@ static void what_is_not_known_is_not_observed(void)
     }
 }
 
-/* A compliance below any that a valid stiffness has would overflow. */
+/* A compliance below any that a valid stiffness has would overflow; 1e-7 is that of the stiffest. */
 static void a_compliance_of_nearly_nothing_is_rigid(void)
 {
-    gw_rate_filter_constants_t constants = constants_of(STIFFNESS);
+    const struct {
+        gw_real_t compliance;
+        bool known;
+    } rows[] = {{R(1.0e-30), false}, {unit_below(R(0.95e-7)), false}, {R(0.95e-7), true}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        gw_rate_filter_constants_t constants = constants_of(STIFFNESS);
+        begin_with(1U);
+        constants.compliance_rad_per_nm = rows[i].compliance;
+        gw_motor_init(&motor, &config, &constants, COUNTS);
+        unit_row(i);
+        CHECK((gw_motor_is_known(&motor) == rows[i].known) && gw_motor_invariant_holds(&motor));
+    }
+}
+
+/* Nothing is left of what memory held before. */
+static void it_begins_without_commands(void)
+{
+    const gw_rate_filter_constants_t constants = constants_of(STIFFNESS);
     begin_with(1U);
-    constants.compliance_rad_per_nm = R(1.0e-30);
+    for (uint32_t k = 0U; k < (GW_MOTOR_DELAY_MAX + 3U); k++) {
+        tell(GW_ONE, GW_ONE);
+    }
+    step();
     gw_motor_init(&motor, &config, &constants, COUNTS);
-    CHECK((!gw_motor_is_known(&motor)) && gw_motor_invariant_holds(&motor));
+    for (uint32_t k = 0U; k < GW_MOTOR_DELAY_MAX; k++) {
+        unit_row(k);
+        for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+            CHECK((motor.command[k].angle_rad[i] == GW_ZERO) && (motor.command[k].speed_radps[i] == GW_ZERO));
+        }
+    }
+    CHECK((motor.commands == 0U) && (motor.next_command == 0U) && (!motor.started));
 }
 
 static void constants_are_these(void)
@@ -813,6 +839,9 @@ static void the_invariant_ends_where_it_says(void)
         {&motor.slow.angle, GW_ZERO, GW_ONE},
         {&motor.quick.rate_per_s, GW_ZERO, R(1.0e9)},
         {&motor.period_s, R(0.0001), R(0.1)},
+        {&motor.count_rate, R(5.0e-5), R(1.7e4)},
+        {&motor.wheel[1].servo_radps, R(-3.5e13), R(3.5e13)},
+        {&motor.rad_per_count, R(6.0e-6), R(1.6)},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         unit_row(i);
@@ -932,6 +961,7 @@ void suite_motor(void)
     unit_run("every_field_is_checked", every_field_is_checked);
     unit_run("what_is_not_known_is_not_observed", what_is_not_known_is_not_observed);
     unit_run("a_compliance_of_nearly_nothing_is_rigid", a_compliance_of_nearly_nothing_is_rigid);
+    unit_run("it_begins_without_commands", it_begins_without_commands);
     unit_run("constants_are_these", constants_are_these);
     unit_run("the_observer_has_three_equal_poles", the_observer_has_three_equal_poles);
     unit_run("the_servo_s_torque_is_this", the_servo_s_torque_is_this);
