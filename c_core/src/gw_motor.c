@@ -250,7 +250,7 @@ static void note_moved(gw_motor_wheel_t *wheel, int32_t moved)
 }
 
 /* Variance of what is left of the counts' errors, over that without the observer. One wheel's is all along its rolling
- * direction, where three wheels that err independently have two thirds more. */
+ * direction: there it is two thirds of that of three wheels that err independently. */
 static gw_real_t left_of_counts(const gw_motor_t *motor)
 {
     static const gw_real_t jump_alike[GW_WHEEL_COUNT + 1U] = {GW_ZERO, (gw_real_t)0.35, GW_ONE, GW_ONE};
@@ -285,6 +285,10 @@ gw_wheels_t gw_motor_step(gw_motor_t *motor, const int32_t encoder_count[GW_WHEE
                 observe(motor, wheel, motor_nm, torque_nm->wheel[i], counts * motor->rad_per_count);
                 const gw_real_t beyond_nm = (motor->stiffness_nm_per_rad * wheel->share) * wheel->angle_rad;
                 twist_nm.wheel[i] = gw_limited(torque_nm->wheel[i] - beyond_nm, GW_TORQUE_MAX);
+            } else {
+                /* What was trusted before is not known to be so any longer. */
+                wheel->share = GW_ZERO;
+                wheel->sure_ticks = 0U;
             }
             wheel->count = encoder_count[i];
             wheel->torque_nm = torque_nm->wheel[i];
