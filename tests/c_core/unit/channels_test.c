@@ -920,10 +920,10 @@ static void what_is_counted_is_passed_on(void)
     begin_with_config();
     input.counted = R(0.25);
     tick();
-    CHECK(channels.fast.counted == GW_HALF);
-    input.counted = R(0.3);
+    CHECK(channels.fast.counted == R(0.25));
+    input.counted = R(1.5);
     ticks(WARM_UP);
-    CHECK(channels.fast.counted == R(0.6));
+    CHECK(channels.fast.counted == R(1.5));
 }
 
 static void the_invariant_sees_every_member(void)

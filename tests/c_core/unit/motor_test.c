@@ -14,7 +14,8 @@
 #define SURPRISE R(1.5)
 #define SURE 30U
 #define SHARE R(0.03125)
-#define SAME_SHARE R(0.35)
+#define ONE_ALIKE R(0.35)
+#define MORE_ALIKE R(1.0)
 #define CUTOFF R(40.0)
 
 static gw_motor_t motor;
@@ -62,7 +63,7 @@ static void step(void)
 {
     twist = gw_motor_step(&motor, counts, &torque, &counted);
     CHECK(gw_motor_invariant_holds(&motor));
-    CHECK(gw_in_range(counted, GW_ZERO, GW_ONE));
+    CHECK(gw_in_range(counted, GW_ZERO, GW_TWO));
 }
 
 /* A command that needs no torque, and a first sample. */
@@ -541,8 +542,18 @@ static void trust_comes_and_goes_gradually(void)
     }
 }
 
-/* Equal counts in eleven ticks: their errors do not change their sign for long. */
-static void equal_counts_are_rough(void)
+/* Trusted, and at the middle of a count, moving two counts in a tick. */
+static void trust(gw_motor_wheel_t *wheel)
+{
+    wheel->share = GW_ONE;
+    wheel->sure_ticks = SURE;
+    wheel->rate_radps = GW_TWO * motor.count_rate;
+    wheel->angle_rad = GW_ZERO;
+}
+
+/* Equal counts in eleven ticks: their errors do not change their sign for long, and jump together if there are several.
+ */
+static void equal_counts_jump(void)
 {
     begin();
     correct_nothing();
@@ -551,58 +562,98 @@ static void equal_counts_are_rough(void)
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         motor.wheel[i].moved = 7;
     }
-    for (uint32_t i = 1U; i <= 25U; i++) {
+    for (uint32_t i = 1U; i <= 45U; i++) {
+        const bool other[GW_WHEEL_COUNT] = {i == 18U, (i % 8U) == 0U, i <= 22U};
+        uint32_t alike = 0U;
         for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
-            motor.wheel[k].share = GW_ONE;
-            motor.wheel[k].sure_ticks = SURE;
-            motor.wheel[k].rate_radps = GW_TWO * motor.count_rate; /* one count more or less is no surprise */
-            motor.wheel[k].angle_rad = GW_ZERO;
+            gw_motor_wheel_t *const wheel = &motor.wheel[k];
+            trust(wheel);
+            counts[k] += other[k] ? (((i % 2U) == 0U) ? 1 : 3) : 2; /* one more or less is no surprise */
         }
-        counts[0] += 2;
-        counts[1] += ((i % 8U) == 0U) ? 1 : 2;
-        counts[2] += 3;
         step();
         unit_row(i);
-        /* The first of them was compared with another one. */
-        const uint32_t same = i - 1U;
-        const bool rough = (same >= GW_MOTOR_SAME_TICKS);
-        CHECK(motor.wheel[0].same_ticks == ((same < GW_MOTOR_SAME_TICKS) ? same : GW_MOTOR_SAME_TICKS));
-        CHECK(motor.wheel[2].same_ticks == motor.wheel[0].same_ticks);
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            alike += (motor.wheel[k].same_ticks >= GW_MOTOR_SAME_TICKS) ? 1U : 0U;
+        }
         CHECK(motor.wheel[1].same_ticks < 8U);
         CHECK(motor.wheel[1].moved == (((i % 8U) == 0U) ? 1 : 2));
-        CHECK_NEAR(counted, rough ? (R(2.0) * SAME_SHARE / R(3.0)) : GW_ZERO, ROUNDING);
+        CHECK_NEAR(counted, (alike == 0U) ? GW_ZERO : ((alike == 1U) ? ONE_ALIKE : MORE_ALIKE), ROUNDING);
+        /* The first of them was compared with another one; in tick 18 and after it another one, too. */
+        const uint32_t same = (i < 18U) ? (i - 1U) : ((i < 19U) ? 0U : (i - 19U));
+        CHECK(motor.wheel[0].same_ticks == ((same < GW_MOTOR_SAME_TICKS) ? same : GW_MOTOR_SAME_TICKS));
     }
-    /* A wheel whose counts are taken as they are anyway is no rougher. */
-    motor.wheel[0].share = GW_HALF * GW_HALF;
-    motor.wheel[0].sure_ticks = 0U;
-    motor.wheel[0].rate_radps = GW_TWO * motor.count_rate;
-    counts[0] += 2;
-    counts[1] += 3;
-    counts[2] += 4;
-    motor.wheel[1].share = GW_ONE;
-    motor.wheel[2].share = GW_ONE;
-    motor.wheel[1].sure_ticks = 0U;
-    motor.wheel[2].sure_ticks = 0U;
-    step();
-    CHECK_NEAR(counted, (R(0.75) + (R(3.0) * SHARE)) / R(3.0), ROUNDING);
+    CHECK(motor.wheel[2].same_ticks == GW_MOTOR_SAME_TICKS);
+    CHECK_NEAR(counted, MORE_ALIKE, ROUNDING);
 }
 
-/* A third for each wheel. */
-static void counted_is_the_mean_of_the_wheels(void)
+/* Of one wheel, of two and of all three; a wheel of which nothing is used does not jump in what is left. */
+static void wheels_that_count_alike_are_counted(void)
 {
-    begin();
-    CHECK(counted == GW_ONE);
-    step();
-    CHECK(counted == GW_ONE); /* nothing is trusted */
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+    const gw_real_t expected[GW_WHEEL_COUNT + 1U] = {GW_ZERO, ONE_ALIKE, MORE_ALIKE, MORE_ALIKE};
+    for (uint32_t mask = 0U; mask < 8U; mask++) {
+        uint32_t alike = 0U;
         begin();
         correct_nothing();
-        motor.wheel[i].share = GW_ONE;
-        motor.wheel[i].sure_ticks = SURE;
-        motor.wheel[i].rate_radps = GW_ONE;
+        motor.config.kp_nm_per_rad = GW_ZERO;
+        motor.config.kd_nms_per_rad = GW_ZERO;
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            const bool same = ((mask >> k) & 1U) != 0U;
+            trust(&motor.wheel[k]);
+            motor.wheel[k].moved = 2;
+            motor.wheel[k].same_ticks = same ? GW_MOTOR_SAME_TICKS : (GW_MOTOR_SAME_TICKS - 2U);
+            counts[k] = 2;
+            alike += same ? 1U : 0U;
+        }
+        step();
+        unit_row(mask);
+        CHECK_NEAR(counted, expected[alike], ROUNDING);
+        /* Not used: what counts add is that of counts as they are. */
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            trust(&motor.wheel[k]);
+            motor.wheel[k].same_ticks = GW_MOTOR_SAME_TICKS;
+            motor.wheel[k].sure_ticks = 0U;
+            motor.wheel[k].share = GW_ZERO;
+            counts[k] = 4;
+        }
+        step();
+        CHECK_NEAR(counted, GW_ONE, ROUNDING);
+    }
+}
+
+/* Two thirds for each wheel, along which alone it errs, and at most that of all three. */
+static void counted_is_a_variance(void)
+{
+    const struct {
+        gw_real_t shares[GW_WHEEL_COUNT];
+        gw_real_t counted;
+    } rows[] = {
+        {{GW_ONE, GW_ONE, GW_ONE}, R(0.0)},
+        {{GW_ZERO, GW_ONE, GW_ONE}, R(2.0) / R(3.0)},
+        {{GW_ONE, GW_ZERO, GW_ONE}, R(2.0) / R(3.0)},
+        {{GW_ONE, GW_ONE, GW_ZERO}, R(2.0) / R(3.0)},
+        {{GW_HALF, GW_ONE, GW_ONE}, R(1.0) / R(3.0)},
+        {{GW_HALF, GW_HALF, GW_HALF}, GW_ONE},
+        {{GW_ZERO, GW_ZERO, GW_ONE}, GW_ONE},
+        {{GW_ZERO, GW_ZERO, GW_ZERO}, GW_ONE},
+        {{GW_HALF, GW_HALF, GW_ONE}, R(2.0) / R(3.0)},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        CHECK(counted == GW_ONE); /* the first sample */
+        correct_nothing();
+        motor.config.kp_nm_per_rad = GW_ZERO;
+        motor.config.kd_nms_per_rad = GW_ZERO;
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            const gw_real_t share = rows[i].shares[k];
+            trust(&motor.wheel[k]);
+            counts[k] = 2;
+            motor.wheel[k].sure_ticks = (share > GW_ZERO) ? SURE : 0U;
+            /* It grows in this tick. */
+            motor.wheel[k].share = (share == GW_HALF) ? (share - SHARE) : share;
+        }
         step();
         unit_row(i);
-        CHECK_NEAR(counted, R(2.0) / R(3.0), ROUNDING);
+        CHECK_NEAR(counted, rows[i].counted, ROUNDING);
     }
 }
 
@@ -709,7 +760,16 @@ static void drives_that_are_not_enabled_follow_no_command(void)
     for (uint32_t k = 0U; k < GW_MOTOR_DELAY_MAX; k++) {
         CHECK(motor.command[k].angle_rad[0] == before.command[k].angle_rad[0]);
     }
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        trust(&motor.wheel[i]);
+    }
+    torque.wheel[1] = R(2.0);
     step();
+    /* What is not followed is not trusted: counts are taken as they are. */
+    CHECK((counted == GW_ONE) && (twist.wheel[1] == R(2.0)));
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        CHECK((motor.wheel[i].share == GW_ZERO) && (motor.wheel[i].sure_ticks == 0U));
+    }
     for (uint32_t k = 0U; k < 6U; k++) {
         motor.wheel[0].rate_radps = R(0.3); /* with the torque less than a surprise */
         motor.wheel[0].sure_ticks = 0U;
@@ -973,8 +1033,9 @@ void suite_motor(void)
     unit_run("an_observer_has_to_be_sure", an_observer_has_to_be_sure);
     unit_run("a_threshold_is_not_beyond_itself", a_threshold_is_not_beyond_itself);
     unit_run("trust_comes_and_goes_gradually", trust_comes_and_goes_gradually);
-    unit_run("equal_counts_are_rough", equal_counts_are_rough);
-    unit_run("counted_is_the_mean_of_the_wheels", counted_is_the_mean_of_the_wheels);
+    unit_run("equal_counts_jump", equal_counts_jump);
+    unit_run("wheels_that_count_alike_are_counted", wheels_that_count_alike_are_counted);
+    unit_run("counted_is_a_variance", counted_is_a_variance);
     unit_run("a_count_is_a_difference", a_count_is_a_difference);
     unit_run("a_gap_forgets_all_but_the_commands", a_gap_forgets_all_but_the_commands);
     unit_run("a_command_comes_with_its_delay", a_command_comes_with_its_delay);
