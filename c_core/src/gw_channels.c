@@ -39,8 +39,8 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->rocking = GW_ZERO;
     config->rocking_s = (gw_real_t)0.6;
     config->fast.rest_n = (gw_real_t)3.0;
-    config->fast.creep_n = (gw_real_t)8.0;
-    config->fast.motion_n = (gw_real_t)6.0;
+    config->fast.creep_n = (gw_real_t)10.0;
+    config->fast.motion_n = (gw_real_t)7.0;
     config->slow.rest_n = (gw_real_t)4.0;
     config->slow.creep_n = (gw_real_t)40.0;
     config->slow.motion_n = (gw_real_t)14.0;

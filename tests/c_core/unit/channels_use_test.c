@@ -219,7 +219,7 @@ static void motors_that_are_known_are_observed(void)
             (rig_config.estimator.torque_noise_nm * rig_controller.estimator.rate_constants.compliance_rad_per_nm) *
                 rig_config.geometry.wheel_radius_m,
             rig_controller.estimator.sigma.force_n,
-            GW_ZERO,
+            rig_config.friction.coulomb_torque_nm * rig_controller.estimator.kinematics.per_roller_radius,
             rig_controller.estimator.nominal.total_mass_kg,
             rig_controller.estimator.nominal.total_yaw_inertia_kgm2,
             rig_config.geometry.wheel_distance_m,

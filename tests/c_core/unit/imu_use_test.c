@@ -208,17 +208,9 @@ static void the_noise_of_the_residual_is_predicted(void)
 {
     static gw_fast_channel_t channels;
     gw_channels_config_t config;
-    const gw_channels_noise_t noise = {PERIOD,
-                                       R(200.0),
-                                       R(0.0001),
-                                       R(0.0001),
-                                       R(0.00001),
-                                       R(0.3),
-                                       R(20.0),
-                                       R(35.0),
-                                       R(1.5),
-                                       R(0.25),
-                                       {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
+    const gw_channels_noise_t noise = {PERIOD,     R(200.0), R(0.0001), R(0.0001),
+                                       R(0.00001), R(0.3),   GW_ZERO, /* no ripple */
+                                       R(35.0),    R(1.5),   R(0.25),   {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
     gw_channels_config_trikey(&config);
     gw_fast_channel_init(&channels, &config, &noise);
     for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
