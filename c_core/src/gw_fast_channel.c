@@ -391,14 +391,14 @@ static gw_real_t noise_of(const gw_fast_channel_t *channel, gw_regime_t regime, 
     return noise_n2;
 }
 
-/* Follows the noise of a low-pass in one set. What counts add is known, and added where the noise is used. */
+/* Follows the noise of a low-pass in one set. It has in it what counts add: taken off, 20 h of free motion had 4 false
+ * alarms instead of none. */
 static void follow_noise_of(gw_fast_channel_t *channel, gw_regime_t set, uint32_t j)
 {
     const gw_wrench_t *const felt = &channel->bank[j];
     const gw_real_t before_n2 = followed_noise(channel, set, j);
     const gw_real_t square_n2 = GW_HALF * ((felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n));
-    const gw_real_t counts_n2 = is_counting(channel, set) ? (channel->counted * channel->count_n2[j]) : GW_ZERO;
-    const gw_real_t clipped_n2 = gw_clamp(square_n2 - counts_n2, GW_ZERO, NOISE_CLIP * before_n2);
+    const gw_real_t clipped_n2 = gw_min(square_n2, NOISE_CLIP * before_n2);
     const gw_real_t after_n2 = before_n2 + (channel->noise_share * (clipped_n2 - before_n2));
     channel->noise_n2[channel->sensor][set][j] =
         gw_clamp(after_n2, channel->least_noise_n2[channel->sensor][set][j], NOISE_MAX_N2);
