@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cosim_helpers import folder_content
 from giveway.base.errors import FileError, WriteError
-from giveway.base.files import check_output, replace_folder, write_text
+from giveway.base.files import check_output, replace_file, replace_folder, write_text
 
 
 def write_result(folder: Path, text: str) -> None:
@@ -68,3 +71,23 @@ def test_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.Monkey
         write_text(path, "new")
     assert path.read_text() == "old"
     assert folder_content(tmp_path) == ["report.html"]
+
+
+def test_ctrl_c_while_what_is_temporary_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stays Ctrl-C, though `shutil.rmtree` closes its descriptor twice then; the file is there, and nothing else."""
+    close, remove = os.close, shutil.rmtree
+
+    def closed_and_interrupted(descriptor: int) -> None:
+        close(descriptor)
+        monkeypatch.setattr(os, "close", close)
+        raise KeyboardInterrupt
+
+    def remove_interrupted(*arguments: Any, **options: Any) -> None:
+        monkeypatch.setattr(shutil, "rmtree", remove)
+        monkeypatch.setattr(os, "close", closed_and_interrupted)
+        remove(*arguments, **options)
+
+    monkeypatch.setattr(shutil, "rmtree", remove_interrupted)
+    with pytest.raises(KeyboardInterrupt), replace_file(tmp_path / "out.json") as temporary:
+        temporary.write_text("{}")
+    assert folder_content(tmp_path) == ["out.json"]

@@ -95,6 +95,24 @@ def _writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
         raise WriteError(path, error.cause) from error
 
 
+class _TemporaryFolder(tempfile.TemporaryDirectory[str]):
+    """Ctrl-C while it is removed stays Ctrl-C.
+
+    `shutil.rmtree`, interrupted while it closes a descriptor, closes it again. That fails, and the error would take the
+    place of the interrupt.
+    """
+
+    def cleanup(self) -> None:
+        try:
+            super().cleanup()
+        except OSError as error:
+            interrupt = error.__context__
+            if not isinstance(interrupt, KeyboardInterrupt):
+                raise
+            super().cleanup()  # what is left
+            raise interrupt from None
+
+
 @contextmanager
 def replace_file(path: Path) -> Iterator[Path]:
     """A file of the same ending that takes the place of ``path`` when the block ends without an exception."""
@@ -116,7 +134,7 @@ def replace_files(*paths: Path) -> Iterator[tuple[Path, ...]]:
         temporary = []
         for path in paths:
             with _writing(path):
-                folder = tempfile.TemporaryDirectory(prefix=f".{path.name}-", dir=_existing_parent(path))
+                folder = _TemporaryFolder(prefix=f".{path.name}-", dir=_existing_parent(path))
             temporary.append(Path(folders.enter_context(folder)) / path.name)
             folders.enter_context(_writing(path, temporary[-1].parent))
         yield tuple(temporary)
