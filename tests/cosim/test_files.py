@@ -73,8 +73,8 @@ def test_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.Monkey
     assert folder_content(tmp_path) == ["report.html"]
 
 
-def test_ctrl_c_while_what_is_temporary_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It stays Ctrl-C, though `shutil.rmtree` closes its descriptor twice then; the file is there, and nothing else."""
+def interrupt_the_next_removal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C arrives while `shutil.rmtree` closes its descriptor, which it then closes again."""
     close, remove = os.close, shutil.rmtree
 
     def closed_and_interrupted(descriptor: int) -> None:
@@ -88,6 +88,21 @@ def test_ctrl_c_while_what_is_temporary_is_removed(tmp_path: Path, monkeypatch: 
         remove(*arguments, **options)
 
     monkeypatch.setattr(shutil, "rmtree", remove_interrupted)
+
+
+def test_ctrl_c_while_a_temporary_folder_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stays Ctrl-C; the file is there, and nothing else."""
+    interrupt_the_next_removal(monkeypatch)
     with pytest.raises(KeyboardInterrupt), replace_file(tmp_path / "out.json") as temporary:
         temporary.write_text("{}")
     assert folder_content(tmp_path) == ["out.json"]
+
+
+def test_ctrl_c_while_the_old_result_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stays Ctrl-C; the new result is there, and nothing else."""
+    write_result(tmp_path / "out", "old")
+    interrupt_the_next_removal(monkeypatch)
+    with pytest.raises(KeyboardInterrupt):
+        write_result(tmp_path / "out", "new")
+    assert (tmp_path / "out" / "manifest.json").read_text() == "new"
+    assert folder_content(tmp_path) == ["out", "out/manifest.json"]

@@ -95,22 +95,20 @@ def _writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
         raise WriteError(path, error.cause) from error
 
 
-class _TemporaryFolder(tempfile.TemporaryDirectory[str]):
-    """Ctrl-C while it is removed stays Ctrl-C.
+def _remove(folder: Path) -> None:
+    """Remove a folder as far as possible; Ctrl-C meanwhile stays Ctrl-C.
 
-    `shutil.rmtree`, interrupted while it closes a descriptor, closes it again. That fails, and the error would take the
-    place of the interrupt.
+    `shutil.rmtree`, interrupted while it closes a descriptor, closes it again. That fails in spite of `ignore_errors`,
+    and the error would take the place of the interrupt.
     """
-
-    def cleanup(self) -> None:
-        try:
-            super().cleanup()
-        except OSError as error:
-            interrupt = error.__context__
-            if not isinstance(interrupt, KeyboardInterrupt):
-                raise
-            super().cleanup()  # what is left
-            raise interrupt from None
+    try:
+        shutil.rmtree(folder, ignore_errors=True)
+    except OSError as error:
+        interrupt = error.__context__
+        if not isinstance(interrupt, KeyboardInterrupt):
+            raise
+        shutil.rmtree(folder, ignore_errors=True)  # what is left
+        raise interrupt from None
 
 
 @contextmanager
@@ -134,9 +132,10 @@ def replace_files(*paths: Path) -> Iterator[tuple[Path, ...]]:
         temporary = []
         for path in paths:
             with _writing(path):
-                folder = _TemporaryFolder(prefix=f".{path.name}-", dir=_existing_parent(path))
-            temporary.append(Path(folders.enter_context(folder)) / path.name)
-            folders.enter_context(_writing(path, temporary[-1].parent))
+                folder = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=_existing_parent(path)))
+            folders.callback(_remove, folder)
+            temporary.append(folder / path.name)
+            folders.enter_context(_writing(path, folder))
         yield tuple(temporary)
         # When all of them are on the disk, only renames remain.
         for new, path in zip(temporary, paths, strict=True):
@@ -170,7 +169,7 @@ def replace_folder(folder: Path) -> Iterator[Path]:
         with _writing(folder):
             _swap(temporary, folder)
     except BaseException:
-        shutil.rmtree(temporary, ignore_errors=True)
+        _remove(temporary)
         for parent in made:
             if parent.is_dir() and not any(parent.iterdir()):
                 parent.rmdir()
@@ -187,7 +186,7 @@ def _swap(temporary: Path, folder: Path) -> None:
     old = Path(tempfile.mkdtemp(prefix=f".{folder.name}-old-", dir=folder.absolute().parent))
     folder.replace(old)
     temporary.replace(folder)
-    shutil.rmtree(old, ignore_errors=True)
+    _remove(old)
 
 
 def write_text(path: Path, text: str) -> None:
