@@ -32,21 +32,21 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->slow_s = (gw_real_t)0.05;
     config->slow_baseline_s = (gw_real_t)3.0;
     config->friction_shape = (gw_real_t)0.12;
-    config->presliding = (gw_real_t)0.3; /* 0.58 if the model knew nothing: anywhere up to sliding; it knows half */
+    config->presliding = (gw_real_t)0.33; /* 0.58 if the model knew nothing: anywhere up to sliding; it knows half */
     config->yaw_inertia = (gw_real_t)0.2;
     config->centre_of_mass_m = (gw_real_t)0.03;
     config->lever_m = (gw_real_t)0.01;
     config->rocking = GW_ZERO;
     config->rocking_s = (gw_real_t)0.6;
     config->fast.rest_n = (gw_real_t)3.0;
-    config->fast.creep_n = (gw_real_t)14.0;
+    config->fast.creep_n = (gw_real_t)10.0;
     config->fast.motion_n = (gw_real_t)7.0;
     config->slow.rest_n = (gw_real_t)4.0;
     config->slow.creep_n = (gw_real_t)40.0;
     config->slow.motion_n = (gw_real_t)14.0;
-    config->settle_ticks = 500U;
+    config->settle_ticks = 300U;
     config->lock_ticks = 100U;
-    config->rearm_ticks = 600U;
+    config->rearm_ticks = 1000U;
     gw_follower_config_trikey(&config->follower);
 }
 
@@ -123,6 +123,13 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->active = false;
 }
 
+void gw_channels_resume(gw_channels_t *channels)
+{
+    if (!channels->active) {
+        gw_channels_restart(channels);
+    }
+}
+
 bool gw_channels_invariant_holds(const gw_channels_t *channels)
 {
     bool holds = (channels != NULL);
@@ -172,13 +179,13 @@ static bool is_calm(gw_channels_t *channels, const gw_channels_input_t *input)
     return channels->calm_ticks >= CALM_TICKS;
 }
 
-/* Which noise and floor hold now. */
+/* Which noise and floor hold now. A reaction accelerates as no plan does: it counts as unsettled. */
 static gw_regime_t judged_regime(const gw_channels_t *channels, const gw_channels_input_t *input, bool calm)
 {
     gw_regime_t regime = input->regime;
     const bool settled = (channels->ticks_since_release >= channels->config.settle_ticks) &&
                          (channels->ticks_of_motion >= channels->config.settle_ticks);
-    if ((regime != GW_REGIME_REST) && (!settled)) {
+    if ((regime != GW_REGIME_REST) && ((!settled) || input->reacting)) {
         regime = GW_REGIME_CREEPING;
     } else if ((regime == GW_REGIME_REST) && ((channels->ticks_without_turn < TURN_TICKS) || (!calm))) {
         regime = GW_REGIME_MOTION;
@@ -326,7 +333,8 @@ static void end_contact(gw_channels_t *channels, const gw_balance_t *balance, co
 {
     const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
     const gw_wrench_t mean = mean_wrench(channels);
-    gw_fast_channel_release(&channels->fast, balance, found, gw_unit(impulse.x, impulse.y, gw_length(impulse)));
+    gw_fast_channel_release(&channels->fast, balance, found, gw_unit(impulse.x, impulse.y, gw_length(impulse)),
+                            channels->quiet_ticks <= QUIET_TICKS);
     channels->active = false;
     channels->ticks_since_release = 0U;
     rock(channels, mean.force_x_n, mean.force_y_n); /* it leant against what pushed it */
@@ -400,6 +408,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
         take_zero_step(channels, input);
     }
     gw_fast_channel_feel(&channels->fast, input->felt, input->shaking_mps2_2);
+    gw_fast_channel_count(&channels->fast, input->counted);
     count_ticks(channels, input);
     if (channels->warm_up_ticks < WARM_UP_TICKS) {
         warm_up(channels, &balance);

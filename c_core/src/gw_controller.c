@@ -33,8 +33,9 @@ static void choose_channels(gw_controller_config_t *config)
     config->estimator.friction_model = GW_FRICTION_BRISTLE;
     config->estimator.aligned = 1U;
     config->estimator.creep_speed_mps = (gw_real_t)0.04;
+    gw_motor_config_trikey(&config->estimator.motor);
     config->detector.kind = GW_DETECTOR_CHANNELS;
-    config->channels.lever_m = (gw_real_t)0.015;
+    config->channels.lever_m = (gw_real_t)0.02;
     config->channels.rocking = (gw_real_t)0.3;
 }
 #else
@@ -128,6 +129,8 @@ static gw_channels_noise_t sensor_noise(const gw_controller_config_t *config, co
     noise.period_s = config->period_s;
     noise.cutoff_radps = config->estimator.rate_cutoff_radps;
     noise.encoder_step_m = estimator->rate_constants.rad_per_count * config->geometry.wheel_radius_m;
+    noise.observed_step_m =
+        gw_motor_is_known(&estimator->motor) ? (noise.encoder_step_m / GW_MOTOR_FINER) : noise.encoder_step_m;
     noise.twist_noise_m = twist_rad * config->geometry.wheel_radius_m;
     noise.force_noise_n = estimator->sigma.force_n;
     noise.sliding_n = config->friction.coulomb_torque_nm * estimator->kinematics.per_roller_radius;
@@ -166,9 +169,14 @@ static void init_channels(gw_controller_t *controller, const gw_controller_confi
     }
 }
 
-static void restart_channels(gw_controller_t *controller)
+/* What the channels knew before this mode, in which they did not look for hits. */
+static void restart_channels(gw_controller_t *controller, gw_mode_t before)
 {
-    gw_channels_restart(&controller->channels);
+    if (before == GW_MODE_FAULT) {
+        gw_channels_resume(&controller->channels);
+    } else {
+        gw_channels_restart(&controller->channels);
+    }
 }
 
 /* The force below which a push is not felt. While a contact lasts it is that of motion: what started the reaction is
@@ -238,6 +246,7 @@ static void detect_by_channels(gw_controller_t *controller)
     input.zero_changed = controller->estimate.zero_changed;
     input.regime = controller->estimate.regime;
     input.turned = controller->estimate.turned;
+    input.counted = controller->estimate.counted;
     input.enabled = true; /* otherwise they are not asked */
     input.felt = controller->estimate.acceleration_source == GW_SOURCE_IMU;
     input.shaking_mps2_2 = controller->felt.shaking_mps2_2;
@@ -249,6 +258,12 @@ static void detect_by_channels(gw_controller_t *controller)
     controller->detection.statistic = controller->contact_found.statistic;
     controller->detection.mean_wrench = controller->contact_found.mean_wrench;
     controller->detection.samples = 1U;
+}
+
+/* Where the motors are depends on what is sent to them. */
+static void tell_command(gw_controller_t *controller, const gw_controller_output_t *output)
+{
+    gw_estimator_tell_command(&controller->estimator, &output->command, output->enable);
 }
 #else
 static bool uses_channels(const gw_controller_t *controller)
@@ -263,9 +278,10 @@ static void init_channels(const gw_controller_t *controller, const gw_controller
     (void)config;
 }
 
-static void restart_channels(const gw_controller_t *controller)
+static void restart_channels(const gw_controller_t *controller, gw_mode_t before)
 {
     (void)controller;
+    (void)before;
 }
 
 static gw_real_t channels_leak(const gw_controller_t *controller)
@@ -324,6 +340,12 @@ static bool is_imu_trusted(const gw_controller_t *controller)
 static void detect_by_channels(const gw_controller_t *controller)
 {
     (void)controller;
+}
+
+static void tell_command(const gw_controller_t *controller, const gw_controller_output_t *output)
+{
+    (void)controller;
+    (void)output;
 }
 #endif
 
@@ -620,7 +642,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
             gw_detector_reset(&controller->detector);
         }
         if (!looks_for_hits(before)) {
-            restart_channels(controller);
+            restart_channels(controller, before);
         }
         if (mode == GW_MODE_FAULT) {
             gw_estimator_restart(&controller->estimator);
@@ -727,6 +749,7 @@ static void command_wheels(gw_controller_t *controller, const gw_controller_inpu
         gw_joint_hold(&controller->joint, &output->command);
     }
     output->enable = controller->drives_enabled && gw_joint_is_placed(&controller->joint);
+    tell_command(controller, output);
 }
 
 /* Where the mean wrench of the estimate acts. */

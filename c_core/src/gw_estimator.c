@@ -8,6 +8,29 @@
 
 static const gw_wheels_t no_torque = {0};
 
+#if (GW_WITH_CHANNELS == 1)
+static void know_no_motor(gw_estimator_config_t *config)
+{
+    gw_motor_config_none(&config->motor);
+}
+
+static void check_motor(const gw_estimator_config_t *config, gw_config_error_t *error)
+{
+    gw_motor_config_check(&config->motor, error);
+}
+#else
+static void know_no_motor(const gw_estimator_config_t *config)
+{
+    (void)config;
+}
+
+static void check_motor(const gw_estimator_config_t *config, const gw_config_error_t *error)
+{
+    (void)config;
+    (void)error;
+}
+#endif
+
 void gw_estimator_config_trikey(gw_estimator_config_t *config)
 {
     config->velocity_source = GW_SOURCE_PLANNED;
@@ -27,6 +50,7 @@ void gw_estimator_config_trikey(gw_estimator_config_t *config)
     config->aligned = 0U;
     gw_presliding_config_trikey(&config->presliding);
     gw_gear_config_none(&config->gear);
+    know_no_motor(config);
 }
 
 void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_error_t *error)
@@ -53,6 +77,7 @@ void gw_estimator_config_check(const gw_estimator_config_t *config, gw_config_er
 #endif
     gw_presliding_config_check(&config->presliding, error);
     gw_gear_config_check(&config->gear, error);
+    check_motor(config, error);
 }
 
 static const gw_wheels_t *present_zero(const gw_estimator_t *estimator)
@@ -205,9 +230,38 @@ static void init_alignment(gw_estimator_t *estimator)
     }
 }
 
+static void init_motor(gw_estimator_t *estimator)
+{
+    gw_motor_init(&estimator->motor, &estimator->config.motor, &estimator->rate_constants,
+                  estimator->config.encoder_counts);
+}
+
+static bool motor_holds(const gw_estimator_t *estimator)
+{
+    return gw_motor_invariant_holds(&estimator->motor);
+}
+
+static void restart_motor(gw_estimator_t *estimator)
+{
+    gw_motor_restart(&estimator->motor);
+}
+
+/* The torque whose twist leads from the counts to the wheels; in `place`, unless it is the sensed one. */
+static const gw_wheels_t *twist_torques(gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                                        const gw_wheels_t *torque_nm, gw_wheels_t *place, gw_estimator_output_t *output)
+{
+    *place = gw_motor_step(&estimator->motor, input->encoder_count, torque_nm, &output->counted);
+    return place;
+}
+
+void gw_estimator_tell_command(gw_estimator_t *estimator, const gw_joint_command_t *command, bool enabled)
+{
+    gw_motor_command(&estimator->motor, command, enabled);
+}
+
 static bool alignment_holds(const gw_estimator_t *estimator)
 {
-    bool holds = true;
+    bool holds = motor_holds(estimator);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         holds = holds && gw_lowpass_invariant_holds(&estimator->aligned_torque[i], GW_TORQUE_MAX) &&
                 gw_lowpass_invariant_holds(&estimator->aligned_friction[i], GW_TORQUE_MAX);
@@ -310,6 +364,27 @@ static void init_alignment(const gw_estimator_t *estimator)
     (void)estimator;
 }
 
+static void init_motor(const gw_estimator_t *estimator)
+{
+    (void)estimator;
+}
+
+static void restart_motor(const gw_estimator_t *estimator)
+{
+    (void)estimator;
+}
+
+static const gw_wheels_t *twist_torques(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
+                                        const gw_wheels_t *torque_nm, const gw_wheels_t *place,
+                                        const gw_estimator_output_t *output)
+{
+    (void)estimator;
+    (void)input;
+    (void)place;
+    (void)output;
+    return torque_nm;
+}
+
 static bool alignment_holds(const gw_estimator_t *estimator)
 {
     (void)estimator;
@@ -365,6 +440,7 @@ gw_status_t gw_estimator_init(gw_estimator_t *estimator, const gw_estimator_conf
             estimator->rest_zero_nm = no_torque;
             estimator->sigma = gw_wrench_noise(&estimator->kinematics, config->torque_noise_nm);
             init_alignment(estimator);
+            init_motor(estimator);
             estimator->slow_ticks = 0U;
             estimator->rest = true;
             gw_tare_start(&estimator->run_tare);
@@ -406,6 +482,7 @@ static void restart_filters(gw_estimator_t *estimator)
         gw_rate_filter_restart(&estimator->rate[i]);
     }
     restart_alignment(estimator);
+    restart_motor(estimator);
     gw_moving_average_reset(&estimator->average);
     forget_source(estimator);
 }
@@ -621,6 +698,12 @@ static gw_regime_t regime_of(const gw_estimator_t *estimator, gw_real_t speed_mp
     return regime;
 }
 
+/* The acceleration comes from another source, or that one has another bias. */
+static bool has_other_zero(const gw_estimator_t *estimator, const gw_estimator_input_t *input, uint32_t source)
+{
+    return has_other_source(estimator, source) || has_other_bias(input, source);
+}
+
 /* The output of a tick that gives no estimate. */
 static void nothing_known(gw_estimator_output_t *output)
 {
@@ -650,8 +733,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         output->acceleration_source = source_of(estimator, input);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         tell_turns(estimator, input, output);
-        if (has_other_source(estimator, output->acceleration_source) ||
-            has_other_bias(input, output->acceleration_source)) {
+        if (has_other_zero(estimator, input, output->acceleration_source)) {
             output->zero_changed = true;
         }
         if (output->zero_changed) {
@@ -661,13 +743,15 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         output->regime = regime_of(estimator, speed_mps);
         gw_wheels_t rates;
         gw_wheels_t derivatives;
-        filter_rates(estimator, input, &torque_nm, planned_twist, &rates, &derivatives);
+        gw_wheels_t twist_place;
+        const gw_wheels_t *const twist_nm = twist_torques(estimator, input, &torque_nm, &twist_place, output);
+        filter_rates(estimator, input, twist_nm, planned_twist, &rates, &derivatives);
         const gw_twist_t measured_twist = gw_kinematics_twist(&estimator->kinematics, &rates);
         const gw_acceleration_t acceleration = chosen_acceleration(estimator, input, output->acceleration_source,
                                                                    planned_acceleration, &rates, &derivatives);
         output->measured_twist = measured_twist;
         output->nominal_nm =
-            nominal_with_zero(estimator, input, &torque_nm, planned_twist, measured_twist, acceleration, output);
+            nominal_with_zero(estimator, input, twist_nm, planned_twist, measured_twist, acceleration, output);
         add_gears(estimator, &rates, output);
         gw_wheels_t sensed_nm = torque_nm;
         align_torque(estimator, output->acceleration_source, &sensed_nm);

@@ -123,7 +123,7 @@ def test_parameters_of_the_fmu_are_the_fields() -> None:
 
 
 # What a build without the channels, or without the escape, does not have.
-CHANNELS = ("channels.", "follower.", "imu.")
+CHANNELS = ("channels.", "follower.", "imu.", "motor.")
 ESCAPE = ("admittance.smoothing", "admittance.brake_limit", "admittance.lead", "admittance.push_", "admittance.tip_")
 
 

@@ -144,7 +144,7 @@ def test_an_unstable_servo_is_no_design(tmp_path: Path) -> None:
     ("servo_delay = 2 ", 'load = "locked" ', "drivetrain.load: locked is unknown; allowed: base, wheel"),
     ("servo_delay = 2 ", "delay = 2 ", "drivetrain.delay: delay is unknown; allowed: load, servo_delay"),
     ('unit = "dB"', 'unit = "Hz"', "constraint[0].unit: Hz is not allowed; allowed: dB"),
-    ('= "friction"', '= "fricton"', 'parts[0].sets.testbed.drivetrain.gear_coulomb: fricton is unknown'),
+    ('= "friction"', '= "fricton"', 'parts[0].sets.robot.drivetrain.gear_coulomb: fricton is unknown'),
 ])  # fmt: skip
 def test_wrong_keys_are_refused_with_their_line(tmp_path: Path, old: str, new: str, words: str) -> None:
     shutil.copytree(EXAMPLES / "catalogues", tmp_path / "catalogues")

@@ -37,6 +37,7 @@ PAPER = {
     "admittance.brake_limit": 0.0,
     "admittance.push_share": 0.0,
     "channels.rocking": 0.0,
+    "motor.inertia": 0.0,
 }
 SCENARIO_FILE = 'schema_version = 1\nduration = 0.3\npreset = "{}"\n'
 

@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 from giveway import batch
+from giveway.base import native
 from giveway.library.work import result_columns, run_work
+from giveway.robot.population import start_value
 from giveway.robot.variables import table
 from giveway.scenario.approach import Approach, edge_middle, meet_as_stated, outline_of
 from giveway.scenario.plan import Rest, Straight
@@ -183,7 +185,58 @@ def test_a_gear_s_ratio_changes_what_is_seen_at_the_wheel() -> None:
     squared = dict.fromkeys(("testbed.drivetrain.motor_inertia", "testbed.drivetrain.gear_viscous"), 2.25)
     once = ("testbed.drivetrain.gear_coulomb", "testbed.drivetrain.gear_stiction", "testbed.drivetrain.torque_limit")
     counts = dict.fromkeys(("testbed.electronics.encoder_counts", "controller.estimator.encoder_counts"), 1502 / 1001)
-    assert factors == pytest.approx(squared | dict.fromkeys(once, 1.5) | counts, rel=1e-15)
+    motor = ("controller.motor.coulomb_torque", "controller.motor.torque_limit")
+    known = {"controller.motor.inertia": 2.25, **dict.fromkeys(motor, 1.5)}
+    assert factors == pytest.approx(squared | dict.fromkeys(once, 1.5) | counts | known, rel=1e-15)
+
+
+def test_a_controller_knows_of_the_motors_what_is_the_robots() -> None:
+    study = small_study(vary=[]).vary("robot.drivetrain.motor_inertia", values=[0.02, 0.08])
+    study.vary("robot.servo.kp", values=[100.0]).vary("testbed.servo.kd", values=[5.0])
+    runs = plan_runs(study.setup())
+    rows = runs.rows(np.array([0, 1]), np.array([0, 0]), 0).values
+    found = {name: rows[:, i].tolist() for name, i in runs.columns.index.items()}
+    assert found["controller.motor.inertia"] == found["testbed.drivetrain.motor_inertia"] == [0.02, 0.08]
+    assert found["controller.motor.kp"] == found["testbed.servo.kp"] == [100.0, 100.0]
+    assert found["testbed.servo.kd"] == [5.0, 5.0]
+    assert found["controller.motor.kd"] == [runs.columns.start[runs.columns.index["testbed.servo.kd"]]] * 2
+
+
+@pytest.mark.parametrize("of", [{"preset": "paper"}, {"robot": "robotino"}], ids=["paper", "current"])
+def test_a_controller_that_observes_no_motors_goes_on_not_observing_them(of: dict[str, str]) -> None:
+    def small() -> Study:
+        study = small_study(vary=[])
+        study.document["scenario"].update(of)
+        return study
+
+    study = small().vary("robot.drivetrain.motor_inertia", values=[0.02, 0.08])
+    study.vary("robot.servo.kp", values=[100.0, 120.0]).tolerance("robot.drivetrain.motor_inertia", relative=0.1)
+    setup = study.tolerances(samples=4, robot="file").designs("one-at-a-time").setup()
+    runs = plan_runs(setup)
+    every = np.arange(len(runs.designs))
+    for sample in (0, 3):
+        rows = runs.rows(every, np.full(len(every), sample), 0).values
+        assert set(rows[:, runs.columns.index["controller.motor.inertia"]]) == {0.0}
+    own = start_value("drivetrain.motor_inertia", robot=native.robots()[of.get("robot", "trikey")])
+    nominal = runs.rows(every, np.zeros(len(every), dtype=np.int64), 0).values
+    assert own in nominal[:, runs.columns.index["testbed.drivetrain.motor_inertia"]]  # while kp varies
+    asked = small().vary("controller.motor.inertia", values=[0.02]).setup()
+    (row,) = plan_runs(asked).rows(np.array([0]), np.array([0]), 0).values
+    assert row[runs.columns.index["controller.motor.inertia"]] == 0.02
+
+
+def test_a_controller_knows_how_long_the_bus_takes() -> None:
+    study = small_study(vary=[]).vary("robot.electronics.bus_delay", values=[0, 3, 4])
+    runs = plan_runs(study.setup())
+    rows = runs.rows(np.arange(3), np.zeros(3, dtype=np.int64), 0).values
+    found = {name: rows[:, i].tolist() for name, i in runs.columns.index.items()}
+    assert found["testbed.electronics.command_delay"] == found["testbed.electronics.sensor_delay"] == [0.0, 3.0, 4.0]
+    assert found["controller.motor.delay"] == [1.0, 7.0, 8.0]
+    assert found["controller.motor.inertia"] == [0.0523, 0.0523, 0.0]  # it remembers no more than 8 ticks
+    assert {"controller.motor.delay", "controller.motor.inertia"} <= {runs.columns.names[i] for i in runs.used}
+    mine = plan_runs(study.vary("controller.motor.delay", values=[5]).setup())
+    own = mine.rows(np.arange(3), np.zeros(3, dtype=np.int64), 0).values
+    assert set(own[:, runs.columns.index["controller.motor.delay"]]) == {5.0}
 
 
 def test_tolerance_samples_are_those_of_the_study_s_next_seed() -> None:

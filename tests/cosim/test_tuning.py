@@ -160,6 +160,12 @@ def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:
     # The robot differs from its file, and lags its plan; it goes 0.4 m/s at most.
     assert np.abs(made_mps - planned_mps).max() < 0.08
     assert alarms_in([made], {})[0] == 0
+    # Its commands are not those that the motors got: they are not observed.
+    names = ("estimate.force_x", "estimate.force_y")
+    as_own, found = dataclasses.replace(made, planned=True), made.replayed({}, names)
+    off, on = as_own.replayed({"motor.inertia": 0.0}, names), as_own.replayed({}, names)
+    assert all(np.array_equal(found[name], off[name]) for name in names)
+    assert not any(np.array_equal(found[name], on[name]) for name in names)
 
 
 def test_what_logs_say_of_a_robot(arcs: Path) -> None:

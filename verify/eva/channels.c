@@ -12,6 +12,7 @@ static gw_channels_noise_t any_noise(void)
     noise.period_s = draw_setting(GW_FIELD_CONTROLLER_PERIOD);
     noise.cutoff_radps = draw_setting(GW_FIELD_ESTIMATOR_RATE_CUTOFF);
     noise.encoder_step_m = draw_real(GW_ZERO, (gw_real_t)1.6);
+    noise.observed_step_m = draw_real(GW_ZERO, (gw_real_t)1.6);
     noise.twist_noise_m = draw_real(GW_ZERO, (gw_real_t)1.2e8);
     noise.force_noise_n = draw_real(GW_ZERO, (gw_real_t)3.0e4);
     noise.mass_kg = draw_real((gw_real_t)0.1, (gw_real_t)2.2e6);
@@ -49,6 +50,7 @@ static void part_step(void)
     input.zero_changed = any_flag();
     input.regime = (gw_regime_t)draw_count(0U, (uint32_t)GW_REGIME_MOTION);
     input.turned = any_flag();
+    input.counted = draw_real(GW_ZERO, GW_TWO);
     input.enabled = any_flag();
     input.reacting = any_flag();
     input.felt = any_flag();
@@ -59,6 +61,8 @@ static void part_step(void)
     draw_kinematics(&kinematics);
     if (any_flag()) {
         gw_channels_restart(&channels);
+    } else if (any_flag()) {
+        gw_channels_resume(&channels);
     } else {
         gw_channels_step(&channels, &kinematics, &input, &output);
         demand_real(output.statistic, GW_ZERO, (gw_real_t)1.0e10);

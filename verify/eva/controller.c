@@ -43,10 +43,7 @@ static void part_init(void)
 
 static void hold_output(gw_controller_output_t *output)
 {
-    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
-        demand_real(output->command.angle_rad[i], -PI_ROUNDED, PI_ROUNDED);
-        demand_real(output->command.speed_radps[i], (gw_real_t)-1.2e6, (gw_real_t)1.2e6);
-    }
+    hold_joint_command(&output->command);
     hold_wrench(&output->estimate, (gw_real_t)1.1e12);
     hold_contact_estimate(&output->contact);
     demand_real(output->detection_statistic, GW_ZERO, (gw_real_t)1.8447e19);

@@ -58,7 +58,9 @@ static void part_step(void)
     draw_estimator(&estimator);
     draw_wheels(&torque_nm, GW_TORQUE_MAX);
     draw_wrench(&output.zero_step, ZERO_STEP_MAX); /* kept until the next change */
-    const uint32_t kind = draw_count(0U, 3U);
+    gw_joint_command_t command;
+    draw_joint_command(&command);
+    const uint32_t kind = draw_count(0U, 4U);
     if (kind == 0U) {
         (void)gw_estimator_step(&estimator, &input, &output);
         hold_wrench(&output.mean, (gw_real_t)1.1e12);
@@ -66,10 +68,13 @@ static void part_step(void)
         hold_wrench(&output.zero_step, ZERO_STEP_MAX);
         hold_model_forces(&output.forces, GW_REAL_MAX);
         demand_real(output.gear_n2, GW_ZERO, (gw_real_t)1.0e12);
+        demand_real(output.counted, GW_ZERO, GW_TWO);
     } else if (kind == 1U) {
         (void)gw_estimator_tare(&estimator, &torque_nm);
     } else if (kind == 2U) {
         gw_estimator_start_tare(&estimator);
+    } else if (kind == 3U) {
+        gw_estimator_tell_command(&estimator, &command, any_flag());
     } else {
         gw_estimator_restart(&estimator);
     }

@@ -23,6 +23,7 @@ static gw_controller_config_t take_config(bytes_t *from)
     if ((replaced & 8U) != 0U) {
         GW_ESTIMATOR_FIELDS(TAKE, config.estimator.)
         GW_PRESLIDING_FIELDS(TAKE, config.estimator.presliding.)
+        GW_MOTOR_FIELDS(TAKE, config.estimator.motor.)
     }
     if ((replaced & 16U) != 0U) {
         GW_ADMITTANCE_FIELDS(TAKE, config.admittance.)

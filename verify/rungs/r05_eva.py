@@ -74,6 +74,9 @@ DRIVERS = {
     "estimator": Driver(
         Mutant("gw_estimator.c", "torque_nm = gw_torques_limited(&input->torque_nm);", "torque_nm = input->torque_nm;")
     ),
+    "motor": Driver(
+        Mutant("gw_motor.c", "gw_limited(corrected_radps, RATE_MAX_RADPS)", "corrected_radps"),
+    ),
     "filters": Driver(
         Mutant("../include/giveway/gw_rate_filter.h", "gw_limited(derivative, GW_RATE_DERIVATIVE_MAX)", "derivative")
     ),

@@ -21,6 +21,7 @@
 #include "giveway/gw_lowpass.h"
 #include "giveway/gw_math.h"
 #include "giveway/gw_model_covariance.h"
+#include "giveway/gw_motor.h"
 #include "giveway/gw_moving_average.h"
 #include "giveway/gw_nominal.h"
 #include "giveway/gw_planar_covariance.h"

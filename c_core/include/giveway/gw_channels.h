@@ -14,7 +14,8 @@
  * every contact: that adds r^2 I to the covariances, r a share of the change of M a, or of the contact's force, which
  * fades. The end of a contact waits for the rocking.
  *
- * Life cycle: gw_channels_init, gw_channels_step per tick, gw_channels_restart after a gap. All members are private.
+ * Life cycle: gw_channels_init, gw_channels_step per tick, gw_channels_restart or gw_channels_resume after a gap. All
+ * members are private.
  */
 #ifndef GW_CHANNELS_H
 #define GW_CHANNELS_H
@@ -48,6 +49,8 @@ typedef struct {
     gw_regime_t regime;
     /* An encoder has moved. */
     bool turned;
+    /* Variance of what encoder counts add to the residual, over that of unobserved motors, [0, 2]: gw_motor.h. */
+    gw_real_t counted;
     /* False: hits are not looked for. */
     bool enabled;
     /* The robot gives way. */
@@ -106,6 +109,9 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels);
 GW_SMALL void gw_channels_stand_firm(gw_channels_t *channels);
 /* Forgets signals and contact, keeps what was learned of the model and of the noise. */
 GW_SMALL void gw_channels_restart(gw_channels_t *channels);
+/* After a gap in the samples: as gw_channels_restart, unless a contact lasted before it. That one goes on until its
+ * end: a baseline that began within it would take its end for a hit from the other side. */
+GW_SMALL void gw_channels_resume(gw_channels_t *channels);
 /* Nothing else was due in this tick: time for what not every tick needs. */
 bool gw_channels_have_time(const gw_channels_t *channels);
 /* One tick. The wrench is valid. */

@@ -59,10 +59,11 @@ typedef struct {
 typedef struct {
     gw_real_t period_s;
     gw_real_t cutoff_radps;
-    gw_real_t encoder_step_m; /* of the floor under a wheel */
-    gw_real_t twist_noise_m;  /* torque noise over the drivetrain's stiffness, at the floor */
-    gw_real_t force_noise_n;  /* torque noise in one component of the force */
-    gw_real_t sliding_n;      /* friction of a wheel whose rollers slide */
+    gw_real_t encoder_step_m;  /* of the floor under a wheel */
+    gw_real_t observed_step_m; /* the same while the motors are observed between the counts */
+    gw_real_t twist_noise_m;   /* torque noise over the drivetrain's stiffness, at the floor */
+    gw_real_t force_noise_n;   /* torque noise in one component of the force */
+    gw_real_t sliding_n;       /* friction of a wheel whose rollers slide */
     gw_real_t mass_kg;
     gw_real_t yaw_inertia_kgm2;
     gw_real_t wheel_distance_m;

@@ -134,6 +134,16 @@ extern "C" {
     ROW(REAL, GW_FIELD_FOLLOWER_OFFSET, "follower.offset", OF offset_n, 0, 30) \
     ROW(REAL, GW_FIELD_FOLLOWER_RESIDUAL, "follower.residual", OF residual_n, 0.1, 1000)
 
+#define GW_MOTOR_FIELDS(ROW, OF) \
+    ROW(REAL, GW_FIELD_MOTOR_INERTIA, "motor.inertia", OF inertia_kgm2, 0, 10) \
+    ROW(REAL, GW_FIELD_MOTOR_COULOMB_TORQUE, "motor.coulomb_torque", OF coulomb_torque_nm, 0, 1000) \
+    ROW(REAL, GW_FIELD_MOTOR_KP, "motor.kp", OF kp_nm_per_rad, 0, 1000000) \
+    ROW(REAL, GW_FIELD_MOTOR_KD, "motor.kd", OF kd_nms_per_rad, 0, 100000) \
+    ROW(REAL, GW_FIELD_MOTOR_TORQUE_LIMIT, "motor.torque_limit", OF torque_limit_nm, 0.01, 10000) \
+    ROW(REAL, GW_FIELD_MOTOR_DERIVATIVE_CUTOFF, "motor.derivative_cutoff", OF derivative_cutoff_hz, 0.1, 10000) \
+    ROW(COUNT, GW_FIELD_MOTOR_DELAY, "motor.delay", OF delay_ticks, 1, GW_MOTOR_DELAY_MAX) \
+    ROW(REAL, GW_FIELD_MOTOR_CUTOFF, "motor.cutoff", OF cutoff_radps, 1, 1000)
+
 #define GW_IMU_FIELDS(ROW, OF) \
     ROW(COUNT, GW_FIELD_IMU_USE, "imu.use", OF use, 0, 1) \
     ROW(REAL, GW_FIELD_IMU_X, "imu.x", OF position_x_m, -2, 2) \
@@ -152,6 +162,7 @@ extern "C" {
 #else
 #define GW_CHANNELS_FIELDS(ROW, OF)
 #define GW_FOLLOWER_FIELDS(ROW, OF)
+#define GW_MOTOR_FIELDS(ROW, OF)
 #define GW_IMU_FIELDS(ROW, OF)
 #endif
 
@@ -229,7 +240,8 @@ extern "C" {
     GW_TIP_FIELDS(ROW, OF admittance.tip.) \
     GW_REFERENCE_FIELDS(ROW, OF reference.) \
     GW_SUPERVISOR_FIELDS(ROW, OF supervisor.) \
-    GW_IMU_FIELDS(ROW, OF imu.)
+    GW_IMU_FIELDS(ROW, OF imu.) \
+    GW_MOTOR_FIELDS(ROW, OF estimator.motor.)
 
 /* All there are. */
 #define GW_CONFIG_FIELDS(ROW) \

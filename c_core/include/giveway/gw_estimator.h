@@ -25,6 +25,7 @@
 #include "giveway/gw_imu.h"
 #include "giveway/gw_kinematics.h"
 #include "giveway/gw_lowpass.h"
+#include "giveway/gw_motor.h"
 #include "giveway/gw_moving_average.h"
 #include "giveway/gw_nominal.h"
 #include "giveway/gw_presliding.h"
@@ -84,6 +85,10 @@ typedef struct {
     gw_presliding_config_t presliding;
     /* What the torque signals show beside the torque on the wheels: gears, or nothing. */
     gw_gear_config_t gear;
+#if (GW_WITH_CHANNELS == 1)
+    /* What is known of the motors, for finer angles than the encoders' counts. */
+    gw_motor_config_t motor;
+#endif
 } gw_estimator_config_t;
 
 typedef struct {
@@ -101,6 +106,7 @@ typedef struct {
     uint32_t slow_ticks;     /* ticks of standing, saturating */
 #if (GW_WITH_CHANNELS == 1)
     gw_rate_filter_constants_t imu_constants; /* of the low-pass that the IMU's acceleration has passed */
+    gw_motor_t motor;
     gw_lowpass_t aligned_torque[GW_WHEEL_COUNT];
     gw_lowpass_t aligned_friction[GW_WHEEL_COUNT];
     gw_wrench_t last_wrench; /* what a change of the acceleration's source is compared with */
@@ -138,7 +144,8 @@ typedef struct {
     gw_wrench_t zero_step; /* by how much the wrench jumped when the zero changed; kept until the next change */
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
-    bool turned; /* an encoder has moved since the last sample */
+    bool turned;       /* an encoder has moved since the last sample */
+    gw_real_t counted; /* of gw_motor_step; 0 if the motors are not known */
 #endif
 } gw_estimator_output_t;
 
@@ -161,6 +168,8 @@ GW_SMALL void gw_estimator_set_imu_cutoff(gw_estimator_t *estimator, gw_real_t c
  * GW_STATUS_INPUT_INVALID, wrench zero, filters and average start afresh. */
 gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_input_t *input,
                               gw_estimator_output_t *output);
+/* What is sent to the drives in this tick. enabled: their servos follow it. */
+void gw_estimator_tell_command(gw_estimator_t *estimator, const gw_joint_command_t *command, bool enabled);
 /* Angle of the motor side of a wheel from its count, rad, [-pi, pi). */
 GW_SMALL gw_real_t gw_estimator_encoder_angle(const gw_estimator_t *estimator, int32_t count);
 

@@ -2,14 +2,16 @@
  *
  * A baseline follows the balance of forces slowly, so friction, inertia and zeros that are wrong slowly do not matter.
  * The change from the baseline, less what is known of friction and mass, passes a bank of low-passes, short ones for
- * hard impacts and long ones for soft ones. Each is compared with a covariance
+ * hard impacts and long ones for soft ones; the third is of second order and swings a little, which lets pulses of 10
+ * to 30 ms pass it sooner. Each is compared with a covariance
  *
  *     S = (k_n^2 noise + floor^2 + r^2) I + k_m^2 M + h h^T
  *
- * where the noise of each low-pass is followed and k_n is smaller for the longer ones, M is what the follower does not
- * know of friction and mass with the forces of this tick, and h is what the baseline holds of contacts that last: their
- * end, a change against that, is no hit; r is what the body does while it rocks. The moment has a variance of its own.
- * The channel trips if x^T S^-1 x > 1.
+ * where the noise of each low-pass is followed, with the ripple of rollers that bear one by one, and k_n is smaller for
+ * the longer ones, M is what the follower does not know of friction and mass with the forces of this tick, and h is
+ * what the baseline holds of contacts that last: their end, a change against that, is no hit, and as it may have
+ * turned, (x h)^2/|x|^2 I is added then, too; r is what the body does while it rocks. The moment has a variance of its
+ * own. The channel trips if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
@@ -44,18 +46,23 @@ typedef struct {
     gw_real_t model_share;
     gw_real_t noise_share;
     gw_real_t held_keep;
+    gw_real_t swing_share;         /* (w T)^2 of the low-pass of second order */
+    gw_real_t swing_loss;          /* 2 zeta w T */
     gw_real_t sliding_n;           /* friction of a wheel whose rollers slide */
     gw_real_t moment_per_force_m2; /* variance of the moment's noise over that of the force's, of wheels that turn
                                       independently */
     gw_real_t gyro_noise_nm2[GW_SENSOR_COUNT][GW_BANK_COUNT]; /* what a gyro adds to that of the moment */
     gw_real_t least_noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
     gw_real_t noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
+    gw_real_t count_n2[GW_BANK_COUNT]; /* what counts add that are taken as they are */
+    gw_real_t counted;                 /* how many times of it now */
     gw_real_t mass2_kg2;
     gw_real_t shaking_n2; /* the vibration that an IMU sees, as a force */
     uint32_t sensor;      /* GW_BY_ENCODERS or GW_BY_IMU */
     gw_balance_t baseline;
     gw_model_forces_t model; /* their change, smoothed */
     gw_wrench_t bank[GW_BANK_COUNT];
+    gw_wrench_t swing;               /* what the low-pass of second order moves in a tick */
     gw_planar_covariance_t model_n2; /* k_m^2 M */
     gw_real_t moment_nm2;            /* likewise of the moment */
     gw_real_t rocking_n2;            /* variance of what the rocking body does */
@@ -89,6 +96,8 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel);
 GW_SMALL void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance_t *balance, gw_real_t share);
 /* The acceleration in the next balances comes from an IMU that sees this vibration, (m/s2)^2, or from encoders. */
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
+/* Before each step: variance of what counts add, over that of unobserved motors, [0, 2]. */
+void gw_fast_channel_count(gw_fast_channel_t *channel, gw_real_t counted);
 /* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
  * model's forces, not of their change; rocking_n2: variance of what the rocking body does; gear_n2: of what gears may
  * be wrong by, [0, 1e12]. */
@@ -106,9 +115,11 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
 void gw_fast_channel_follow(gw_fast_channel_t *channel, const gw_balance_t *balance);
 /* Another zero: the residual jumps by this. adopt: what the widest low-pass holds becomes part of the baseline. */
 GW_SMALL void gw_fast_channel_take_zero(gw_fast_channel_t *channel, gw_wrench_t step, bool adopt);
-/* A contact in this direction, a unit vector or zero, is over: what is left of it becomes part of the baseline. */
+/* A contact in this direction, a unit vector or zero, is over, or it lasts so long that the next one is waited for:
+ * what is left of it becomes part of the baseline, and is held against its end: along the direction, or all if it
+ * lasts. */
 GW_SMALL void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *balance,
-                                      const gw_fast_found_t *found, gw_vector_t direction);
+                                      const gw_fast_found_t *found, gw_vector_t direction, bool lasts);
 
 #ifdef __cplusplus
 }

@@ -22,6 +22,8 @@
 #define GW_TRIKEY_ROLLER_STRIBECK_SPEED_MPS ((gw_real_t)0.0025) /* (assumed) */
 #define GW_TRIKEY_ROLLER_ELASTIC_FRACTION ((gw_real_t)0.7)    /* (assumed) */
 #define GW_TRIKEY_DRIVETRAIN_STIFFNESS_NM_PER_RAD ((gw_real_t)721.0) /* (fitted) to 5.1, 5.2 and 5.3 */
+#define GW_TRIKEY_DRIVETRAIN_MOTOR_INERTIA_KGM2 ((gw_real_t)0.0523) /* (sourced) rotor, ratio of the gear estimated */
+#define GW_TRIKEY_DRIVETRAIN_GEAR_COULOMB_NM ((gw_real_t)2.75) /* (fitted) to 5.1, 5.2 and 5.3 */
 #define GW_TRIKEY_DRIVETRAIN_ENCODER_COUNTS 8500U             /* (sourced) successor robot, per wheel turn */
 #define GW_TRIKEY_DRIVETRAIN_TORQUE_LIMIT_NM ((gw_real_t)20.0) /* (assumed) about 9 A */
 #define GW_TRIKEY_DRIVETRAIN_TORQUE_SENSOR_LIMIT_NM ((gw_real_t)28.0) /* (sourced) sensor electronics, 2011 */

@@ -89,6 +89,7 @@ typedef float gw_real_t;
 #define GW_OUTLINE_VERTEX_MAX 16U
 /* Longest window of the moving average, samples; 12 bytes of RAM each in float. */
 #define GW_MOVING_AVERAGE_CAPACITY 1024U
+#define GW_MOTOR_DELAY_MAX 8U
 /* Tick counters run modulo 2^31 (24.8 days at 1 kHz), so that they fit a signed 32-bit integer. */
 #define GW_TICK_MASK 0x7FFFFFFFU
 

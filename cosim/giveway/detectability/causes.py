@@ -60,7 +60,7 @@ def _resolution(whose: Subject) -> Changed:
 
 
 def _with_gears(whose: Subject, share: float) -> Changed:
-    names = ("gear.coulomb_torque", "gear.viscous_damping")
+    names = ("gear.coulomb_torque", "gear.viscous_damping", "motor.coulomb_torque")
     known = {name: share * float(whose.controller[name]) for name in names}
     return Changed(_each("drivetrain.friction_scale", share), known)
 

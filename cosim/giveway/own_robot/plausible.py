@@ -15,6 +15,7 @@ import numpy as np
 from giveway.base.gravity import GRAVITY_MPS2
 from giveway.own_robot.body import plate
 from giveway.robot.footprint import hull, wheel_corners
+from giveway.robot.motor_observer import BUS, INERTIA, delay_ticks, longest_delay
 from giveway.robot.robot_file import BODY_HEIGHT
 from giveway.robot.variables import table
 from giveway.robot.wheels import WHEELS
@@ -331,6 +332,16 @@ def _encoder(n: Numbers) -> Iterator[Doubt]:
         yield Doubt("encoder", ("drivetrain.encoder_counts", "wheel.radius"), words)
 
 
+def _observer(n: Numbers) -> Iterator[Doubt]:
+    if n.robot.follows_from(INERTIA) == BUS:
+        cycles = n["electronics.sensor_delay"]
+        words = (
+            f"a command shows {delay_ticks(cycles, cycles):.0f} ticks later, the controller remembers "
+            f"{longest_delay()}: it takes the encoders' counts as they are"
+        )
+        yield Doubt("bus", (BUS,), words)
+
+
 def _contact(n: Numbers) -> Iterator[Doubt]:
     stiffness = n["contact.stiffness"]
     deep = 0.5 * math.sqrt(n["slider.mass"] * n.mass / (n["slider.mass"] + n.mass) / stiffness)
@@ -355,5 +366,5 @@ def _escape(n: Numbers) -> Iterator[Doubt]:
 
 RULES: tuple[Rule, ...] = (
     *(_density, _yaw_inertia, _tilt_inertia, _centre_of_mass, _outline, _wheels, _roller_friction, _torque, _sensor),
-    *(_servo, _encoder, _thresholds, _contact, _escape),
+    *(_servo, _encoder, _observer, _thresholds, _contact, _escape),
 )

@@ -42,6 +42,9 @@ def done_lines(replay: Replay, robot: str) -> list[tuple[str, str]]:
         lines.append(("drives", f"off{why}: the controller estimates and detects, and never moves the robot"))
     else:
         lines.append(("drives", "on: after a hit the controller believes that the robot gives way as it commands"))
+    if value_of(replay.parameters, "motor.inertia") > 0.0:
+        way = "counts as they are: no commands" if replay.observes else "between counts, if they follow the commands"
+        lines.append(("motors", way))
     return lines
 
 

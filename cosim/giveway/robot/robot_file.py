@@ -2,8 +2,8 @@
 
 `read_robot` is the only reader. The variable tables define the entries of a robot file and the units of the returned
 values; other units of the same kind ("lb", "mm") are converted. Besides the numbers of the robot, which are needed, a
-file may set parameters of the controller, and some of the testbed, that have start values of their own:
-``[controller.channels.fast_rest]``.
+file may set parameters of the controller, and some of the testbed, that have start values of their own
+(``[controller.channels.fast_rest]``), and what the controller believes of the motors (``[controller.motor.inertia]``).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from giveway.base.toml_lines import line_of
 from giveway.base.toml_sections import Section, lines_named, read_toml
 from giveway.base.units import factor
 from giveway.robot.motor_current import GEAR, MOTOR, MOTOR_CURRENT, SENSING, from_motor, stated_by
+from giveway.robot.motor_observer import BELIEFS, BUS, DELAY, INERTIA, delay_ticks, longest_delay
 from giveway.robot.table_files import entry_unit, read_table_file, robot_paths
 
 __all__ = ["CONFIDENCE", "PROVENANCE", "Entry", "Robot", "read_robot", "robot_shape"]
@@ -60,6 +61,7 @@ class Entry:
         provenance: given, sourced, fitted or assumed; "" if the file does not say.
         confidence: high, medium or low; "" likewise.
         source, note: in words; "" likewise.
+        follows: the entries that it follows from; "" if the file states it.
     """
 
     values: tuple[_Number, ...]
@@ -71,6 +73,7 @@ class Entry:
     confidence: str
     source: str
     note: str
+    follows: str = ""
 
 
 class Robot:
@@ -117,7 +120,7 @@ class Robot:
 
     def follows_from(self, name: str) -> str | None:
         """The entry that the number ``name`` follows from; None if the file states it itself."""
-        return stated_by(name) if name in self._derived else None
+        return self._derived[name].follows if name in self._derived else None
 
     def entries(self) -> Iterator[tuple[str, Entry]]:
         """Every number that the file states, with its name, in the order of the file."""
@@ -137,10 +140,12 @@ class Robot:
         return InputFileError(self.path, line_of(self._text, f"{stated}.value"), cause)
 
     def _follow(self) -> dict[str, Entry]:
-        """What follows from other entries where torque is sensed by current: the torque signal's numbers from those of
-        the motors, and what the controller knows of the gears, unless the file states it, from the drivetrain's."""
-        if not self.motor_current:
-            return {}
+        """What follows from other entries."""
+        return (self._follow_currents() if self.motor_current else {}) | self._follow_observer()
+
+    def _follow_currents(self) -> dict[str, Entry]:
+        """Where torque is sensed by current: the torque signal's numbers from those of the motors, and what the
+        controller knows of the gears, unless the file states it, from the drivetrain's."""
         missing = [name for name in MOTOR if name not in self._entries]
         if missing:
             hint = f'with {SENSING} = "{MOTOR_CURRENT}" a robot file states {", ".join(MOTOR)}'
@@ -150,21 +155,40 @@ class Robot:
             if name in self._entries:
                 allowed = f'left out: with {SENSING} = "{MOTOR_CURRENT}" it follows from {stated_by(name)}'
                 raise self.refusal(name, allowed)
-            found[name] = _derived(name, value, "N.m", self._entries[stated_by(name)])
+            found[name] = _derived(stated_by(name), value, "N.m", self._entries[stated_by(name)])
         for name, origins in GEAR.items():
             # A file without one of them is refused by who needs it.
             if name not in self._entries and all(origin in self._entries for origin in origins):
                 value = sum(float(self._entries[origin].values[0]) for origin in origins)
-                found[name] = _derived(name, value, self._entries[origins[-1]].unit, self._entries[origins[-1]])
+                last = self._entries[origins[-1]]
+                found[name] = _derived(stated_by(name), value, last.unit, last)
+        return found
+
+    def _follow_observer(self) -> dict[str, Entry]:
+        """What the controller's observer of the motors is told, unless the file states it: when a command shows in the
+        samples, and an inertia of 0 where it cannot work."""
+        bus = self._entries.get(BUS)
+        ticks = None if bus is None or DELAY in self._entries else delay_ticks(bus.values[0], bus.values[0])
+        late = ticks is not None and ticks > longest_delay()
+        cause = SENSING if self.motor_current else BUS if late else None
+        found: dict[str, Entry] = {}
+        if ticks is not None and not late:
+            found[DELAY] = _derived(BUS, ticks, "1", self._entries[BUS])
+        if cause is not None and INERTIA not in self._entries:
+            found[INERTIA] = _derived(cause, 0.0, "kg.m2", self._entries[cause])
+        elif cause is not None and self._entries[INERTIA].values[0] != 0.0:
+            why = "motors are observed by the torque behind their gears"
+            if cause == BUS:
+                why = f"a command shows {ticks:g} ticks later, and the controller remembers {longest_delay()}"
+            raise self.refusal(INERTIA, f"0: with {cause} = {self._entries[cause].text}, {why}")
         return found
 
 
-def _derived(name: str, value: float, unit: str, stated: Entry) -> Entry:
-    """The entry ``name`` with this value, and the remarks of the one ``stated`` that it follows from."""
-    source = f"follows from {stated_by(name)}: {stated.source}"
-    return Entry(
-        (value,), False, unit, f"{value:g} {unit}", 1.0, stated.provenance, stated.confidence, source, stated.note
-    )
+def _derived(origin: str, value: float, unit: str, stated: Entry) -> Entry:
+    """An entry with this value that follows from ``origin``, and the remarks of ``stated``, which is part of that."""
+    source = f"follows from {origin}: {stated.source}" if stated.source else f"follows from {origin}"
+    text = f"{value:g}" if unit == "1" else f"{value:g} {unit}"
+    return Entry((value,), False, unit, text, 1.0, stated.provenance, stated.confidence, source, stated.note, origin)
 
 
 def read_robot(path: Path) -> Robot:
@@ -348,7 +372,8 @@ def _known() -> Mapping[str, _Known]:
                 words = tuple(choice.replace("_", " ") for choice in variable.get("choices", ()))
                 known.setdefault(name, _Known(unit, count, words=words))
             beginnings = SETTINGS.get(model, ())
-            free = variable["causality"] == "parameter" and not paths and variable["name"] not in NO_SETTINGS
+            own = not paths or variable["name"].startswith(BELIEFS)
+            free = variable["causality"] == "parameter" and own and variable["name"] not in NO_SETTINGS
             if free and variable["name"].startswith(beginnings):
                 name = f"{model}.{variable['name']}"
                 settings[name] = _Known(unit, count, count, variable["type"] == "boolean")

@@ -18,6 +18,7 @@ from giveway.base.files import check_file, replace_file, write_text
 from giveway.robot.variables import table as variable_table
 from giveway.study.chosen import hit_of, settings_of_run
 from giveway.study.influences import INFLUENCES
+from giveway.study.observed_motors import following
 from giveway.study.parts import part_lines
 from giveway.study.runs import COVER
 
@@ -200,6 +201,7 @@ def _toml(answers: Answers, design: int, case: int, _model: str, folder: Path) -
     for one in quantities:
         if one.name in INFLUENCES:
             changed |= INFLUENCES[one.name].factors.keys()
+    changed |= set(following({one.name for one in quantities}))
     text = tomlkit.document()
     text.add(tomlkit.comment(f"Design {design} of the study {answers.setup.name!r}. Run it with `giveway run`."))
     for line in part_lines(answers.setup.varied, answers.designs[design]):

@@ -7,7 +7,7 @@
 | | | greatest torque and encoder counts, which are on the motor's side, by n |
 
 ``gear_ratio`` is over the ratio of the robot file, or of the motor that is chosen. The controller, too, gets the counts
-that result, to the nearest whole one.
+that result, to the nearest whole one, and knows its motors' inertia, friction and greatest torque by the same factors.
 """
 
 from __future__ import annotations
@@ -73,6 +73,9 @@ INFLUENCES: Mapping[str, Influence] = MappingProxyType(
                 "testbed.drivetrain.torque_limit": _once,
                 "testbed.electronics.encoder_counts": _once,
                 "controller.estimator.encoder_counts": _once,
+                "controller.motor.inertia": _squared,
+                "controller.motor.coulomb_torque": _once,
+                "controller.motor.torque_limit": _once,
             },
         ),
     }

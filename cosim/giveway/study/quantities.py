@@ -173,10 +173,11 @@ def _refuse_what_is_set_elsewhere(field: str, name: str) -> None:
 
 
 def _of_robot(field: str, name: str) -> Quantity:
-    """A number of the robot file: all variables of both models that take it from there."""
+    """A number of the robot file: all variables of both models that take it from there, first what the robot has."""
     path = name.removeprefix("robot.")
     all_columns = columns()
     where = [i for i, variable in enumerate(all_columns.variables) if variable.robot_path == path]
+    where.sort(key=lambda i: not all_columns.names[i].startswith("testbed."))
     if not where:
         raise UnknownNameError(field, name, _all_names())
     if path.startswith("outline."):

@@ -25,6 +25,7 @@ from giveway.simulation.master import plan_table, push_table
 from giveway.simulation.run_warnings import Stated, plan_speed
 from giveway.study.distributions import Tolerance, Varied
 from giveway.study.influences import INFLUENCES
+from giveway.study.observed_motors import follow_motors, following
 from giveway.study.part_rules import part_rules, refusals
 from giveway.study.parts import choices_of
 from giveway.study.quantities import Columns, columns, find
@@ -121,8 +122,10 @@ class RunTable:
         touched = [self.columns.index[f"testbed.{name}"] for one in setup.crowd for name in one.parameters]
         touched += [column for quantity in quantities for column in quantity.columns]
         met = [self.columns.index[f"testbed.{name}"] for name in SLIDER] if setup.cases[0].hit is not None else []
-        named = {quantity.name for quantity in quantities}
-        for cause in named & INFLUENCES.keys():
+        self.named = frozenset(quantity.name for quantity in quantities)
+        """What varies."""
+        touched += [self.columns.index[name] for name in following(self.named)]
+        for cause in self.named & INFLUENCES.keys():
             touched += [self.columns.index[name] for name in INFLUENCES[cause].factors]
         if setup.noise_seeds:
             touched.append(self.columns.index["testbed.electronics.seed"])
@@ -170,6 +173,7 @@ class RunTable:
             )
         unfit = self._misfits(design, values, free)
         self._influence(values, {name: free.pop(name) for name in INFLUENCES})
+        follow_motors(values, self.columns.index, table.base, self.named)
         if table.body is not None:
             values[:, self.columns.index[COVER]] = table.body.stiffness_with(values[:, self.columns.index[COVER]])
         refused = self._beyond_limits(table, values)

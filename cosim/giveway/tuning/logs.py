@@ -58,6 +58,8 @@ class Log:
         pushes: what is known to have pushed it.
         sha256: of the file.
         as_logged: each step is a row of the log, nothing was interpolated.
+        planned: its plan is the robot's own. Otherwise the commands that the controller makes of it are not those that
+            the motors got, and it does not observe them.
         said: what was assumed.
     """
 
@@ -69,6 +71,7 @@ class Log:
     pushes: tuple[Push, ...] = ()
     sha256: str = ""
     as_logged: bool = True
+    planned: bool = True
     said: tuple[str, ...] = field(default=())
 
     @property
@@ -96,7 +99,8 @@ class Log:
 
     def replayed(self, parameters: Mapping[str, Value], outputs: Sequence[str]) -> dict[str, NDArray[Any]]:
         """Outputs of the controller with ``parameters`` on this log."""
-        with ReplayedController(parameters, self.step_s, outputs) as controller:
+        known = parameters if self.planned else {**parameters, "motor.inertia": 0.0}
+        with ReplayedController(known, self.step_s, outputs) as controller:
             return controller.play(self.inputs)
 
 
@@ -148,7 +152,7 @@ def with_plan(log: Log, robot: Robot) -> Log:
     places = np.cumsum(rates, axis=1) * log.step_s
     growth = np.gradient(rates, log.step_s, axis=1)
     columns = np.concatenate([places, rates, growth])
-    return replace(log, inputs={**log.inputs, **dict(zip(PLAN_INPUTS, columns, strict=True))})
+    return replace(log, inputs={**log.inputs, **dict(zip(PLAN_INPUTS, columns, strict=True))}, planned=False)
 
 
 def read_pushes(path: Path, logs: Sequence[str]) -> dict[str, tuple[Push, ...]]:

@@ -275,8 +275,8 @@ meanwhile.</li>
 <li>The reference becomes wheel angles and speeds, which reach the servos one sample later.</li>
 </ol>
 <p>This is the controller FMU with the preset \"paper\" (<code>giveway variables controller --preset paper</code>). What
-the FMU does with its start values, two channels on measured motion and an escape that keeps the wheels down, is not in
-this package.</p>
+the FMU does with its start values, two channels on measured motion, motors that are observed between two counts, and an
+escape that keeps the wheels down, is not in this package.</p>
 <p>Left out, as no example needs them: sensor faults, stopping, live force instead of the frozen impulse, and plans that
 turn.</p>
 </html>"));

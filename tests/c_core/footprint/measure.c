@@ -95,6 +95,7 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     config->estimator.velocity_source = GW_SOURCE_MEASURED;
     config->estimator.acceleration_source = ((variant & 1U) != 0U) ? GW_SOURCE_MEASURED : GW_SOURCE_IMU;
     config->estimator.aligned = 1U;
+    gw_motor_config_trikey(&config->estimator.motor);
     config->detector.kind = GW_DETECTOR_CHANNELS;
     config->imu.use = 1U;
     config->imu.position_x_m = (gw_real_t)0.1;

@@ -186,6 +186,7 @@ static gw_channels_noise_t trikey_noise(void)
     noise.period_s = PERIOD_S;
     noise.cutoff_radps = (gw_real_t)500.0;
     noise.encoder_step_m = (gw_real_t)0.000074;
+    noise.observed_step_m = noise.encoder_step_m;
     noise.twist_noise_m = (gw_real_t)0.00002;
     noise.force_noise_n = GW_ONE;
     noise.sliding_n = (gw_real_t)20.0;
@@ -235,6 +236,7 @@ static digest_t play_channels(uint32_t seed, void (*take)(digest_t *digest, cons
         input.zero_step = &zero_step;
         input.regime = (gw_regime_t)regime;
         input.turned = (regime != 0U) || generator_one_in(&generator, 500U);
+        input.counted = GW_ZERO; /* the motors are not observed */
         input.enabled = !generator_one_in(&generator, 200U);
         input.reacting = generator_one_in(&generator, 100U);
         input.felt = felt;

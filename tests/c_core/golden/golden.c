@@ -50,6 +50,7 @@ static const module_t modules[] = {
     {"slow_channel", drive_slow_channel},
     {"channels", drive_channels},
     {"imu", drive_imu},
+    {"motor", drive_motor},
     {"controller.channels", drive_controller_channels},
 #endif
 };

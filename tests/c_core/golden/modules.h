@@ -32,6 +32,7 @@ digest_t drive_fast_channel(void);
 digest_t drive_slow_channel(void);
 digest_t drive_channels(void);
 digest_t drive_imu(void);
+digest_t drive_motor(void);
 digest_t drive_reference(void);
 digest_t drive_joint(void);
 digest_t drive_servo(void);

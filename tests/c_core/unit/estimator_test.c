@@ -638,6 +638,9 @@ static void the_invariant_sees_every_member(void)
     estimator.aligned_friction[2].derivative = unit_nan();
     CHECK(!gw_estimator_invariant_holds(&estimator));
     start();
+    estimator.motor.period_s = GW_ZERO;
+    CHECK(!gw_estimator_invariant_holds(&estimator));
+    start();
     estimator.run_zero_nm.wheel[1] = unit_nan();
     CHECK(!gw_estimator_invariant_holds(&estimator));
     start();
@@ -653,6 +656,86 @@ static void standing_still_is_rest_at_any_rest_speed(void)
     robot.estimator.rest_speed_mps = GW_ZERO;
     CHECK_STATUS(init(), GW_STATUS_OK);
     CHECK(step(&resting, GW_STATUS_OK).regime == GW_REGIME_REST);
+}
+
+/* Rates are those of filters that are fed with the counts and the torque that twists the drivetrain: the sensed one,
+ * less what an observed motor is beyond its count. Without one the bits are those of the sensed torque, whatever is
+ * told.
+ */
+static void observed_motors_twist_the_drivetrains(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        static gw_motor_t motor;
+        gw_rate_filter_t filter[GW_WHEEL_COUNT];
+        bool differs = false;
+        set_robot();
+        robot.estimator.drivetrain_stiffness_nm_per_rad = R(500.0);
+        gw_motor_config_trikey(&robot.estimator.motor);
+        robot.estimator.motor.coulomb_torque_nm = GW_ZERO;
+        if (i == 0U) {
+            robot.estimator.motor.inertia_kgm2 = GW_ZERO;
+        }
+        CHECK_STATUS(init(), GW_STATUS_OK);
+        gw_motor_init(&motor, &robot.estimator.motor, &estimator.rate_constants, 8000U);
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            gw_rate_filter_restart(&filter[k]);
+        }
+        gw_estimator_input_t input = input_of(torques(GW_ZERO, GW_ZERO, GW_ZERO), still);
+        for (uint32_t tick = 0U; tick < 200U; tick++) {
+            const gw_real_t angle_rad = R(0.002) * (gw_real_t)tick;
+            const gw_joint_command_t command = {{angle_rad, -angle_rad, GW_ZERO}, {R(2.0), R(-2.0), GW_ZERO}};
+            gw_real_t counted;
+            input.torque_nm.wheel[0] = ((tick % 5U) == 0U) ? R(0.1) : R(-0.1);
+            input.encoder_count[0] = (int32_t)((tick * 51U) / 20U); /* 2.55 counts of 1/8000 turn in a tick */
+            input.encoder_count[1] = -input.encoder_count[0];
+            const gw_estimator_output_t output = step(&input, GW_STATUS_OK);
+            const gw_wheels_t twist = gw_motor_step(&motor, input.encoder_count, &input.torque_nm, &counted);
+            unit_row((1000U * i) + tick);
+            CHECK(output.counted == counted);
+            for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+                gw_rate_filter_step(&filter[k], &estimator.rate_constants, input.encoder_count[k], twist.wheel[k]);
+                CHECK(estimator.rate[k].rate_radps == filter[k].rate_radps);
+                CHECK((i == 1U) || (twist.wheel[k] == input.torque_nm.wheel[k]));
+                differs = differs || (twist.wheel[k] != input.torque_nm.wheel[k]);
+            }
+            gw_estimator_tell_command(&estimator, &command, true);
+            CHECK(gw_estimator_invariant_holds(&estimator));
+            gw_motor_command(&motor, &command, true);
+        }
+        CHECK(differs == (i == 1U));
+        CHECK(estimator.motor.wheel[0].share == motor.wheel[0].share);
+        /* Drives that are not enabled, and a gap. */
+        const gw_joint_command_t command = {{GW_ZERO, GW_ZERO, GW_ZERO}, {GW_ZERO, GW_ZERO, GW_ZERO}};
+        gw_estimator_restart(&estimator);
+        CHECK((!estimator.motor.started) && (estimator.motor.commands == GW_MOTOR_DELAY_MAX));
+        gw_estimator_tell_command(&estimator, &command, false);
+        CHECK(estimator.motor.commands == 0U);
+    }
+}
+
+/* The rollers' deflection is followed with the same twist. */
+static void bristles_are_deflected_by_the_same_twist(void)
+{
+    set_robot();
+    robot.estimator.drivetrain_stiffness_nm_per_rad = R(500.0);
+    robot.estimator.friction_model = GW_FRICTION_BRISTLE;
+    robot.estimator.velocity_source = GW_SOURCE_MEASURED;
+    gw_motor_config_trikey(&robot.estimator.motor);
+    CHECK_STATUS(init(), GW_STATUS_OK);
+    gw_estimator_input_t input = input_of(torques(R(0.5), GW_ZERO, GW_ZERO), ahead(R(0.1)));
+    const gw_joint_command_t command = {{GW_ZERO, GW_ZERO, GW_ZERO}, {GW_ZERO, GW_ZERO, GW_ZERO}};
+    gw_estimator_tell_command(&estimator, &command, true);
+    gw_estimator_tell_command(&estimator, &command, true);
+    gw_estimator_tell_command(&estimator, &command, true);
+    (void)step(&input, GW_STATUS_OK);
+    estimator.motor.wheel[0].share = GW_ONE;
+    estimator.motor.wheel[0].angle_rad = R(0.0003);
+    estimator.motor.wheel[0].rate_radps = R(0.9);
+    estimator.motor.wheel[0].sure_ticks = 30U;
+    input.encoder_count[0] = 1;
+    (void)step(&input, GW_STATUS_OK);
+    CHECK(estimator.rate[0].last_torque_nm == estimator.presliding.last_torque_nm.wheel[0]);
+    CHECK(gw_abs(estimator.rate[0].last_torque_nm - R(0.5)) > R(0.01));
 }
 
 void suite_estimator(void)
@@ -678,6 +761,8 @@ void suite_estimator(void)
     unit_run("the_friction_of_gears_is_in_the_model", the_friction_of_gears_is_in_the_model);
     unit_run("the_doubt_of_gears_is_told", the_doubt_of_gears_is_told);
     unit_run("it_is_told_that_a_wheel_turned", it_is_told_that_a_wheel_turned);
+    unit_run("observed_motors_twist_the_drivetrains", observed_motors_twist_the_drivetrains);
+    unit_run("bristles_are_deflected_by_the_same_twist", bristles_are_deflected_by_the_same_twist);
     unit_run("what_is_beyond_any_robot_is_refused", what_is_beyond_any_robot_is_refused);
     unit_run("a_wrench_beyond_any_push_is_refused", a_wrench_beyond_any_push_is_refused);
     unit_run("angles_of_counts_are_within_a_turn", angles_of_counts_are_within_a_turn);

@@ -12,6 +12,7 @@ int main(void)
     suite_gear();
     suite_nominal();
     suite_rate_filter();
+    suite_motor();
     suite_lowpass();
     suite_balance();
     suite_planar_covariance();

@@ -72,6 +72,7 @@ void suite_kinematics(void);
 void suite_lowpass(void);
 void suite_math(void);
 void suite_model_covariance(void);
+void suite_motor(void);
 void suite_moving_average(void);
 void suite_nominal(void);
 void suite_planar_covariance(void);
