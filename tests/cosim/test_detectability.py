@@ -131,12 +131,14 @@ def test_a_rate_of_alarms_counts_until_the_first() -> None:
 
 
 def test_free_motion_alarms_a_robot_that_does_not_know_its_gears(tmp_path: Path) -> None:
+    """Torque sensors do not feel the gears, a motor's current does."""
     hours = 4 * 30.0 / 3600.0
-    quiet = alarms(subject(None), differing(subject(None), 2), hours, {}, 2)
+    stiff = {f"drivetrain.friction_scale[{wheel}]": 2.0 for wheel in range(3)}
+    quiet = alarms(subject(None), [{**one, **stiff} for one in differing(subject(None), 2)], hours, {}, 2)
     assert (quiet.alarms, quiet.drives) == (0, 4)
     assert quiet.hours == pytest.approx(hours)
     whose = subject(trikey_by_current(tmp_path))
-    loud = alarms(whose, differing(whose, 2), hours, {}, 2)
+    loud = alarms(whose, [{**one, **stiff} for one in differing(whose, 2)], hours, {}, 2)
     assert (loud.alarms, loud.drives) == (4, 4)
     assert loud.hours < 0.2 * hours
 
