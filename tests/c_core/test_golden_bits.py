@@ -176,7 +176,8 @@ def test_firmware_and_fmu_notice_the_recorded_collision_alike(
     ticks, digest = replayed(opened, {"supervisor.after_settled": 0})
     first = next(tick for tick in ticks if tick >= 0)
     assert printed == f"first hit at tick {first}\nlast hit at tick {ticks[-1]}\noutputs {digest}\n"
-    assert printed in (EXAMPLE / "README.md").read_text(encoding="utf-8")
+    for page in (EXAMPLE / "README.md", ROOT / "docs" / "site" / "tutorials" / "microcontroller.md"):
+        assert printed in page.read_text(encoding="utf-8"), page
 
 
 def test_the_paper_s_reflex_on_the_recorded_collision(opened: tuple[Instance, VariableTable]) -> None:
