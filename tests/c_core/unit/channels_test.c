@@ -1,10 +1,8 @@
 /* Both channels together, on balances of forces that are given; the channels themselves are in fast_channel_test.c and
  * slow_channel_test.c. */
-#include "unit.h"
+#include "usual_noise.h"
 
-#define PERIOD R(0.001)
 #define WARM_UP 60U
-#define SLIDING R(20.0)
 
 static gw_channels_t channels;
 static gw_channels_config_t config;
@@ -16,17 +14,13 @@ static gw_model_forces_t forces;
 static gw_wrench_t zero_step;
 static uint32_t trips;
 
-static const gw_channels_noise_t usual = {PERIOD,
-                                          R(200.0),
-                                          R(0.0001),
-                                          R(0.0001),
-                                          R(0.000001),
-                                          R(0.3),
-                                          SLIDING,
-                                          R(35.0),
-                                          R(1.5),
-                                          R(0.25),
-                                          {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
+/* Finer torque sensors: at rest the thresholds are little more than their floors. */
+static gw_channels_noise_t fine_noise(void)
+{
+    gw_channels_noise_t noise = usual;
+    noise.twist_noise_m = R(0.000001);
+    return noise;
+}
 
 /* At rest, with nothing that touches. The configuration may be changed before. */
 static void begin_with_config(void)
@@ -35,10 +29,11 @@ static void begin_with_config(void)
     static const gw_model_forces_t no_forces;
     static const gw_channels_input_t no_input;
     static const gw_channels_output_t no_output;
+    const gw_channels_noise_t noise = fine_noise();
     gw_geometry_config_t geometry;
     gw_geometry_config_trikey(&geometry);
     CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
-    gw_channels_init(&channels, &config, &usual);
+    gw_channels_init(&channels, &config, &noise);
     CHECK(gw_channels_invariant_holds(&channels));
     wrench = nothing;
     forces = no_forces;
@@ -878,7 +873,7 @@ static void the_mean_wrench_of_a_push_is_found(void)
 /* However large forces are and however long a contact lasts. */
 static void the_impulse_is_bounded(void)
 {
-    gw_channels_noise_t slow = usual;
+    gw_channels_noise_t slow = fine_noise();
     slow.period_s = R(0.1);
     gw_channels_config_trikey(&config);
     config.slow_s = R(10.0);

@@ -1,6 +1,5 @@
-#include "unit.h"
+#include "usual_noise.h"
 
-#define PERIOD R(0.001)
 #define MULTIPLE R(8.0)
 
 static gw_fast_channel_t channel;
@@ -11,17 +10,6 @@ static gw_balance_t balance;
 static gw_fast_found_t found;
 
 static const gw_balance_t no_balance;
-static const gw_channels_noise_t usual = {PERIOD,
-                                          R(200.0),
-                                          R(0.0001),
-                                          R(0.0001),
-                                          R(0.00001),
-                                          R(0.3),
-                                          R(20.0),
-                                          R(35.0),
-                                          R(1.5),
-                                          R(0.25),
-                                          {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
 
 static void begin_with(const gw_channels_noise_t *noise)
 {

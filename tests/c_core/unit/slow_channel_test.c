@@ -1,6 +1,4 @@
-#include "unit.h"
-
-#define PERIOD R(0.001)
+#include "usual_noise.h"
 
 static gw_slow_channel_t channel;
 static gw_channels_config_t config;
@@ -9,17 +7,6 @@ static gw_kinematics_t kinematics;
 static gw_balance_t balance;
 
 static const gw_balance_t no_balance;
-static const gw_channels_noise_t usual = {PERIOD,
-                                          R(200.0),
-                                          R(0.0001),
-                                          R(0.0001),
-                                          R(0.00001),
-                                          R(0.3),
-                                          R(20.0),
-                                          R(35.0),
-                                          R(1.5),
-                                          R(0.25),
-                                          {R(0.02), R(0.1), R(0.002), R(0.2), R(1000.0)}};
 static const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
 
 static void begin(void)
