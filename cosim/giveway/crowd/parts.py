@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.base.errors import FileError
+from giveway.base.parquet import open_parquet, read_table
 from giveway.base.version import VERSION
 from giveway.library.batch_library import library
 from giveway.study.engine import Progress, Report
@@ -99,12 +100,12 @@ def go_on(work: Work, folder: Path, threads: int, progress: Report) -> Done:
 def read_records(parts_folder: Path) -> list[Record]:
     """The records of all parts in a folder, in the order of their numbers."""
     import pyarrow
-    import pyarrow.parquet
 
     found: list[Record] = []
     for _, _, path in list_parts(parts_folder):
         try:
-            texts = pyarrow.parquet.read_table(path, columns=["record"])["record"].to_pylist()
+            with path.open("rb") as file:
+                texts = read_table(open_parquet(file), ["record"])["record"].to_pylist()
         except (OSError, pyarrow.ArrowException) as error:
             raise FileError(path, f"cannot be read: {error}", "remove it; the same command computes it again") from None
         found += [json.loads(text) for text in texts]

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from giveway.base.errors import FileError
+from giveway.base.parquet import open_parquet, read_table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -94,10 +95,9 @@ class ParquetRows(LogRows):
 
     def __init__(self, path: Path, content: bytes) -> None:
         import pyarrow
-        import pyarrow.parquet
 
         try:
-            self._table = pyarrow.parquet.read_table(io.BytesIO(content))
+            self._table = read_table(open_parquet(io.BytesIO(content)))
         except (OSError, pyarrow.ArrowException) as error:
             raise FileError(path, f"cannot be read: {error}", f"give {READ}") from None
         super().__init__(path, [_head(field) for field in self._table.schema])

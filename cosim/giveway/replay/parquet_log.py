@@ -11,6 +11,7 @@ import numpy as np
 
 from giveway.base.csv_rows import head_parts
 from giveway.base.errors import FileError
+from giveway.base.parquet import open_parquet, read_batches
 from giveway.replay.arrow_columns import numbers_of
 from giveway.replay.source import Block, Head, Origin, parameters_of
 
@@ -28,11 +29,10 @@ class ParquetLog:
 
     def __init__(self, path: Path) -> None:
         import pyarrow
-        import pyarrow.parquet
 
         self.path, self.said = path, list[str]()
         try:
-            self._file = pyarrow.parquet.ParquetFile(path.open("rb"))
+            self._file = open_parquet(path.open("rb"))
         except FileNotFoundError:
             raise FileError(path, "no such file", "give the path of a log") from None
         except (OSError, pyarrow.ArrowException) as error:
@@ -56,7 +56,7 @@ class ParquetLog:
         names = [self._file.schema_arrow.names[column] for column in wanted]
         row = 0
         try:
-            for batch in self._file.iter_batches(BATCH_ROWS, columns=names, use_threads=False):
+            for batch in read_batches(self._file, BATCH_ROWS, names):
                 columns = [batch.column(batch.schema.get_field_index(name)) for name in names]
                 values = np.stack([numbers_of(column.cast(pyarrow.float64())) for column in columns], axis=1)
                 yield Block(values, row)

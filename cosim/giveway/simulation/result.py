@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from giveway.base.errors import FileError
 from giveway.base.files import read_json, replace_folder, write_text
 from giveway.base.in_notebooks import ShownInNotebooks
+from giveway.base.parquet import open_parquet, read_table
 from giveway.scenario.body_regions import Judgement, judge
 from giveway.simulation.metric_names import RENAMED, current_name
 from giveway.simulation.metrics import Metric
@@ -106,7 +107,6 @@ class Result(ShownInNotebooks):
 def load(folder: Path | str) -> Result:
     """Read a result that `Result.save` wrote."""
     import pyarrow
-    import pyarrow.parquet
     import xarray
 
     folder = Path(folder)
@@ -120,7 +120,7 @@ def load(folder: Path | str) -> Result:
     path = folder / TRACES_FILE
     try:
         with path.open("rb") as file:
-            data = pyarrow.parquet.read_table(file)
+            data = read_table(open_parquet(file))
     except (OSError, pyarrow.ArrowException) as error:
         raise FileError(path, f"cannot be read: {error}") from None
     variables: dict[str, Any] = {}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.base.errors import FileError
+from giveway.base.parquet import open_parquet, read_table
 from giveway.library.batch_library import STATUSES
 from giveway.library.work import result_columns
 from giveway.simulation.metric_names import former_name
@@ -138,12 +139,11 @@ def read_part(path: Path, columns: list[str]) -> Any:
     A part may be older than the name of a metric: then its column is taken by the name that it had.
     """
     import pyarrow
-    import pyarrow.parquet
 
     try:
-        with path.open("rb") as file, pyarrow.parquet.ParquetFile(file) as part:
+        with path.open("rb") as file, open_parquet(file) as part:
             there = set(part.schema_arrow.names)
             stored = [name if name in there else former_name(name) or name for name in columns]
-            return part.read(columns=stored).select(stored).rename_columns(columns)
+            return read_table(part, stored).select(stored).rename_columns(columns)
     except (OSError, KeyError, pyarrow.ArrowException) as error:
         raise FileError(path, f"cannot be read: {error}", "delete it; the same command makes it again") from None
