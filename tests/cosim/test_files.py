@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import shutil
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import pytest
 from cosim_helpers import folder_content
 from giveway.base.errors import FileError, WriteError
-from giveway.base.files import check_output, replace_file, replace_folder, write_text
+from giveway.base.files import check_output, replace_file, replace_folder, scratch_folder, write_text
 
 
 def write_result(folder: Path, text: str) -> None:
@@ -96,6 +97,21 @@ def test_ctrl_c_while_a_temporary_folder_is_removed(tmp_path: Path, monkeypatch:
     with pytest.raises(KeyboardInterrupt), replace_file(tmp_path / "out.json") as temporary:
         temporary.write_text("{}")
     assert folder_content(tmp_path) == ["out.json"]
+
+
+def test_ctrl_c_while_a_scratch_folder_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stays Ctrl-C, and nothing is left."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    interrupt_the_next_removal(monkeypatch)
+    with pytest.raises(KeyboardInterrupt), scratch_folder("giveway-test-") as folder:
+        (folder / "file").write_text("x")
+    assert folder_content(tmp_path) == []
+
+
+def test_a_scratch_folder_that_cannot_be_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "none"))
+    with pytest.raises(FileError, match="none"), scratch_folder("giveway-test-"):
+        pass
 
 
 def test_ctrl_c_while_the_old_result_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

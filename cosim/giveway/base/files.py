@@ -13,7 +13,17 @@ from typing import Any
 
 from giveway.base.errors import FileError, WriteError, system_words
 
-__all__ = ["check_file", "check_output", "read_json", "replace_file", "replace_files", "replace_folder", "write_text"]
+__all__ = [
+    "check_file",
+    "check_output",
+    "read_json",
+    "remove_folder",
+    "replace_file",
+    "replace_files",
+    "replace_folder",
+    "scratch_folder",
+    "write_text",
+]
 
 MARKERS = ("manifest.json", "summary.json", "drivetrain.json", "table.json")
 
@@ -95,7 +105,7 @@ def _writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
         raise WriteError(path, error.cause) from error
 
 
-def _remove(folder: Path) -> None:
+def remove_folder(folder: Path) -> None:
     """Remove a folder as far as possible; Ctrl-C meanwhile stays Ctrl-C.
 
     `shutil.rmtree`, interrupted while it closes a descriptor, closes it again. That fails in spite of `ignore_errors`,
@@ -109,6 +119,19 @@ def _remove(folder: Path) -> None:
             raise
         shutil.rmtree(folder, ignore_errors=True)  # what is left
         raise interrupt from None
+
+
+@contextmanager
+def scratch_folder(prefix: str) -> Iterator[Path]:
+    """A folder in the system's temporary folder, for the length of the block; FileError if it cannot be made."""
+    try:
+        folder = Path(tempfile.mkdtemp(prefix=prefix))
+    except OSError as error:
+        raise FileError(tempfile.gettempdir(), f"cannot be written: {error.strerror}") from None
+    try:
+        yield folder
+    finally:
+        remove_folder(folder)
 
 
 @contextmanager
@@ -133,7 +156,7 @@ def replace_files(*paths: Path) -> Iterator[tuple[Path, ...]]:
         for path in paths:
             with _writing(path):
                 folder = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=_existing_parent(path)))
-            folders.callback(_remove, folder)
+            folders.callback(remove_folder, folder)
             temporary.append(folder / path.name)
             folders.enter_context(_writing(path, folder))
         yield tuple(temporary)
@@ -169,7 +192,7 @@ def replace_folder(folder: Path) -> Iterator[Path]:
         with _writing(folder):
             _swap(temporary, folder)
     except BaseException:
-        _remove(temporary)
+        remove_folder(temporary)
         for parent in made:
             if parent.is_dir() and not any(parent.iterdir()):
                 parent.rmdir()
@@ -186,7 +209,7 @@ def _swap(temporary: Path, folder: Path) -> None:
     old = Path(tempfile.mkdtemp(prefix=f".{folder.name}-old-", dir=folder.absolute().parent))
     folder.replace(old)
     temporary.replace(folder)
-    _remove(old)
+    remove_folder(old)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.base.files import scratch_folder
 from giveway.library.work import RunningWork, default_threads
 from giveway.study import Study
 from giveway.study.engine import Progress, plan_runs, sweep
@@ -92,14 +91,14 @@ def measure(
     ways = names(threads)
     runs_alone = _alone(setup, threads)
     found = Found({name: [] for name in ways})
-    with tempfile.TemporaryDirectory(prefix="giveway-bench-") as folder:
+    with scratch_folder("giveway-bench-") as folder:
         for number in range(rounds):
             for way, name in enumerate(ways):
                 progress(name, number / rounds)
                 if way == 0:
                     found.rates[name].append(runs_alone())
                     continue
-                where = Path(folder) / f"{number}-{way}" / "study"  # apart: they would share their results
+                where = folder / f"{number}-{way}" / "study"  # apart: they would share their results
                 at: list[tuple[int, float]] = []
 
                 def note(state: Progress, at: list[tuple[int, float]] = at) -> None:

@@ -6,7 +6,6 @@ import contextlib
 import json
 import logging
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -19,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from giveway.base.errors import FileError, SimulationError, one_line
+from giveway.base.files import remove_folder
 from giveway.fmu_tools.child import STATUS_BYTES, read_status
 from giveway.fmu_tools.isolation import signal_name
 
@@ -63,7 +63,7 @@ class TemporaryFolder:
                 self._janitor.stdin.flush()
 
     def remove(self) -> None:
-        shutil.rmtree(self.path, ignore_errors=True)
+        remove_folder(self.path)
         if self._janitor is not None:
             self._janitor.kill()
             self._janitor.communicate()

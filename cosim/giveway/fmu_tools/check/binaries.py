@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from giveway.base.errors import FileError
+from giveway.base.files import scratch_folder
 from giveway.fmu_tools.archive import Archive, shown
 from giveway.fmu_tools.check.common import FAULT, NOTE, Found, TestedFile
 
@@ -65,8 +65,8 @@ def binary_of(archive: Archive, name: str) -> Binary | FileError:
     """The content of one shared library of the FMU, or why it cannot be read."""
     from giveway.fmu_tools.binaries import read_binary
 
-    with TemporaryDirectory(prefix="giveway-check-") as folder:
-        path = Path(folder) / "library"  # not the name, which may point anywhere
+    with scratch_folder("giveway-check-") as folder:
+        path = folder / "library"  # not the name, which may point anywhere
         try:
             with path.open("wb") as stream:
                 for piece in archive.chunks(archive.files[name]):

@@ -8,9 +8,8 @@ from collections import Counter
 from collections.abc import Iterator
 from importlib.metadata import version as version_of
 from itertools import islice
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
+from giveway.base.files import scratch_folder
 from giveway.fmu_tools.archive import shown
 from giveway.fmu_tools.check.common import DESCRIPTION, FAULT, NOTE, WARNING, Found, TestedFile, effective, number
 from giveway.fmu_tools.check.documents import BUILD_DESCRIPTION
@@ -158,15 +157,15 @@ def fmpy_validation(file: TestedFile) -> Found:
     if count > MOST_FOR_FMPY:
         yield NOTE, f"FMPy was not asked: {count:,} variables are more than {MOST_FOR_FMPY:,}"
         return
-    with TemporaryDirectory(prefix="giveway-check-") as folder:
+    with scratch_folder("giveway-check-") as folder:
         # It gets a folder with the two files that it reads, since it unpacks without limits.
         for name in {DESCRIPTION, BUILD_DESCRIPTION} & file.sound:
-            path = Path(folder) / name
+            path = folder / name
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(file.read(name))
         try:
             # Its rule for the initial unknowns does not know that clocked variables may be among them.
-            read_model_description(folder, validate=True, validate_model_structure=False)
+            read_model_description(str(folder), validate=True, validate_model_structure=False)
         except ValidationError as error:
             for text in error.problems:
                 yield FAULT, shown(" ".join(text.split()), 400)
