@@ -16,6 +16,7 @@ from giveway.base.errors import FileError, WriteError, system_words
 __all__ = [
     "check_file",
     "check_output",
+    "make_scratch_folder",
     "read_json",
     "remove_folder",
     "replace_file",
@@ -121,13 +122,18 @@ def remove_folder(folder: Path) -> None:
         raise interrupt from None
 
 
-@contextmanager
-def scratch_folder(prefix: str) -> Iterator[Path]:
-    """A folder in the system's temporary folder, for the length of the block; FileError if it cannot be made."""
+def make_scratch_folder(prefix: str) -> Path:
+    """A new folder in the system's temporary folder; FileError if it cannot be made."""
     try:
-        folder = Path(tempfile.mkdtemp(prefix=prefix))
+        return Path(tempfile.mkdtemp(prefix=prefix))
     except OSError as error:
         raise FileError(tempfile.gettempdir(), f"cannot be written: {error.strerror}") from None
+
+
+@contextmanager
+def scratch_folder(prefix: str) -> Iterator[Path]:
+    """The same for the length of a block."""
+    folder = make_scratch_folder(prefix)
     try:
         yield folder
     finally:

@@ -9,20 +9,20 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from giveway.base.errors import FileError, SimulationError, one_line
-from giveway.base.files import remove_folder
+from giveway.base.errors import SimulationError, one_line
+from giveway.base.files import make_scratch_folder, remove_folder
 from giveway.fmu_tools.child import STATUS_BYTES, read_status
 from giveway.fmu_tools.isolation import signal_name
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
 __all__ = ["FmuStoppedError", "run_in_child", "temporary_folder"]
@@ -43,10 +43,7 @@ class TemporaryFolder:
     """A folder in the system's temporary folder, and a janitor that removes it if this process is killed."""
 
     def __init__(self) -> None:
-        try:
-            self.path = Path(tempfile.mkdtemp(prefix="giveway-fmu-run-"))
-        except OSError as error:
-            raise FileError(tempfile.gettempdir(), f"cannot be written: {error.strerror}") from None
+        self.path = make_scratch_folder("giveway-fmu-run-")
         self._janitor: subprocess.Popen[str] | None = None
         with contextlib.suppress(OSError):  # a system without this shell: then a killed run leaves its folder behind
             self._janitor = subprocess.Popen(
