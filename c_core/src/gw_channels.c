@@ -13,6 +13,15 @@
 #define QUIET_TICKS 40U   /* without a force before a contact counts as over */
 #define TURN_TICKS 60U    /* after the last count, wheels count as standing */
 #define CALM_TICKS 250U   /* after a motion: a robot that has stopped swings on its springs */
+/* An end may take so much more than the baseline holds of a contact; of what is left, so much is a push, over the
+ * change. In 2,100 runs of the tuning draw's planar robots 12 reactions lead towards what hit, without this 25. */
+#define END_MOST ((gw_real_t)1.5)
+#define PUSH_LEAST ((gw_real_t)0.5)
+/* The low-pass that sees a body swing back, and how much more its force counts than a contact's. Without, 132 of the
+ * tuning draw's 800 runs of robots that tip have a reaction without contact instead of 88; planar robots are not
+ * concerned, nothing pushes their wheels back. */
+#define BANK_OF_BACK 1U
+#define BACK_MORE ((gw_real_t)2.3)
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
@@ -26,7 +35,7 @@
 void gw_channels_config_trikey(gw_channels_config_t *config)
 {
     config->noise_multiple = (gw_real_t)8.0;
-    config->imu_noise_multiple = (gw_real_t)6.5;
+    config->imu_noise_multiple = (gw_real_t)7.5;
     config->model_multiple = (gw_real_t)2.5;
     config->baseline_s = (gw_real_t)0.3;
     config->slow_s = (gw_real_t)0.05;
@@ -329,6 +338,36 @@ static gw_wrench_t mean_wrench(const gw_channels_t *channels)
     return gw_wrench_limited(mean);
 }
 
+/* What to give way to. A change against a contact that the baseline holds is its end, unless it is much more: then
+ * the robot is pushed by what is left of both, and never from the other side. */
+static gw_vector_t push_of(const gw_channels_t *channels, gw_wrench_t mean)
+{
+    static const gw_vector_t nothing = {0};
+    const gw_vector_t carried = channels->fast.carried_n;
+    const gw_real_t carried_n = gw_length(carried);
+    const gw_vector_t along = gw_unit(carried.x, carried.y, carried_n);
+    const gw_real_t against_n = -((mean.force_x_n * along.x) + (mean.force_y_n * along.y));
+    gw_vector_t push = {mean.force_x_n, mean.force_y_n};
+    if ((against_n > GW_ZERO) && (against_n < (END_MOST * carried_n))) {
+        const gw_real_t least_n = PUSH_LEAST * gw_length(push);
+        const gw_real_t added_n = gw_max(carried_n, against_n);
+        push.x = gw_limited(push.x + (added_n * along.x), GW_WRENCH_MAX);
+        push.y = gw_limited(push.y + (added_n * along.y), GW_WRENCH_MAX);
+        push = (gw_length(push) < least_n) ? nothing : push;
+    }
+    return push;
+}
+
+/* A body that leant against a contact swings back, and goes on swinging. */
+static void rock_back(gw_channels_t *channels)
+{
+    const gw_wrench_t *const felt = &channels->fast.bank[BANK_OF_BACK];
+    const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
+    const gw_vector_t d = gw_unit(impulse.x, impulse.y, gw_length(impulse));
+    const gw_real_t back_n = gw_max(-((felt->force_x_n * d.x) + (felt->force_y_n * d.y)), GW_ZERO);
+    rock(channels, BACK_MORE * back_n, GW_ZERO);
+}
+
 static void end_contact(gw_channels_t *channels, const gw_balance_t *balance, const gw_fast_found_t *found)
 {
     const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
@@ -346,6 +385,9 @@ static void continue_contact(gw_channels_t *channels, const gw_balance_t *balanc
     channels->ticks_since_trip = one_more(channels->ticks_since_trip);
     if (channels->ticks_since_trip < GW_REFINE_TICKS) {
         add_impulse(channels, found->change, channels->period_s);
+    }
+    if (gw_channels_have_time(channels)) {
+        rock_back(channels);
     }
     const bool quiet = (found->release < CALM) && (channels->slow.statistic < GW_ONE);
     channels->quiet_ticks = quiet ? one_more(channels->quiet_ticks) : 0U;
@@ -422,6 +464,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     output->refined = output->tripped || (output->refining && gw_channels_have_time(channels));
     if (output->refined) {
         output->mean_wrench = mean_wrench(channels);
+        output->push_n = push_of(channels, output->mean_wrench);
     }
 }
 

@@ -575,6 +575,30 @@ static void what_was_pushed_rocks(void)
     CHECK(gw_in_range(channels.rocking_n2, R(27.0) * R(27.0), R(30.0) * R(30.0)));
 }
 
+/* What pushes back after a contact is the body that swings: 2.3 times as much as a contact of this force; what pushes
+ * on is none. */
+static void what_swings_back_rocks_more(void)
+{
+    for (uint32_t i = 0U; i < 3U; i++) {
+        gw_channels_config_trikey(&config);
+        config.rocking = (i == 2U) ? GW_ZERO : R(0.5);
+        begin_with_config();
+        ticks(WARM_UP);
+        wrench.force_y_n = R(-60.0);
+        CHECK(ticks_to_trip(20U) < 20U);
+        ticks(30U);
+        CHECK(channels.rocking_n2 == GW_ZERO);
+        wrench.force_y_n = (i == 1U) ? R(-30.0) : R(30.0);
+        ticks(40U); /* the low-pass of 6 ms has 1 - exp(-40/6) of the step */
+        unit_row(i);
+        if (i == 0U) {
+            CHECK_NEAR(gw_sqrt(channels.rocking_n2), R(0.5) * R(2.3) * R(30.0), R(0.5));
+        } else {
+            CHECK(channels.rocking_n2 == GW_ZERO);
+        }
+    }
+}
+
 static void rocking_is_bounded(void)
 {
     gw_channels_config_trikey(&config);
@@ -871,6 +895,40 @@ static void the_mean_wrench_of_a_push_is_found(void)
 }
 
 /* However large forces are and however long a contact lasts. */
+/* The baseline carries 100 N along x of an old contact. A change against it is its end, up to 1.5 times of it: what is
+ * left of both pushes, if it is half of the change. */
+static void an_end_is_no_push_from_the_other_side(void)
+{
+    static const struct {
+        gw_real_t x_n;
+        gw_real_t y_n;
+        gw_real_t added; /* to the change, along x: 0 none, 1 what is carried, 2 what the change has against it */
+        bool pushes;
+    } rows[] = {
+        {R(80.0), R(0.0), R(0.0), true},    {R(0.0), R(-80.0), R(0.0), true},    {R(-90.0), R(10.0), R(1.0), false},
+        {R(-90.0), R(100.0), R(1.0), true}, {R(-140.0), R(60.0), R(2.0), false}, {R(-140.0), R(90.0), R(2.0), true},
+        {R(-160.0), R(10.0), R(0.0), true},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        channels.fast.held.force_x_n = R(1.0); /* little is forgiven */
+        channels.fast.carried_n.x = R(100.0);
+        wrench.force_x_n = rows[i].x_n;
+        wrench.force_y_n = rows[i].y_n;
+        CHECK(ticks_to_trip(20U) < 20U);
+        ticks(40U);
+        do {
+            tick();
+        } while (!output.refined);
+        const gw_wrench_t mean = output.mean_wrench;
+        const gw_real_t carried = channels.fast.carried_n.x;
+        const gw_real_t added = (rows[i].added > GW_ONE) ? -mean.force_x_n : (rows[i].added * carried);
+        unit_row(i);
+        CHECK_NEAR(output.push_n.x, rows[i].pushes ? (mean.force_x_n + added) : GW_ZERO, R(300.0) * ROUNDING);
+        CHECK_NEAR(output.push_n.y, rows[i].pushes ? mean.force_y_n : GW_ZERO, R(300.0) * ROUNDING);
+    }
+}
+
 static void the_impulse_is_bounded(void)
 {
     gw_channels_noise_t slow = fine_noise();
@@ -989,6 +1047,7 @@ void suite_channels(void)
     unit_run("calm_ticks_are_counted_at_rest", calm_ticks_are_counted_at_rest);
     unit_run("what_was_accelerated_rocks", what_was_accelerated_rocks);
     unit_run("what_was_pushed_rocks", what_was_pushed_rocks);
+    unit_run("what_swings_back_rocks_more", what_swings_back_rocks_more);
     unit_run("rocking_is_bounded", rocking_is_bounded);
     unit_run("an_error_of_gears_is_remembered", an_error_of_gears_is_remembered);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
@@ -1000,6 +1059,7 @@ void suite_channels(void)
     unit_run("the_friction_of_a_robot_is_followed", the_friction_of_a_robot_is_followed);
     unit_run("rollers_that_hardly_turn_widen_the_threshold", rollers_that_hardly_turn_widen_the_threshold);
     unit_run("the_mean_wrench_of_a_push_is_found", the_mean_wrench_of_a_push_is_found);
+    unit_run("an_end_is_no_push_from_the_other_side", an_end_is_no_push_from_the_other_side);
     unit_run("the_impulse_is_bounded", the_impulse_is_bounded);
     unit_run("a_restart_keeps_what_was_learned", a_restart_keeps_what_was_learned);
     unit_run("what_is_counted_is_passed_on", what_is_counted_is_passed_on);
