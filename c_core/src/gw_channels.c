@@ -22,6 +22,12 @@
  * concerned, nothing pushes their wheels back. */
 #define BANK_OF_BACK 1U
 #define BACK_MORE ((gw_real_t)2.3)
+/* The low-pass whose forces are summed to a contact's impulse, and the one for what is slow, or felt by an IMU in
+ * motion. A sum of the forces themselves would end in the noise of a speed, which more ticks hardly make less: 95 % of
+ * the tuning draw's planar hits were placed within 93 mm after 30 ms, with this 62. With an IMU free hits in motion are
+ * placed within 81 mm; with the first low-pass for them, too, 127. */
+#define BANK_OF_SUM 1U
+#define BANK_OF_SLOW_SUM 2U
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
@@ -120,6 +126,7 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->gear_n2 = GW_ZERO;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
+    channels->summed = BANK_OF_SUM;
     channels->tick = 0U;
     channels->ticks_since_trip = 0U;
     channels->ticks_since_release = GW_TICK_MASK;
@@ -154,7 +161,7 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
                 gw_in_range(channels->rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
                 gw_in_range(channels->gear_keep, GW_HALF, GW_ONE) &&
                 gw_in_range(channels->gear_n2, GW_ZERO, GEAR_MAX_N2) && (channels->calm_ticks <= CALM_TICKS) &&
-                gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
+                gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) && (channels->summed < GW_BANK_COUNT) &&
                 gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
     }
@@ -311,7 +318,7 @@ static void add_impulse(gw_channels_t *channels, gw_wrench_t wrench, gw_real_t t
 }
 
 /* A contact begins: the impulse so far is that of the filter that noticed it. */
-static void begin_contact(gw_channels_t *channels, const gw_fast_found_t *found)
+static void begin_contact(gw_channels_t *channels, gw_regime_t regime, const gw_fast_found_t *found)
 {
     static const gw_wrench_t no_impulse = {0};
     channels->active = true;
@@ -320,12 +327,15 @@ static void begin_contact(gw_channels_t *channels, const gw_fast_found_t *found)
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ZERO;
     if (found->statistic > GW_ONE) {
+        const bool shaken = (channels->fast.sensor == GW_BY_IMU) && (regime != GW_REGIME_REST);
         channels->channel = GW_CHANNEL_FAST;
+        channels->summed = shaken ? BANK_OF_SLOW_SUM : BANK_OF_SUM;
         add_impulse(channels, channels->fast.bank[found->widest], gw_fast_channel_time(&channels->fast, found->widest));
     } else {
         const gw_wrench_t lasting = {channels->slow.force_n.x, channels->slow.force_n.y,
                                      channels->slow.mean.residual.torque_nm};
         channels->channel = GW_CHANNEL_SLOW;
+        channels->summed = BANK_OF_SLOW_SUM;
         add_impulse(channels, lasting, channels->config.slow_s);
     }
 }
@@ -384,7 +394,7 @@ static void continue_contact(gw_channels_t *channels, const gw_balance_t *balanc
 {
     channels->ticks_since_trip = one_more(channels->ticks_since_trip);
     if (channels->ticks_since_trip < GW_REFINE_TICKS) {
-        add_impulse(channels, found->change, channels->period_s);
+        add_impulse(channels, channels->fast.bank[channels->summed], channels->period_s);
     }
     if (gw_channels_have_time(channels)) {
         rock_back(channels);
@@ -423,7 +433,7 @@ static gw_real_t compare(gw_channels_t *channels, const gw_kinematics_t *kinemat
     /* In a reaction a lasting force is told from wrong friction by nothing: impacts alone count. */
     const gw_real_t largest = input->reacting ? found.statistic : gw_max(found.statistic, channels->slow.statistic);
     if ((!channels->active) && input->enabled && (largest > GW_ONE)) {
-        begin_contact(channels, &found);
+        begin_contact(channels, regime, &found);
         output->tripped = true;
     } else {
         if (!input->zero_changed) {

@@ -92,6 +92,7 @@ typedef struct {
     gw_real_t gear_keep;
     gw_real_t gear_n2;   /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it */
     gw_wrench_t impulse; /* N s, N m s */
+    uint32_t summed;     /* the low-pass whose forces are its impulse */
     gw_real_t impulse_s;
     uint32_t tick; /* counts the ticks of the tasks that not every tick has */
     uint32_t ticks_since_trip;
