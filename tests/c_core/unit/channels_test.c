@@ -1005,6 +1005,7 @@ static void a_restart_keeps_what_was_learned(void)
     (void)ticks_to_trip(20U);
     CHECK(output.active);
     const gw_real_t noise_n2 = channels.fast.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][0];
+    channels.summed = GW_BANK_COUNT; /* as memory may be before the first start */
     gw_channels_restart(&channels);
     CHECK(gw_channels_invariant_holds(&channels));
     CHECK((!channels.active) && (channels.channel == GW_CHANNEL_NONE) && (channels.warm_up_ticks == 0U));
