@@ -21,7 +21,7 @@ def check(context: Context) -> Figure:
 def passed(context: Context, *arguments: str, environment: dict[str, str] | None = None) -> int:
     """The number of deep tests that passed; `RungFailed` if one failed or none was found."""
     answer = context.run(
-        context.which(PYTEST), "-q", "-m", "deep", *arguments,
+        context.which(PYTEST), "-q", "-m", "deep", "--numprocesses", "2", "--dist", "loadfile", *arguments,
         cwd=context.root, timeout_s=HANGS_S, memory_gib=None,
         environment={"OPENBLAS_NUM_THREADS": "1", **(environment or {})},
     )  # fmt: skip
