@@ -17,6 +17,7 @@ import pytest
 from cosim_helpers import Cli, short
 from giveway.base import native
 from giveway.replay.run_log import write_log
+from measured_process import measure
 
 
 @pytest.fixture(scope="module")
@@ -65,15 +66,6 @@ def test_wrong_lines_are_named(lines: list[str], cli: Cli, monkeypatch: pytest.M
     assert "standard input:101: columns: 17 is not allowed; allowed: 18, as in line" in done.stderr
 
 
-# Linux counts the memory of the process that starts another as the other's, too: a small one starts it.
-MEMORY = """
-import resource, subprocess, sys
-
-subprocess.run(sys.argv[1:], check=True)
-print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
-"""
-
-
 @pytest.mark.deep
 def test_an_hour_is_played_in_little_memory(tmp_path: Path) -> None:
     """3.6 million rows, 500 MB as numbers: the process needs less than 700 MB, of which 150 are Python's libraries."""
@@ -89,13 +81,13 @@ def test_an_hour_is_played_in_little_memory(tmp_path: Path) -> None:
             counter = one.schema.get_field_index("sensor_counter")
             many = many.set_column(counter, one.schema.field(counter), pyarrow.array(at.astype(np.int32)))
             writer.write_table(many)
-    command = [sys.executable, "-c", MEMORY, sys.executable, "-m", "giveway", "replay", "hour.parquet", "--out", "out"]
-    ended = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True)
-    said, _, needed_kb = ended.stdout.rstrip().rpartition("\n")
-    assert "3600000 of 1 ms" in said
-    assert int(needed_kb) < 700_000
+    log, out = str(tmp_path / "hour.parquet"), str(tmp_path / "out")
+    played = measure([sys.executable, "-m", "giveway", "replay", log, "--out", out], tmp_path)
+    assert played.code == 0, played.said
+    assert "3600000 of 1 ms" in played.said
+    assert played.memory_kb < 700_000
     assert (tmp_path / "out/report.html").stat().st_size < 2_000_000
-    speed = re.search(r"\(([\d.]+) s of processor time\)", said)
+    speed = re.search(r"\(([\d.]+) s of processor time\)", played.said)
     assert speed is not None
     assert (
         3600.0 / float(speed[1]) > 150.0
