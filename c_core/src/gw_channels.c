@@ -13,6 +13,21 @@
 #define QUIET_TICKS 40U   /* without a force before a contact counts as over */
 #define TURN_TICKS 60U    /* after the last count, wheels count as standing */
 #define CALM_TICKS 250U   /* after a motion: a robot that has stopped swings on its springs */
+/* An end may take so much more than the baseline holds of a contact; of what is left, so much is a push, over the
+ * change. In 2,100 runs of the tuning draw's planar robots 12 reactions lead towards what hit, without this 25. */
+#define END_MOST ((gw_real_t)1.5)
+#define PUSH_LEAST ((gw_real_t)0.5)
+/* The low-pass that sees a body swing back, and how much more its force counts than a contact's. Without, 132 of the
+ * tuning draw's 800 runs of robots that tip have a reaction without contact instead of 88; planar robots are not
+ * concerned, nothing pushes their wheels back. */
+#define BANK_OF_BACK 1U
+#define BACK_MORE ((gw_real_t)2.3)
+/* The low-pass whose forces are summed to a contact's impulse, and the one for what is slow, or felt by an IMU in
+ * motion. A sum of the forces themselves would end in the noise of a speed, which more ticks hardly make less: 95 % of
+ * the tuning draw's planar hits were placed within 93 mm after 30 ms, with this 62. With an IMU free hits in motion are
+ * placed within 81 mm; with the first low-pass for them, too, 127. */
+#define BANK_OF_SUM 1U
+#define BANK_OF_SLOW_SUM 2U
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
@@ -26,7 +41,7 @@
 void gw_channels_config_trikey(gw_channels_config_t *config)
 {
     config->noise_multiple = (gw_real_t)8.0;
-    config->imu_noise_multiple = (gw_real_t)6.5;
+    config->imu_noise_multiple = (gw_real_t)7.5;
     config->model_multiple = (gw_real_t)2.5;
     config->baseline_s = (gw_real_t)0.3;
     config->slow_s = (gw_real_t)0.05;
@@ -111,6 +126,7 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->gear_n2 = GW_ZERO;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
+    channels->summed = BANK_OF_SUM;
     channels->tick = 0U;
     channels->ticks_since_trip = 0U;
     channels->ticks_since_release = GW_TICK_MASK;
@@ -145,7 +161,7 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
                 gw_in_range(channels->rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
                 gw_in_range(channels->gear_keep, GW_HALF, GW_ONE) &&
                 gw_in_range(channels->gear_n2, GW_ZERO, GEAR_MAX_N2) && (channels->calm_ticks <= CALM_TICKS) &&
-                gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
+                gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) && (channels->summed < GW_BANK_COUNT) &&
                 gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
     }
@@ -302,7 +318,7 @@ static void add_impulse(gw_channels_t *channels, gw_wrench_t wrench, gw_real_t t
 }
 
 /* A contact begins: the impulse so far is that of the filter that noticed it. */
-static void begin_contact(gw_channels_t *channels, const gw_fast_found_t *found)
+static void begin_contact(gw_channels_t *channels, gw_regime_t regime, const gw_fast_found_t *found)
 {
     static const gw_wrench_t no_impulse = {0};
     channels->active = true;
@@ -311,12 +327,15 @@ static void begin_contact(gw_channels_t *channels, const gw_fast_found_t *found)
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ZERO;
     if (found->statistic > GW_ONE) {
+        const bool shaken = (channels->fast.sensor == GW_BY_IMU) && (regime != GW_REGIME_REST);
         channels->channel = GW_CHANNEL_FAST;
+        channels->summed = shaken ? BANK_OF_SLOW_SUM : BANK_OF_SUM;
         add_impulse(channels, channels->fast.bank[found->widest], gw_fast_channel_time(&channels->fast, found->widest));
     } else {
         const gw_wrench_t lasting = {channels->slow.force_n.x, channels->slow.force_n.y,
                                      channels->slow.mean.residual.torque_nm};
         channels->channel = GW_CHANNEL_SLOW;
+        channels->summed = BANK_OF_SLOW_SUM;
         add_impulse(channels, lasting, channels->config.slow_s);
     }
 }
@@ -327,6 +346,36 @@ static gw_wrench_t mean_wrench(const gw_channels_t *channels)
     const gw_wrench_t mean = {channels->impulse.force_x_n * per_s, channels->impulse.force_y_n * per_s,
                               channels->impulse.torque_nm * per_s};
     return gw_wrench_limited(mean);
+}
+
+/* What to give way to. A change against a contact that the baseline holds is its end, unless it is much more: then
+ * the robot is pushed by what is left of both, and never from the other side. */
+static gw_vector_t push_of(const gw_channels_t *channels, gw_wrench_t mean)
+{
+    static const gw_vector_t nothing = {0};
+    const gw_vector_t carried = channels->fast.carried_n;
+    const gw_real_t carried_n = gw_length(carried);
+    const gw_vector_t along = gw_unit(carried.x, carried.y, carried_n);
+    const gw_real_t against_n = -((mean.force_x_n * along.x) + (mean.force_y_n * along.y));
+    gw_vector_t push = {mean.force_x_n, mean.force_y_n};
+    if ((against_n > GW_ZERO) && (against_n < (END_MOST * carried_n))) {
+        const gw_real_t least_n = PUSH_LEAST * gw_length(push);
+        const gw_real_t added_n = gw_max(carried_n, against_n);
+        push.x = gw_limited(push.x + (added_n * along.x), GW_WRENCH_MAX);
+        push.y = gw_limited(push.y + (added_n * along.y), GW_WRENCH_MAX);
+        push = (gw_length(push) < least_n) ? nothing : push;
+    }
+    return push;
+}
+
+/* A body that leant against a contact swings back, and goes on swinging. */
+static void rock_back(gw_channels_t *channels)
+{
+    const gw_wrench_t *const felt = &channels->fast.bank[BANK_OF_BACK];
+    const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
+    const gw_vector_t d = gw_unit(impulse.x, impulse.y, gw_length(impulse));
+    const gw_real_t back_n = gw_max(-((felt->force_x_n * d.x) + (felt->force_y_n * d.y)), GW_ZERO);
+    rock(channels, BACK_MORE * back_n, GW_ZERO);
 }
 
 static void end_contact(gw_channels_t *channels, const gw_balance_t *balance, const gw_fast_found_t *found)
@@ -345,7 +394,10 @@ static void continue_contact(gw_channels_t *channels, const gw_balance_t *balanc
 {
     channels->ticks_since_trip = one_more(channels->ticks_since_trip);
     if (channels->ticks_since_trip < GW_REFINE_TICKS) {
-        add_impulse(channels, found->change, channels->period_s);
+        add_impulse(channels, channels->fast.bank[channels->summed], channels->period_s);
+    }
+    if (gw_channels_have_time(channels)) {
+        rock_back(channels);
     }
     const bool quiet = (found->release < CALM) && (channels->slow.statistic < GW_ONE);
     channels->quiet_ticks = quiet ? one_more(channels->quiet_ticks) : 0U;
@@ -381,7 +433,7 @@ static gw_real_t compare(gw_channels_t *channels, const gw_kinematics_t *kinemat
     /* In a reaction a lasting force is told from wrong friction by nothing: impacts alone count. */
     const gw_real_t largest = input->reacting ? found.statistic : gw_max(found.statistic, channels->slow.statistic);
     if ((!channels->active) && input->enabled && (largest > GW_ONE)) {
-        begin_contact(channels, &found);
+        begin_contact(channels, regime, &found);
         output->tripped = true;
     } else {
         if (!input->zero_changed) {
@@ -422,6 +474,7 @@ void gw_channels_step(gw_channels_t *channels, const gw_kinematics_t *kinematics
     output->refined = output->tripped || (output->refining && gw_channels_have_time(channels));
     if (output->refined) {
         output->mean_wrench = mean_wrench(channels);
+        output->push_n = push_of(channels, output->mean_wrench);
     }
 }
 

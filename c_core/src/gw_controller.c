@@ -108,6 +108,13 @@ static void forget_detection(gw_controller_t *controller)
     controller->detection_tick = -1;
 }
 
+static gw_vector_t mean_force(const gw_controller_t *controller)
+{
+    const gw_vector_t force = {controller->detection.mean_wrench.force_x_n,
+                               controller->detection.mean_wrench.force_y_n};
+    return force;
+}
+
 static bool looks_for_hits(gw_mode_t mode)
 {
     return (mode == GW_MODE_TRACKING) || (mode == GW_MODE_REACTING) || (mode == GW_MODE_SETTLED) ||
@@ -236,6 +243,12 @@ static bool is_imu_trusted(const gw_controller_t *controller)
     return controller->felt.trusted;
 }
 
+/* What to give way to, base frame. */
+static gw_vector_t felt_push(const gw_controller_t *controller)
+{
+    return uses_channels(controller) ? controller->contact_found.push_n : mean_force(controller);
+}
+
 /* The two channels; their answer in the form of a detector's. */
 static void detect_by_channels(gw_controller_t *controller)
 {
@@ -335,6 +348,11 @@ static bool is_imu_trusted(const gw_controller_t *controller)
 {
     (void)controller;
     return false;
+}
+
+static gw_vector_t felt_push(const gw_controller_t *controller)
+{
+    return mean_force(controller);
 }
 
 static void detect_by_channels(const gw_controller_t *controller)
@@ -611,12 +629,17 @@ GW_SMALL static gw_status_t continue_tare(gw_controller_t *controller, const gw_
     return (progress == GW_TARE_REFUSED) ? GW_STATUS_TARE_REFUSED : GW_STATUS_OK;
 }
 
-/* The direction of the hit in the world frame, as a unit vector. */
-static gw_vector_t hit_direction(const gw_controller_t *controller)
+/* The direction of the push in the world frame, as a unit vector; zero if there is none. */
+static gw_vector_t push_direction(const gw_controller_t *controller)
 {
-    const gw_wrench_t wrench = controller->detection.mean_wrench;
-    const gw_vector_t force = {wrench.force_x_n, wrench.force_y_n};
+    const gw_vector_t force = felt_push(controller);
     return gw_rotate(controller->reference.yaw, gw_unit(force.x, force.y, gw_length(force)));
+}
+
+/* A push that ends within a reaction is noticed, too: the reaction goes on. */
+static bool gives_way_anew(gw_mode_t before, gw_vector_t direction)
+{
+    return (before != GW_MODE_REACTING) || (gw_length(direction) > GW_HALF);
 }
 
 /* What happens once, when a mode begins. */
@@ -625,11 +648,16 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
-        const gw_vector_t direction = hit_direction(controller);
-        note_press(controller, before, velocity, direction);
-        (void)gw_admittance_start(&controller->admittance, velocity, direction);
+        const gw_vector_t direction = push_direction(controller);
+        if (gives_way_anew(before, direction)) {
+            note_press(controller, before, velocity, direction);
+            (void)gw_admittance_start(&controller->admittance, velocity, direction);
+        }
     } else if ((mode == GW_MODE_REACTING) && is_refined(controller)) {
-        gw_admittance_redirect(&controller->admittance, hit_direction(controller));
+        const gw_vector_t direction = push_direction(controller);
+        if (gives_way_anew(before, direction)) {
+            gw_admittance_redirect(&controller->admittance, direction);
+        }
     } else if (mode != before) {
         if (mode == GW_MODE_REACTING) {
             /* After an interruption the space may no longer be free: come to rest, do not go on with the escape. */

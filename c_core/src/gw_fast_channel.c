@@ -249,6 +249,7 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel)
     channel->moment_noise_m2 = channel->moment_per_force_m2;
     channel->held = nothing;
     channel->doubt_n = no_force;
+    channel->carried_n = no_force;
     channel->held_share = GW_ZERO;
     channel->sensor = GW_BY_ENCODERS;
     channel->shaking_n2 = GW_ZERO;
@@ -293,7 +294,8 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
                 gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) &&
                 gw_in_range(channel->rocking_n2, GW_ZERO, VARIANCE_MAX) &&
                 gw_wrench_is_within(&channel->held, HELD_MAX_N) && gw_within(channel->doubt_n.x, HELD_MAX_N) &&
-                gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_in_range(channel->held_share, GW_ZERO, GW_ONE) &&
+                gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_within(channel->carried_n.x, HELD_MAX_N) &&
+                gw_within(channel->carried_n.y, HELD_MAX_N) && gw_in_range(channel->held_share, GW_ZERO, GW_ONE) &&
                 (channel->followed < GW_BANK_COUNT) && (channel->sensor < GW_SENSOR_COUNT) &&
                 gw_in_range(channel->shaking_n2, GW_ZERO, NOISE_MAX_N2) &&
                 gw_in_range(channel->counted, GW_ZERO, GW_TWO);
@@ -456,6 +458,21 @@ static void hold(gw_fast_channel_t *channel, const gw_wrench_t *change, bool fol
     channel->held_share = keep * channel->held_share;
 }
 
+/* The baseline follows an old contact, its end, too. */
+static void carry(gw_fast_channel_t *channel, const gw_wrench_t *change, bool follows)
+{
+    const gw_wrench_t *const held = &channel->held;
+    gw_vector_t *const carried = &channel->carried_n;
+    if (((carried->x * held->force_x_n) + (carried->y * held->force_y_n)) > GW_ZERO) {
+        const gw_real_t share = follows ? (channel->held_share * channel->baseline_share) : GW_ZERO;
+        carried->x = gw_limited((channel->held_keep * carried->x) + (share * change->force_x_n), HELD_MAX_N);
+        carried->y = gw_limited((channel->held_keep * carried->y) + (share * change->force_y_n), HELD_MAX_N);
+    } else {
+        carried->x = GW_ZERO;
+        carried->y = GW_ZERO;
+    }
+}
+
 /* A contact that lasts may turn, so its end has a part across: as large as its part along, (x h)^2/|x|^2. */
 static gw_real_t turned_variance(const gw_wrench_t *held, gw_vector_t force_n)
 {
@@ -512,6 +529,7 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
             found->release = gw_planar_distance(spread, found->release_n2, force_n);
         }
     }
+    carry(channel, &channel->bank[GW_BANK_COUNT - 1U], quiet);
     hold(channel, &channel->bank[GW_BANK_COUNT - 1U], quiet);
     if (quiet && (found->statistic < GW_HALF)) {
         follow_noise(channel, regime);
@@ -540,8 +558,12 @@ void gw_fast_channel_release(gw_fast_channel_t *channel, const gw_balance_t *bal
         ((((m.xx * d.x) * d.x) + ((GW_TWO * m.xy) * (d.x * d.y))) + ((m.yy * d.y) * d.y)) + found->release_n2;
     const gw_real_t doubt_n = gw_min(gw_sqrt(gw_max(unknown_n2, GW_ZERO)), HELD_MAX_N);
     gw_wrench_t *const held = &channel->held;
-    held->force_x_n = gw_limited(held->force_x_n + (lasts ? left->force_x_n : (left_n * d.x)), HELD_MAX_N);
-    held->force_y_n = gw_limited(held->force_y_n + (lasts ? left->force_y_n : (left_n * d.y)), HELD_MAX_N);
+    const gw_real_t x_n = lasts ? left->force_x_n : (left_n * d.x);
+    const gw_real_t y_n = lasts ? left->force_y_n : (left_n * d.y);
+    held->force_x_n = gw_limited(held->force_x_n + x_n, HELD_MAX_N);
+    held->force_y_n = gw_limited(held->force_y_n + y_n, HELD_MAX_N);
+    channel->carried_n.x = gw_limited(channel->carried_n.x + x_n, HELD_MAX_N);
+    channel->carried_n.y = gw_limited(channel->carried_n.y + y_n, HELD_MAX_N);
     held->torque_nm = gw_limited(held->torque_nm + left->torque_nm, HELD_MAX_N);
     channel->doubt_n.x = doubt_n * d.x;
     channel->doubt_n.y = doubt_n * d.y;

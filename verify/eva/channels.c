@@ -57,6 +57,7 @@ static void part_step(void)
     input.shaking_mps2_2 = draw_real(GW_ZERO, (gw_real_t)1.0e8);
     input.gear_n2 = draw_real(GW_ZERO, (gw_real_t)1.0e12);
     draw_wrench(&output.mean_wrench, GW_WRENCH_MAX); /* written when it is refined, else kept */
+    draw_vector(&output.push_n, GW_WRENCH_MAX);
     draw_channels(&channels);
     draw_kinematics(&kinematics);
     if (any_flag()) {
@@ -68,6 +69,7 @@ static void part_step(void)
         demand_real(output.statistic, GW_ZERO, (gw_real_t)1.0e10);
         demand_count(output.channel, 0U, GW_CHANNEL_SLOW);
         hold_wrench(&output.mean_wrench, GW_WRENCH_MAX);
+        hold_vector(&output.push_n, GW_WRENCH_MAX);
         hold_vector(&output.force_n, GW_WRENCH_MAX);
     }
     hold_channels(&channels);

@@ -12,7 +12,8 @@
  * A robot that has stopped swings on its springs: the thresholds of rest hold once it has been calm for 250 ticks,
  * until then those of motion. The body of one that may lean rocks after every change of its acceleration and after
  * every contact: that adds r^2 I to the covariances, r a share of the change of M a, or of the contact's force, which
- * fades. The end of a contact waits for the rocking.
+ * fades. When it swings back the wheels feel a force against the contact, which no contact makes: that counts more. The
+ * end of a contact waits for the rocking.
  *
  * Life cycle: gw_channels_init, gw_channels_step per tick, gw_channels_restart or gw_channels_resume after a gap. All
  * members are private.
@@ -72,7 +73,10 @@ typedef struct {
     /* Root of x^T S^-1 x, the larger of both channels; trips above 1. */
     gw_real_t statistic;
     gw_wrench_t mean_wrench; /* kept until the next contact */
-    gw_vector_t force_n;     /* difference from the baseline in this tick */
+    /* What to give way to, kept likewise: the force of the mean wrench, or, where it is against a contact that the
+     * baseline still holds, what is left of both; zero if that is little: then a push has ended. */
+    gw_vector_t push_n;
+    gw_vector_t force_n; /* difference from the baseline in this tick */
 } gw_channels_output_t;
 
 typedef struct {
@@ -88,6 +92,7 @@ typedef struct {
     gw_real_t gear_keep;
     gw_real_t gear_n2;   /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it */
     gw_wrench_t impulse; /* N s, N m s */
+    uint32_t summed;     /* the low-pass whose forces are its impulse */
     gw_real_t impulse_s;
     uint32_t tick; /* counts the ticks of the tasks that not every tick has */
     uint32_t ticks_since_trip;

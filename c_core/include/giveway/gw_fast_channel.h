@@ -72,6 +72,9 @@ typedef struct {
     gw_wrench_t held;
     gw_vector_t doubt_n;
     gw_real_t held_share;
+    /* The force of an old contact in the baseline as it is now: what was left of it, and what the baseline has followed
+     * of its growth and its end. Zero once that points to the other side. */
+    gw_vector_t carried_n;
     uint32_t followed; /* the low-pass whose noise is followed in this tick */
 } gw_fast_channel_t;
 

@@ -455,6 +455,36 @@ static void what_is_held_of_a_contact_grows_with_it(void)
     }
 }
 
+/* What the baseline carries of a contact follows its growth, its turns and its end; while a contact is felt the
+ * baseline stands still. Once it points to the other side there is nothing of it any more. */
+static void what_is_carried_of_a_contact_follows_it(void)
+{
+    begin();
+    CHECK((channel.carried_n.x == GW_ZERO) && (channel.carried_n.y == GW_ZERO));
+    for (uint32_t i = 0U; i < 3U; i++) {
+        hold_100_n();
+        CHECK_NEAR(channel.carried_n.x, R(100.0) * channel.held_keep, R(300.0) * ROUNDING);
+        channel.bank[3].force_x_n = (i == 1U) ? R(60.0) : R(-60.0);
+        channel.bank[3].force_y_n = R(30.0);
+        const gw_fast_channel_t before = channel;
+        step(GW_REGIME_REST, i != 2U);
+        unit_row(i);
+        const gw_real_t share = (i == 2U) ? GW_ZERO : (before.held_share * before.baseline_share);
+        const gw_wrench_t *const slowest = &channel.bank[3];
+        CHECK_NEAR(channel.carried_n.x, (before.held_keep * before.carried_n.x) + (share * slowest->force_x_n),
+                   R(200.0) * ROUNDING);
+        CHECK_NEAR(channel.carried_n.y, share * slowest->force_y_n, R(10.0) * ROUNDING);
+    }
+    hold_100_n();
+    channel.carried_n.x = R(-1.0);
+    channel.carried_n.y = R(5.0);
+    steps(1U);
+    CHECK((channel.carried_n.x == GW_ZERO) && (channel.carried_n.y == GW_ZERO));
+    channel.bank[3].force_x_n = R(60.0); /* nothing that begins later counts as carried */
+    step(GW_REGIME_REST, true);
+    CHECK((channel.carried_n.x == GW_ZERO) && (channel.carried_n.y == GW_ZERO));
+}
+
 /* With a covariance of the model, along (3, 4)/5: d^T M d = (9 * 25 + 24 * 10 + 16 * 50)/25 = 50.6. A force against
  * the direction leaves nothing. */
 static void what_the_model_does_not_know_may_be_left_of_a_contact(void)
@@ -503,11 +533,13 @@ static void all_of_a_contact_that_lasts_is_held(void)
     channel.bank[2].force_y_n = R(60.0);
     gw_fast_channel_release(&channel, &balance, &found, along_x, true);
     CHECK((channel.held.force_x_n == R(-10.0)) && (channel.held.force_y_n == R(60.0)));
+    CHECK((channel.carried_n.x == R(-10.0)) && (channel.carried_n.y == R(60.0)));
     begin();
     channel.bank[2].force_x_n = R(-10.0);
     channel.bank[2].force_y_n = R(60.0);
     gw_fast_channel_release(&channel, &balance, &found, along_x, false);
     CHECK((channel.held.force_x_n == GW_ZERO) && (channel.held.force_y_n == GW_ZERO));
+    CHECK((channel.carried_n.x == GW_ZERO) && (channel.carried_n.y == GW_ZERO));
 }
 
 /* Vibration of (0.4 m/s2)^2 at 35 kg is 196 N^2: 3, 1, 0.08 and 0.01 of it pass. */
@@ -960,6 +992,8 @@ static void the_invariant_sees_every_member(void)
                                   &channel.held.torque_nm,
                                   &channel.doubt_n.x,
                                   &channel.doubt_n.y,
+                                  &channel.carried_n.x,
+                                  &channel.carried_n.y,
                                   &channel.held_share};
     CHECK(!gw_fast_channel_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
@@ -1027,6 +1061,7 @@ void suite_fast_channel(void)
     unit_run("what_is_held_of_a_contact_grows_with_it", what_is_held_of_a_contact_grows_with_it);
     unit_run("what_the_model_does_not_know_may_be_left_of_a_contact",
              what_the_model_does_not_know_may_be_left_of_a_contact);
+    unit_run("what_is_carried_of_a_contact_follows_it", what_is_carried_of_a_contact_follows_it);
     unit_run("all_of_a_contact_that_lasts_is_held", all_of_a_contact_that_lasts_is_held);
     unit_run("vibration_that_an_imu_sees_counts_at_once", vibration_that_an_imu_sees_counts_at_once);
     unit_run("counts_add_noise_until_it_has_faded", counts_add_noise_until_it_has_faded);
