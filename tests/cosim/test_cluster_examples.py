@@ -111,7 +111,10 @@ def ssh_server(folder: Path) -> Iterator[None]:
         )
         try:
             await process.redirect(child.stdin, child.stdout, child.stderr)
-            process.exit(await child.wait())
+            status = await child.wait()
+            await process.stdout.drain()  # of a child that ended before its pipes were read
+            await process.stderr.drain()
+            process.exit(status)
         finally:
             if child.returncode is None:
                 os.killpg(child.pid, signal.SIGKILL)
