@@ -112,7 +112,7 @@ def ssh_server(folder: Path) -> Iterator[None]:
         try:
             await process.redirect(child.stdin, child.stdout, child.stderr)
             status = await child.wait()
-            await process.stdout.drain()  # of a child that ended before its pipes were read
+            await process.stdout.drain()  # a command may end before its output is read
             await process.stderr.drain()
             process.exit(status)
         finally:
