@@ -17,8 +17,8 @@
  * change. In 2,100 runs of the tuning draw's planar robots 12 reactions lead towards what hit, without this 25. */
 #define END_MOST ((gw_real_t)1.5)
 #define PUSH_LEAST ((gw_real_t)0.5)
-/* The low-pass that sees a body swing back, and how much more its force counts than a contact's. Without, 132 of the
- * tuning draw's 800 runs of robots that tip have a reaction without contact instead of 88; planar robots are not
+/* The low-pass that sees a body swing back, and how much more its force counts than a contact's. Without, there are 87
+ * reactions without contact in 400 runs of the tuning draw's robots that tip, with it 53; planar robots are not
  * concerned, nothing pushes their wheels back. */
 #define BANK_OF_BACK 1U
 #define BACK_MORE ((gw_real_t)2.3)
@@ -127,6 +127,7 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->summed = BANK_OF_SUM;
+    channels->began_in_motion = false;
     channels->tick = 0U;
     channels->ticks_since_trip = 0U;
     channels->ticks_since_release = GW_TICK_MASK;
@@ -309,8 +310,18 @@ bool gw_channels_have_time(const gw_channels_t *channels)
     return (channels->tick % GW_SLOW_TICKS) == FREE_PHASE;
 }
 
+/* A contact does not pull, but a mass or a friction that is wrong looks like it once a robot in motion brakes: what is
+ * against the impulse is left out. Of 2,100 runs of the tuning draw's planar robots 14 have a reaction towards what hit
+ * without this, 7 with it. At rest, where there is no plan to brake from, it would hide what a leaning robot feels. */
 static void add_impulse(gw_channels_t *channels, gw_wrench_t wrench, gw_real_t time_s)
 {
+    if (channels->began_in_motion) {
+        const gw_vector_t impulse = {channels->impulse.force_x_n, channels->impulse.force_y_n};
+        const gw_vector_t d = gw_unit(impulse.x, impulse.y, gw_length(impulse));
+        const gw_real_t pull_n = gw_min((wrench.force_x_n * d.x) + (wrench.force_y_n * d.y), GW_ZERO);
+        wrench.force_x_n -= pull_n * d.x;
+        wrench.force_y_n -= pull_n * d.y;
+    }
     channels->impulse_s = gw_min(channels->impulse_s + time_s, IMPULSE_MAX_S);
     channels->impulse.force_x_n = gw_limited(channels->impulse.force_x_n + (wrench.force_x_n * time_s), IMPULSE_MAX);
     channels->impulse.force_y_n = gw_limited(channels->impulse.force_y_n + (wrench.force_y_n * time_s), IMPULSE_MAX);
@@ -326,6 +337,7 @@ static void begin_contact(gw_channels_t *channels, gw_regime_t regime, const gw_
     channels->quiet_ticks = 0U;
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ZERO;
+    channels->began_in_motion = (regime != GW_REGIME_REST);
     if (found->statistic > GW_ONE) {
         const bool shaken = (channels->fast.sensor == GW_BY_IMU) && (regime != GW_REGIME_REST);
         channels->channel = GW_CHANNEL_FAST;

@@ -94,7 +94,8 @@ typedef struct {
     gw_wrench_t impulse; /* N s, N m s */
     uint32_t summed;     /* the low-pass whose forces are its impulse */
     gw_real_t impulse_s;
-    uint32_t tick; /* counts the ticks of the tasks that not every tick has */
+    bool began_in_motion; /* the contact did: the robot did not rest */
+    uint32_t tick;        /* counts the ticks of the tasks that not every tick has */
     uint32_t ticks_since_trip;
     uint32_t ticks_since_release;
     uint32_t ticks_of_motion;

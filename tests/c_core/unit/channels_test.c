@@ -942,6 +942,45 @@ static void the_impulse_is_summed_behind_a_low_pass(void)
     }
 }
 
+/* 100 N for 30 ticks, then from the other side, half of it along the left: in motion nothing is taken off the impulse,
+ * what is across it and the moment are added; at rest all is added. Direction i is turned, so both components count. */
+static void in_motion_nothing_pulls(void)
+{
+    for (uint32_t i = 0U; i < 6U; i++) {
+        const bool moving = (i >= 3U);
+        const gw_rotation_t along = gw_sincos(R(2.0) * (gw_real_t)(i % 3U));
+        if (moving) {
+            begin_in_motion();
+        } else {
+            begin();
+        }
+        wrench.force_x_n = R(100.0) * along.cosine;
+        wrench.force_y_n = R(100.0) * along.sine;
+        unit_row(i);
+        CHECK(ticks_to_trip(20U) < 20U);
+        ticks(30U);
+        wrench.force_x_n = R(-100.0) * (along.cosine + (GW_HALF * along.sine));
+        wrench.force_y_n = R(-100.0) * (along.sine - (GW_HALF * along.cosine));
+        wrench.torque_nm = R(5.0);
+        for (uint32_t k = 0U; k < 25U; k++) {
+            const gw_wrench_t before = channels.impulse;
+            const gw_vector_t impulse = {before.force_x_n, before.force_y_n};
+            const gw_vector_t d = gw_unit(impulse.x, impulse.y, gw_length(impulse));
+            tick();
+            const gw_wrench_t *const felt = &channels.fast.bank[channels.summed];
+            const gw_real_t x = (channels.impulse.force_x_n - before.force_x_n) / channels.period_s;
+            const gw_real_t y = (channels.impulse.force_y_n - before.force_y_n) / channels.period_s;
+            const gw_real_t felt_along = (felt->force_x_n * d.x) + (felt->force_y_n * d.y);
+            /* A difference of two impulses of about 3 N s, over a millisecond. */
+            const gw_real_t near = R(3.0e4) * ROUNDING;
+            CHECK_NEAR((x * d.x) + (y * d.y), (moving && (felt_along < GW_ZERO)) ? GW_ZERO : felt_along, near);
+            CHECK_NEAR((y * d.x) - (x * d.y), (felt->force_y_n * d.x) - (felt->force_x_n * d.y), near);
+            CHECK_NEAR((channels.impulse.torque_nm - before.torque_nm) / channels.period_s, felt->torque_nm, near);
+            CHECK((k < 10U) || (felt_along < R(-50.0)));
+        }
+    }
+}
+
 /* The baseline carries 100 N along x of an old contact. A change against it is its end, up to 1.5 times of it: what is
  * left of both pushes, if it is half of the change. */
 static void an_end_is_no_push_from_the_other_side(void)
@@ -1006,9 +1045,11 @@ static void a_restart_keeps_what_was_learned(void)
     CHECK(output.active);
     const gw_real_t noise_n2 = channels.fast.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][0];
     channels.summed = GW_BANK_COUNT; /* as memory may be before the first start */
+    channels.began_in_motion = true;
     gw_channels_restart(&channels);
     CHECK(gw_channels_invariant_holds(&channels));
     CHECK((!channels.active) && (channels.channel == GW_CHANNEL_NONE) && (channels.warm_up_ticks == 0U));
+    CHECK(!channels.began_in_motion);
     CHECK(channels.follower.difference[1] == R(0.25));
     CHECK(channels.fast.noise_n2[GW_BY_ENCODERS][GW_REGIME_MOTION][0] == noise_n2);
     tick();
@@ -1112,6 +1153,7 @@ void suite_channels(void)
     unit_run("rollers_that_hardly_turn_widen_the_threshold", rollers_that_hardly_turn_widen_the_threshold);
     unit_run("the_mean_wrench_of_a_push_is_found", the_mean_wrench_of_a_push_is_found);
     unit_run("the_impulse_is_summed_behind_a_low_pass", the_impulse_is_summed_behind_a_low_pass);
+    unit_run("in_motion_nothing_pulls", in_motion_nothing_pulls);
     unit_run("an_end_is_no_push_from_the_other_side", an_end_is_no_push_from_the_other_side);
     unit_run("the_impulse_is_bounded", the_impulse_is_bounded);
     unit_run("a_restart_keeps_what_was_learned", a_restart_keeps_what_was_learned);
