@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc)
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale fit fmus build lint format lock clean platforms wasm pages studio film wheels release
+.PHONY: help demo reproduce test verify endurance fuzz mutate importers bench bench-scale targets fit fmus build lint format lock clean platforms wasm pages studio film wheels release
 .PHONY: docs product build-for-all compile-product compile-all native-tests
 .DEFAULT_GOAL := help
 
@@ -53,6 +53,9 @@ bench: build build/bench/tools-installed build/importers/tools-installed ## how 
 
 endurance: product ## false alarms: 300 h of motion without contact, 20 h with tipping, 20 h with single rollers; goes on where it stopped
 	$(BIN)/giveway crowd endurance --threads $(JOBS)
+
+targets: product ## what the reflex does on 1,000 robots that are not its model; writes the tables in docs/site/reference/reflex_targets.md
+	$(BIN)/python -m docs.reflex_targets --threads $(JOBS)
 
 bench-scale: product .venv/test-packages-installed ## what studies and --dask cost beside the runs, and batches up to a million (minutes)
 	$(BIN)/giveway bench --scale

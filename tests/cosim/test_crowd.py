@@ -183,6 +183,7 @@ def test_the_table_has_rows_intervals_and_worst_cases(records: list[dict[str, An
     assert targets["all hits", "missed"] == ("0", str(missed), ends, "missed" if missed else "met")
     assert targets["moment in motion", "missed"][1:] == ("no hits", "-", "-")
     assert targets["at rest, 0.5 m/s, none", "delay 95 %, ms"][1] != "0"
+    assert document["targets"]["planar"] == [[*names, *said] for names, said in targets.items()]
     assert table.target_rows("single rollers", []) == []
     assert list(document["worst"]) == ["planar"]
     assert all(number in NUMBERS for values in document["worst"]["planar"].values() for number, _ in values)

@@ -470,6 +470,7 @@ def write(folder: Path, title: str, notes: Sequence[str], records: Sequence[Reco
         "title": title,
         "notes": list(notes),
         "tables": {group: [found.plain() for found in rows] for group, rows in tables(records)},
+        "targets": {group: target_rows(group, rows) for group, rows in tables(records)},
         "worst": {group: worst(mine) for group, mine in _by_table(records)},
         "ended early": [[one["number"], one["message"]] for one in records if one["judged"] and one["status"] != "ok"],
         "not judged": [[record["number"], record["message"]] for record in records if not record["judged"]],

@@ -1,0 +1,65 @@
+"""The page of what is asked of the reflex: its figures are of these sources, and none is left out or judged wrongly."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from giveway.crowd.table import TARGETS
+
+from docs.reflex_targets import BEGIN, END, HASH_DIGITS, put_into, tables
+from verify.sources import core_hash
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/site/reference/reflex_targets.md").read_text(encoding="utf-8")
+PLANAR, TIPPING = (
+    [["all hits", "missed", "0", "3", "1 to 9", "missed"]],
+    [["all hits", "missed", "0", "0", "0 to 4", "met"]],
+)
+HITS = {"targets": {"planar": PLANAR, "tipping": TIPPING, "planar, IMU": TIPPING, "tipping, IMU": PLANAR}}
+QUIET = {"planar": {"hours": 300.0, "false alarms": 2, "per hour": 2 / 300, "per hour, upper 95 % bound": 0.021}}
+DOCUMENTS: dict[str, dict[str, Any]] = {"as-drawn": HITS, "calibrated": HITS, "without-contact": {"groups": QUIET}}
+
+
+def _rows(page: str) -> list[list[str]]:
+    """Every line of the tables of hits: row, figure, at most, then what was found."""
+    lines = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in page.splitlines() if line[:2] == "| "]
+    without = lines.index(next(line for line in lines if line[0] == "robots"))
+    return [line for line in lines[:without] if line[0] not in ("hits", "---")]
+
+
+def test_the_page_is_of_the_sources_in_this_repository() -> None:
+    found = re.search(rf"hash `([0-9a-f]{{{HASH_DIGITS}}})`", PAGE)
+    assert found
+    assert core_hash(ROOT).startswith(found[1]), "make targets"
+
+
+def test_every_figure_that_is_asked_for_is_there_and_judged_by_its_value() -> None:
+    rows = _rows(PAGE)
+    asked = {(one.row, one.what, f"{one.most:g}") for targets in TARGETS.values() for one in targets}
+    assert asked == {tuple(line[:3]) for line in rows}
+    judged = [(float(at_most), cell) for _, _, at_most, *cells in rows for cell in cells if ", " in cell]
+    assert len(judged) > 150  # six kinds of robots, some 30 figures each
+    for at_most, cell in judged:
+        met = float(cell.split(" ", 1)[0]) <= at_most
+        assert cell.endswith(", met" if met else ", missed"), cell
+
+
+def test_figures_stand_where_they_belong() -> None:
+    made = tables(DOCUMENTS, "0123456789abcdef")
+    page = put_into(f"before\n{BEGIN}\nold\n{END}\nafter\n", made)
+    assert page == f"before\n{BEGIN}\n{made}{END}\nafter\n"
+    assert "`0123456789ab`" in page
+    assert (
+        "| all hits | missed | 0 | 3 (1 to 9), missed | 3 (1 to 9), missed | 0 (0 to 4), met | 0 (0 to 4), met |"
+        in page
+    )
+    assert "| all hits | missed | 0 | 0 (0 to 4), met | 3 (1 to 9), missed |" in page
+    assert "| planar | 300 | 2 | 0.00667 | 0.021, missed |" in page
+
+
+def test_a_page_without_marks_is_refused() -> None:
+    with pytest.raises(SystemExit, match="has no lines"):
+        put_into(PAGE.replace(BEGIN, ""), "")
