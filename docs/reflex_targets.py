@@ -16,10 +16,10 @@ from typing import Any
 
 from giveway.base.files import write_text
 
-from docs.markdown import table
+from docs.markdown import replaced, table
 from verify.sources import core_hash
 
-__all__ = ["BEGIN", "COMMANDS", "END", "FALSE_PER_HOUR", "put_into", "tables"]
+__all__ = ["BEGIN", "COMMANDS", "END", "FALSE_PER_HOUR", "HASH_DIGITS", "tables"]
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs/site/reference/reflex_targets.md"
@@ -40,16 +40,22 @@ Document = Mapping[str, Any]
 def main() -> int:
     parser = argparse.ArgumentParser(prog="docs.reflex_targets", description="Compute what the reflex does.")
     parser.add_argument("--out", type=Path, default=ROOT / "out/targets", help="folder of the runs and their tables")
-    parser.add_argument("--threads", type=int, default=2, help="native threads")
+    parser.add_argument("--threads", help="of each command; without it: all processors")
     options = parser.parse_args()
+    threads = [] if options.threads is None else ["--threads", options.threads]
+    sources = core_hash(ROOT)
     for folder, words in COMMANDS.items():
-        code = _run([*words, "--out", str(options.out / folder), "--threads", str(options.threads)])
+        code = _run([*words, "--out", str(options.out / folder), *threads])
         if code:
             return code
     documents = {
         folder: json.loads((options.out / folder / "table.json").read_text(encoding="utf-8")) for folder in COMMANDS
     }
-    write_text(PAGE, put_into(PAGE.read_text(encoding="utf-8"), tables(documents, core_hash(ROOT))))
+    if core_hash(ROOT) != sources:
+        print("c_core has changed meanwhile: the page is left as it was", file=sys.stderr)
+        return 1
+    page = PAGE.read_text(encoding="utf-8")
+    write_text(PAGE, replaced(page, BEGIN, END, tables(documents, sources)))
     print(f"Written: {PAGE}")
     return 0
 
@@ -63,21 +69,12 @@ def _run(words: Sequence[str]) -> int:
             return child.wait()
 
 
-def put_into(page: str, made: str) -> str:
-    """``page`` with these tables in place of those between the marks."""
-    before, found, rest = page.partition(BEGIN)
-    _, ended, after = rest.partition(END)
-    if not found or not ended:
-        raise SystemExit(f"docs.reflex_targets: the page has no lines {BEGIN} and {END}")
-    return f"{before}{BEGIN}\n{made}{END}{after}"
-
-
 def tables(documents: Mapping[str, Document], sources: str) -> str:
-    """All tables from the commands' documents, by folder; ``sources``: hash of the c_core that was run."""
+    """The tables and their marks from the commands' documents, by folder; ``sources``: hash of the c_core of them."""
     found, calibrated = (documents[folder]["targets"] for folder in (AS_DRAWN, CALIBRATED))
     return "\n".join(
         [
-            f"Of the `c_core` whose sources have the hash `{sources[:HASH_DIGITS]}`.\n",
+            f"{BEGIN}\nOf the `c_core` whose sources have the hash `{sources[:HASH_DIGITS]}`.\n",
             "## Without an IMU\n",
             _side_by_side(
                 {
@@ -90,7 +87,7 @@ def tables(documents: Mapping[str, Document], sources: str) -> str:
             "## With an accelerometer and a gyro\n",
             _side_by_side({"planar": found["planar, IMU"], "tipping": found["tipping, IMU"]}),
             "## Motion without contact\n",
-            _quiet(documents[QUIET]["groups"]),
+            _quiet(documents[QUIET]["groups"]) + END,
         ]
     )
 

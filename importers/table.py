@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from docs.markdown import replaced
+
 __all__ = ["BEGIN", "END", "HEADER", "markdown", "put_into", "read_results", "rows_of", "write_results"]
 
 SCHEMA_VERSION = 1
@@ -30,11 +32,7 @@ def markdown(results: Results) -> str:
 
 def put_into(page: str, results: Results) -> str:
     """``page`` with the table in place of the one between the marks."""
-    before, found, rest = page.partition(BEGIN)
-    _, ended, after = rest.partition(END)
-    if not found or not ended:
-        raise SystemExit(f"importers: the page has no lines {BEGIN} and {END}")
-    return before + markdown(results) + after
+    return replaced(page, BEGIN, END, markdown(results))
 
 
 def write_results(path: Path, results: Results) -> None:

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from giveway.crowd.table import TARGETS
 
-from docs.reflex_targets import BEGIN, END, HASH_DIGITS, put_into, tables
+from docs.markdown import replaced
+from docs.reflex_targets import BEGIN, END, HASH_DIGITS, tables
 from verify.sources import core_hash
 
 ROOT = Path(__file__).parents[2]
@@ -49,8 +50,9 @@ def test_every_figure_that_is_asked_for_is_there_and_judged_by_its_value() -> No
 
 def test_figures_stand_where_they_belong() -> None:
     made = tables(DOCUMENTS, "0123456789abcdef")
-    page = put_into(f"before\n{BEGIN}\nold\n{END}\nafter\n", made)
-    assert page == f"before\n{BEGIN}\n{made}{END}\nafter\n"
+    page = replaced(f"before\n{BEGIN}\nold\n{END}\nafter\n", BEGIN, END, made)
+    assert page == f"before\n{made}\nafter\n"
+    assert replaced(page, BEGIN, END, made) == page
     assert "`0123456789ab`" in page
     assert (
         "| all hits | missed | 0 | 3 (1 to 9), missed | 3 (1 to 9), missed | 0 (0 to 4), met | 0 (0 to 4), met |"
@@ -62,4 +64,4 @@ def test_figures_stand_where_they_belong() -> None:
 
 def test_a_page_without_marks_is_refused() -> None:
     with pytest.raises(SystemExit, match="has no lines"):
-        put_into(PAGE.replace(BEGIN, ""), "")
+        replaced(PAGE.replace(BEGIN, ""), BEGIN, END, "")

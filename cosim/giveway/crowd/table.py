@@ -465,12 +465,13 @@ def markdown(title: str, notes: Sequence[str], records: Sequence[Record]) -> str
 
 def write(folder: Path, title: str, notes: Sequence[str], records: Sequence[Record]) -> list[Path]:
     """Write table.md and table.json into ``folder``, both or none."""
+    found = list(tables(records))
     document = {
         "schema_version": 1,
         "title": title,
         "notes": list(notes),
-        "tables": {group: [found.plain() for found in rows] for group, rows in tables(records)},
-        "targets": {group: target_rows(group, rows) for group, rows in tables(records)},
+        "tables": {group: [row.plain() for row in rows] for group, rows in found},
+        "targets": {group: target_rows(group, rows) for group, rows in found},
         "worst": {group: worst(mine) for group, mine in _by_table(records)},
         "ended early": [[one["number"], one["message"]] for one in records if one["judged"] and one["status"] != "ok"],
         "not judged": [[record["number"], record["message"]] for record in records if not record["judged"]],

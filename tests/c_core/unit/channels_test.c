@@ -942,8 +942,8 @@ static void the_impulse_is_summed_behind_a_low_pass(void)
     }
 }
 
-/* 100 N for 30 ticks, then from the other side, half of it along the left: in motion nothing is taken off the impulse,
- * what is across it and the moment are added; at rest all is added. Direction i is turned, so both components count. */
+/* 100 N for 30 ticks, then as much from the other side, 50 N across and a moment. In motion nothing is taken off the
+ * impulse, and what is across it and the moment are added; at rest all is added. Along three directions. */
 static void in_motion_nothing_pulls(void)
 {
     for (uint32_t i = 0U; i < 6U; i++) {
