@@ -1,6 +1,7 @@
 #include "giveway/gw_channels.h"
 
 #include "giveway/gw_math.h"
+#include "giveway/gw_trikey.h"
 #include "giveway/gw_wrench.h"
 
 #if (GW_WITH_CHANNELS == 1)
@@ -41,7 +42,7 @@
 void gw_channels_config_trikey(gw_channels_config_t *config)
 {
     config->noise_multiple = (gw_real_t)8.0;
-    config->imu_noise_multiple = (gw_real_t)7.5;
+    config->imu_noise_multiple = (gw_real_t)6.5;
     config->model_multiple = (gw_real_t)2.5;
     config->baseline_s = (gw_real_t)0.3;
     config->slow_s = (gw_real_t)0.05;
@@ -53,6 +54,7 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->lever_m = (gw_real_t)0.01;
     config->rocking = GW_ZERO;
     config->rocking_s = (gw_real_t)0.6;
+    config->grip = GW_TRIKEY_WHEEL_GRIP_FRICTION;
     config->fast.rest_n = (gw_real_t)3.0;
     config->fast.creep_n = (gw_real_t)10.0;
     config->fast.motion_n = (gw_real_t)7.0;
@@ -80,6 +82,7 @@ void gw_channels_config_check(const gw_channels_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_CHANNELS_LEVER, config->lever_m);
     gw_config_check_real(error, GW_FIELD_CHANNELS_ROCKING, config->rocking);
     gw_config_check_real(error, GW_FIELD_CHANNELS_ROCKING_TIME, config->rocking_s);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_GRIP, config->grip);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_REST, config->fast.rest_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_CREEP, config->fast.creep_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_MOTION, config->fast.motion_n);
@@ -105,6 +108,7 @@ void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *confi
     channels->rocking_keep =
         gw_max(GW_ONE - (((GW_TWO * (gw_real_t)GW_SLOW_TICKS) * noise->period_s) / config->rocking_s), GW_ZERO);
     channels->gear_keep = GW_ONE - gw_share_of((gw_real_t)GW_SLOW_TICKS * noise->period_s, config->slow_s);
+    gw_slip_init(&channels->doubts.slip, config->grip, noise->mass_kg, config->model_multiple, channels->gear_keep);
     gw_follower_init(&channels->follower, &config->follower, noise->period_s * (gw_real_t)LEARN_TICKS);
     gw_fast_channel_init(&channels->fast, config, noise);
     gw_slow_channel_init(&channels->slow, config, noise);
@@ -121,9 +125,10 @@ void gw_channels_restart(gw_channels_t *channels)
     static const gw_wrench_t no_impulse = {0};
     gw_fast_channel_restart(&channels->fast);
     gw_slow_channel_restart(&channels->slow);
-    channels->forces_n2 = GW_ZERO;
-    channels->rocking_n2 = GW_ZERO;
-    channels->gear_n2 = GW_ZERO;
+    channels->doubts.forces_n2 = GW_ZERO;
+    channels->doubts.rocking_n2 = GW_ZERO;
+    channels->doubts.gear_n2 = GW_ZERO;
+    gw_slip_restart(&channels->doubts.slip);
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->summed = BANK_OF_SUM;
@@ -156,12 +161,13 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
         gw_channels_config_check(&channels->config, &error);
         holds = (error.field == GW_FIELD_NONE) && gw_follower_invariant_holds(&channels->follower) &&
                 gw_fast_channel_invariant_holds(&channels->fast) && gw_slow_channel_invariant_holds(&channels->slow) &&
-                gw_within(channels->forces_n2, FORCES_MAX_N2) &&
+                gw_within(channels->doubts.forces_n2, FORCES_MAX_N2) &&
                 gw_in_range(channels->rocking2, GW_ZERO, channels->config.rocking * channels->config.rocking) &&
                 gw_in_range(channels->rocking_keep, GW_ZERO, GW_ONE) &&
-                gw_in_range(channels->rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
+                gw_in_range(channels->doubts.rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
                 gw_in_range(channels->gear_keep, GW_HALF, GW_ONE) &&
-                gw_in_range(channels->gear_n2, GW_ZERO, GEAR_MAX_N2) && (channels->calm_ticks <= CALM_TICKS) &&
+                gw_in_range(channels->doubts.gear_n2, GW_ZERO, GEAR_MAX_N2) &&
+                gw_slip_invariant_holds(&channels->doubts.slip) && (channels->calm_ticks <= CALM_TICKS) &&
                 gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) && (channels->summed < GW_BANK_COUNT) &&
                 gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
@@ -258,7 +264,7 @@ static bool all_wheels_slide(const gw_channels_t *channels)
 static void rock(gw_channels_t *channels, gw_real_t x_n, gw_real_t y_n)
 {
     const gw_real_t swing_n2 = channels->rocking2 * ((x_n * x_n) + (y_n * y_n));
-    channels->rocking_n2 = gw_clamp(gw_max(channels->rocking_n2, swing_n2), GW_ZERO, ROCKING_MAX_N2);
+    channels->doubts.rocking_n2 = gw_clamp(gw_max(channels->doubts.rocking_n2, swing_n2), GW_ZERO, ROCKING_MAX_N2);
 }
 
 /* The swing fades, and every change of the acceleration is such a force. */
@@ -266,7 +272,7 @@ static void rock_on(gw_channels_t *channels)
 {
     const gw_vector_t now_n = channels->slow.mean.model.inertia_n;
     const gw_vector_t usual_n = channels->fast.baseline.model.inertia_n;
-    channels->rocking_n2 = channels->rocking_keep * channels->rocking_n2;
+    channels->doubts.rocking_n2 = channels->rocking_keep * channels->doubts.rocking_n2;
     rock(channels, now_n.x - usual_n.x, now_n.y - usual_n.y);
 }
 
@@ -274,8 +280,16 @@ static void rock_on(gw_channels_t *channels)
 static void doubt_gears(gw_channels_t *channels, gw_real_t now_n2)
 {
     const gw_real_t multiple = channels->config.model_multiple;
-    const gw_real_t doubt_n2 = gw_max(channels->gear_keep * channels->gear_n2, (multiple * multiple) * now_n2);
-    channels->gear_n2 = gw_clamp(doubt_n2, GW_ZERO, GEAR_MAX_N2);
+    const gw_real_t doubt_n2 = gw_max(channels->gear_keep * channels->doubts.gear_n2, (multiple * multiple) * now_n2);
+    channels->doubts.gear_n2 = gw_clamp(doubt_n2, GW_ZERO, GEAR_MAX_N2);
+}
+
+/* While something touches it, or the robot gives way, a wheel that slips is what one would expect: nothing is forgiven
+ * for it. An IMU feels the base and not the wheels. */
+static void doubt_grip(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input)
+{
+    const bool drives = (input->regime != GW_REGIME_REST) && (!channels->active) && (!input->reacting);
+    gw_slip_step(&channels->doubts.slip, kinematics, input->torque_nm, drives && (!input->felt));
 }
 
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */
@@ -285,14 +299,15 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
     const bool rests = (input->regime == GW_REGIME_REST) && (channels->calm_ticks >= CALM_TICKS);
     if ((channels->tick % DOUBT_TICKS) != 0U) {
         gw_fast_channel_doubt(&channels->fast, &channels->config, kinematics, &channels->follower, balance, regime,
-                              channels->forces_n2, channels->rocking_n2, channels->gear_n2);
+                              &channels->doubts);
     } else if ((channels->tick % GW_SLOW_TICKS) == 0U) {
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
-                              rests ? GW_REGIME_REST : regime, channels->rocking_n2 + channels->gear_n2);
+                              rests ? GW_REGIME_REST : regime, channels->doubts.rocking_n2 + channels->doubts.gear_n2);
     } else {
-        channels->forces_n2 = squares_of_forces(channels);
+        channels->doubts.forces_n2 = squares_of_forces(channels);
         rock_on(channels);
         doubt_gears(channels, input->gear_n2);
+        doubt_grip(channels, kinematics, input);
         if ((!channels->active) && (input->regime != GW_REGIME_REST)) {
             gw_slow_channel_follow(&channels->slow, regime == GW_REGIME_MOTION);
         }
@@ -339,7 +354,7 @@ static void begin_contact(gw_channels_t *channels, gw_regime_t regime, const gw_
     channels->impulse_s = GW_ZERO;
     channels->began_in_motion = (regime != GW_REGIME_REST);
     if (found->statistic > GW_ONE) {
-        const bool shaken = (channels->fast.sensor == GW_BY_IMU) && (regime != GW_REGIME_REST);
+        const bool shaken = (channels->fast.sensor == GW_BY_IMU) && channels->began_in_motion;
         channels->channel = GW_CHANNEL_FAST;
         channels->summed = shaken ? BANK_OF_SLOW_SUM : BANK_OF_SUM;
         add_impulse(channels, channels->fast.bank[found->widest], gw_fast_channel_time(&channels->fast, found->widest));

@@ -203,6 +203,11 @@ static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *fric
     output->forces.inertia_moment_nm = estimator->nominal.total_yaw_inertia_kgm2 * acceleration.alpha_radps2;
 }
 
+static void tell_torque(const gw_wheels_t *torque_nm, gw_estimator_output_t *output)
+{
+    output->torque_nm = *torque_nm;
+}
+
 /* Whether an encoder has moved since the last sample. */
 static void tell_turns(const gw_estimator_t *estimator, const gw_estimator_input_t *input,
                        gw_estimator_output_t *output)
@@ -340,6 +345,12 @@ static void tell_forces(const gw_estimator_t *estimator, const gw_wheels_t *fric
     (void)estimator;
     (void)friction_nm;
     (void)acceleration;
+    (void)output;
+}
+
+static void tell_torque(const gw_wheels_t *torque_nm, const gw_estimator_output_t *output)
+{
+    (void)torque_nm;
     (void)output;
 }
 
@@ -730,6 +741,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
         /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct behind a pointer */
         const gw_wheels_t zero_before = *present_zero(estimator);
+        tell_torque(&torque_nm, output);
         output->acceleration_source = source_of(estimator, input);
         output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
         tell_turns(estimator, input, output);

@@ -8,8 +8,9 @@
 /* What the robot does on purpose passes two low-passes of this, s; the rest is vibration. */
 #define SMOOTH_S ((gw_real_t)0.004)
 /* Time for which its mean square is taken, s: in that of a start it grows a hundredfold, in that of a hit it does not.
- */
-#define SHAKING_S ((gw_real_t)0.25)
+ * With four times as much, and thresholds of 7.5 deviations instead of 6.5, of 4,200 runs of the tuning draw's planar
+ * robots 14 have a reaction without contact instead of 3, and 76 hits instead of 64 are missed. */
+#define SHAKING_S ((gw_real_t)0.06)
 #define SHAKING_CLIP ((gw_real_t)6.0) /* an outlier counts as this many mean squares */
 #define SHAKING_MAX (GW_IMU_SHOWN_MAX * GW_IMU_SHOWN_MAX)
 

@@ -56,6 +56,9 @@ static void part_step(void)
     input.felt = any_flag();
     input.shaking_mps2_2 = draw_real(GW_ZERO, (gw_real_t)1.0e8);
     input.gear_n2 = draw_real(GW_ZERO, (gw_real_t)1.0e12);
+    gw_wheels_t torque_nm;
+    draw_wheels(&torque_nm, GW_TORQUE_MAX);
+    input.torque_nm = &torque_nm;
     draw_wrench(&output.mean_wrench, GW_WRENCH_MAX); /* written when it is refined, else kept */
     draw_vector(&output.push_n, GW_WRENCH_MAX);
     draw_channels(&channels);

@@ -61,6 +61,8 @@ typedef struct {
     gw_real_t shaking_mps2_2;
     /* Variance of a component of the force, from what gears may be wrong by, N^2, [0, 1e12]. */
     gw_real_t gear_n2;
+    /* Torques of the wheels, N m, each at most GW_TORQUE_MAX; not NULL. */
+    const gw_wheels_t *torque_nm;
 } gw_channels_input_t;
 
 typedef struct {
@@ -85,12 +87,10 @@ typedef struct {
     gw_follower_t follower;
     gw_fast_channel_t fast;
     gw_slow_channel_t slow;
-    gw_real_t forces_n2; /* sum of the squares of the model's forces */
-    gw_real_t rocking2;  /* square of config.rocking; 0 if the robot cannot lean */
+    gw_doubts_t doubts;
+    gw_real_t rocking2; /* square of config.rocking; 0 if the robot cannot lean */
     gw_real_t rocking_keep;
-    gw_real_t rocking_n2; /* variance of what the rocking body does */
     gw_real_t gear_keep;
-    gw_real_t gear_n2;   /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it */
     gw_wrench_t impulse; /* N s, N m s */
     uint32_t summed;     /* the low-pass whose forces are its impulse */
     gw_real_t impulse_s;

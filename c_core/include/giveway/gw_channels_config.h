@@ -43,6 +43,8 @@ typedef struct {
      * rock, [0, 10], and the time constant with which that fades, s, [0.01, 10]. */
     gw_real_t rocking;
     gw_real_t rocking_s;
+    /* Coefficient of friction between a wheel and the floor where it rolls, [0, 10]; 0: no wheel ever slips. */
+    gw_real_t grip;
     /* Smallest force of the fast channel and of the slow one, in each regime, N, [0.01, 1000]. */
     gw_force_floors_t fast;
     gw_force_floors_t slow;

@@ -142,6 +142,7 @@ typedef struct {
     uint32_t acceleration_source; /* the one that was used: GW_SOURCE_... */
 #if (GW_WITH_CHANNELS == 1)
     gw_wrench_t zero_step; /* by how much the wrench jumped when the zero changed; kept until the next change */
+    gw_wheels_t torque_nm; /* that was sensed, with its zero */
     /* The model's forces in the balance. */
     gw_model_forces_t forces;
     bool turned;       /* an encoder has moved since the last sample */

@@ -25,6 +25,7 @@
 #include "giveway/gw_channels_config.h"
 #include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
+#include "giveway/gw_slip.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -78,6 +79,15 @@ typedef struct {
     uint32_t followed; /* the low-pass whose noise is followed in this tick */
 } gw_fast_channel_t;
 
+/* What the balance may be wrong by, besides friction and masses. */
+typedef struct {
+    gw_real_t forces_n2;  /* sum of the squares of the model's forces, not of their change: rows of rollers */
+    gw_real_t rocking_n2; /* variance of what the rocking body does, [0, 1e12] */
+    gw_real_t gear_n2;    /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it,
+                           * [0, 1e12] */
+    gw_slip_t slip;       /* k_m^2 times that of wheels that may slip */
+} gw_doubts_t;
+
 /* What the channel finds in a tick. */
 typedef struct {
     gw_wrench_t change;   /* from the baseline, corrected */
@@ -101,13 +111,10 @@ GW_SMALL void gw_fast_channel_begin(gw_fast_channel_t *channel, const gw_balance
 void gw_fast_channel_feel(gw_fast_channel_t *channel, bool felt, gw_real_t shaking_mps2_2);
 /* Before each step: variance of what counts add, over that of unobserved motors, [0, 2]. */
 void gw_fast_channel_count(gw_fast_channel_t *channel, gw_real_t counted);
-/* What the model may be wrong by from now on; every second tick is enough. forces_n2: sum of the squares of the
- * model's forces, not of their change; rocking_n2: variance of what the rocking body does; gear_n2: of what gears may
- * be wrong by, [0, 1e12]. */
+/* What the model may be wrong by from now on; every second tick is enough. */
 void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower,
-                           const gw_balance_t *balance, gw_regime_t regime, gw_real_t forces_n2, gw_real_t rocking_n2,
-                           gw_real_t gear_n2);
+                           const gw_balance_t *balance, gw_regime_t regime, const gw_doubts_t *doubts);
 /* Is the force below this share of the smallest that counts at rest, squared? */
 bool gw_fast_channel_is_calm(const gw_fast_channel_t *channel, const gw_channels_config_t *config, gw_real_t share);
 /* One tick, in a regime. quiet: nothing touches, the noise may be followed. */

@@ -13,6 +13,7 @@
 #define GW_TRIKEY_WHEEL_RADIUS_M ((gw_real_t)0.1016)          /* (sourced) code of the lab, 2011-13: 4 in */
 #define GW_TRIKEY_WHEEL_DISTANCE_M ((gw_real_t)0.24)          /* (sourced) CAD of the lab, 2015 */
 #define GW_TRIKEY_WHEEL_INERTIA_KGM2 ((gw_real_t)0.002798)    /* (sourced) CAD of the lab, 2015 */
+#define GW_TRIKEY_WHEEL_GRIP_FRICTION ((gw_real_t)0.7)        /* (assumed) */
 #define GW_TRIKEY_ROLLER_RADIUS_M ((gw_real_t)0.009525)       /* (sourced) same wheel on the successor robot */
 #define GW_TRIKEY_ROLLER_INERTIA_KGM2 ((gw_real_t)1.23e-6)    /* (sourced) CAD of the lab, 2015 */
 #define GW_TRIKEY_ROLLER_COULOMB_TORQUE_NM ((gw_real_t)0.2)   /* (given) 4.2 */

@@ -242,6 +242,8 @@ static digest_t play_channels(uint32_t seed, void (*take)(digest_t *digest, cons
         input.felt = felt;
         input.shaking_mps2_2 = generator_between(&generator, GW_ZERO, (gw_real_t)0.01);
         input.gear_n2 = generator_between(&generator, GW_ZERO, (gw_real_t)16.0);
+        const gw_wheels_t torque_nm = generator_wheels(&generator, (gw_real_t)6.0);
+        input.torque_nm = &torque_nm;
         gw_channels_step(&channels, &kinematics, &input, &output);
         take(&digest, &channels, &output);
         if (generator_one_in(&generator, 2000U)) {

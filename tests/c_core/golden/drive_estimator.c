@@ -19,6 +19,7 @@ static void add_output(digest_t *digest, const gw_estimator_output_t *output)
     digest_u32(digest, (uint32_t)output->regime);
     digest_bool(digest, output->zero_changed);
     digest_real(digest, output->gear_n2);
+    digest_wheels(digest, &output->torque_nm);
 }
 
 /* Standing, creeping and moving in turn, with tares, wild torques and non-finite planned motions. */

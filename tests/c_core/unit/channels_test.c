@@ -12,6 +12,7 @@ static gw_channels_output_t output;
 static gw_wrench_t wrench;
 static gw_model_forces_t forces;
 static gw_wrench_t zero_step;
+static gw_wheels_t torque_nm;
 static uint32_t trips;
 
 /* Finer torque sensors: at rest the thresholds are little more than their floors. */
@@ -27,6 +28,7 @@ static void begin_with_config(void)
 {
     static const gw_wrench_t nothing;
     static const gw_model_forces_t no_forces;
+    static const gw_wheels_t no_torque;
     static const gw_channels_input_t no_input;
     static const gw_channels_output_t no_output;
     const gw_channels_noise_t noise = fine_noise();
@@ -38,11 +40,13 @@ static void begin_with_config(void)
     wrench = nothing;
     forces = no_forces;
     zero_step = nothing;
+    torque_nm = no_torque;
     input = no_input;
     output = no_output;
     input.wrench = &wrench;
     input.forces = &forces;
     input.zero_step = &zero_step;
+    input.torque_nm = &torque_nm;
     input.regime = GW_REGIME_REST;
     input.enabled = true;
     trips = 0U;
@@ -328,7 +332,7 @@ static void levers_make_the_moment_uncertain(void)
     forces.inertia_n.x = R(30.0);
     forces.inertia_n.y = R(-40.0);
     ticks(3000U);
-    CHECK_NEAR(channels.forces_n2, R(3700.0), R(1.0e6) * ROUNDING);
+    CHECK_NEAR(channels.doubts.forces_n2, R(3700.0), R(1.0e6) * ROUNDING);
     CHECK(channels.fast.moment_nm2 >= (R(6.25) * R(0.37) * (GW_ONE - R(0.001))));
 }
 
@@ -543,19 +547,19 @@ static void what_was_accelerated_rocks(void)
     forces.inertia_n.y = R(40.0);
     channels.slow.mean.model = forces;
     ticks(4U);
-    CHECK_NEAR(channels.rocking_n2, R(625.0), R(0.01));
+    CHECK_NEAR(channels.doubts.rocking_n2, R(625.0), R(0.01));
     forces.inertia_n.x = GW_ZERO;
     forces.inertia_n.y = GW_ZERO;
     channels.slow.mean.model = forces;
     channels.slow.mean.residual.force_x_n = R(20.0);
     ticks(4U);
-    CHECK_NEAR(channels.rocking_n2, R(625.0) * (GW_ONE - (R(0.008) / R(0.6))), R(0.01));
-    CHECK(channels.fast.rocking_n2 == channels.rocking_n2);
+    CHECK_NEAR(channels.doubts.rocking_n2, R(625.0) * (GW_ONE - (R(0.008) / R(0.6))), R(0.01));
+    CHECK(channels.fast.rocking_n2 == channels.doubts.rocking_n2);
     CHECK((trips == 0U) && (channels.slow.statistic < GW_ONE)); /* 20 N */
     gw_channels_stand_firm(&channels);
     channels.slow.mean.model.inertia_n.x = R(1.0e4);
     ticks(600U);
-    CHECK(channels.rocking_n2 < R(100.0));
+    CHECK(channels.doubts.rocking_n2 < R(100.0));
 }
 
 /* Likewise a contact, when it ends: by its mean force, as far as it was refined. */
@@ -567,12 +571,12 @@ static void what_was_pushed_rocks(void)
     ticks(WARM_UP);
     wrench.force_y_n = R(-60.0);
     ticks(80U);
-    CHECK(output.active && (channels.rocking_n2 == GW_ZERO));
+    CHECK(output.active && (channels.doubts.rocking_n2 == GW_ZERO));
     wrench.force_y_n = GW_ZERO;
     CHECK(ticks_to_release(400U) < 400U);
     /* Three ticks later, and the impulse has grown since the last mean. */
-    CHECK_NEAR(gw_sqrt(channels.rocking_n2), GW_HALF * gw_abs(output.mean_wrench.force_y_n), R(0.15));
-    CHECK(gw_in_range(channels.rocking_n2, R(27.0) * R(27.0), R(30.0) * R(30.0)));
+    CHECK_NEAR(gw_sqrt(channels.doubts.rocking_n2), GW_HALF * gw_abs(output.mean_wrench.force_y_n), R(0.15));
+    CHECK(gw_in_range(channels.doubts.rocking_n2, R(27.0) * R(27.0), R(30.0) * R(30.0)));
 }
 
 /* What pushes back after a contact is the body that swings: 2.3 times as much as a contact of this force; what pushes
@@ -587,14 +591,14 @@ static void what_swings_back_rocks_more(void)
         wrench.force_y_n = R(-60.0);
         CHECK(ticks_to_trip(20U) < 20U);
         ticks(30U);
-        CHECK(channels.rocking_n2 == GW_ZERO);
+        CHECK(channels.doubts.rocking_n2 == GW_ZERO);
         wrench.force_y_n = (i == 1U) ? R(-30.0) : R(30.0);
         ticks(40U); /* the low-pass of 6 ms has 1 - exp(-40/6) of the step */
         unit_row(i);
         if (i == 0U) {
-            CHECK_NEAR(gw_sqrt(channels.rocking_n2), R(0.5) * R(2.3) * R(30.0), R(0.5));
+            CHECK_NEAR(gw_sqrt(channels.doubts.rocking_n2), R(0.5) * R(2.3) * R(30.0), R(0.5));
         } else {
-            CHECK(channels.rocking_n2 == GW_ZERO);
+            CHECK(channels.doubts.rocking_n2 == GW_ZERO);
         }
     }
 }
@@ -611,7 +615,7 @@ static void rocking_is_bounded(void)
     forces.inertia_n.x = R(1.0e30);
     forces.inertia_n.y = R(-1.0e30);
     ticks(1000U);
-    CHECK(channels.rocking_n2 == R(1.0e12));
+    CHECK(channels.doubts.rocking_n2 == R(1.0e12));
 }
 
 /* 2.5^2 of what the gears may be wrong by, and as long as the slow channel remembers: 1 - e^(-4 ms/0.05 s) less every
@@ -623,22 +627,60 @@ static void an_error_of_gears_is_remembered(void)
     channels.slow.mean.residual.force_x_n = R(20.0);
     input.gear_n2 = R(64.0);
     tick();
-    CHECK(channels.gear_n2 == GW_ZERO);
+    CHECK(channels.doubts.gear_n2 == GW_ZERO);
     const gw_real_t sure = channels.slow.statistic;
     ticks(4U);
-    CHECK_NEAR(channels.gear_n2, R(400.0), R(400.0) * ROUNDING);
+    CHECK_NEAR(channels.doubts.gear_n2, R(400.0), R(400.0) * ROUNDING);
     CHECK(channels.slow.statistic < (R(0.5) * sure)); /* 16 + 400 N^2 instead of 16 */
     CHECK((channels.fast.model_n2.xx >= R(399.0)) && (channels.fast.model_n2.yy >= R(399.0)));
     input.gear_n2 = GW_ZERO;
     ticks(4U);
-    CHECK_NEAR(channels.gear_n2, R(400.0) * R(0.92311634638663576), R(400.0) * ROUNDING);
+    CHECK_NEAR(channels.doubts.gear_n2, R(400.0) * R(0.92311634638663576), R(400.0) * ROUNDING);
     ticks(400U);
-    CHECK(channels.gear_n2 < R(1.0));
+    CHECK(channels.doubts.gear_n2 < R(1.0));
     input.gear_n2 = R(1.0e12);
     ticks(4U);
-    CHECK(channels.gear_n2 == R(1.0e12));
+    CHECK(channels.doubts.gear_n2 == R(1.0e12));
     gw_channels_restart(&channels);
-    CHECK(channels.gear_n2 == GW_ZERO);
+    CHECK(channels.doubts.gear_n2 == GW_ZERO);
+}
+
+/* 0.7 * 35 kg * 9.80665/3 = 80.1 N of grip, 0.6 of it at a wheel of 0.1016 m are 4.88 N m; doubted are
+ * (2.5 * 0.3 * 80.1 N)^2. */
+static void a_wheel_that_may_slip_is_doubted_in_free_motion(void)
+{
+    const struct {
+        gw_regime_t regime;
+        bool active;
+        bool reacting;
+        bool felt;
+        bool doubted;
+    } rows[] = {{GW_REGIME_MOTION, false, false, false, true}, {GW_REGIME_CREEPING, false, false, false, true},
+                {GW_REGIME_REST, false, false, false, false},  {GW_REGIME_MOTION, true, false, false, false},
+                {GW_REGIME_MOTION, false, true, false, false}, {GW_REGIME_MOTION, false, false, true, false}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        input.regime = rows[i].regime;
+        input.reacting = rows[i].reacting;
+        input.felt = rows[i].felt;
+        channels.active = rows[i].active;
+        torque_nm.wheel[1] = R(-4.9);
+        torque_nm.wheel[2] = R(4.8);
+        ticks(4U);
+        unit_row(i);
+        CHECK_NEAR(channels.doubts.slip.wheel_n2.wheel[1], rows[i].doubted ? R(3607.892075) : GW_ZERO, R(0.1));
+        CHECK((channels.doubts.slip.wheel_n2.wheel[0] == GW_ZERO) &&
+              (channels.doubts.slip.wheel_n2.wheel[2] == GW_ZERO));
+    }
+    begin();
+    input.regime = GW_REGIME_MOTION;
+    torque_nm.wheel[1] = R(-4.9);
+    ticks(4U);
+    torque_nm.wheel[1] = GW_ZERO;
+    ticks(4U);
+    CHECK_NEAR(channels.doubts.slip.wheel_n2.wheel[1], R(3607.892075) * R(0.92311634638663576), R(0.1));
+    gw_channels_restart(&channels);
+    CHECK(channels.doubts.slip.wheel_n2.wheel[1] == GW_ZERO);
 }
 
 static void counters_stop_at_their_largest(void)
@@ -1077,12 +1119,13 @@ static void the_invariant_sees_every_member(void)
                                   &channels.follower.difference[0],
                                   &channels.fast.held.force_x_n,
                                   &channels.slow.force_n.y,
-                                  &channels.forces_n2,
+                                  &channels.doubts.forces_n2,
                                   &channels.rocking2,
                                   &channels.rocking_keep,
-                                  &channels.rocking_n2,
+                                  &channels.doubts.rocking_n2,
                                   &channels.gear_keep,
-                                  &channels.gear_n2,
+                                  &channels.doubts.gear_n2,
+                                  &channels.doubts.slip.near_n,
                                   &channels.impulse.torque_nm,
                                   &channels.impulse_s};
     CHECK(!gw_channels_invariant_holds(NULL));
@@ -1143,6 +1186,7 @@ void suite_channels(void)
     unit_run("what_swings_back_rocks_more", what_swings_back_rocks_more);
     unit_run("rocking_is_bounded", rocking_is_bounded);
     unit_run("an_error_of_gears_is_remembered", an_error_of_gears_is_remembered);
+    unit_run("a_wheel_that_may_slip_is_doubted_in_free_motion", a_wheel_that_may_slip_is_doubted_in_free_motion);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
     unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
     unit_run("another_zero_takes_its_time", another_zero_takes_its_time);

@@ -8,11 +8,13 @@ static gw_follower_t follower;
 static gw_kinematics_t kinematics;
 static gw_balance_t balance;
 static gw_fast_found_t found;
+static gw_doubts_t doubts;
 
 static const gw_balance_t no_balance;
 
 static void begin_with(const gw_channels_noise_t *noise)
 {
+    static const gw_doubts_t no_doubts;
     gw_geometry_config_t geometry;
     gw_geometry_config_trikey(&geometry);
     CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
@@ -20,6 +22,7 @@ static void begin_with(const gw_channels_noise_t *noise)
     gw_fast_channel_init(&channel, &config, noise);
     CHECK(gw_fast_channel_invariant_holds(&channel));
     balance = no_balance;
+    doubts = no_doubts;
 }
 
 static void begin(void)
@@ -783,8 +786,8 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.model.inertia_n.x = R(30.0);
         channel.model.inertia_n.y = R(40.0);
         channel.model.inertia_moment_nm = R(10.0);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], R(30000.0), GW_ZERO,
-                              GW_ZERO);
+        doubts.forces_n2 = R(30000.0);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], &doubts);
         const gw_planar_covariance_t m =
             gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model,
                                 (i == 0U) ? GW_ZERO : R(20.0), config.presliding);
@@ -815,8 +818,8 @@ static void rocking_widens_the_threshold_of_a_hit(void)
         balance.residual.force_y_n = R(18.0);
         channel.bank[2].force_x_n = R(24.0);
         channel.bank[2].force_y_n = R(18.0);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_REST, GW_ZERO,
-                              (i == 0U) ? GW_ZERO : R(900.0), GW_ZERO);
+        doubts.rocking_n2 = (i == 0U) ? GW_ZERO : R(900.0);
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_REST, &doubts);
         steps(1U);
         CHECK(found.widest == 2U);
         statistics[i] = R(900.0) / found.statistic;
@@ -831,15 +834,52 @@ static void doubt_of_gears_is_one_of_the_model(void)
 {
     const gw_real_t arm_m = kinematics.wheel_distance_m;
     begin();
-    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, GW_ZERO, GW_ZERO,
-                          GW_ZERO);
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
     const gw_fast_channel_t sure = channel;
-    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, GW_ZERO, GW_ZERO,
-                          R(900.0));
+    doubts.gear_n2 = R(900.0);
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
     CHECK_NEAR(channel.model_n2.xx - sure.model_n2.xx, R(900.0), R(1.0e4) * ROUNDING);
     CHECK_NEAR(channel.model_n2.yy - sure.model_n2.yy, R(900.0), R(1.0e4) * ROUNDING);
     CHECK(channel.model_n2.xy == sure.model_n2.xy);
     CHECK_NEAR(channel.moment_nm2 - sure.moment_nm2, R(1800.0) * (arm_m * arm_m), R(1.0e4) * ROUNDING);
+}
+
+/* The first wheel is in front and rolls to the left: (I/M)^2/(4 R^2) of the force's variance is that of the moment. */
+static void doubt_of_a_wheel_that_slips_is_one_of_the_model(void)
+{
+    const gw_real_t gyration_m2 = R(1.5) / R(35.0);
+    begin();
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
+    const gw_fast_channel_t sure = channel;
+    doubts.slip.wheel_n2.wheel[0] = R(900.0);
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
+    CHECK_NEAR(channel.model_n2.xx, sure.model_n2.xx, R(1.0e4) * ROUNDING);
+    CHECK_NEAR(channel.model_n2.xy, sure.model_n2.xy, R(1.0e4) * ROUNDING);
+    CHECK_NEAR(channel.model_n2.yy - sure.model_n2.yy, R(900.0), R(1.0e4) * ROUNDING);
+    CHECK_NEAR(channel.moment_nm2 - sure.moment_nm2,
+               (R(900.0) * (gyration_m2 * gyration_m2)) / (R(4.0) * (R(0.25) * R(0.25))), R(100.0) * ROUNDING);
+}
+
+/* What a baseline holds of a contact's moment is forgiven against it, wherever the force points. */
+static void a_moment_that_unwinds_is_no_hit(void)
+{
+    const struct {
+        gw_real_t force_n;
+        gw_real_t torque_nm;
+        bool forgiven;
+    } rows[] = {{R(1.0), R(-4.0), true}, {R(-1.0), R(-4.0), true}, {R(1.0), R(4.0), false}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        channel.held.force_x_n = R(50.0);
+        channel.held.torque_nm = R(5.0);
+        channel.bank[3].force_x_n = rows[i].force_n;
+        channel.bank[3].torque_nm = rows[i].torque_nm;
+        balance.residual.force_x_n = rows[i].force_n;
+        balance.residual.torque_nm = rows[i].torque_nm;
+        steps(1U);
+        unit_row(i);
+        CHECK((found.statistic < GW_ONE) == rows[i].forgiven);
+    }
 }
 
 /* Below this share of the square of 3 N, behind the second low-pass. */
@@ -878,8 +918,8 @@ static void wheels_that_turn_alike_count_alike(void)
         begin();
         CHECK(channel.moment_noise_m2 == channel.moment_per_force_m2);
         gw_fast_channel_feel(&channel, rows[i].felt, GW_ZERO);
-        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, rows[i].forces_n2,
-                              GW_ZERO, GW_ZERO);
+        doubts.forces_n2 = rows[i].forces_n2;
+        gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, &doubts);
         unit_row(i);
         CHECK(channel.moment_noise_m2 == ((rows[i].alike ? R(3.0) : GW_ONE) * channel.moment_per_force_m2));
         /* What the levers add does not count here. */
@@ -949,8 +989,11 @@ static void any_robot_keeps_the_invariant(void)
             balance.model.inertia_n.x = sizes[(k / 3U) % 5U];
             gw_fast_channel_feel(&channel, (k % 2U) == 0U, sizes[k % 5U]);
             gw_fast_channel_count(&channel, (gw_real_t)(k % 13U) / R(6.0));
-            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, R(5.0e10),
-                                  R(1.0e12), R(1.0e12));
+            doubts.forces_n2 = R(5.0e10);
+            doubts.rocking_n2 = R(1.0e12);
+            doubts.gear_n2 = R(1.0e12);
+            doubts.slip.wheel_n2.wheel[k % 3U] = R(1.0e12);
+            gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
             step((gw_regime_t)(k % 3U), true);
             if ((k % 11U) == 0U) {
                 gw_fast_channel_release(&channel, &balance, &found, direction, (k % 2U) == 0U);
@@ -1077,6 +1120,8 @@ void suite_fast_channel(void)
     unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
     unit_run("rocking_widens_the_threshold_of_a_hit", rocking_widens_the_threshold_of_a_hit);
     unit_run("doubt_of_gears_is_one_of_the_model", doubt_of_gears_is_one_of_the_model);
+    unit_run("doubt_of_a_wheel_that_slips_is_one_of_the_model", doubt_of_a_wheel_that_slips_is_one_of_the_model);
+    unit_run("a_moment_that_unwinds_is_no_hit", a_moment_that_unwinds_is_no_hit);
     unit_run("calm_is_a_share_of_the_floor_at_rest", calm_is_a_share_of_the_floor_at_rest);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

@@ -19,6 +19,7 @@ int main(void)
     suite_follower();
     suite_model_covariance();
     suite_fast_channel();
+    suite_slip();
     suite_slow_channel();
     suite_channels();
     suite_presliding();
