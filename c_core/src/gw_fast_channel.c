@@ -35,6 +35,7 @@
 #define VARIANCE_MAX ((gw_real_t)8.0e17)
 #define HELD_MAX_N ((gw_real_t)1.0e6)
 #define TURNED_MAX_N2 ((gw_real_t)2.0e12)
+#define SLIPPING_MAX_NM2 ((gw_real_t)1.0e15)
 #define LEAST_SQUARE_N2 ((gw_real_t)1.0e-8)
 #define MOMENT_PER_FORCE_MAX ((gw_real_t)1.0e12)
 #define SWING_SHARE_MAX ((gw_real_t)0.25)
@@ -431,7 +432,7 @@ void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_
      * that slips has a force along one axis, and half of the moment that independent wheels have. */
     channel->moment_nm2 =
         (moment_of_model(config, &channel->model, doubts->forces_n2) + ((GW_TWO * doubts->gear_n2) * (arm_m * arm_m))) +
-        ((GW_HALF * channel->moment_per_force_m2) * gw_slip_sum(&doubts->slip));
+        gw_min((GW_HALF * channel->moment_per_force_m2) * gw_slip_sum(&doubts->slip), SLIPPING_MAX_NM2);
     channel->moment_noise_m2 = counts_alike(channel, regime, doubts->forces_n2)
                                    ? (COUNTING_ALIKE * channel->moment_per_force_m2)
                                    : channel->moment_per_force_m2;

@@ -10,11 +10,12 @@
  * 13, without any of it 11. */
 #define NEAR ((gw_real_t)0.6)
 #define DOUBT ((gw_real_t)0.3)
+#define GRIP_MAX_N ((gw_real_t)1.0e5) /* beyond any robot's: bounds what follows */
 #define DOUBT_MAX_N2 ((gw_real_t)1.0e12)
 
 void gw_slip_init(gw_slip_t *slip, gw_real_t grip, gw_real_t mass_kg, gw_real_t multiple, gw_real_t keep)
 {
-    const gw_real_t grip_n = ((grip * mass_kg) * GRAVITY_MPS2) / (gw_real_t)GW_WHEEL_COUNT;
+    const gw_real_t grip_n = gw_min(((grip * mass_kg) * GRAVITY_MPS2) / (gw_real_t)GW_WHEEL_COUNT, GRIP_MAX_N);
     const gw_real_t doubt_n = multiple * (DOUBT * grip_n);
     slip->near_n = NEAR * grip_n;
     slip->doubt_n2 = gw_min(doubt_n * doubt_n, DOUBT_MAX_N2);
@@ -33,8 +34,8 @@ bool gw_slip_invariant_holds(const gw_slip_t *slip)
 {
     bool holds = (slip != NULL);
     if (holds) {
-        holds = gw_in_range(slip->near_n, GW_ZERO, (gw_real_t)1.0e5) &&
-                gw_in_range(slip->doubt_n2, GW_ZERO, DOUBT_MAX_N2) && gw_in_range(slip->keep, GW_HALF, GW_ONE);
+        holds = gw_in_range(slip->near_n, GW_ZERO, GRIP_MAX_N) && gw_in_range(slip->doubt_n2, GW_ZERO, DOUBT_MAX_N2) &&
+                gw_in_range(slip->keep, GW_HALF, GW_ONE);
         for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
             holds = holds && gw_in_range(slip->wheel_n2.wheel[i], GW_ZERO, DOUBT_MAX_N2);
         }

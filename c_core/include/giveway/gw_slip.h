@@ -28,8 +28,8 @@ typedef struct {
     gw_wheels_t wheel_n2; /* variance now */
 } gw_slip_t;
 
-/* grip: coefficient of friction, mu, in [0, 10], 0: no wheel ever slips; mass in [0.1, 2000] kg; multiple of the
- * standard deviation, in [0, 100]; keep in [0.5, 1]. Pointers not NULL here and below. */
+/* grip: coefficient of friction, mu, in [0, 10], 0: no wheel ever slips; the robot's mass, kg, at least 0.1;
+ * multiple of the standard deviation, in [0, 100]; keep in [0.5, 1]. Pointers not NULL here and below. */
 GW_SMALL void gw_slip_init(gw_slip_t *slip, gw_real_t grip, gw_real_t mass_kg, gw_real_t multiple, gw_real_t keep);
 /* Forgets what slipped. */
 GW_SMALL void gw_slip_restart(gw_slip_t *slip);

@@ -80,8 +80,9 @@ static void without_grip_nothing_is_doubted(void)
 static void the_heaviest_robot_has_a_finite_doubt(void)
 {
     begin();
-    gw_slip_init(&slip, R(10.0), R(2000.0), R(100.0), GW_ONE);
+    gw_slip_init(&slip, R(10.0), R(1.0e9), R(100.0), GW_ONE); /* its wheels' inertia counts, too */
     CHECK(gw_slip_invariant_holds(&slip));
+    CHECK_NEAR(slip.near_n, R(6.0e4), R(1.0e5) * ROUNDING);
     step(R(1.0e7), R(1.0e7), R(-1.0e7), true);
     CHECK(slip.wheel_n2.wheel[0] == slip.doubt_n2);
     CHECK(gw_in_range(slip.doubt_n2, R(1.0e11), R(1.0e12)));
