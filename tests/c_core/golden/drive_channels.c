@@ -5,6 +5,7 @@
 #include "giveway/gw_imu.h"
 #include "giveway/gw_math.h"
 #include "giveway/gw_model_covariance.h"
+#include "giveway/gw_slip.h"
 #include "giveway/gw_tip.h"
 #include "modules.h"
 #include "random_robot.h"
@@ -136,6 +137,29 @@ digest_t drive_model_covariance(void)
         teach(&generator, &kinematics, &follower);
         digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, sliding_n,
                                                        config.presliding));
+    }
+    return digest;
+}
+
+/* Robots with and without grip, whose wheels come near it and do not, while that matters and while it does not. */
+digest_t drive_slip(void)
+{
+    digest_t digest = digest_begin();
+    generator_t generator = generator_begin(42U);
+    for (uint32_t i = 0U; i < 40U; i++) {
+        const gw_kinematics_t kinematics = random_kinematics(&generator);
+        const bool grips = !generator_one_in(&generator, 8U);
+        const gw_real_t grip = grips ? generator_between(&generator, GW_ZERO, GW_TWO) : GW_ZERO;
+        const gw_real_t mass_kg = generator_between(&generator, GW_ONE, (gw_real_t)60.0);
+        gw_slip_t slip;
+        gw_slip_init(&slip, grip, mass_kg, (gw_real_t)2.5, (gw_real_t)0.85);
+        for (uint32_t k = 0U; k < 50U; k++) {
+            const gw_wheels_t torques_nm = generator_wheels(&generator, (gw_real_t)15.0);
+            const gw_planar_covariance_t known = {GW_ONE, GW_HALF, GW_TWO};
+            gw_slip_step(&slip, &kinematics, &torques_nm, !generator_one_in(&generator, 3U));
+            digest_covariance(&digest, gw_slip_added(&slip, &kinematics, known));
+            digest_real(&digest, gw_slip_sum(&slip));
+        }
     }
     return digest;
 }

@@ -46,6 +46,7 @@ static const module_t modules[] = {
 #if (GW_WITH_CHANNELS == 1)
     {"follower", drive_follower},
     {"model_covariance", drive_model_covariance},
+    {"slip", drive_slip},
     {"fast_channel", drive_fast_channel},
     {"slow_channel", drive_slow_channel},
     {"channels", drive_channels},
