@@ -41,6 +41,7 @@ static void set_no_escape(gw_admittance_config_t *config)
     config->brake_limit_mps2 = GW_ZERO;
     config->lead_s = GW_ZERO;
     config->push_share = GW_ZERO;
+    config->ahead_mps = GW_ZERO;
     gw_tip_config_trikey(&config->tip);
 }
 
@@ -50,6 +51,7 @@ static void check_escape(const gw_admittance_config_t *config, gw_config_error_t
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_BRAKE_LIMIT, config->brake_limit_mps2);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_LEAD, config->lead_s);
     gw_config_check_real(error, GW_FIELD_ADMITTANCE_PUSH_SHARE, config->push_share);
+    gw_config_check_real(error, GW_FIELD_ADMITTANCE_AHEAD, config->ahead_mps);
     gw_tip_config_check(&config->tip, error);
 }
 
@@ -211,6 +213,19 @@ void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_rea
         add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
         for (uint32_t i = 0U; i < (GW_SMOOTH_COUNT - 1U); i++) {
             add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
+        }
+    }
+}
+
+void gw_admittance_wait(gw_admittance_t *admittance, gw_vector_t robot_mps)
+{
+    if (is_escape(admittance) && (admittance->config.ahead_mps > GW_ZERO)) {
+        const gw_real_t most_mps = gw_max(along_away(admittance, robot_mps), GW_ZERO) + admittance->config.ahead_mps;
+        add_velocity(&admittance->velocity_mps, admittance->away,
+                     gw_min(most_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
+        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+            add_velocity(&admittance->smooth_mps[i], admittance->away,
+                         gw_min(most_mps - along_away(admittance, admittance->smooth_mps[i]), GW_ZERO));
         }
     }
 }

@@ -55,6 +55,7 @@ static void choose_escape(gw_controller_config_t *config)
     config->admittance.lead_s = (gw_real_t)0.04;
     config->admittance.brake_limit_mps2 = (gw_real_t)4.5;
     config->admittance.push_share = GW_TWO;
+    config->admittance.ahead_mps = (gw_real_t)0.04;
 }
 #else
 static void choose_escape(const gw_controller_config_t *config)
@@ -418,6 +419,11 @@ static void prepare_escape(gw_controller_t *controller)
         } else {
             /* a reaction within a reaction */
         }
+    }
+    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->may_be_pushed) {
+        const gw_vector_t robot_mps = {controller->estimate.measured_twist.vx_mps,
+                                       controller->estimate.measured_twist.vy_mps};
+        gw_admittance_wait(&controller->admittance, gw_rotate(controller->reference.yaw, robot_mps));
     }
 }
 

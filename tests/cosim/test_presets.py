@@ -36,6 +36,7 @@ PAPER = {
     "admittance.lead": 0.0,
     "admittance.brake_limit": 0.0,
     "admittance.push_share": 0.0,
+    "admittance.ahead": 0.0,
     "channels.rocking": 0.0,
     "motor.inertia": 0.0,
 }

@@ -56,6 +56,9 @@ typedef struct {
     /* Escape: as long as a push is felt, the acceleration away from it grows by this share, [0, 5], of what the push
      * would give a free robot of its mass. */
     gw_real_t push_share;
+    /* Escape: the velocity is at most this, m/s, [0, 10], above the robot's along the push; 0: however much. A servo
+     * that has to catch up pulls harder than tipping allows. */
+    gw_real_t ahead_mps;
     gw_tip_config_t tip;
 #endif
 } gw_admittance_config_t;
@@ -114,6 +117,9 @@ GW_SMALL void gw_admittance_brake(gw_admittance_t *admittance);
  * above 0. No effect on other kinds. Pointer not NULL. */
 GW_SMALL void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n,
                                  gw_real_t mass_kg);
+/* Before a step of the escape, whether or not the contact lasts: waits for the robot, which moves with this velocity,
+ * at most 1e9 m/s in each component. No effect on other kinds. Pointer not NULL. */
+GW_SMALL void gw_admittance_wait(gw_admittance_t *admittance, gw_vector_t robot_mps);
 #endif
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */

@@ -182,7 +182,8 @@ extern "C" {
     ROW(REAL, GW_FIELD_ADMITTANCE_SMOOTHING, "admittance.smoothing", OF smoothing_s, 0, 1) \
     ROW(REAL, GW_FIELD_ADMITTANCE_BRAKE_LIMIT, "admittance.brake_limit", OF brake_limit_mps2, 0, 1000) \
     ROW(REAL, GW_FIELD_ADMITTANCE_LEAD, "admittance.lead", OF lead_s, 0, 0.2) \
-    ROW(REAL, GW_FIELD_ADMITTANCE_PUSH_SHARE, "admittance.push_share", OF push_share, 0, 5)
+    ROW(REAL, GW_FIELD_ADMITTANCE_PUSH_SHARE, "admittance.push_share", OF push_share, 0, 5) \
+    ROW(REAL, GW_FIELD_ADMITTANCE_AHEAD, "admittance.ahead", OF ahead_mps, 0, 10)
 
 #define GW_TIP_FIELDS(ROW, OF) \
     ROW(REAL, GW_FIELD_ADMITTANCE_TIP_HEIGHT, "admittance.tip_height", OF height_m, 0, 5) \

@@ -108,6 +108,7 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     config->admittance.brake_limit_mps2 = (gw_real_t)3.0;
     config->admittance.lead_s = (gw_real_t)0.02;
     config->admittance.push_share = GW_TWO;
+    config->admittance.ahead_mps = (gw_real_t)0.04;
     config->admittance.tip.height_m = (gw_real_t)0.5;
 #endif
     config->estimator.rest_ticks = 100U;

@@ -52,6 +52,7 @@ digest_t drive_escape(void)
     trikey.admittance.smoothing_s = (gw_real_t)0.03;
     trikey.admittance.brake_limit_mps2 = (gw_real_t)4.0;
     trikey.admittance.push_share = GW_TWO;
+    trikey.admittance.ahead_mps = (gw_real_t)0.05;
     trikey.admittance.tip.height_m = (gw_real_t)0.414;
     digest_u32(&digest, (uint32_t)gw_kinematics_init(&kinematics, &trikey.geometry));
     gw_tip_init(&tip, &trikey.admittance.tip, &kinematics);
@@ -76,6 +77,9 @@ digest_t drive_escape(void)
                                    (gw_real_t)35.0);
             } else {
                 /* not touched any more */
+            }
+            if (i >= 50U) {
+                gw_admittance_wait(&admittance, generator_vector(&generator, GW_HALF));
             }
             digest_u32(&digest, (uint32_t)gw_admittance_step(&admittance, no_force, &output));
             digest_vector(&digest, output.velocity_mps);

@@ -431,7 +431,7 @@ static void there_is_no_escape_by_default(void)
     gw_admittance_config_t trikey;
     gw_admittance_config_trikey(&trikey);
     CHECK((trikey.smoothing_s == GW_ZERO) && (trikey.brake_limit_mps2 == GW_ZERO) && (trikey.lead_s == GW_ZERO) &&
-          (trikey.push_share == GW_ZERO) && (trikey.tip.height_m == GW_ZERO));
+          (trikey.push_share == GW_ZERO) && (trikey.ahead_mps == GW_ZERO) && (trikey.tip.height_m == GW_ZERO));
 }
 
 /* At rest, hit along y: the low-passes delay the start by their time, and nothing else. */
@@ -526,6 +526,41 @@ static void a_push_helps_to_give_way(void)
     }
 }
 
+/* Away from the push the escape is at most so much faster than the robot; across it nothing is held back. */
+static void an_escape_waits_for_the_robot(void)
+{
+    static const struct {
+        uint32_t kind;
+        gw_real_t ahead; /* m/s, as all that follows, along the push */
+        gw_real_t robot;
+        gw_real_t speed;
+        gw_real_t left;
+    } rows[] = {
+        {GW_ADMITTANCE_ESCAPE, R(0.04), R(0.1), R(0.3), R(0.14)},
+        {GW_ADMITTANCE_ESCAPE, R(0.04), R(0.1), R(0.13), R(0.13)}, /* is not hurried */
+        {GW_ADMITTANCE_ESCAPE, R(0.04), R(-0.2), R(0.3), R(0.04)}, /* it still moves towards the push */
+        {GW_ADMITTANCE_ESCAPE, R(0.04), R(-0.2), R(-0.3), R(-0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.1), R(0.3), R(0.3)},
+        {GW_ADMITTANCE_FROZEN_IMPULSE, R(0.04), R(0.1), R(0.3), R(0.3)},
+    };
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        const gw_vector_t velocity = {rows[i].speed, R(0.2)};
+        const gw_vector_t robot = {rows[i].robot, R(-0.5)};
+        gw_admittance_config_t from = config(rows[i].kind);
+        from.ahead_mps = rows[i].ahead;
+        gw_admittance_t admittance = of_config(&from);
+        unit_row(i);
+        CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
+        gw_admittance_wait(&admittance, robot);
+        CHECK_NEAR(admittance.velocity_mps.x, rows[i].left, ULP);
+        CHECK(admittance.velocity_mps.y == R(0.2));
+        for (uint32_t k = 0U; k < GW_SMOOTH_COUNT; k++) {
+            CHECK_NEAR(admittance.smooth_mps[k].x, rows[i].left, ULP);
+            CHECK(admittance.smooth_mps[k].y == R(0.2));
+        }
+    }
+}
+
 /* The margin limits every kind of reaction. */
 static void no_kind_lifts_a_wheel(void)
 {
@@ -600,6 +635,7 @@ void suite_admittance(void)
     unit_run("low_passes_delay_by_their_time", low_passes_delay_by_their_time);
     unit_run("a_velocity_towards_a_push_is_braked_harder", a_velocity_towards_a_push_is_braked_harder);
     unit_run("a_push_helps_to_give_way", a_push_helps_to_give_way);
+    unit_run("an_escape_waits_for_the_robot", an_escape_waits_for_the_robot);
     unit_run("no_kind_lifts_a_wheel", no_kind_lifts_a_wheel);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

@@ -178,6 +178,29 @@ static void a_push_accelerates_an_escape(void)
     }
 }
 
+/* The wheels stand: the reference does not run away from them, in any direction of the base. */
+static void an_escape_waits_for_a_robot_that_is_held(void)
+{
+    static const gw_real_t yaw_rad[] = {R(0.0), R(2.0)};
+    const gw_real_t ahead_mps = R(0.02);
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(yaw_rad); i++) {
+        rig_set_up();
+        rig_config.admittance.kind = GW_ADMITTANCE_ESCAPE;
+        rig_config.admittance.ahead_mps = ahead_mps;
+        rig_input.plan.pose.theta_rad = yaw_rad[i];
+        rig_begin();
+        rig_until(GW_MODE_TRACKING, 10U);
+        rig_push(R(60.0));
+        rig_until(GW_MODE_REACTING, 60U);
+        rig_ticks(60U);
+        const gw_vector_t velocity = {rig_output.reference_twist.vx_mps, rig_output.reference_twist.vy_mps};
+        /* It waits before it takes the tick's step. */
+        const gw_real_t step_mps = rig_config.admittance.acceleration_limit_mps2 * rig_config.period_s;
+        unit_row(i);
+        CHECK_NEAR(gw_length(velocity), ahead_mps + step_mps, ROUNDING);
+    }
+}
+
 /* In a reaction the commanded speeds are ahead of the reference by the configured time; on the path they are not. */
 static void a_reaction_leads_the_servos(void)
 {
@@ -520,6 +543,7 @@ void suite_controller(void)
     unit_run("it_gives_way_to_a_push_and_comes_back", it_gives_way_to_a_push_and_comes_back);
     unit_run("an_escape_brakes_as_long_as_it_is_pushed", an_escape_brakes_as_long_as_it_is_pushed);
     unit_run("a_push_accelerates_an_escape", a_push_accelerates_an_escape);
+    unit_run("an_escape_waits_for_a_robot_that_is_held", an_escape_waits_for_a_robot_that_is_held);
     unit_run("a_reaction_leads_the_servos", a_reaction_leads_the_servos);
     unit_run("a_second_push_on_the_way_is_a_hit_too", a_second_push_on_the_way_is_a_hit_too);
     unit_run("settled_can_mean_to_stay", settled_can_mean_to_stay);
