@@ -124,7 +124,10 @@ def test_parameters_of_the_fmu_are_the_fields() -> None:
 
 # What a build without the channels, or without the escape, does not have.
 CHANNELS = ("channels.", "follower.", "imu.", "motor.")
-ESCAPE = ("admittance.smoothing", "admittance.brake_limit", "admittance.lead", "admittance.push_", "admittance.ahead", "admittance.tip_")
+ESCAPE = (
+    "admittance.smoothing", "admittance.brake_limit", "admittance.lead", "admittance.push_", "admittance.ahead",
+    "admittance.tip_",
+)  # fmt: skip
 
 
 def printed(folder: Path, *flags: str) -> dict[str, dict[str, tuple[float, ...]]]:
