@@ -200,32 +200,45 @@ void gw_admittance_brake(gw_admittance_t *admittance)
     }
 }
 
-void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg)
+/* Past the first low-pass, at most to the speed of (2). */
+static void accelerate(gw_admittance_t *admittance, gw_real_t push_mps2)
 {
-    const gw_real_t above_n = along_away(admittance, force_n) - floor_n;
-    if (is_escape(admittance) && (above_n > GW_ZERO)) {
-        const gw_admittance_config_t *const config = &admittance->config;
-        const gw_real_t push_mps2 = gw_min((config->push_share * above_n) / mass_kg, config->acceleration_limit_mps2);
-        const gw_real_t goal_mps =
-            gw_min(admittance->rate_per_s * along_away(admittance, ahead_of(admittance)), config->speed_limit_mps);
-        const gw_real_t left_mps = gw_max(goal_mps - along_away(admittance, admittance->smooth_mps[0]), GW_ZERO);
-        const gw_real_t change_mps = gw_min(push_mps2 * admittance->period_s, left_mps);
-        add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
-        for (uint32_t i = 0U; i < (GW_SMOOTH_COUNT - 1U); i++) {
-            add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
-        }
+    const gw_admittance_config_t *const config = &admittance->config;
+    const gw_real_t goal_mps =
+        gw_min(admittance->rate_per_s * along_away(admittance, ahead_of(admittance)), config->speed_limit_mps);
+    const gw_real_t left_mps = gw_max(goal_mps - along_away(admittance, admittance->smooth_mps[0]), GW_ZERO);
+    const gw_real_t change_mps =
+        gw_min(gw_min(push_mps2, config->acceleration_limit_mps2) * admittance->period_s, left_mps);
+    add_velocity(&admittance->velocity_mps, admittance->away, change_mps);
+    for (uint32_t i = 0U; i < (GW_SMOOTH_COUNT - 1U); i++) {
+        add_velocity(&admittance->smooth_mps[i], admittance->away, change_mps);
     }
 }
 
-void gw_admittance_wait(gw_admittance_t *admittance, gw_vector_t robot_mps)
+/* At most this much faster than the robot, which may still move towards the push. */
+static void wait_for(gw_admittance_t *admittance, gw_vector_t robot_mps)
 {
-    if (is_escape(admittance) && (admittance->config.ahead_mps > GW_ZERO)) {
-        const gw_real_t most_mps = gw_max(along_away(admittance, robot_mps), GW_ZERO) + admittance->config.ahead_mps;
-        add_velocity(&admittance->velocity_mps, admittance->away,
-                     gw_min(most_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
-        for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
-            add_velocity(&admittance->smooth_mps[i], admittance->away,
-                         gw_min(most_mps - along_away(admittance, admittance->smooth_mps[i]), GW_ZERO));
+    const gw_real_t most_mps = gw_max(along_away(admittance, robot_mps), GW_ZERO) + admittance->config.ahead_mps;
+    add_velocity(&admittance->velocity_mps, admittance->away,
+                 gw_min(most_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
+    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+        add_velocity(&admittance->smooth_mps[i], admittance->away,
+                     gw_min(most_mps - along_away(admittance, admittance->smooth_mps[i]), GW_ZERO));
+    }
+}
+
+void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg,
+                        gw_vector_t robot_mps)
+{
+    if (is_escape(admittance)) {
+        const gw_admittance_config_t *const config = &admittance->config;
+        const gw_real_t above_n = along_away(admittance, force_n) - floor_n;
+        if (above_n > GW_ZERO) {
+            accelerate(admittance, (config->push_share * above_n) / mass_kg);
+        } else if (config->ahead_mps > GW_ZERO) {
+            wait_for(admittance, robot_mps);
+        } else {
+            /* it may be as fast as it likes */
         }
     }
 }

@@ -406,24 +406,30 @@ static void note_press(gw_controller_t *controller, gw_mode_t before, gw_vector_
     controller->may_be_pushed = begins && (!presses);
 }
 
+static gw_vector_t in_world(const gw_controller_t *controller, gw_real_t x, gw_real_t y)
+{
+    const gw_vector_t in_base = {x, y};
+    return gw_rotate(controller->reference.yaw, in_base);
+}
+
 /* Before a step of the admittance. */
 static void prepare_escape(gw_controller_t *controller)
 {
     gw_admittance_face(&controller->admittance, controller->reference.yaw);
-    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->detection.active) {
-        if (controller->may_press) {
+    if (controller->supervisor.mode == GW_MODE_REACTING) {
+        const bool touched = controller->detection.active;
+        if (controller->may_be_pushed) {
+            const gw_vector_t nothing_felt = {GW_ZERO, GW_ZERO};
+            const gw_vector_t felt_n = touched ? felt_force(controller) : nothing_felt;
+            const gw_twist_t *const robot = &controller->estimate.measured_twist;
+            gw_admittance_push(&controller->admittance, in_world(controller, felt_n.x, felt_n.y),
+                               channels_leak(controller), controller->estimator.nominal.total_mass_kg,
+                               in_world(controller, robot->vx_mps, robot->vy_mps));
+        } else if (controller->may_press && touched) {
             gw_admittance_brake(&controller->admittance);
-        } else if (controller->may_be_pushed) {
-            gw_admittance_push(&controller->admittance, gw_rotate(controller->reference.yaw, felt_force(controller)),
-                               channels_leak(controller), controller->estimator.nominal.total_mass_kg);
         } else {
             /* a reaction within a reaction */
         }
-    }
-    if ((controller->supervisor.mode == GW_MODE_REACTING) && controller->may_be_pushed) {
-        const gw_vector_t robot_mps = {controller->estimate.measured_twist.vx_mps,
-                                       controller->estimate.measured_twist.vy_mps};
-        gw_admittance_wait(&controller->admittance, gw_rotate(controller->reference.yaw, robot_mps));
     }
 }
 

@@ -21,7 +21,7 @@ static void part_step(void)
 {
     gw_admittance_output_t output;
     draw_admittance(&admittance);
-    const uint32_t kind = draw_count(0U, 5U);
+    const uint32_t kind = draw_count(0U, 4U);
     if (kind == 0U) {
         (void)gw_admittance_start(&admittance, any_vector(), any_vector());
     } else if (kind == 1U) {
@@ -32,13 +32,11 @@ static void part_step(void)
         gw_admittance_brake(&admittance);
     } else if (kind == 3U) {
         gw_vector_t force_n;
-        draw_vector(&force_n, (gw_real_t)2.0e9); /* turned: a little more in a component */
-        gw_admittance_push(&admittance, force_n, draw_real(GW_ZERO, (gw_real_t)1000.0),
-                           draw_real((gw_real_t)0.0999, (gw_real_t)2.2e6));
-    } else if (kind == 4U) {
         gw_vector_t robot_mps;
-        draw_vector(&robot_mps, (gw_real_t)2.0e9); /* likewise */
-        gw_admittance_wait(&admittance, robot_mps);
+        draw_vector(&force_n, (gw_real_t)2.0e9); /* turned: a little more in a component */
+        draw_vector(&robot_mps, (gw_real_t)2.0e9);
+        gw_admittance_push(&admittance, force_n, draw_real(GW_ZERO, (gw_real_t)1000.0),
+                           draw_real((gw_real_t)0.0999, (gw_real_t)2.2e6), robot_mps);
     } else {
         (void)gw_admittance_step(&admittance, any_vector(), &output);
         hold_vector(&output.velocity_mps, (gw_real_t)100.0);

@@ -56,8 +56,8 @@ typedef struct {
     /* Escape: as long as a push is felt, the acceleration away from it grows by this share, [0, 5], of what the push
      * would give a free robot of its mass. */
     gw_real_t push_share;
-    /* Escape: the velocity is at most this, m/s, [0, 10], above the robot's along the push; 0: however much. A servo
-     * that has to catch up pulls harder than tipping allows. */
+    /* Escape: the velocity is at most this, m/s, [0, 10], above the robot's along the push as soon as that is not felt
+     * any more; 0: however much. A servo that has to catch up pulls harder than tipping allows. */
     gw_real_t ahead_mps;
     gw_tip_config_t tip;
 #endif
@@ -114,12 +114,10 @@ void gw_admittance_face(gw_admittance_t *admittance, gw_rotation_t yaw);
 GW_SMALL void gw_admittance_brake(gw_admittance_t *admittance);
 /* Likewise, instead of it, for a robot that does not move towards the push: accelerates away from it, past the first
  * low-pass, at most to the speed of (2). What exceeds the floor of the felt force, |F| at most 1e9 N, counts; mass
- * above 0. No effect on other kinds. Pointer not NULL. */
-GW_SMALL void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n,
-                                 gw_real_t mass_kg);
-/* Before a step of the escape, whether or not the contact lasts: waits for the robot, which moves with this velocity,
- * at most 1e9 m/s in each component. No effect on other kinds. Pointer not NULL. */
-GW_SMALL void gw_admittance_wait(gw_admittance_t *admittance, gw_vector_t robot_mps);
+ * above 0. If nothing does, or nothing touches the robot any more, the escape waits for the robot, whose velocity is at
+ * most 1e9 m/s in each component. No effect on other kinds. Pointer not NULL. */
+GW_SMALL void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg,
+                                 gw_vector_t robot_mps);
 #endif
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */

@@ -73,13 +73,11 @@ digest_t drive_escape(void)
             if (i < 100U) {
                 gw_admittance_brake(&admittance);
             } else if (i < 200U) {
-                gw_admittance_push(&admittance, generator_vector(&generator, (gw_real_t)60.0), (gw_real_t)4.0,
-                                   (gw_real_t)35.0);
+                const gw_vector_t force_n = generator_vector(&generator, (gw_real_t)60.0);
+                gw_admittance_push(&admittance, force_n, (gw_real_t)4.0, (gw_real_t)35.0,
+                                   generator_vector(&generator, GW_HALF));
             } else {
                 /* not touched any more */
-            }
-            if (i >= 50U) {
-                gw_admittance_wait(&admittance, generator_vector(&generator, GW_HALF));
             }
             digest_u32(&digest, (uint32_t)gw_admittance_step(&admittance, no_force, &output));
             digest_vector(&digest, output.velocity_mps);

@@ -518,7 +518,7 @@ static void a_push_helps_to_give_way(void)
         gw_admittance_t admittance = of_config(&from);
         unit_row(i);
         CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
-        gw_admittance_push(&admittance, force, R(5.0), R(30.0));
+        gw_admittance_push(&admittance, force, R(5.0), R(30.0), nothing);
         CHECK_NEAR(admittance.velocity_mps.x, rows[i].speed + rows[i].gain, ULP);
         CHECK(admittance.velocity_mps.y == GW_ZERO);
         CHECK_NEAR(admittance.smooth_mps[0].x, rows[i].speed + rows[i].gain, ULP);
@@ -526,32 +526,36 @@ static void a_push_helps_to_give_way(void)
     }
 }
 
-/* Away from the push the escape is at most so much faster than the robot; across it nothing is held back. */
+/* What does not feel the push any more is at most so much faster than the robot; across it nothing is held back. */
 static void an_escape_waits_for_the_robot(void)
 {
     static const struct {
         uint32_t kind;
+        gw_real_t force_n;
         gw_real_t ahead; /* m/s, as all that follows, along the push */
         gw_real_t robot;
         gw_real_t speed;
         gw_real_t left;
     } rows[] = {
-        {GW_ADMITTANCE_ESCAPE, R(0.04), R(0.1), R(0.3), R(0.14)},
-        {GW_ADMITTANCE_ESCAPE, R(0.04), R(0.1), R(0.13), R(0.13)}, /* is not hurried */
-        {GW_ADMITTANCE_ESCAPE, R(0.04), R(-0.2), R(0.3), R(0.04)}, /* it still moves towards the push */
-        {GW_ADMITTANCE_ESCAPE, R(0.04), R(-0.2), R(-0.3), R(-0.3)},
-        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.1), R(0.3), R(0.3)},
-        {GW_ADMITTANCE_FROZEN_IMPULSE, R(0.04), R(0.1), R(0.3), R(0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.3), R(0.14)},
+        {GW_ADMITTANCE_ESCAPE, R(5.0), R(0.04), R(0.1), R(0.3), R(0.14)}, /* not above the floor */
+        {GW_ADMITTANCE_ESCAPE, R(6.0), R(0.04), R(0.1), R(0.3), R(0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.13), R(0.13)}, /* is not hurried */
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(-0.2), R(0.3), R(0.04)}, /* it still moves towards the push */
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(-0.2), R(-0.3), R(-0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.0), R(0.1), R(0.3), R(0.3)},
+        {GW_ADMITTANCE_FROZEN_IMPULSE, R(0.0), R(0.04), R(0.1), R(0.3), R(0.3)},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         const gw_vector_t velocity = {rows[i].speed, R(0.2)};
+        const gw_vector_t felt = {rows[i].force_n, R(100.0)};
         const gw_vector_t robot = {rows[i].robot, R(-0.5)};
         gw_admittance_config_t from = config(rows[i].kind);
         from.ahead_mps = rows[i].ahead;
         gw_admittance_t admittance = of_config(&from);
         unit_row(i);
         CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
-        gw_admittance_wait(&admittance, robot);
+        gw_admittance_push(&admittance, felt, R(5.0), R(30.0), robot);
         CHECK_NEAR(admittance.velocity_mps.x, rows[i].left, ULP);
         CHECK(admittance.velocity_mps.y == R(0.2));
         for (uint32_t k = 0U; k < GW_SMOOTH_COUNT; k++) {

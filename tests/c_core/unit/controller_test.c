@@ -192,6 +192,7 @@ static void an_escape_waits_for_a_robot_that_is_held(void)
         rig_until(GW_MODE_TRACKING, 10U);
         rig_push(R(60.0));
         rig_until(GW_MODE_REACTING, 60U);
+        rig_push(GW_ZERO);
         rig_ticks(60U);
         const gw_vector_t velocity = {rig_output.reference_twist.vx_mps, rig_output.reference_twist.vy_mps};
         /* It waits before it takes the tick's step. */
