@@ -232,11 +232,11 @@ void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_rea
 {
     if (is_escape(admittance)) {
         const gw_admittance_config_t *const config = &admittance->config;
-        const gw_real_t above_n = along_away(admittance, force_n) - floor_n;
+        const gw_real_t above_n = along_away(admittance, gw_rotate(admittance->yaw, force_n)) - floor_n;
         if (above_n > GW_ZERO) {
             accelerate(admittance, (config->push_share * above_n) / mass_kg);
         } else if (config->ahead_mps > GW_ZERO) {
-            wait_for(admittance, robot_mps);
+            wait_for(admittance, gw_rotate(admittance->yaw, robot_mps));
         } else {
             /* it may be as fast as it likes */
         }

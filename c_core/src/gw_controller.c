@@ -406,10 +406,14 @@ static void note_press(gw_controller_t *controller, gw_mode_t before, gw_vector_
     controller->may_be_pushed = begins && (!presses);
 }
 
-static gw_vector_t in_world(const gw_controller_t *controller, gw_real_t x, gw_real_t y)
+/* A push that is felt accelerates the escape; then that waits for the robot. */
+static void yield(gw_controller_t *controller)
 {
-    const gw_vector_t in_base = {x, y};
-    return gw_rotate(controller->reference.yaw, in_base);
+    static const gw_vector_t nothing_felt = {0};
+    const gw_twist_t *const robot = &controller->estimate.measured_twist;
+    const gw_vector_t robot_mps = {robot->vx_mps, robot->vy_mps};
+    gw_admittance_push(&controller->admittance, controller->detection.active ? felt_force(controller) : nothing_felt,
+                       channels_leak(controller), controller->estimator.nominal.total_mass_kg, robot_mps);
 }
 
 /* Before a step of the admittance. */
@@ -417,15 +421,9 @@ static void prepare_escape(gw_controller_t *controller)
 {
     gw_admittance_face(&controller->admittance, controller->reference.yaw);
     if (controller->supervisor.mode == GW_MODE_REACTING) {
-        const bool touched = controller->detection.active;
         if (controller->may_be_pushed) {
-            const gw_vector_t nothing_felt = {GW_ZERO, GW_ZERO};
-            const gw_vector_t felt_n = touched ? felt_force(controller) : nothing_felt;
-            const gw_twist_t *const robot = &controller->estimate.measured_twist;
-            gw_admittance_push(&controller->admittance, in_world(controller, felt_n.x, felt_n.y),
-                               channels_leak(controller), controller->estimator.nominal.total_mass_kg,
-                               in_world(controller, robot->vx_mps, robot->vy_mps));
-        } else if (controller->may_press && touched) {
+            yield(controller);
+        } else if (controller->may_press && controller->detection.active) {
             gw_admittance_brake(&controller->admittance);
         } else {
             /* a reaction within a reaction */

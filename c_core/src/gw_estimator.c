@@ -715,20 +715,11 @@ static bool has_other_zero(const gw_estimator_t *estimator, const gw_estimator_i
     return has_other_source(estimator, source) || has_other_bias(input, source);
 }
 
-/* Another zero, because the robot rests or its acceleration comes from elsewhere: the mean begins anew. */
-static void judge_zero(gw_estimator_t *estimator, const gw_estimator_input_t *input, const gw_wheels_t *torque_nm,
-                       gw_real_t speed_mps, gw_estimator_output_t *output)
+static void tell_mean(const gw_moving_average_t *average, gw_estimator_output_t *output)
 {
-    /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct behind a pointer */
-    const gw_wheels_t zero_before = *present_zero(estimator);
-    output->zero_changed = judge_rest(estimator, torque_nm, speed_mps);
-    if (has_other_zero(estimator, input, output->acceleration_source)) {
-        output->zero_changed = true;
-    }
-    if (output->zero_changed) {
-        tell_zero_step(estimator, &zero_before, output);
-        gw_moving_average_reset(&estimator->average);
-    }
+    output->mean = gw_moving_average_mean(average);
+    output->window_mean = gw_moving_average_window_mean(average);
+    output->mean_samples = gw_moving_average_count(average);
 }
 
 /* The output of a tick that gives no estimate. */
@@ -755,10 +746,19 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         const gw_twist_t planned_twist = known_twist(input->planned_twist);
         const gw_acceleration_t planned_acceleration = known_acceleration(input->planned_acceleration);
         const gw_real_t speed_mps = faster_of(estimator, planned_twist);
+        /* cppcheck-suppress misra-c2012-9.3 ; DEV-01 a whole struct behind a pointer */
+        const gw_wheels_t zero_before = *present_zero(estimator);
         tell_torque(&torque_nm, output);
-        tell_turns(estimator, input, output);
         output->acceleration_source = source_of(estimator, input);
-        judge_zero(estimator, input, &torque_nm, speed_mps, output);
+        output->zero_changed = judge_rest(estimator, &torque_nm, speed_mps);
+        tell_turns(estimator, input, output);
+        if (has_other_zero(estimator, input, output->acceleration_source)) {
+            output->zero_changed = true;
+        }
+        if (output->zero_changed) {
+            tell_zero_step(estimator, &zero_before, output);
+            gw_moving_average_reset(&estimator->average);
+        }
         output->regime = regime_of(estimator, speed_mps);
         gw_wheels_t rates;
         gw_wheels_t derivatives;
@@ -779,9 +779,7 @@ gw_status_t gw_estimator_step(gw_estimator_t *estimator, const gw_estimator_inpu
         status = gw_moving_average_add(&estimator->average, output->wrench);
         if (status == GW_STATUS_OK) {
             tell_source_step(estimator, input, output);
-            output->mean = gw_moving_average_mean(&estimator->average);
-            output->window_mean = gw_moving_average_window_mean(&estimator->average);
-            output->mean_samples = gw_moving_average_count(&estimator->average);
+            tell_mean(&estimator->average, output);
         } else {
             /* Torques or a measured motion that no robot has. */
             nothing_known(output);

@@ -115,7 +115,7 @@ GW_SMALL void gw_admittance_brake(gw_admittance_t *admittance);
 /* Likewise, instead of it, for a robot that does not move towards the push: accelerates away from it, past the first
  * low-pass, at most to the speed of (2). What exceeds the floor of the felt force, |F| at most 1e9 N, counts; mass
  * above 0. If nothing does, or nothing touches the robot any more, the escape waits for the robot, whose velocity is at
- * most 1e9 m/s in each component. No effect on other kinds. Pointer not NULL. */
+ * most 1e9 m/s in each component. Both in the base frame. No effect on other kinds. Pointer not NULL. */
 GW_SMALL void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg,
                                  gw_vector_t robot_mps);
 #endif
