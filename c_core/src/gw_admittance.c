@@ -215,10 +215,14 @@ static void accelerate(gw_admittance_t *admittance, gw_real_t push_mps2)
     }
 }
 
-/* At most this much faster than the robot, which may still move towards the push. */
+/* At most this much faster than the robot, which may still move towards the push. It may be far ahead: what slows it
+ * down to that is limited, as a step of the velocity would be one of the motors' torque. */
 static void wait_for(gw_admittance_t *admittance, gw_vector_t robot_mps)
 {
-    const gw_real_t most_mps = gw_max(along_away(admittance, robot_mps), GW_ZERO) + admittance->config.ahead_mps;
+    const gw_admittance_config_t *const config = &admittance->config;
+    const gw_real_t asked_mps = gw_max(along_away(admittance, robot_mps), GW_ZERO) + config->ahead_mps;
+    const gw_real_t now_mps = along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]);
+    const gw_real_t most_mps = gw_max(asked_mps, now_mps - (config->brake_limit_mps2 * admittance->period_s));
     add_velocity(&admittance->velocity_mps, admittance->away,
                  gw_min(most_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
     for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {

@@ -46,8 +46,8 @@ typedef struct {
 #if (GW_WITH_ESCAPE == 1)
     /* Escape: time constant of each of the two low-passes of the velocity, s, [0, 1]. */
     gw_real_t smoothing_s;
-    /* Escape: deceleration of a velocity towards a push as long as it is felt, past the low-passes, m/s^2, [0, 1000].
-     */
+    /* Escape: deceleration past the low-passes, m/s^2, [0, 1000]: of a velocity towards a push as long as it is felt,
+     * and of one that waits for the robot. */
     gw_real_t brake_limit_mps2;
     /* Reaction of any kind: this time, s, [0, 0.2], times the acceleration is added to the commanded speeds, at most
      * the speed limit in each component. The inertia that a wheel moves over the servo's kd lets the robot follow

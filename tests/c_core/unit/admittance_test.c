@@ -526,25 +526,30 @@ static void a_push_helps_to_give_way(void)
     }
 }
 
-/* What does not feel the push any more is at most so much faster than the robot; across it nothing is held back. */
+/* What does not feel the push any more is at most so much faster than the robot, as soon as its brake allows; across it
+ * nothing is held back. */
 static void an_escape_waits_for_the_robot(void)
 {
-    static const struct {
+    const gw_real_t any = GW_ONE / PERIOD; /* 1 m/s in a tick, more than any row asks for */
+    const struct {
         uint32_t kind;
         gw_real_t force_n;
         gw_real_t ahead; /* m/s, as all that follows, along the push */
         gw_real_t robot;
         gw_real_t speed;
+        gw_real_t brake; /* m/s^2 */
         gw_real_t left;
     } rows[] = {
-        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.3), R(0.14)},
-        {GW_ADMITTANCE_ESCAPE, R(5.0), R(0.04), R(0.1), R(0.3), R(0.14)}, /* not above the floor */
-        {GW_ADMITTANCE_ESCAPE, R(6.0), R(0.04), R(0.1), R(0.3), R(0.3)},
-        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.13), R(0.13)}, /* is not hurried */
-        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(-0.2), R(0.3), R(0.04)}, /* it still moves towards the push */
-        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(-0.2), R(-0.3), R(-0.3)},
-        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.0), R(0.1), R(0.3), R(0.3)},
-        {GW_ADMITTANCE_FROZEN_IMPULSE, R(0.0), R(0.04), R(0.1), R(0.3), R(0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.3), any, R(0.14)},
+        {GW_ADMITTANCE_ESCAPE, R(5.0), R(0.04), R(0.1), R(0.3), any, R(0.14)}, /* not above the floor */
+        {GW_ADMITTANCE_ESCAPE, R(6.0), R(0.04), R(0.1), R(0.3), any, R(0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.13), any, R(0.13)}, /* is not hurried */
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(-0.2), R(0.3), any, R(0.04)}, /* it still moves towards the push */
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(-0.2), R(-0.3), any, R(-0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.0), R(0.1), R(0.3), any, R(0.3)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.3), R(5.0), R(0.3) - (R(5.0) * PERIOD)},
+        {GW_ADMITTANCE_ESCAPE, R(0.0), R(0.04), R(0.1), R(0.3), R(0.0), R(0.3)},
+        {GW_ADMITTANCE_FROZEN_IMPULSE, R(0.0), R(0.04), R(0.1), R(0.3), any, R(0.3)},
     };
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
         const gw_vector_t velocity = {rows[i].speed, R(0.2)};
@@ -552,6 +557,7 @@ static void an_escape_waits_for_the_robot(void)
         const gw_vector_t robot = {rows[i].robot, R(-0.5)};
         gw_admittance_config_t from = config(rows[i].kind);
         from.ahead_mps = rows[i].ahead;
+        from.brake_limit_mps2 = rows[i].brake;
         gw_admittance_t admittance = of_config(&from);
         unit_row(i);
         CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);

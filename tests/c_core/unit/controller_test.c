@@ -187,6 +187,7 @@ static void an_escape_waits_for_a_robot_that_is_held(void)
         rig_set_up();
         rig_config.admittance.kind = GW_ADMITTANCE_ESCAPE;
         rig_config.admittance.ahead_mps = ahead_mps;
+        rig_config.admittance.brake_limit_mps2 = R(4.5);
         rig_input.plan.pose.theta_rad = yaw_rad[i];
         rig_begin();
         rig_until(GW_MODE_TRACKING, 10U);
