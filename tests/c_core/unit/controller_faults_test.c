@@ -172,10 +172,7 @@ static void a_wrench_beyond_any_push_is_a_fault(void)
 static void a_corrupt_admittance_brakes(void)
 {
     rig_set_up();
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_push(GW_ZERO);
     rig_ticks(100U);
     const gw_real_t before = rig_output.reference_twist.vx_mps;

@@ -63,10 +63,7 @@ static void without_a_tare_it_starts_at_the_plan_s_speed(void)
 static void it_gives_way_to_a_push_and_comes_back(void)
 {
     rig_set_up();
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     CHECK((rig_output.detection_count == 1U) && rig_output.detection_active);
     CHECK(rig_output.detection_tick == (int32_t)rig_output.tick);
     CHECK_NEAR(rig_output.detection_wrench.force_x_n, R(20.0), R(20.0) * ROUNDING);
@@ -189,10 +186,7 @@ static void an_escape_waits_for_a_robot_that_is_held(void)
         rig_config.admittance.ahead_mps = ahead_mps;
         rig_config.admittance.brake_limit_mps2 = R(4.5);
         rig_input.plan.pose.theta_rad = yaw_rad[i];
-        rig_begin();
-        rig_until(GW_MODE_TRACKING, 10U);
-        rig_push(R(60.0));
-        rig_until(GW_MODE_REACTING, 60U);
+        rig_begin_with_a_push(R(60.0));
         rig_push(GW_ZERO);
         rig_ticks(60U);
         const gw_vector_t velocity = {rig_output.reference_twist.vx_mps, rig_output.reference_twist.vy_mps};
@@ -209,10 +203,7 @@ static void a_reaction_leads_the_servos(void)
     const gw_real_t lead_s = R(0.04);
     rig_set_up();
     rig_config.admittance.lead_s = lead_s;
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_ticks(3U);
     const gw_real_t ahead =
         rig_output.reference_twist.vx_mps + (lead_s * rig_controller.reference.acceleration.ax_mps2);
@@ -231,10 +222,7 @@ static void a_reaction_leads_the_servos(void)
 static void a_second_push_on_the_way_is_a_hit_too(void)
 {
     rig_set_up();
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_push(GW_ZERO);
     rig_ticks(400U);
     CHECK(rig_output.mode == GW_MODE_REACTING);
@@ -247,10 +235,7 @@ static void settled_can_mean_to_stay(void)
 {
     rig_set_up();
     rig_config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_push(GW_ZERO);
     rig_until(GW_MODE_SETTLED, 20000U);
     rig_ticks(500U);
@@ -266,10 +251,7 @@ static void live_force_yields_while_it_is_pushed(void)
     rig_set_up();
     rig_config.admittance.kind = GW_ADMITTANCE_LIVE_FORCE;
     rig_config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     /* Just hit: the push counts, although the robot creeps and the leak is 40 N then. */
     rig_ticks(3U);
     CHECK(rig_output.reference_twist.vx_mps > GW_ZERO);
@@ -295,10 +277,7 @@ static void a_push_that_stays_keeps_it_from_settling(void)
 {
     rig_set_up();
     rig_config.estimator.rest_ticks = 10000U; /* no new zero, which would include the push */
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(50.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(50.0));
     for (uint32_t i = 0U; i < 5000U; i++) {
         rig_tick(GW_STATUS_OK);
         CHECK(rig_output.mode == GW_MODE_REACTING);
@@ -310,10 +289,7 @@ static void a_push_that_stays_keeps_it_from_settling(void)
 static void a_path_is_rejoined_in_yaw_too(void)
 {
     rig_set_up();
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_push(GW_ZERO);
     rig_until(GW_MODE_REJOINING, 20000U);
     rig_input.plan.pose.x_m = rig_output.reference_pose.x_m;
@@ -349,10 +325,7 @@ static void a_stop_request_stops_it(void)
 static void a_stopped_escape_is_not_resumed(void)
 {
     rig_set_up();
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_push(GW_ZERO);
     rig_ticks(100U);
     rig_input.stop_request = true;
@@ -436,10 +409,7 @@ static void a_tare_is_granted_in_settled_and_refused_in_between(void)
     rig_set_up();
     rig_config.supervisor.after_settled = GW_AFTER_SETTLED_HOLD;
     rig_config.supervisor.settled_ticks = 200U;
-    rig_begin();
-    rig_until(GW_MODE_TRACKING, 10U);
-    rig_push(R(20.0));
-    rig_until(GW_MODE_REACTING, 60U);
+    rig_begin_with_a_push(R(20.0));
     rig_push(GW_ZERO);
     rig_ticks(50U);
     while ((!rig_controller.estimator.rest) && (rig_output.tick < 20000U)) {

@@ -104,3 +104,11 @@ void rig_push(gw_real_t force_n)
     rig_input.sensor.torque_nm[1] = torque;
     rig_input.sensor.torque_nm[2] = -torque;
 }
+
+void rig_begin_with_a_push(gw_real_t force_n)
+{
+    rig_begin();
+    rig_until(GW_MODE_TRACKING, 10U);
+    rig_push(force_n);
+    rig_until(GW_MODE_REACTING, 60U);
+}

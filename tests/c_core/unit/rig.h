@@ -23,5 +23,7 @@ void rig_ticks(uint32_t count);
 void rig_until(gw_mode_t mode, uint32_t most);
 /* The torques of a push along x, N: (0, t, -t). */
 void rig_push(gw_real_t force_n);
+/* A controller of the configuration, pushed as soon as it tracks, until it reacts; the push goes on. */
+void rig_begin_with_a_push(gw_real_t force_n);
 
 #endif
