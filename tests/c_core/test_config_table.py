@@ -124,10 +124,7 @@ def test_parameters_of_the_fmu_are_the_fields() -> None:
 
 # What a build without the channels, or without the escape, does not have.
 CHANNELS = ("channels.", "follower.", "imu.", "motor.")
-ESCAPE = (
-    "admittance.smoothing", "admittance.brake_limit", "admittance.lead", "admittance.push_", "admittance.ahead",
-    "admittance.tip_",
-)  # fmt: skip
+ESCAPE = tuple(f"admittance.{name}" for name in ("smoothing", "brake_limit", "lead", "push_", "ahead", "tip_"))
 
 
 def printed(folder: Path, *flags: str) -> dict[str, dict[str, tuple[float, ...]]]:
