@@ -29,10 +29,12 @@
  * placed within 81 mm; with the first low-pass for them, too, 127. */
 #define BANK_OF_SUM 1U
 #define BANK_OF_SLOW_SUM 2U
+#define BANK_OF_RIPPLE 2U /* a hand-over takes 10 ms and more */
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
 #define GEAR_MAX_N2 ((gw_real_t)1.0e12)
+#define RIPPLE2_MAX ((gw_real_t)4.0)
 #define FORCES_MAX_N2 ((gw_real_t)6.0e10) /* five of GW_BALANCE_MAX, and rounding */
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
@@ -55,6 +57,7 @@ void gw_channels_config_trikey(gw_channels_config_t *config)
     config->rocking = GW_ZERO;
     config->rocking_s = (gw_real_t)0.6;
     config->grip = GW_TRIKEY_WHEEL_GRIP_FRICTION;
+    config->ripple = (gw_real_t)0.48; /* model_multiple times it, 1.2: a wheel's friction may double */
     config->fast.rest_n = (gw_real_t)3.0;
     config->fast.creep_n = (gw_real_t)10.0;
     config->fast.motion_n = (gw_real_t)7.0;
@@ -83,6 +86,7 @@ void gw_channels_config_check(const gw_channels_config_t *config, gw_config_erro
     gw_config_check_real(error, GW_FIELD_CHANNELS_ROCKING, config->rocking);
     gw_config_check_real(error, GW_FIELD_CHANNELS_ROCKING_TIME, config->rocking_s);
     gw_config_check_real(error, GW_FIELD_CHANNELS_GRIP, config->grip);
+    gw_config_check_real(error, GW_FIELD_CHANNELS_RIPPLE, config->ripple);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_REST, config->fast.rest_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_CREEP, config->fast.creep_n);
     gw_config_check_real(error, GW_FIELD_CHANNELS_FAST_MOTION, config->fast.motion_n);
@@ -109,6 +113,7 @@ void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *confi
         gw_max(GW_ONE - (((GW_TWO * (gw_real_t)GW_SLOW_TICKS) * noise->period_s) / config->rocking_s), GW_ZERO);
     channels->gear_keep = GW_ONE - gw_share_of((gw_real_t)GW_SLOW_TICKS * noise->period_s, config->slow_s);
     gw_slip_init(&channels->doubts.slip, config->grip, noise->mass_kg, config->model_multiple, channels->gear_keep);
+    gw_ripple_init(&channels->ripple, config->ripple, (gw_real_t)GW_SLOW_TICKS * noise->period_s);
     gw_follower_init(&channels->follower, &config->follower, noise->period_s * (gw_real_t)LEARN_TICKS);
     gw_fast_channel_init(&channels->fast, config, noise);
     gw_slow_channel_init(&channels->slow, config, noise);
@@ -129,6 +134,8 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->doubts.rocking_n2 = GW_ZERO;
     channels->doubts.gear_n2 = GW_ZERO;
     gw_slip_restart(&channels->doubts.slip);
+    gw_ripple_leave_out(&channels->ripple);
+    channels->doubts.ripple2 = gw_ripple_variance(&channels->ripple, false);
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->summed = BANK_OF_SUM;
@@ -167,9 +174,10 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
                 gw_in_range(channels->doubts.rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
                 gw_in_range(channels->gear_keep, GW_HALF, GW_ONE) &&
                 gw_in_range(channels->doubts.gear_n2, GW_ZERO, GEAR_MAX_N2) &&
-                gw_slip_invariant_holds(&channels->doubts.slip) && (channels->calm_ticks <= CALM_TICKS) &&
-                gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) && (channels->summed < GW_BANK_COUNT) &&
-                gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
+                gw_in_range(channels->doubts.ripple2, GW_ZERO, RIPPLE2_MAX) &&
+                gw_ripple_invariant_holds(&channels->ripple) && gw_slip_invariant_holds(&channels->doubts.slip) &&
+                (channels->calm_ticks <= CALM_TICKS) && gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
+                (channels->summed < GW_BANK_COUNT) && gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
                 (channels->warm_up_ticks <= WARM_UP_TICKS) && (channels->channel <= GW_CHANNEL_SLOW);
     }
     return holds;
@@ -237,16 +245,21 @@ static void take_zero_step(gw_channels_t *channels, const gw_channels_input_t *i
     }
 }
 
-/* Sum of the squares of the model's forces, N^2. The moment that they make about the centre is uncertain by their
- * levers, as wheels touch the floor with one row of rollers or the other. */
-static gw_real_t squares_of_forces(const gw_channels_t *channels)
+/* Sum over the wheels, N^2. */
+static gw_real_t squares_of_friction(const gw_model_forces_t *model)
 {
-    const gw_model_forces_t *const model = &channels->slow.mean.model;
-    gw_real_t sum_n2 = (model->inertia_n.x * model->inertia_n.x) + (model->inertia_n.y * model->inertia_n.y);
+    gw_real_t sum_n2 = GW_ZERO;
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         sum_n2 += model->friction_n.wheel[i] * model->friction_n.wheel[i];
     }
     return sum_n2;
+}
+
+/* Sum of the squares of the model's forces, N^2. The moment that they make about the centre is uncertain by their
+ * levers, as wheels touch the floor with one row of rollers or the other. */
+static gw_real_t squares_of_forces(const gw_model_forces_t *model, gw_real_t friction_n2)
+{
+    return ((model->inertia_n.x * model->inertia_n.x) + (model->inertia_n.y * model->inertia_n.y)) + friction_n2;
 }
 
 /* A roller that hardly turns has a friction of its own history: nothing is learned from it. */
@@ -292,6 +305,24 @@ static void doubt_grip(gw_channels_t *channels, const gw_kinematics_t *kinematic
     gw_slip_step(&channels->doubts.slip, kinematics, input->torque_nm, drives && (!input->felt));
 }
 
+/* Where no wheel's rollers slide there is no ripple to be seen. */
+static void follow_ripple(gw_channels_t *channels, const gw_channels_input_t *input, gw_real_t friction_n2,
+                          gw_regime_t regime, gw_real_t fast)
+{
+    const gw_wrench_t *const felt = &channels->fast.bank[BANK_OF_RIPPLE];
+    const gw_real_t sliding_n = channels->fast.sliding_n;
+    if (channels->active) {
+        gw_ripple_leave_out(&channels->ripple);
+    } else {
+        if ((regime != GW_REGIME_REST) && (fast < CALM) && (friction_n2 > (sliding_n * sliding_n))) {
+            const gw_real_t force_n2 = (felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n);
+            gw_ripple_follow(&channels->ripple, force_n2, friction_n2, input->reacting);
+        }
+        gw_ripple_go_on(&channels->ripple);
+    }
+    channels->doubts.ripple2 = gw_ripple_variance(&channels->ripple, input->reacting);
+}
+
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */
 static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                            const gw_balance_t *balance, gw_regime_t regime, gw_real_t fast)
@@ -304,7 +335,10 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
                               rests ? GW_REGIME_REST : regime, channels->doubts.rocking_n2 + channels->doubts.gear_n2);
     } else {
-        channels->doubts.forces_n2 = squares_of_forces(channels);
+        const gw_model_forces_t *const model = &channels->slow.mean.model;
+        const gw_real_t friction_n2 = squares_of_friction(model);
+        channels->doubts.forces_n2 = squares_of_forces(model, friction_n2);
+        follow_ripple(channels, input, friction_n2, regime, fast);
         rock_on(channels);
         doubt_gears(channels, input->gear_n2);
         doubt_grip(channels, kinematics, input);

@@ -29,6 +29,7 @@
 #define NOISE_TIME_S ((gw_real_t)3.0)
 #define NOISE_MIN_N2 ((gw_real_t)1.0e-9)
 #define NOISE_MAX_N2 ((gw_real_t)1.0e10)
+#define RIPPLE_LEAST ((gw_real_t)0.02) /* of the friction of rollers that slide */
 #define RIPPLE_MAX_N ((gw_real_t)1.0e5)
 #define NOISE_CLIP ((gw_real_t)6.0) /* an outlier counts as this many variances */
 /* Bounds of what is kept, for every configuration. */
@@ -124,13 +125,12 @@ static gw_real_t felt_n2(const gw_channels_noise_t *noise, uint32_t j)
            ((of_force * noise->force_noise_n) * noise->force_noise_n);
 }
 
-/* Rollers bear one by one, and no two alike: what a wheel's friction varies by, as a share of that of rollers that
- * slide, as a force behind a low-pass. */
-static gw_real_t ripple_n2(const gw_channels_noise_t *noise, gw_real_t share, uint32_t j)
+/* No two rollers are alike: what the friction of each wheel at least varies by, as a force behind a low-pass. */
+static gw_real_t ripple_n2(const gw_channels_noise_t *noise, uint32_t j)
 {
     /* How much of it passes each low-pass: it is slow, a roller bears for 0.1 s and more. */
     static const gw_real_t passed[GW_BANK_COUNT] = {GW_ONE, (gw_real_t)0.9, (gw_real_t)0.7, (gw_real_t)0.4};
-    const gw_real_t varies_n = gw_min(share * noise->sliding_n, RIPPLE_MAX_N);
+    const gw_real_t varies_n = gw_min(RIPPLE_LEAST * noise->sliding_n, RIPPLE_MAX_N);
     return passed[j] * (varies_n * varies_n);
 }
 
@@ -153,11 +153,6 @@ static void set_noise(gw_fast_channel_t *channel, const gw_channels_noise_t *noi
         {(gw_real_t)2.0, (gw_real_t)2.0, (gw_real_t)0.7, (gw_real_t)0.3},
         {(gw_real_t)1.0, (gw_real_t)1.0, (gw_real_t)1.4, (gw_real_t)0.5},
     };
-    /* Ripple, at least and until the noise has been followed. Smaller guesses lead to false alarms when a robot whose
-     * rollers are bodies of their own starts and stops (verify/second_simulator): with 0.06 of both 6 in 30 runs, with
-     * 0.08 in motion 2, with these none. */
-    static const gw_real_t least_ripple[GW_NOISE_SETS] = {GW_ZERO, (gw_real_t)0.02, (gw_real_t)0.02};
-    static const gw_real_t first_ripple[GW_NOISE_SETS] = {GW_ZERO, (gw_real_t)0.06, (gw_real_t)0.1};
     const gw_real_t by_encoders_n2 = gw_clamp(predicted_n2(noise, j, position_m2), NOISE_MIN_N2, NOISE_MAX_N2 / GW_TWO);
     const gw_real_t by_imu_n2 = gw_clamp(felt_n2(noise, j), NOISE_MIN_N2, NOISE_MAX_N2);
     channel->least_noise_n2[GW_BY_ENCODERS][set][j] = least_share[set][j] * by_encoders_n2;
@@ -176,11 +171,12 @@ static void set_noise(gw_fast_channel_t *channel, const gw_channels_noise_t *noi
     } else {
         /* at rest the sensor's own noise */
     }
+    const gw_real_t uneven_n2 = (set == (uint32_t)GW_REGIME_REST) ? GW_ZERO : ripple_n2(noise, j);
     for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
         gw_real_t *const least = &channel->least_noise_n2[sensor][set][j];
         gw_real_t *const first = &channel->noise_n2[sensor][set][j];
-        *least = gw_min(*least + ripple_n2(noise, least_ripple[set], j), NOISE_MAX_N2);
-        *first = gw_min(*first + ripple_n2(noise, first_ripple[set], j), NOISE_MAX_N2);
+        *least = gw_min(*least + uneven_n2, NOISE_MAX_N2);
+        *first = gw_min(*first + uneven_n2, NOISE_MAX_N2);
     }
 }
 
@@ -423,9 +419,11 @@ void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_
                            const gw_balance_t *balance, gw_regime_t regime, const gw_doubts_t *doubts)
 {
     const gw_real_t arm_m = kinematics->wheel_distance_m;
+    const bool rests = (regime == GW_REGIME_REST);
+    const gw_roller_doubts_t rollers = {rests ? GW_ZERO : channel->sliding_n, config->presliding,
+                                        rests ? GW_ZERO : doubts->ripple2};
     const gw_planar_covariance_t of_model =
-        gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
-                            (regime == GW_REGIME_REST) ? GW_ZERO : channel->sliding_n, config->presliding);
+        gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model, rollers);
     channel->model_n2 = gw_slip_added(&doubts->slip, kinematics, gw_planar_raised(of_model, doubts->gear_n2));
     channel->rocking_n2 = doubts->rocking_n2;
     /* Each gear's error has the wheel's distance as its arm, and half of it is in each component of the force. A wheel

@@ -28,6 +28,7 @@
 #include "giveway/gw_presliding.h"
 #include "giveway/gw_rate_filter.h"
 #include "giveway/gw_reference.h"
+#include "giveway/gw_ripple.h"
 #include "giveway/gw_sensor_check.h"
 #include "giveway/gw_servo.h"
 #include "giveway/gw_slow_channel.h"

@@ -27,6 +27,7 @@
 #include "giveway/gw_fast_channel.h"
 #include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
+#include "giveway/gw_ripple.h"
 #include "giveway/gw_slow_channel.h"
 #include "giveway/gw_types.h"
 
@@ -88,6 +89,7 @@ typedef struct {
     gw_fast_channel_t fast;
     gw_slow_channel_t slow;
     gw_doubts_t doubts;
+    gw_ripple_t ripple;
     gw_real_t rocking2; /* square of config.rocking; 0 if the robot cannot lean */
     gw_real_t rocking_keep;
     gw_real_t gear_keep;

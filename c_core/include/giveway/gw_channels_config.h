@@ -45,6 +45,8 @@ typedef struct {
     gw_real_t rocking_s;
     /* Coefficient of friction between a wheel and the floor where it rolls, [0, 10]; 0: no wheel ever slips. */
     gw_real_t grip;
+    /* What a wheel's friction varies by from roller to roller, until that has been followed, relative, [0, 1]. */
+    gw_real_t ripple;
     /* Smallest force of the fast channel and of the slow one, in each regime, N, [0.01, 1000]. */
     gw_force_floors_t fast;
     gw_force_floors_t slow;

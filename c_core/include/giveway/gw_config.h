@@ -117,6 +117,7 @@ extern "C" {
     ROW(REAL, GW_FIELD_CHANNELS_ROCKING, "channels.rocking", OF rocking, 0, 10) \
     ROW(REAL, GW_FIELD_CHANNELS_ROCKING_TIME, "channels.rocking_time", OF rocking_s, 0.01, 10) \
     ROW(REAL, GW_FIELD_CHANNELS_GRIP, "channels.grip", OF grip, 0, 10) \
+    ROW(REAL, GW_FIELD_CHANNELS_RIPPLE, "channels.ripple", OF ripple, 0, 1) \
     ROW(REAL, GW_FIELD_CHANNELS_FAST_REST, "channels.fast_rest", OF fast.rest_n, 0.01, 1000) \
     ROW(REAL, GW_FIELD_CHANNELS_FAST_CREEP, "channels.fast_creep", OF fast.creep_n, 0.01, 1000) \
     ROW(REAL, GW_FIELD_CHANNELS_FAST_MOTION, "channels.fast_motion", OF fast.motion_n, 0.01, 1000) \

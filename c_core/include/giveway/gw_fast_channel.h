@@ -7,11 +7,11 @@
  *
  *     S = (k_n^2 noise + floor^2 + r^2) I + k_m^2 M + h h^T
  *
- * where the noise of each low-pass is followed, with the ripple of rollers that bear one by one, and k_n is smaller for
- * the longer ones, M is what the follower does not know of friction and mass with the forces of this tick, and h is
- * what the baseline holds of contacts that last: their end, a change against that, is no hit, and as it may have
- * turned, (x h)^2/|x|^2 I is added then, too; r is what the body does while it rocks. The moment has a variance of its
- * own. The channel trips if x^T S^-1 x > 1.
+ * where the noise of each low-pass is followed, with a little ripple of rollers that are not alike, and k_n is smaller
+ * for the longer ones, M is what the model does not know of friction, rollers and mass with the forces of this tick,
+ * and h is what the baseline holds of contacts that last: their end, a change against that, is no hit, and as it may
+ * have turned, (x h)^2/|x|^2 I is added then, too; r is what the body does while it rocks. The moment has a variance of
+ * its own. The channel trips if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
@@ -85,6 +85,8 @@ typedef struct {
     gw_real_t rocking_n2; /* variance of what the rocking body does, [0, 1e12] */
     gw_real_t gear_n2;    /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it,
                            * [0, 1e12] */
+    gw_real_t ripple2;    /* variance of what the friction of a wheel varies by from roller to roller, relative,
+                           * [0, 4] */
     gw_slip_t slip;       /* k_m^2 times that of wheels that may slip */
 } gw_doubts_t;
 

@@ -5,6 +5,7 @@
 #include "giveway/gw_imu.h"
 #include "giveway/gw_math.h"
 #include "giveway/gw_model_covariance.h"
+#include "giveway/gw_ripple.h"
 #include "giveway/gw_slip.h"
 #include "giveway/gw_tip.h"
 #include "modules.h"
@@ -133,10 +134,10 @@ digest_t drive_model_covariance(void)
         const gw_kinematics_t kinematics = random_kinematics(&generator);
         const gw_model_forces_t change = random_forces(&generator, (gw_real_t)25.0);
         const gw_model_forces_t model = random_forces(&generator, (gw_real_t)25.0);
-        const gw_real_t sliding_n = generator_between(&generator, GW_ZERO, (gw_real_t)30.0);
+        const gw_roller_doubts_t rollers = {generator_between(&generator, GW_ZERO, (gw_real_t)30.0), config.presliding,
+                                            generator_between(&generator, GW_ZERO, GW_ONE)};
         teach(&generator, &kinematics, &follower);
-        digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, sliding_n,
-                                                       config.presliding));
+        digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, rollers));
     }
     return digest;
 }
@@ -159,6 +160,31 @@ digest_t drive_slip(void)
             gw_slip_step(&slip, &kinematics, &torques_nm, !generator_one_in(&generator, 3U));
             digest_covariance(&digest, gw_slip_added(&slip, &kinematics, known));
             digest_real(&digest, gw_slip_sum(&slip));
+        }
+    }
+    return digest;
+}
+
+/* Wheels that are even and uneven, and contacts in between. */
+digest_t drive_ripple(void)
+{
+    digest_t digest = digest_begin();
+    generator_t generator = generator_begin(43U);
+    for (uint32_t i = 0U; i < 40U; i++) {
+        const gw_real_t uneven = generator_between(&generator, GW_ZERO, GW_HALF);
+        gw_ripple_t ripple;
+        gw_ripple_init(&ripple, generator_between(&generator, GW_ZERO, GW_ONE), (gw_real_t)0.004);
+        for (uint32_t k = 0U; k < 200U; k++) {
+            const gw_real_t friction_n2 = generator_between(&generator, (gw_real_t)400.0, (gw_real_t)1500.0);
+            const gw_real_t force_n2 = friction_n2 * generator_between(&generator, GW_ZERO, uneven);
+            const bool reacting = generator_one_in(&generator, 4U);
+            if (generator_one_in(&generator, 60U)) {
+                gw_ripple_leave_out(&ripple);
+            } else {
+                gw_ripple_follow(&ripple, force_n2, friction_n2, reacting);
+                gw_ripple_go_on(&ripple);
+            }
+            digest_real(&digest, gw_ripple_variance(&ripple, reacting));
         }
     }
     return digest;

@@ -47,6 +47,7 @@ static const module_t modules[] = {
     {"follower", drive_follower},
     {"model_covariance", drive_model_covariance},
     {"slip", drive_slip},
+    {"ripple", drive_ripple},
     {"fast_channel", drive_fast_channel},
     {"slow_channel", drive_slow_channel},
     {"channels", drive_channels},

@@ -29,6 +29,7 @@ digest_t drive_balance(void);
 digest_t drive_follower(void);
 digest_t drive_model_covariance(void);
 digest_t drive_slip(void);
+digest_t drive_ripple(void);
 digest_t drive_fast_channel(void);
 digest_t drive_slow_channel(void);
 digest_t drive_channels(void);

@@ -683,6 +683,67 @@ static void a_wheel_that_may_slip_is_doubted_in_free_motion(void)
     CHECK(channels.doubts.slip.wheel_n2.wheel[1] == GW_ZERO);
 }
 
+/* Where rollers slide, nothing touches and the force is far below the threshold: 20 N of 3 * 20^2 N^2 are uneven. */
+static void ripple_is_seen_in_free_motion(void)
+{
+    const struct {
+        gw_regime_t regime;
+        gw_real_t friction_n;
+        gw_real_t force_n;
+        bool active;
+        bool reacting;
+        bool seen;
+        bool fades;
+    } rows[] = {{GW_REGIME_MOTION, R(20.5), R(20.0), false, false, true, true},
+                {GW_REGIME_CREEPING, R(20.5), R(20.0), false, false, true, true},
+                {GW_REGIME_MOTION, R(20.5), R(10.0), false, false, false, true},
+                {GW_REGIME_MOTION, R(20.5), R(20.0), false, true, true, true},
+                {GW_REGIME_MOTION, R(20.5), R(15.0), false, true, false, true},
+                {GW_REGIME_MOTION, R(20.5), R(20.0), true, false, false, false},
+                {GW_REGIME_MOTION, R(11.5), R(20.0), false, false, false, false},
+                {GW_REGIME_REST, R(20.5), R(1.0), false, false, false, false}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin_in_motion();
+        input.regime = rows[i].regime;
+        input.reacting = rows[i].reacting;
+        channels.active = rows[i].active;
+        channels.fast.rocking_n2 = R(2000.0); /* the threshold is far */
+        channels.doubts.rocking_n2 = R(2000.0);
+        channels.ticks_without_turn = 1000U; /* it has stopped long ago, where it rests */
+        channels.calm_ticks = 250U;
+        input.turned = (rows[i].regime != GW_REGIME_REST);
+        for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+            channels.slow.mean.model.friction_n.wheel[k] = rows[i].friction_n;
+            channels.fast.baseline.model.friction_n.wheel[k] = rows[i].friction_n;
+            forces.friction_n.wheel[k] = rows[i].friction_n;
+        }
+        channels.ripple.guess2 = GW_ONE;
+        channels.ripple.felt2 = GW_ZERO;
+        for (uint32_t k = 0U; k < 4U; k++) {
+            channels.fast.bank[2].force_x_n = R(0.6) * rows[i].force_n;
+            channels.fast.bank[2].force_y_n = R(-0.8) * rows[i].force_n;
+            tick();
+        }
+        unit_row(i);
+        CHECK((channels.ripple.felt2 > GW_ZERO) == rows[i].seen);
+        CHECK((channels.ripple.guess2 < GW_ONE) == rows[i].fades);
+        CHECK(channels.doubts.ripple2 == gw_ripple_variance(&channels.ripple, rows[i].reacting));
+    }
+}
+
+/* What was learned of rollers is kept, but for what was felt last. */
+static void ripple_outlasts_a_restart(void)
+{
+    begin_in_motion();
+    channels.ripple.guess2 = R(0.01);
+    channels.ripple.seen2 = R(0.2);
+    channels.ripple.felt2 = R(0.3);
+    gw_channels_restart(&channels);
+    CHECK((channels.ripple.guess2 == R(0.01)) && (channels.ripple.felt2 == R(0.2)));
+    CHECK(channels.doubts.ripple2 == (R(0.01) + R(0.2)));
+    CHECK(gw_channels_invariant_holds(&channels));
+}
+
 static void counters_stop_at_their_largest(void)
 {
     begin();
@@ -1115,19 +1176,12 @@ static void the_invariant_sees_every_member(void)
 {
     begin();
     const gw_channels_t good = channels;
-    gw_real_t *const members[] = {&channels.config.noise_multiple,
-                                  &channels.follower.difference[0],
-                                  &channels.fast.held.force_x_n,
-                                  &channels.slow.force_n.y,
-                                  &channels.doubts.forces_n2,
-                                  &channels.rocking2,
-                                  &channels.rocking_keep,
-                                  &channels.doubts.rocking_n2,
-                                  &channels.gear_keep,
-                                  &channels.doubts.gear_n2,
-                                  &channels.doubts.slip.near_n,
-                                  &channels.impulse.torque_nm,
-                                  &channels.impulse_s};
+    gw_real_t *const members[] = {
+        &channels.config.noise_multiple, &channels.follower.difference[0], &channels.fast.held.force_x_n,
+        &channels.slow.force_n.y,        &channels.doubts.forces_n2,       &channels.rocking2,
+        &channels.rocking_keep,          &channels.doubts.rocking_n2,      &channels.gear_keep,
+        &channels.doubts.gear_n2,        &channels.doubts.slip.near_n,     &channels.doubts.ripple2,
+        &channels.ripple.felt2,          &channels.impulse.torque_nm,      &channels.impulse_s};
     CHECK(!gw_channels_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
         unit_row(i);
@@ -1187,6 +1241,8 @@ void suite_channels(void)
     unit_run("rocking_is_bounded", rocking_is_bounded);
     unit_run("an_error_of_gears_is_remembered", an_error_of_gears_is_remembered);
     unit_run("a_wheel_that_may_slip_is_doubted_in_free_motion", a_wheel_that_may_slip_is_doubted_in_free_motion);
+    unit_run("ripple_is_seen_in_free_motion", ripple_is_seen_in_free_motion);
+    unit_run("ripple_outlasts_a_restart", ripple_outlasts_a_restart);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
     unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
     unit_run("another_zero_takes_its_time", another_zero_takes_its_time);

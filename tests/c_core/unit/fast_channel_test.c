@@ -247,13 +247,11 @@ static void the_noise_behind_the_bank_is_predicted(void)
     }
 }
 
-/* Of rollers that slide with 20 N, at first 6 % while creeping and 10 % in motion, and 2 % at least, in both sensors;
- * less of it behind the longer low-passes. Beyond all rollers: 100 kN. */
+/* Of rollers that slide with 20 N 2 %, at first and at least, in both sensors; less of it behind the longer low-passes.
+ * Beyond all rollers: 100 kN. */
 static void rollers_are_uneven(void)
 {
     const gw_real_t passed[GW_BANK_COUNT] = {R(1.0), R(0.9), R(0.7), R(0.4)};
-    const gw_real_t first[GW_NOISE_SETS] = {R(0.0), R(1.2), R(2.0)};
-    const gw_real_t least[GW_NOISE_SETS] = {R(0.0), R(0.4), R(0.4)};
     gw_channels_noise_t noise = usual;
     gw_channels_config_trikey(&config);
     noise.sliding_n = GW_ZERO;
@@ -263,12 +261,12 @@ static void rollers_are_uneven(void)
     for (uint32_t sensor = 0U; sensor < GW_SENSOR_COUNT; sensor++) {
         for (uint32_t set = 0U; set < GW_NOISE_SETS; set++) {
             for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
-                const gw_real_t first_n2 = passed[j] * (first[set] * first[set]);
-                const gw_real_t least_n2 = passed[j] * (least[set] * least[set]);
+                const gw_real_t uneven_n = (set == (uint32_t)GW_REGIME_REST) ? GW_ZERO : R(0.4);
+                const gw_real_t uneven_n2 = passed[j] * (uneven_n * uneven_n);
                 unit_row((100U * sensor) + ((10U * set) + j));
-                CHECK_NEAR(channel.noise_n2[sensor][set][j] - even.noise_n2[sensor][set][j], first_n2,
+                CHECK_NEAR(channel.noise_n2[sensor][set][j] - even.noise_n2[sensor][set][j], uneven_n2,
                            R(10.0) * ROUNDING * channel.noise_n2[sensor][set][j]);
-                CHECK_NEAR(channel.least_noise_n2[sensor][set][j] - even.least_noise_n2[sensor][set][j], least_n2,
+                CHECK_NEAR(channel.least_noise_n2[sensor][set][j] - even.least_noise_n2[sensor][set][j], uneven_n2,
                            R(10.0) * ROUNDING * channel.least_noise_n2[sensor][set][j]);
             }
         }
@@ -787,10 +785,12 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         channel.model.inertia_n.y = R(40.0);
         channel.model.inertia_moment_nm = R(10.0);
         doubts.forces_n2 = R(30000.0);
+        doubts.ripple2 = R(0.3);
         gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], &doubts);
+        const gw_roller_doubts_t rollers = {(i == 0U) ? GW_ZERO : R(20.0), config.presliding,
+                                            (i == 0U) ? GW_ZERO : R(0.3)};
         const gw_planar_covariance_t m =
-            gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model,
-                                (i == 0U) ? GW_ZERO : R(20.0), config.presliding);
+            gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model, rollers);
         unit_row(i);
         CHECK((channel.model_n2.xx == m.xx) && (channel.model_n2.xy == m.xy) && (channel.model_n2.yy == m.yy));
         CHECK_NEAR(channel.moment_nm2, R(6.25) * (R(4.0) + R(2.25) + R(3.0)), R(60.0) * ROUNDING);

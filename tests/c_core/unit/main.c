@@ -20,6 +20,7 @@ int main(void)
     suite_model_covariance();
     suite_fast_channel();
     suite_slip();
+    suite_ripple();
     suite_slow_channel();
     suite_channels();
     suite_presliding();

@@ -82,6 +82,7 @@ void suite_reference(void);
 void suite_sensor_check(void);
 void suite_servo(void);
 void suite_slip(void);
+void suite_ripple(void);
 void suite_slow_channel(void);
 void suite_sum(void);
 void suite_supervisor(void);

@@ -1,0 +1,53 @@
+/* The friction of a wheel from roller to roller. Where one roller hands over to the next, both bear: together they may
+ * have the friction of one, or each its own, and then it doubles for as long. Nobody knows before it has been seen. Its
+ * force is along the wheel's axle, and has no moment about the centre: only a push there looks like it.
+ *
+ * The share by which the friction may vary has the variance g^2 + s^2. The guess g is the configuration's, 2/3 of it
+ * in a reaction, where no push should be missed, and fades within half a second of driving. What has been seen, s,
+ * grows where the square of the force is more than a tenth of the sum of squares of the wheels' friction, 0.3 in a
+ * reaction, and is 5/3 of the configuration's at most, 0.04 beyond that; it fades as the guess does. It counts after
+ * 64 ms at least, and what was felt since is left out if it was a contact that began.
+ *
+ * Life cycle: gw_ripple_init, then every so often gw_ripple_follow, if there is something to be seen, and
+ * gw_ripple_go_on, or gw_ripple_leave_out. All members are private.
+ */
+#ifndef GW_RIPPLE_H
+#define GW_RIPPLE_H
+
+#include "giveway/gw_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    gw_real_t guess2;  /* variance of the share while nothing has been seen */
+    gw_real_t most2;   /* of an uneven wheel */
+    gw_real_t seen2;   /* what has been seen */
+    gw_real_t next2;   /* instead of it from the next interval on */
+    gw_real_t felt2;   /* and from the one after that */
+    gw_real_t keep;    /* of a variance that fades, from one step to the next */
+    gw_real_t rise;    /* what felt2 takes over of a larger one */
+    uint32_t interval; /* steps of an interval, at least 1 */
+    uint32_t steps;    /* of this one */
+} gw_ripple_t;
+
+/* share: by which friction may vary, in [0, 1]; interval_s: from one step to the next, s, above 0. Pointers not NULL
+ * here and below. */
+GW_SMALL void gw_ripple_init(gw_ripple_t *ripple, gw_real_t share, gw_real_t interval_s);
+bool gw_ripple_invariant_holds(const gw_ripple_t *ripple);
+/* Rollers slide and nothing touches: square of the force that is not explained, N^2, at least 0, and the sum over the
+ * wheels of the squares of their friction, N^2. */
+void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t force_n2, gw_real_t friction_n2, bool reacting);
+/* A step without contact. */
+void gw_ripple_go_on(gw_ripple_t *ripple);
+/* A step with one: what was felt last may have been that. */
+void gw_ripple_leave_out(gw_ripple_t *ripple);
+/* Variance of the share, [0, 4]. */
+gw_real_t gw_ripple_variance(const gw_ripple_t *ripple, bool reacting);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

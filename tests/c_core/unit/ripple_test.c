@@ -1,0 +1,169 @@
+#include "unit.h"
+
+#include "giveway/gw_ripple.h"
+
+static gw_ripple_t ripple;
+
+#define INTERVAL_S R(0.004)
+#define STEPS 16U /* of 64 ms */
+#define RISE R(0.039210560847676823)
+#define GUESS2 R(0.16)
+#define MOST2 R(0.44444444444444444) /* (5/3 0.4)^2 */
+
+static void begin(void)
+{
+    gw_ripple_init(&ripple, R(0.4), INTERVAL_S);
+    CHECK(gw_ripple_invariant_holds(&ripple));
+}
+
+/* So many steps in which the force is this share of the friction, squared. */
+static void feel(uint32_t count, gw_real_t share2, bool reacting)
+{
+    for (uint32_t i = 0U; i < count; i++) {
+        gw_ripple_follow(&ripple, share2 * R(1200.0), R(1200.0), reacting);
+        gw_ripple_go_on(&ripple);
+        CHECK(gw_ripple_invariant_holds(&ripple));
+    }
+}
+
+static void a_robot_that_has_not_driven_may_have_any_rollers(void)
+{
+    begin();
+    CHECK_NEAR(gw_ripple_variance(&ripple, false), GUESS2, ROUNDING);
+    CHECK_NEAR(gw_ripple_variance(&ripple, true), GUESS2 * R(4.0) / R(9.0), ROUNDING);
+}
+
+/* 1/e of it is left after half a second. */
+static void rollers_that_are_even_are_soon_known(void)
+{
+    begin();
+    feel(125U, R(0.099), false);
+    CHECK_NEAR(gw_ripple_variance(&ripple, false), GUESS2 * R(0.36787944117144232), R(100.0) * ROUNDING);
+    CHECK(ripple.felt2 == GW_ZERO);
+    feel(2000U, GW_ZERO, true);
+    CHECK(gw_ripple_variance(&ripple, false) < R(1.0e-6));
+}
+
+/* 25 times what is beyond a tenth, of the most; from one step to the next 1 - e^-0.04 of the way up and 1 - e^-0.008
+ * down. */
+static void rollers_that_are_uneven_are_doubted_longer(void)
+{
+    begin();
+    feel(1U, R(0.12), false);
+    CHECK_NEAR(ripple.felt2, RISE * (R(0.5) * MOST2), R(100.0) * ROUNDING);
+    feel(1U, R(0.05), false);
+    CHECK_NEAR(ripple.felt2, (RISE * R(0.99203191483706071)) * (R(0.5) * MOST2), R(100.0) * ROUNDING);
+    feel(200U, R(1.0), false);
+    CHECK(ripple.felt2 == ripple.most2);
+    CHECK_NEAR(ripple.most2, MOST2, ROUNDING);
+    CHECK(gw_ripple_variance(&ripple, false) > ripple.most2);
+    feel(1000U, GW_ZERO, false);
+    CHECK(gw_ripple_variance(&ripple, false) < R(1.0e-3));
+}
+
+static void a_reaction_is_force_itself(void)
+{
+    begin();
+    feel(100U, R(0.299), true);
+    CHECK(ripple.felt2 == GW_ZERO);
+    feel(1U, R(0.32), true);
+    CHECK_NEAR(ripple.felt2, RISE * (R(0.5) * MOST2), R(100.0) * ROUNDING);
+}
+
+/* It counts from the interval after the next on. */
+static void what_is_felt_counts_later(void)
+{
+    begin();
+    feel(STEPS - 1U, R(0.5), false);
+    CHECK((ripple.seen2 == GW_ZERO) && (ripple.next2 == GW_ZERO) && (ripple.felt2 > GW_ZERO));
+    feel(1U, R(0.5), false);
+    const gw_real_t felt2 = ripple.felt2;
+    CHECK((ripple.seen2 == GW_ZERO) && (ripple.next2 == felt2));
+    feel(STEPS - 1U, GW_ZERO, false);
+    CHECK(ripple.seen2 == GW_ZERO);
+    feel(1U, GW_ZERO, false);
+    CHECK((ripple.seen2 == felt2) && (ripple.next2 == ripple.felt2));
+}
+
+static void a_contact_teaches_nothing(void)
+{
+    begin();
+    feel(3U * STEPS, R(0.12), false);
+    const gw_real_t seen2 = ripple.seen2;
+    CHECK((seen2 > GW_ZERO) && (ripple.felt2 > seen2));
+    feel(3U, R(0.5), false);
+    gw_ripple_leave_out(&ripple);
+    CHECK((ripple.seen2 == seen2) && (ripple.next2 == seen2) && (ripple.felt2 == seen2));
+    for (uint32_t i = 1U; i < STEPS; i++) { /* the interval begins again */
+        gw_ripple_go_on(&ripple);
+        ripple.next2 = GW_ZERO;
+    }
+    CHECK(ripple.seen2 == seen2);
+    gw_ripple_go_on(&ripple);
+    CHECK(ripple.seen2 == GW_ZERO);
+}
+
+static void without_ripple_nothing_is_doubted(void)
+{
+    gw_ripple_init(&ripple, GW_ZERO, INTERVAL_S);
+    feel(300U, R(10.0), false);
+    CHECK(gw_ripple_variance(&ripple, false) == GW_ZERO);
+}
+
+/* Periods from 10 us to 0.1 s, four ticks each, and a friction of nothing. */
+static void every_period_has_an_interval(void)
+{
+    const struct {
+        gw_real_t interval_s;
+        uint32_t steps;
+    } rows[] = {{R(4.0e-5), 1024U}, {R(6.0e-5), 1024U}, {R(0.031), 2U}, {R(0.0641), 1U}, {R(0.4), 1U}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        unit_row(i);
+        gw_ripple_init(&ripple, GW_ONE, rows[i].interval_s);
+        CHECK(gw_ripple_invariant_holds(&ripple));
+        CHECK(ripple.interval == rows[i].steps);
+        CHECK(gw_in_range(ripple.keep, GW_HALF, GW_ONE) && gw_in_range(ripple.rise, GW_ZERO, GW_HALF));
+        gw_ripple_follow(&ripple, R(1.0e12), GW_ZERO, false);
+        CHECK(gw_ripple_invariant_holds(&ripple));
+    }
+    CHECK(ripple.rise == GW_HALF);
+}
+
+static void the_invariant_sees_every_member(void)
+{
+    begin();
+    const gw_ripple_t good = ripple;
+    gw_real_t *const members[] = {&ripple.guess2, &ripple.most2, &ripple.seen2, &ripple.next2,
+                                  &ripple.felt2,  &ripple.keep,  &ripple.rise};
+    CHECK(!gw_ripple_invariant_holds(NULL));
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
+        unit_row(i);
+        *members[i] = unit_nan();
+        CHECK(!gw_ripple_invariant_holds(&ripple));
+        *members[i] = R(-1.0);
+        CHECK(!gw_ripple_invariant_holds(&ripple));
+        *members[i] = R(3.0);
+        CHECK(!gw_ripple_invariant_holds(&ripple));
+        ripple = good;
+    }
+    ripple.steps = STEPS;
+    CHECK(!gw_ripple_invariant_holds(&ripple));
+    ripple = good;
+    ripple.interval = 0U;
+    CHECK(!gw_ripple_invariant_holds(&ripple));
+    ripple.interval = 1025U;
+    CHECK(!gw_ripple_invariant_holds(&ripple));
+}
+
+void suite_ripple(void)
+{
+    unit_run("a_robot_that_has_not_driven_may_have_any_rollers", a_robot_that_has_not_driven_may_have_any_rollers);
+    unit_run("rollers_that_are_even_are_soon_known", rollers_that_are_even_are_soon_known);
+    unit_run("rollers_that_are_uneven_are_doubted_longer", rollers_that_are_uneven_are_doubted_longer);
+    unit_run("a_reaction_is_force_itself", a_reaction_is_force_itself);
+    unit_run("what_is_felt_counts_later", what_is_felt_counts_later);
+    unit_run("a_contact_teaches_nothing", a_contact_teaches_nothing);
+    unit_run("without_ripple_nothing_is_doubted", without_ripple_nothing_is_doubted);
+    unit_run("every_period_has_an_interval", every_period_has_an_interval);
+    unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
+}
