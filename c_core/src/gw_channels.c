@@ -34,7 +34,7 @@
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
 #define GEAR_MAX_N2 ((gw_real_t)1.0e12)
-#define RIPPLE2_MAX ((gw_real_t)4.0)
+#define RIPPLE2_MAX ((gw_real_t)4.0e4)
 #define FORCES_MAX_N2 ((gw_real_t)6.0e10) /* five of GW_BALANCE_MAX, and rounding */
 #define IMPULSE_MIN_S ((gw_real_t)1.0e-3)
 #define IMPULSE_MAX_S ((gw_real_t)100.0)
@@ -104,6 +104,13 @@ gw_real_t gw_share_of(gw_real_t interval_s, gw_real_t time_s)
     return gw_min(-gw_expm1(-interval_s / time_s), GW_HALF);
 }
 
+/* What rollers may do now. */
+static void doubt_rollers(gw_channels_t *channels, bool reacting)
+{
+    const gw_real_t multiple = channels->config.model_multiple;
+    channels->doubts.ripple2 = (multiple * multiple) * gw_ripple_variance(&channels->ripple, reacting);
+}
+
 void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *config, const gw_channels_noise_t *noise)
 {
     channels->config = *config;
@@ -135,7 +142,7 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->doubts.gear_n2 = GW_ZERO;
     gw_slip_restart(&channels->doubts.slip);
     gw_ripple_leave_out(&channels->ripple);
-    channels->doubts.ripple2 = gw_ripple_variance(&channels->ripple, false);
+    doubt_rollers(channels, false);
     channels->impulse = no_impulse;
     channels->impulse_s = GW_ONE;
     channels->summed = BANK_OF_SUM;
@@ -320,7 +327,7 @@ static void follow_ripple(gw_channels_t *channels, const gw_channels_input_t *in
         }
         gw_ripple_go_on(&channels->ripple);
     }
-    channels->doubts.ripple2 = gw_ripple_variance(&channels->ripple, input->reacting);
+    doubt_rollers(channels, input->reacting);
 }
 
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */

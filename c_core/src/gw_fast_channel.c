@@ -420,11 +420,12 @@ void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_
 {
     const gw_real_t arm_m = kinematics->wheel_distance_m;
     const bool rests = (regime == GW_REGIME_REST);
-    const gw_roller_doubts_t rollers = {rests ? GW_ZERO : channel->sliding_n, config->presliding,
-                                        rests ? GW_ZERO : doubts->ripple2};
     const gw_planar_covariance_t of_model =
-        gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model, rollers);
-    channel->model_n2 = gw_slip_added(&doubts->slip, kinematics, gw_planar_raised(of_model, doubts->gear_n2));
+        gw_model_covariance(config, kinematics, follower, &channel->model, &balance->model,
+                            rests ? GW_ZERO : channel->sliding_n, config->presliding);
+    const gw_planar_covariance_t of_rollers =
+        gw_ripple_added(rests ? GW_ZERO : doubts->ripple2, kinematics, &balance->model.friction_n, of_model);
+    channel->model_n2 = gw_slip_added(&doubts->slip, kinematics, gw_planar_raised(of_rollers, doubts->gear_n2));
     channel->rocking_n2 = doubts->rocking_n2;
     /* Each gear's error has the wheel's distance as its arm, and half of it is in each component of the force. A wheel
      * that slips has a force along one axis, and half of the moment that independent wheels have. */

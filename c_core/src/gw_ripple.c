@@ -2,7 +2,6 @@
 
 #include "giveway/gw_channels_config.h"
 #include "giveway/gw_math.h"
-#include "giveway/gw_planar_covariance.h"
 
 #if (GW_WITH_CHANNELS == 1)
 
@@ -71,6 +70,21 @@ gw_real_t gw_ripple_variance(const gw_ripple_t *ripple, bool reacting)
 {
     const gw_real_t guess2 = reacting ? (REACTING * ripple->guess2) : ripple->guess2;
     return guess2 + ripple->seen2;
+}
+
+gw_planar_covariance_t gw_ripple_added(gw_real_t variance, const gw_kinematics_t *kinematics,
+                                       const gw_wheels_t *friction_n, gw_planar_covariance_t m)
+{
+    gw_planar_covariance_t sum = m;
+    GW_UNROLLED
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        const gw_vector_t n = kinematics->radial[i];
+        const gw_real_t n2 = variance * (friction_n->wheel[i] * friction_n->wheel[i]);
+        sum.xx += n2 * (n.x * n.x);
+        sum.xy += n2 * (n.x * n.y);
+        sum.yy += n2 * (n.y * n.y);
+    }
+    return sum;
 }
 
 #endif

@@ -80,9 +80,8 @@ void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_
     const gw_real_t floor_n = gw_force_floor(config->slow, floor);
     gw_planar_covariance_t model_n2 = {GW_ZERO, GW_ZERO, GW_ZERO};
     if (floor != GW_REGIME_REST) {
-        /* Ripple is too quick for this channel. */
-        const gw_roller_doubts_t rollers = {channel->sliding_n, PRESLIDING_DOUBT * config->presliding, GW_ZERO};
-        model_n2 = gw_model_covariance(config, kinematics, follower, &change.model, &channel->mean.model, rollers);
+        model_n2 = gw_model_covariance(config, kinematics, follower, &change.model, &channel->mean.model,
+                                       channel->sliding_n, PRESLIDING_DOUBT * config->presliding);
     }
     const gw_planar_spread_t spread = gw_planar_spread(gw_planar_raised(model_n2, rocking_n2));
     channel->force_n.x = change.residual.force_x_n + correction.x;

@@ -25,6 +25,7 @@
 #include "giveway/gw_channels_config.h"
 #include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
+#include "giveway/gw_ripple.h"
 #include "giveway/gw_slip.h"
 #include "giveway/gw_types.h"
 
@@ -85,8 +86,8 @@ typedef struct {
     gw_real_t rocking_n2; /* variance of what the rocking body does, [0, 1e12] */
     gw_real_t gear_n2;    /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it,
                            * [0, 1e12] */
-    gw_real_t ripple2;    /* variance of what the friction of a wheel varies by from roller to roller, relative,
-                           * [0, 4] */
+    gw_real_t ripple2;    /* k_m^2 times the variance of what the friction of a wheel varies by from roller to roller,
+                           * relative, [0, 4e4] */
     gw_slip_t slip;       /* k_m^2 times that of wheels that may slip */
 } gw_doubts_t;
 

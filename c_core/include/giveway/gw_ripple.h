@@ -14,6 +14,8 @@
 #ifndef GW_RIPPLE_H
 #define GW_RIPPLE_H
 
+#include "giveway/gw_kinematics.h"
+#include "giveway/gw_planar_covariance.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -45,6 +47,9 @@ void gw_ripple_go_on(gw_ripple_t *ripple);
 void gw_ripple_leave_out(gw_ripple_t *ripple);
 /* Variance of the share, [0, 4]. */
 gw_real_t gw_ripple_variance(const gw_ripple_t *ripple, bool reacting);
+/* M + what such a variance of each wheel's friction adds to it, in base axes. */
+gw_planar_covariance_t gw_ripple_added(gw_real_t variance, const gw_kinematics_t *kinematics,
+                                       const gw_wheels_t *friction_n, gw_planar_covariance_t m);
 
 #ifdef __cplusplus
 }

@@ -134,10 +134,10 @@ digest_t drive_model_covariance(void)
         const gw_kinematics_t kinematics = random_kinematics(&generator);
         const gw_model_forces_t change = random_forces(&generator, (gw_real_t)25.0);
         const gw_model_forces_t model = random_forces(&generator, (gw_real_t)25.0);
-        const gw_roller_doubts_t rollers = {generator_between(&generator, GW_ZERO, (gw_real_t)30.0), config.presliding,
-                                            generator_between(&generator, GW_ZERO, GW_ONE)};
+        const gw_real_t sliding_n = generator_between(&generator, GW_ZERO, (gw_real_t)30.0);
         teach(&generator, &kinematics, &follower);
-        digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, rollers));
+        digest_covariance(&digest, gw_model_covariance(&config, &kinematics, &follower, &change, &model, sliding_n,
+                                                       config.presliding));
     }
     return digest;
 }
@@ -171,6 +171,7 @@ digest_t drive_ripple(void)
     digest_t digest = digest_begin();
     generator_t generator = generator_begin(43U);
     for (uint32_t i = 0U; i < 40U; i++) {
+        const gw_kinematics_t kinematics = random_kinematics(&generator);
         const gw_real_t uneven = generator_between(&generator, GW_ZERO, GW_HALF);
         gw_ripple_t ripple;
         gw_ripple_init(&ripple, generator_between(&generator, GW_ZERO, GW_ONE), (gw_real_t)0.004);
@@ -184,7 +185,11 @@ digest_t drive_ripple(void)
                 gw_ripple_follow(&ripple, force_n2, friction_n2, reacting);
                 gw_ripple_go_on(&ripple);
             }
-            digest_real(&digest, gw_ripple_variance(&ripple, reacting));
+            const gw_real_t variance = gw_ripple_variance(&ripple, reacting);
+            const gw_wheels_t friction_n = generator_wheels(&generator, (gw_real_t)25.0);
+            const gw_planar_covariance_t known = {GW_ONE, GW_HALF, GW_TWO};
+            digest_real(&digest, variance);
+            digest_covariance(&digest, gw_ripple_added(variance, &kinematics, &friction_n, known));
         }
     }
     return digest;

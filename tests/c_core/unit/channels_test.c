@@ -727,7 +727,7 @@ static void ripple_is_seen_in_free_motion(void)
         unit_row(i);
         CHECK((channels.ripple.felt2 > GW_ZERO) == rows[i].seen);
         CHECK((channels.ripple.guess2 < GW_ONE) == rows[i].fades);
-        CHECK(channels.doubts.ripple2 == gw_ripple_variance(&channels.ripple, rows[i].reacting));
+        CHECK(channels.doubts.ripple2 == (R(6.25) * gw_ripple_variance(&channels.ripple, rows[i].reacting)));
     }
 }
 
@@ -740,7 +740,7 @@ static void ripple_outlasts_a_restart(void)
     channels.ripple.felt2 = R(0.3);
     gw_channels_restart(&channels);
     CHECK((channels.ripple.guess2 == R(0.01)) && (channels.ripple.felt2 == R(0.2)));
-    CHECK(channels.doubts.ripple2 == (R(0.01) + R(0.2)));
+    CHECK(channels.doubts.ripple2 == (R(6.25) * (R(0.01) + R(0.2))));
     CHECK(gw_channels_invariant_holds(&channels));
 }
 

@@ -787,10 +787,11 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
         doubts.forces_n2 = R(30000.0);
         doubts.ripple2 = R(0.3);
         gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], &doubts);
-        const gw_roller_doubts_t rollers = {(i == 0U) ? GW_ZERO : R(20.0), config.presliding,
-                                            (i == 0U) ? GW_ZERO : R(0.3)};
+        const gw_planar_covariance_t of_model =
+            gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model,
+                                (i == 0U) ? GW_ZERO : R(20.0), config.presliding);
         const gw_planar_covariance_t m =
-            gw_model_covariance(&config, &kinematics, &follower, &channel.model, &balance.model, rollers);
+            gw_ripple_added((i == 0U) ? GW_ZERO : R(0.3), &kinematics, &balance.model.friction_n, of_model);
         unit_row(i);
         CHECK((channel.model_n2.xx == m.xx) && (channel.model_n2.xy == m.xy) && (channel.model_n2.yy == m.yy));
         CHECK_NEAR(channel.moment_nm2, R(6.25) * (R(4.0) + R(2.25) + R(3.0)), R(60.0) * ROUNDING);

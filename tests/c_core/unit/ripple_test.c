@@ -110,6 +110,26 @@ static void without_ripple_nothing_is_doubted(void)
     CHECK(gw_ripple_variance(&ripple, false) == GW_ZERO);
 }
 
+/* 0.3 f^2 n n^T of each wheel; the second one's axle points to 120 degrees. */
+static void the_doubt_lies_along_the_axles(void)
+{
+    const gw_planar_covariance_t before = {R(1.0), R(2.0), R(5.0)};
+    const gw_wheels_t one_n = {{R(0.0), R(-8.0), R(0.0)}};
+    const gw_wheels_t all_n = {{R(8.0), R(-8.0), R(8.0)}};
+    gw_geometry_config_t geometry;
+    gw_kinematics_t kinematics;
+    gw_geometry_config_trikey(&geometry);
+    CHECK_STATUS(gw_kinematics_init(&kinematics, &geometry), GW_STATUS_OK);
+    const gw_planar_covariance_t one = gw_ripple_added(R(0.3), &kinematics, &one_n, before);
+    CHECK_NEAR(one.xx, R(1.0) + R(4.8), R(100.0) * ROUNDING);
+    CHECK_NEAR(one.xy, R(2.0) - R(8.313843876330611), R(100.0) * ROUNDING);
+    CHECK_NEAR(one.yy, R(5.0) + R(14.4), R(100.0) * ROUNDING);
+    const gw_planar_covariance_t all = gw_ripple_added(R(0.3), &kinematics, &all_n, before);
+    CHECK_NEAR(all.xx, R(1.0) + R(28.8), R(100.0) * ROUNDING);
+    CHECK_NEAR(all.xy, R(2.0), R(100.0) * ROUNDING);
+    CHECK_NEAR(all.yy, R(5.0) + R(28.8), R(100.0) * ROUNDING);
+}
+
 /* Periods from 10 us to 0.1 s, four ticks each, and a friction of nothing. */
 static void every_period_has_an_interval(void)
 {
@@ -164,6 +184,7 @@ void suite_ripple(void)
     unit_run("what_is_felt_counts_later", what_is_felt_counts_later);
     unit_run("a_contact_teaches_nothing", a_contact_teaches_nothing);
     unit_run("without_ripple_nothing_is_doubted", without_ripple_nothing_is_doubted);
+    unit_run("the_doubt_lies_along_the_axles", the_doubt_lies_along_the_axles);
     unit_run("every_period_has_an_interval", every_period_has_an_interval);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);
 }

@@ -69,9 +69,8 @@ static void what_the_model_does_not_know_widens_the_threshold_in_motion(void)
         channel.baseline.model.friction_n.wheel[0] = R(-15.0);
         gw_model_forces_t change = channel.mean.model;
         change.friction_n.wheel[0] = R(30.0);
-        const gw_roller_doubts_t rollers = {R(20.0), GW_TWO * config.presliding, GW_ZERO};
-        const gw_planar_covariance_t m =
-            gw_model_covariance(&config, &kinematics, &follower, &change, &channel.mean.model, rollers);
+        const gw_planar_covariance_t m = gw_model_covariance(&config, &kinematics, &follower, &change,
+                                                             &channel.mean.model, R(20.0), GW_TWO * config.presliding);
         const gw_planar_covariance_t none = {GW_ZERO, GW_ZERO, GW_ZERO};
         const gw_planar_spread_t spread = gw_planar_spread((i == 0U) ? none : m);
         const gw_real_t floor_n = gw_force_floor(config.slow, regimes[i]);
