@@ -113,12 +113,16 @@ static void remember_start(gw_admittance_t *admittance)
     admittance->first = admittance->away;
 }
 
+static gw_real_t along(gw_vector_t unit, gw_vector_t vector)
+{
+    return (unit.x * vector.x) + (unit.y * vector.y);
+}
+
 /* Does a direction agree with that of the start? For a robot that may lean any does: the push that tips it is felt
  * later than what its body does meanwhile. */
 static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
 {
-    return (admittance->tip.margin_mps2 > GW_ZERO) ||
-           (((admittance->first.x * direction.x) + (admittance->first.y * direction.y)) >= LEAST_AGREEMENT);
+    return (admittance->tip.margin_mps2 > GW_ZERO) || (along(admittance->first, direction) >= LEAST_AGREEMENT);
 }
 
 /* The share of a change of velocity that lifts no wheel. */
@@ -136,7 +140,7 @@ static gw_real_t limit_without_tipping(const gw_admittance_t *admittance, gw_vec
 
 static gw_real_t along_away(const gw_admittance_t *admittance, gw_vector_t vector)
 {
-    return (admittance->away.x * vector.x) + (admittance->away.y * vector.y);
+    return along(admittance->away, vector);
 }
 
 GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t direction, gw_real_t change_mps)
@@ -145,16 +149,21 @@ GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t directi
     velocity_mps->y = gw_limited(velocity_mps->y + (change_mps * direction.y), SPEED_MAX);
 }
 
+/* Lets no velocity of the escape be less than this along a unit vector. */
+static void hold_above(gw_admittance_t *admittance, gw_vector_t unit, gw_real_t least_mps)
+{
+    add_velocity(&admittance->velocity_mps, unit, gw_max(least_mps - along(unit, admittance->velocity_mps), GW_ZERO));
+    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
+        add_velocity(&admittance->smooth_mps[i], unit,
+                     gw_max(least_mps - along(unit, admittance->smooth_mps[i]), GW_ZERO));
+    }
+}
+
 /* The velocity is not led further against the push than it is. */
 static void follow_direction(gw_admittance_t *admittance)
 {
-    const gw_real_t least_mps = gw_min(along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]), GW_ZERO);
-    add_velocity(&admittance->velocity_mps, admittance->away,
-                 gw_max(least_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
-    for (uint32_t i = 0U; i < (GW_SMOOTH_COUNT - 1U); i++) {
-        add_velocity(&admittance->smooth_mps[i], admittance->away,
-                     gw_max(least_mps - along_away(admittance, admittance->smooth_mps[i]), GW_ZERO));
-    }
+    const gw_real_t now_mps = along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]);
+    hold_above(admittance, admittance->away, gw_min(now_mps, GW_ZERO));
 }
 
 /* Before a tick of the escape: a goal that was passed is moved on, there is no way back to it. */
@@ -223,16 +232,12 @@ static void wait_for(gw_admittance_t *admittance, gw_vector_t robot_mps)
     const gw_real_t asked_mps = gw_max(along_away(admittance, robot_mps), GW_ZERO) + config->ahead_mps;
     const gw_real_t now_mps = along_away(admittance, admittance->smooth_mps[GW_SMOOTH_COUNT - 1U]);
     const gw_real_t most_mps = gw_max(asked_mps, now_mps - (config->brake_limit_mps2 * admittance->period_s));
-    add_velocity(&admittance->velocity_mps, admittance->away,
-                 gw_min(most_mps - along_away(admittance, admittance->velocity_mps), GW_ZERO));
-    for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
-        add_velocity(&admittance->smooth_mps[i], admittance->away,
-                     gw_min(most_mps - along_away(admittance, admittance->smooth_mps[i]), GW_ZERO));
-    }
+    const gw_vector_t back = {-admittance->away.x, -admittance->away.y};
+    hold_above(admittance, back, -most_mps);
 }
 
-void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg,
-                        gw_vector_t robot_mps)
+void gw_admittance_yield(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg,
+                         gw_vector_t robot_mps)
 {
     if (is_escape(admittance)) {
         const gw_admittance_config_t *const config = &admittance->config;

@@ -412,8 +412,8 @@ static void yield(gw_controller_t *controller)
     static const gw_vector_t nothing_felt = {0};
     const gw_twist_t *const robot = &controller->estimate.measured_twist;
     const gw_vector_t robot_mps = {robot->vx_mps, robot->vy_mps};
-    gw_admittance_push(&controller->admittance, controller->detection.active ? felt_force(controller) : nothing_felt,
-                       channels_leak(controller), controller->estimator.nominal.total_mass_kg, robot_mps);
+    gw_admittance_yield(&controller->admittance, controller->detection.active ? felt_force(controller) : nothing_felt,
+                        channels_leak(controller), controller->estimator.nominal.total_mass_kg, robot_mps);
 }
 
 /* Before a step of the admittance. */

@@ -35,8 +35,8 @@ static void part_step(void)
         gw_vector_t robot_mps;
         draw_vector(&force_n, (gw_real_t)2.0e9); /* twice what is allowed, here and below */
         draw_vector(&robot_mps, (gw_real_t)2.0e9);
-        gw_admittance_push(&admittance, force_n, draw_real(GW_ZERO, (gw_real_t)1000.0),
-                           draw_real((gw_real_t)0.0999, (gw_real_t)2.2e6), robot_mps);
+        gw_admittance_yield(&admittance, force_n, draw_real(GW_ZERO, (gw_real_t)1000.0),
+                            draw_real((gw_real_t)0.0999, (gw_real_t)2.2e6), robot_mps);
     } else {
         (void)gw_admittance_step(&admittance, any_vector(), &output);
         hold_vector(&output.velocity_mps, (gw_real_t)100.0);

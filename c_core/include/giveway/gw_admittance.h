@@ -115,9 +115,10 @@ GW_SMALL void gw_admittance_brake(gw_admittance_t *admittance);
 /* Likewise, instead of it, for a robot that does not move towards the push: accelerates away from it, past the first
  * low-pass, at most to the speed of (2). What exceeds the floor of the felt force, |F| at most 1e9 N, counts; mass
  * above 0. If nothing does, or nothing touches the robot any more, the escape waits for the robot, whose velocity is at
- * most 1e9 m/s in each component. Both in the base frame. No effect on other kinds. Pointer not NULL. */
-GW_SMALL void gw_admittance_push(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n, gw_real_t mass_kg,
-                                 gw_vector_t robot_mps);
+ * most 1e9 m/s in each component; with a brake limit of 0 it gets no faster, but is not slowed down. Both in the base
+ * frame. No effect on other kinds. Pointer not NULL. */
+GW_SMALL void gw_admittance_yield(gw_admittance_t *admittance, gw_vector_t force_n, gw_real_t floor_n,
+                                  gw_real_t mass_kg, gw_vector_t robot_mps);
 #endif
 /* One tick. force is used by live force only. A force beyond 1e9 N or not finite:
  * GW_STATUS_INPUT_INVALID, output zero, state unchanged. */

@@ -74,8 +74,8 @@ digest_t drive_escape(void)
                 gw_admittance_brake(&admittance);
             } else if (i < 200U) {
                 const gw_vector_t force_n = generator_vector(&generator, (gw_real_t)60.0);
-                gw_admittance_push(&admittance, force_n, (gw_real_t)4.0, (gw_real_t)35.0,
-                                   generator_vector(&generator, GW_HALF));
+                gw_admittance_yield(&admittance, force_n, (gw_real_t)4.0, (gw_real_t)35.0,
+                                    generator_vector(&generator, GW_HALF));
             } else {
                 /* not touched any more */
             }

@@ -518,7 +518,7 @@ static void a_push_helps_to_give_way(void)
         gw_admittance_t admittance = of_config(&from);
         unit_row(i);
         CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
-        gw_admittance_push(&admittance, force, R(5.0), R(30.0), nothing);
+        gw_admittance_yield(&admittance, force, R(5.0), R(30.0), nothing);
         CHECK_NEAR(admittance.velocity_mps.x, rows[i].speed + rows[i].gain, ULP);
         CHECK(admittance.velocity_mps.y == GW_ZERO);
         CHECK_NEAR(admittance.smooth_mps[0].x, rows[i].speed + rows[i].gain, ULP);
@@ -561,7 +561,7 @@ static void an_escape_waits_for_the_robot(void)
         gw_admittance_t admittance = of_config(&from);
         unit_row(i);
         CHECK_STATUS(gw_admittance_start(&admittance, velocity, along_x), GW_STATUS_OK);
-        gw_admittance_push(&admittance, felt, R(5.0), R(30.0), robot);
+        gw_admittance_yield(&admittance, felt, R(5.0), R(30.0), robot);
         CHECK_NEAR(admittance.velocity_mps.x, rows[i].left, ULP);
         CHECK(admittance.velocity_mps.y == R(0.2));
         for (uint32_t k = 0U; k < GW_SMOOTH_COUNT; k++) {
