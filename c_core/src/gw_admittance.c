@@ -113,7 +113,7 @@ static void remember_start(gw_admittance_t *admittance)
     admittance->first = admittance->away;
 }
 
-static gw_real_t along(gw_vector_t unit, gw_vector_t vector)
+static gw_real_t component(gw_vector_t unit, gw_vector_t vector)
 {
     return (unit.x * vector.x) + (unit.y * vector.y);
 }
@@ -122,7 +122,7 @@ static gw_real_t along(gw_vector_t unit, gw_vector_t vector)
  * later than what its body does meanwhile. */
 static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
 {
-    return (admittance->tip.margin_mps2 > GW_ZERO) || (along(admittance->first, direction) >= LEAST_AGREEMENT);
+    return (admittance->tip.margin_mps2 > GW_ZERO) || (component(admittance->first, direction) >= LEAST_AGREEMENT);
 }
 
 /* The share of a change of velocity that lifts no wheel. */
@@ -140,7 +140,7 @@ static gw_real_t limit_without_tipping(const gw_admittance_t *admittance, gw_vec
 
 static gw_real_t along_away(const gw_admittance_t *admittance, gw_vector_t vector)
 {
-    return along(admittance->away, vector);
+    return component(admittance->away, vector);
 }
 
 GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t direction, gw_real_t change_mps)
@@ -152,10 +152,11 @@ GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t directi
 /* Lets no velocity of the escape be less than this along a unit vector. */
 static void hold_above(gw_admittance_t *admittance, gw_vector_t unit, gw_real_t least_mps)
 {
-    add_velocity(&admittance->velocity_mps, unit, gw_max(least_mps - along(unit, admittance->velocity_mps), GW_ZERO));
+    add_velocity(&admittance->velocity_mps, unit,
+                 gw_max(least_mps - component(unit, admittance->velocity_mps), GW_ZERO));
     for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
         add_velocity(&admittance->smooth_mps[i], unit,
-                     gw_max(least_mps - along(unit, admittance->smooth_mps[i]), GW_ZERO));
+                     gw_max(least_mps - component(unit, admittance->smooth_mps[i]), GW_ZERO));
     }
 }
 

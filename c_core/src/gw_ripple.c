@@ -32,11 +32,15 @@ void gw_ripple_init(gw_ripple_t *ripple, gw_real_t share, gw_real_t interval_s)
 
 bool gw_ripple_invariant_holds(const gw_ripple_t *ripple)
 {
-    return (ripple != NULL) && gw_in_range(ripple->guess2, GW_ZERO, GW_ONE) &&
-           gw_in_range(ripple->most2, GW_ZERO, MOST) && gw_in_range(ripple->seen2, GW_ZERO, MOST) &&
-           gw_in_range(ripple->next2, GW_ZERO, MOST) && gw_in_range(ripple->felt2, GW_ZERO, MOST) &&
-           gw_in_range(ripple->keep, GW_HALF, GW_ONE) && gw_in_range(ripple->rise, GW_ZERO, GW_HALF) &&
-           (ripple->interval >= 1U) && (ripple->interval <= INTERVAL_MAX) && (ripple->steps < ripple->interval);
+    bool holds = (ripple != NULL);
+    if (holds) {
+        holds = gw_in_range(ripple->guess2, GW_ZERO, GW_ONE) && gw_in_range(ripple->most2, GW_ZERO, MOST) &&
+                gw_in_range(ripple->seen2, GW_ZERO, MOST) && gw_in_range(ripple->next2, GW_ZERO, MOST) &&
+                gw_in_range(ripple->felt2, GW_ZERO, MOST) && gw_in_range(ripple->keep, GW_HALF, GW_ONE) &&
+                gw_in_range(ripple->rise, GW_ZERO, GW_HALF) && (ripple->interval >= 1U) &&
+                (ripple->interval <= INTERVAL_MAX) && (ripple->steps < ripple->interval);
+    }
+    return holds;
 }
 
 void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t force_n2, gw_real_t friction_n2, bool reacting)
@@ -46,7 +50,8 @@ void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t force_n2, gw_real_t frictio
     const gw_real_t towards2 = ripple->most2 * (PER_MOST * uneven);
     const gw_real_t share = (towards2 > ripple->felt2) ? ripple->rise : (GW_ONE - ripple->keep);
     ripple->guess2 = ripple->keep * ripple->guess2;
-    ripple->felt2 = gw_min(ripple->felt2 + (share * (towards2 - ripple->felt2)), ripple->most2);
+    /* Never negative: at most half of it is taken off. */
+    ripple->felt2 = gw_known_within(gw_min(ripple->felt2 + (share * (towards2 - ripple->felt2)), ripple->most2), MOST);
 }
 
 void gw_ripple_go_on(gw_ripple_t *ripple)
