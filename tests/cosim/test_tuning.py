@@ -13,6 +13,7 @@ import pytest
 from cosim_helpers import Cli
 from giveway import batch
 from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.identification.torque_model import TorqueModel
 from giveway.replay.run_log import write_log
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
@@ -20,8 +21,9 @@ from giveway.tuning.identified import identify
 from giveway.tuning.judged import logs_of
 from giveway.tuning.logs import Log, Push, read_log, read_pushes, with_plan
 from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
-from giveway.tuning.thresholds import NAMES, alarms_in, choose, settings_of
+from giveway.tuning.thresholds import NAMES, RIPPLE, RIPPLES, alarms_in, choose, settings_of
 from giveway.tuning.tuned import check_hours, noticed
+from scipy.ndimage import gaussian_filter1d
 
 ROOT = Path(__file__).parents[2]
 TRIKEY = ROOT / "robots" / "trikey.toml"
@@ -149,6 +151,27 @@ def test_thresholds_of_a_robot_keep_to_the_rate_on_its_logs(logs: list[Log]) -> 
     assert any(chosen.thresholds[name] < before[name] for name in NAMES)  # a whole crowd's are higher than one robot's
     quieter = choose(logs, {}, 4.0 / EXTRAPOLATION / chosen.tail.peaks.hours)
     assert quieter.alarms <= chosen.alarms
+
+
+def uneven(log: Log) -> Log:
+    """``log`` with rollers that have all of their friction each: a wheel's is twice as large for a fifth of the way
+    from one roller to the next."""
+    robot = read_robot(TRIKEY)
+    model, rollers = TorqueModel.of(robot), float(robot.value("roller.rows")) * float(robot.value("roller.per_row"))
+    pitch = 2.0 * np.pi / rollers
+    rate = np.gradient(gaussian_filter1d(log.angle_rad, 20, axis=0), log.step_s, axis=0)
+    roller_rate, _ = model.motion(rate, np.zeros_like(rate))
+    friction_nm, slope_s_rad = (float(robot.value(f"roller.{name}")) for name in ("coulomb_torque", "tanh_slope"))
+    more = (log.angle_rad % pitch < 0.2 * pitch) * friction_nm * np.tanh(slope_s_rad * roller_rate)
+    torque = {f"sensor.torque[{wheel}]": one for wheel, one in enumerate((more @ model.friction_gain.T).T)}
+    return dataclasses.replace(
+        log, inputs={**log.inputs, **{name: log.inputs[name] + one for name, one in torque.items()}}
+    )
+
+
+def test_ripple_is_expected_where_the_logs_have_it(logs: list[Log]) -> None:
+    assert choose(logs, {}, 200.0).thresholds[RIPPLE] == 0.0
+    assert choose([uneven(log) for log in logs], {}, 200.0).thresholds[RIPPLE] == RIPPLES[-1]
 
 
 def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:

@@ -25,7 +25,7 @@ from giveway.robot.variables import table  # noqa: E402
 from verify.second_simulator.__main__ import BUILT, STEP_S  # noqa: E402
 from verify.second_simulator.electronics import compile_drives  # noqa: E402
 from verify.second_simulator.loop import TICK_S, Run, Traces, simulate  # noqa: E402
-from verify.second_simulator.mjcf import build  # noqa: E402
+from verify.second_simulator.mjcf import FRICTION, build  # noqa: E402
 
 DRAW, GROUP = "judging", "planar"  # of the plans; the robot is always the same
 MINUTES = 12.0  # half of them to tune on: as `giveway bench --tune`
@@ -37,24 +37,25 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", type=Path, help="for the logs, CSV")
     parser.add_argument("--minutes", type=float, default=MINUTES)
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--friction", choices=FRICTION, default=FRICTION[0], help="of the rollers: see mjcf.py")
     asked = parser.parse_args(words)
     asked.folder.mkdir(parents=True, exist_ok=True)
     compile_drives(BUILT)
     paths = [asked.folder / f"drive{number:03d}.csv" for number in range(round(60.0 * asked.minutes / endurance.RUN_S))]
-    missing = [(number, path) for number, path in enumerate(paths) if not path.exists()]
+    missing = [(number, path, asked.friction) for number, path in enumerate(paths) if not path.exists()]
     with ProcessPoolExecutor(asked.jobs) as pool:
         for done, _ in enumerate(pool.map(_drive, missing)):
             print(f"{done + 1}/{len(missing)} drives", file=sys.stderr, flush=True)
     return 0
 
 
-def _drive(work: tuple[int, Path]) -> None:
+def _drive(work: tuple[int, Path, str]) -> None:
     """Write the log of drive ``number``."""
-    number, path = work
+    number, path, friction = work
     _, driven = endurance.drive(DRAW, GROUP, number * endurance.SHARED, {})
     run = Run(endurance.RUN_S, driven.plan, controller=NO_REFLEX, seed=number + 1)
     testbed = {one.name: one.start for one in table("testbed").select("parameter")}
-    write_log(path, _as_result(simulate(build(testbed, "none", STEP_S), BUILT / "drives.so", run)))
+    write_log(path, _as_result(simulate(build(testbed, "none", STEP_S, friction), BUILT / "drives.so", run)))
 
 
 def _as_result(traces: Traces) -> Any:

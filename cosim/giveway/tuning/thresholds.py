@@ -5,6 +5,9 @@ So logs are replayed with thresholds that nothing exceeds, and the peaks of the 
 thresholds would be. First each channel alone (the other one's thresholds are out of reach), apart for rest and motion,
 gets the level at which its share of the alarms is as wished. With these thresholds the logs are replayed again, and
 again with one factor on all of them, until the upper bound of the rate is the wished one.
+
+How much a wheel's friction may vary from roller to roller is no force: before all of that it gets the least value with
+which impacts in motion need no higher thresholds.
 """
 
 from __future__ import annotations
@@ -24,7 +27,19 @@ from giveway.tuning.peaks import Peaks, Tail, joined, peaks_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CHANNELS", "MOTION", "NAMES", "REST", "Chosen", "alarms_in", "choose", "free_peaks", "settings_of"]
+__all__ = [
+    "CHANNELS",
+    "MOTION",
+    "NAMES",
+    "REST",
+    "RIPPLE",
+    "RIPPLES",
+    "Chosen",
+    "alarms_in",
+    "choose",
+    "free_peaks",
+    "settings_of",
+]
 
 REST, MOTION = "at rest", "in motion"
 CHANNELS = ("fast", "slow")
@@ -37,8 +52,11 @@ FLOORS: Mapping[tuple[str, str], tuple[str, ...]] = MappingProxyType(
 )
 NOISE_MULTIPLES = ("channels.noise_multiple", "channels.imu_noise_multiple")
 MODEL_MULTIPLE = "channels.model_multiple"
-NAMES = (*(name for names in FLOORS.values() for name in names), *NOISE_MULTIPLES, MODEL_MULTIPLE)
-"""All thresholds: forces, and how many standard deviations of noise and model error."""
+RIPPLE = "channels.ripple"
+NAMES = (*(name for names in FLOORS.values() for name in names), *NOISE_MULTIPLES, MODEL_MULTIPLE, RIPPLE)
+"""All thresholds: forces, how many standard deviations of noise and model error, and the ripple of rollers."""
+RIPPLES = (0.0, 0.16, 0.32, 0.48)  # 0: rollers share the wheel's friction; the last: each has all of it
+SAME = 1.02  # a level that is higher by this factor at most is the same
 OUT_OF_REACH_N = 1000.0
 STEPS_UP = tuple(1.5**step for step in range(8))
 LEAST, MOST = 0.5, 12.0  # factors on a threshold of one channel
@@ -93,6 +111,8 @@ def choose(logs: Sequence[Log], parameters: Mapping[str, Value], rate_per_hour: 
     Raises:
         GivewayError: there are too few peaks in the logs.
     """
+    ripple = _least_ripple(logs, parameters, rate_per_hour)
+    parameters = {**parameters, RIPPLE: ripple}
     before = settings_of(parameters)
     factors = {key: level if tail.enough else None for key, (tail, level) in
                _of_channels(logs, parameters, before, rate_per_hour).items()}  # fmt: skip
@@ -140,19 +160,45 @@ def _replayed(
     return Chosen(MappingProxyType(dict(thresholds)), known, tail, alarms, tail.peaks.duration_s / max(free_s, 1e-9))
 
 
+def _least_ripple(logs: Sequence[Log], parameters: Mapping[str, Value], rate_per_hour: float) -> float:
+    """The least ripple with which the fast channel in motion keeps to its share of the rate as well as with the most.
+
+    Less of it notices softer hits, and raising all thresholds instead would cost more of these. With too few peaks to
+    tell it stays as it is.
+    """
+    before = settings_of(parameters)
+    known = sorted({*RIPPLES, before[RIPPLE]})
+    tails = [_tail(logs, parameters, {**before, RIPPLE: ripple}, "fast", MOTION) for ripple in known]
+    if not all(tail.enough for tail in tails):
+        return before[RIPPLE]
+    levels = [_level(tail, rate_per_hour) for tail in tails]
+    enough = max(1.0, SAME * levels[-1])
+    return next(ripple for ripple, level in zip(known, levels, strict=True) if level <= enough)
+
+
 def _of_channels(
     logs: Sequence[Log], parameters: Mapping[str, Value], before: Mapping[str, float], rate_per_hour: float
 ) -> dict[tuple[str, str], tuple[Tail, float]]:
     """Of each channel at rest and in motion its tail, and the level that a fourth of the rate asks for."""
     found: dict[tuple[str, str], tuple[Tail, float]] = {}
-    for channel in CHANNELS:
-        other = CHANNELS[1 - CHANNELS.index(channel)]
-        alone = {name: OUT_OF_REACH_N for when in (REST, MOTION) for name in FLOORS[other, when]}
-        for when in (REST, MOTION):
-            tail = Tail(free_peaks(logs, parameters, dict(before), when, alone))
-            level = min(max(tail.level(rate_per_hour / len(FLOORS), 0.5), LEAST), MOST) if tail.enough else 1.0
-            found[channel, when] = (tail, level)
+    for channel, when in FLOORS:
+        tail = _tail(logs, parameters, before, channel, when)
+        found[channel, when] = (tail, _level(tail, rate_per_hour))
     return found
+
+
+def _tail(
+    logs: Sequence[Log], parameters: Mapping[str, Value], thresholds: Mapping[str, float], channel: str, when: str
+) -> Tail:
+    """Of one channel alone, at rest or in motion."""
+    other = CHANNELS[1 - CHANNELS.index(channel)]
+    alone = {name: OUT_OF_REACH_N for regime in (REST, MOTION) for name in FLOORS[other, regime]}
+    return Tail(free_peaks(logs, parameters, thresholds, when, alone))
+
+
+def _level(tail: Tail, rate_per_hour: float) -> float:
+    """At which a channel has its share of the alarms; 1 if there are too few peaks to tell."""
+    return min(max(tail.level(rate_per_hour / len(FLOORS), 0.5), LEAST), MOST) if tail.enough else 1.0
 
 
 def _with_factors(before: Mapping[str, float], factors: Mapping[tuple[str, str], float | None]) -> dict[str, float]:
@@ -164,11 +210,13 @@ def _with_factors(before: Mapping[str, float], factors: Mapping[tuple[str, str],
     for name in NOISE_MULTIPLES:
         found[name] = before[name] * max(each["fast", REST], each["fast", MOTION])
     found[MODEL_MULTIPLE] = before[MODEL_MULTIPLE] * max(each["fast", MOTION], each["slow", MOTION])
+    found[RIPPLE] = before[RIPPLE]
     return _allowed(found)
 
 
 def _scaled(thresholds: Mapping[str, float], factor: float) -> dict[str, float]:
-    return _allowed({name: factor * value for name, value in thresholds.items()})
+    """The forces and multiples; the ripple stays."""
+    return _allowed({name: (1.0 if name == RIPPLE else factor) * value for name, value in thresholds.items()})
 
 
 def _allowed(thresholds: Mapping[str, float]) -> dict[str, float]:
