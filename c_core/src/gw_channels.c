@@ -29,7 +29,8 @@
  * placed within 81 mm; with the first low-pass for them, too, 127. */
 #define BANK_OF_SUM 1U
 #define BANK_OF_SLOW_SUM 2U
-#define BANK_OF_RIPPLE 2U /* a hand-over takes 10 ms and more */
+#define BANK_OF_RIPPLE 2U /* a hand-over takes 10 ms and more, */
+#define BANK_OF_ERRORS 3U /* and what is wrong with the model lasts longer */
 /* Bounds of a contact's impulse, N s and N m s, and of its time: beyond any that is refined. */
 #define IMPULSE_MAX ((gw_real_t)1.0e9)
 #define ROCKING_MAX_N2 ((gw_real_t)1.0e12)
@@ -312,18 +313,37 @@ static void doubt_grip(gw_channels_t *channels, const gw_kinematics_t *kinematic
     gw_slip_step(&channels->doubts.slip, kinematics, input->torque_nm, drives && (!input->felt));
 }
 
-/* Where no wheel's rollers slide there is no ripple to be seen. */
-static void follow_ripple(gw_channels_t *channels, const gw_channels_input_t *input, gw_real_t friction_n2,
-                          gw_regime_t regime, gw_real_t fast)
+/* Since this was asked for the last time, rad, mean of the wheels. */
+static gw_real_t turned_rad(const gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_twist_t *twist)
 {
-    const gw_wrench_t *const felt = &channels->fast.bank[BANK_OF_RIPPLE];
+    const gw_wheels_t rate_radps = gw_kinematics_wheel_rates(kinematics, *twist);
+    gw_real_t sum_radps = GW_ZERO;
+    for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
+        sum_radps += gw_magnitude(rate_radps.wheel[i]);
+    }
+    return ((gw_real_t)GW_SLOW_TICKS * channels->period_s) * (GW_PER_WHEEL * sum_radps);
+}
+
+/* Of the force that comes and goes as ripple does, N^2. */
+static gw_real_t square_of_ripple(const gw_fast_channel_t *fast)
+{
+    const gw_wrench_t *const quick = &fast->bank[BANK_OF_RIPPLE];
+    const gw_wrench_t *const slow = &fast->bank[BANK_OF_ERRORS];
+    const gw_vector_t between_n = {quick->force_x_n - slow->force_x_n, quick->force_y_n - slow->force_y_n};
+    return (between_n.x * between_n.x) + (between_n.y * between_n.y);
+}
+
+/* Where no wheel's rollers slide there is no ripple to be seen. */
+static void follow_ripple(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
+                          gw_real_t friction_n2, gw_regime_t regime, gw_real_t fast)
+{
     const gw_real_t sliding_n = channels->fast.sliding_n;
     if (channels->active) {
         gw_ripple_leave_out(&channels->ripple);
     } else {
         if ((regime != GW_REGIME_REST) && (fast < CALM) && (friction_n2 > (sliding_n * sliding_n))) {
-            const gw_real_t force_n2 = (felt->force_x_n * felt->force_x_n) + (felt->force_y_n * felt->force_y_n);
-            gw_ripple_follow(&channels->ripple, force_n2, friction_n2, input->reacting);
+            gw_ripple_follow(&channels->ripple, turned_rad(channels, kinematics, input->twist),
+                             square_of_ripple(&channels->fast), friction_n2, input->reacting);
         }
         gw_ripple_go_on(&channels->ripple);
     }
@@ -345,7 +365,7 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
         const gw_model_forces_t *const model = &channels->slow.mean.model;
         const gw_real_t friction_n2 = squares_of_friction(model);
         channels->doubts.forces_n2 = squares_of_forces(model, friction_n2);
-        follow_ripple(channels, input, friction_n2, regime, fast);
+        follow_ripple(channels, kinematics, input, friction_n2, regime, fast);
         rock_on(channels);
         doubt_gears(channels, input->gear_n2);
         doubt_grip(channels, kinematics, input);

@@ -265,6 +265,7 @@ static void detect_by_channels(gw_controller_t *controller)
     input.felt = controller->estimate.acceleration_source == GW_SOURCE_IMU;
     input.shaking_mps2_2 = controller->felt.shaking_mps2_2;
     input.gear_n2 = controller->estimate.gear_n2;
+    input.twist = &controller->estimate.measured_twist;
     input.torque_nm = &controller->estimate.torque_nm;
     input.reacting = controller->supervisor.mode == GW_MODE_REACTING;
     gw_channels_step(&controller->channels, &controller->estimator.kinematics, &input, &controller->contact_found);

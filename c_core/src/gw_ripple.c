@@ -5,14 +5,15 @@
 
 #if (GW_WITH_CHANNELS == 1)
 
-/* Square of the force over the sum of squares of the friction: from here on wheels are uneven. With 0.1 in a reaction,
- * too, the tuning draw's planar robots miss 72 of 743 hits while they react, with 0.3 40. */
-#define UNEVEN ((gw_real_t)0.1)
-#define UNEVEN_REACTING ((gw_real_t)0.3)
-#define PER_MOST ((gw_real_t)25.0) /* one over what is beyond it where the variance is the largest */
+/* Square of the force over the sum of squares of the friction: from here on wheels are uneven. A wrong mass is felt
+ * while the robot reacts, too. */
+#define UNEVEN ((gw_real_t)0.025)
+#define UNEVEN_REACTING ((gw_real_t)0.075)
+#define PER_MOST ((gw_real_t)100.0) /* one over what is beyond it where the variance is the largest */
 #define MOST ((gw_real_t)(25.0 / 9.0))
 #define REACTING ((gw_real_t)(4.0 / 9.0))
-/* With 1 s single rollers of the tuning draw miss 135 of 3,350 hits, with this 84. */
+/* A tenth more than from one of 18 rollers to the next. */
+#define FADE_RAD ((gw_real_t)0.4)
 #define FADE_S ((gw_real_t)0.5)
 #define RISE_S ((gw_real_t)0.1)
 #define INTERVAL_S ((gw_real_t)0.064)
@@ -43,13 +44,14 @@ bool gw_ripple_invariant_holds(const gw_ripple_t *ripple)
     return holds;
 }
 
-void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t force_n2, gw_real_t friction_n2, bool reacting)
+void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t turned_rad, gw_real_t force_n2, gw_real_t friction_n2,
+                      bool reacting)
 {
     const gw_real_t even = reacting ? UNEVEN_REACTING : UNEVEN;
     const gw_real_t uneven = gw_max(gw_planar_ratio(force_n2, friction_n2) - even, GW_ZERO);
     const gw_real_t towards2 = ripple->most2 * (PER_MOST * uneven);
     const gw_real_t share = (towards2 > ripple->felt2) ? ripple->rise : (GW_ONE - ripple->keep);
-    ripple->guess2 = ripple->keep * ripple->guess2;
+    ripple->guess2 = (GW_ONE - gw_min(turned_rad / FADE_RAD, GW_HALF)) * ripple->guess2;
     /* Never negative: at most half of it is taken off. */
     ripple->felt2 = gw_known_within(gw_min(ripple->felt2 + (share * (towards2 - ripple->felt2)), ripple->most2), MOST);
 }

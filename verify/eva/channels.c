@@ -59,6 +59,9 @@ static void part_step(void)
     gw_wheels_t torque_nm;
     draw_wheels(&torque_nm, GW_TORQUE_MAX);
     input.torque_nm = &torque_nm;
+    const gw_real_t fastest = (gw_real_t)1.0e9;
+    const gw_twist_t twist = {draw_real(-fastest, fastest), draw_real(-fastest, fastest), draw_real(-fastest, fastest)};
+    input.twist = &twist;
     draw_wrench(&output.mean_wrench, GW_WRENCH_MAX); /* written when it is refined, else kept */
     draw_vector(&output.push_n, GW_WRENCH_MAX);
     draw_channels(&channels);

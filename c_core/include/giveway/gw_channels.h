@@ -62,6 +62,8 @@ typedef struct {
     gw_real_t shaking_mps2_2;
     /* Variance of a component of the force, from what gears may be wrong by, N^2, [0, 1e12]. */
     gw_real_t gear_n2;
+    /* Measured, each component at most 1e9; not NULL. */
+    const gw_twist_t *twist;
     /* Torques of the wheels, N m, each at most GW_TORQUE_MAX; not NULL. */
     const gw_wheels_t *torque_nm;
 } gw_channels_input_t;

@@ -3,10 +3,11 @@
  * force is along the wheel's axle, and has no moment about the centre: only a push there looks like it.
  *
  * The share by which the friction may vary has the variance g^2 + s^2. The guess g is the configuration's, 2/3 of it
- * in a reaction, where no push should be missed, and fades within half a second of driving. What has been seen, s,
- * grows where the square of the force is more than a tenth of the sum of squares of the wheels' friction, 0.3 in a
- * reaction, and is 5/3 of the configuration's at most, 0.04 beyond that; it fades as the guess does. It counts after
- * 64 ms at least, and what was felt since is left out if it was a contact that began.
+ * in a reaction, where no push should be missed, and fades as wheels turn: each 0.4 rad leaves 1/e of its square. What
+ * has been seen, s, grows where a force comes and goes: where its square, of what takes some 20 to 50 ms, is more than
+ * 0.025 of the sum of squares of the wheels' friction, 0.075 in a reaction. It is 5/3 of the configuration's at most,
+ * 0.01 beyond that, and fades within half a second. It counts after 64 ms at least, and what was felt since is left out
+ * if it was a contact that began.
  *
  * Life cycle: gw_ripple_init, then every so often gw_ripple_follow, if there is something to be seen, and
  * gw_ripple_go_on, or gw_ripple_leave_out. All members are private.
@@ -28,7 +29,7 @@ typedef struct {
     gw_real_t seen2;   /* what has been seen */
     gw_real_t next2;   /* instead of it from the next interval on */
     gw_real_t felt2;   /* and from the one after that */
-    gw_real_t keep;    /* of a variance that fades, from one step to the next */
+    gw_real_t keep;    /* of felt2, from one step to the next */
     gw_real_t rise;    /* what felt2 takes over of a larger one */
     uint32_t interval; /* steps of an interval, at least 1 */
     uint32_t steps;    /* of this one */
@@ -38,9 +39,11 @@ typedef struct {
  * here and below. */
 GW_SMALL void gw_ripple_init(gw_ripple_t *ripple, gw_real_t share, gw_real_t interval_s);
 bool gw_ripple_invariant_holds(const gw_ripple_t *ripple);
-/* Rollers slide and nothing touches: square of the force that is not explained, N^2, at least 0, and the sum over the
- * wheels of the squares of their friction, N^2. */
-void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t force_n2, gw_real_t friction_n2, bool reacting);
+/* Rollers slide and nothing touches: how far a wheel has turned since the last time, rad, mean of all, at least 0;
+ * square of the force that comes and goes and is not explained, N^2, at least 0; the sum over the wheels of the squares
+ * of their friction, N^2. */
+void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t turned_rad, gw_real_t force_n2, gw_real_t friction_n2,
+                      bool reacting);
 /* A step without contact. */
 void gw_ripple_go_on(gw_ripple_t *ripple);
 /* A step with one: what was felt last may have been that. */

@@ -172,17 +172,18 @@ digest_t drive_ripple(void)
     generator_t generator = generator_begin(43U);
     for (uint32_t i = 0U; i < 40U; i++) {
         const gw_kinematics_t kinematics = random_kinematics(&generator);
-        const gw_real_t uneven = generator_between(&generator, GW_ZERO, GW_HALF);
+        const gw_real_t uneven = generator_between(&generator, GW_ZERO, (gw_real_t)0.12);
         gw_ripple_t ripple;
         gw_ripple_init(&ripple, generator_between(&generator, GW_ZERO, GW_ONE), (gw_real_t)0.004);
         for (uint32_t k = 0U; k < 200U; k++) {
             const gw_real_t friction_n2 = generator_between(&generator, (gw_real_t)400.0, (gw_real_t)1500.0);
             const gw_real_t force_n2 = friction_n2 * generator_between(&generator, GW_ZERO, uneven);
+            const gw_real_t turned_rad = generator_between(&generator, GW_ZERO, (gw_real_t)0.02);
             const bool reacting = generator_one_in(&generator, 4U);
             if (generator_one_in(&generator, 60U)) {
                 gw_ripple_leave_out(&ripple);
             } else {
-                gw_ripple_follow(&ripple, force_n2, friction_n2, reacting);
+                gw_ripple_follow(&ripple, turned_rad, force_n2, friction_n2, reacting);
                 gw_ripple_go_on(&ripple);
             }
             const gw_real_t variance = gw_ripple_variance(&ripple, reacting);
@@ -299,6 +300,8 @@ static digest_t play_channels(uint32_t seed, void (*take)(digest_t *digest, cons
         input.gear_n2 = generator_between(&generator, GW_ZERO, (gw_real_t)16.0);
         const gw_wheels_t torque_nm = generator_wheels(&generator, (gw_real_t)6.0);
         input.torque_nm = &torque_nm;
+        const gw_twist_t twist = generator_twist(&generator, GW_HALF, GW_ONE);
+        input.twist = &twist;
         gw_channels_step(&channels, &kinematics, &input, &output);
         take(&digest, &channels, &output);
         if (generator_one_in(&generator, 2000U)) {

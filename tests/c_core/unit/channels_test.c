@@ -8,6 +8,7 @@ static gw_channels_t channels;
 static gw_channels_config_t config;
 static gw_kinematics_t kinematics;
 static gw_channels_input_t input;
+static gw_twist_t twist;
 static gw_channels_output_t output;
 static gw_wrench_t wrench;
 static gw_model_forces_t forces;
@@ -29,6 +30,7 @@ static void begin_with_config(void)
     static const gw_wrench_t nothing;
     static const gw_model_forces_t no_forces;
     static const gw_wheels_t no_torque;
+    static const gw_twist_t no_twist;
     static const gw_channels_input_t no_input;
     static const gw_channels_output_t no_output;
     const gw_channels_noise_t noise = fine_noise();
@@ -41,11 +43,13 @@ static void begin_with_config(void)
     forces = no_forces;
     zero_step = nothing;
     torque_nm = no_torque;
+    twist = no_twist;
     input = no_input;
     output = no_output;
     input.wrench = &wrench;
     input.forces = &forces;
     input.zero_step = &zero_step;
+    input.twist = &twist;
     input.torque_nm = &torque_nm;
     input.regime = GW_REGIME_REST;
     input.enabled = true;
@@ -683,7 +687,8 @@ static void a_wheel_that_may_slip_is_doubted_in_free_motion(void)
     CHECK(channels.doubts.slip.wheel_n2.wheel[1] == GW_ZERO);
 }
 
-/* Where rollers slide, nothing touches and the force is far below the threshold: 20 N of 3 * 20^2 N^2 are uneven. */
+/* Where rollers slide, nothing touches and the force is far below the threshold: 5.6 N of 3 * 20.5^2 N^2 are uneven, in
+ * a reaction 9.7. */
 static void ripple_is_seen_in_free_motion(void)
 {
     const struct {
@@ -696,9 +701,9 @@ static void ripple_is_seen_in_free_motion(void)
         bool fades;
     } rows[] = {{GW_REGIME_MOTION, R(20.5), R(20.0), false, false, true, true},
                 {GW_REGIME_CREEPING, R(20.5), R(20.0), false, false, true, true},
-                {GW_REGIME_MOTION, R(20.5), R(10.0), false, false, false, true},
+                {GW_REGIME_MOTION, R(20.5), R(5.5), false, false, false, true},
                 {GW_REGIME_MOTION, R(20.5), R(20.0), false, true, true, true},
-                {GW_REGIME_MOTION, R(20.5), R(15.0), false, true, false, true},
+                {GW_REGIME_MOTION, R(20.5), R(9.5), false, true, false, true},
                 {GW_REGIME_MOTION, R(20.5), R(20.0), true, false, false, false},
                 {GW_REGIME_MOTION, R(11.5), R(20.0), false, false, false, false},
                 {GW_REGIME_REST, R(20.5), R(1.0), false, false, false, false}};
@@ -717,6 +722,7 @@ static void ripple_is_seen_in_free_motion(void)
             channels.fast.baseline.model.friction_n.wheel[k] = rows[i].friction_n;
             forces.friction_n.wheel[k] = rows[i].friction_n;
         }
+        twist.omega_radps = R(-0.5);
         channels.ripple.guess2 = GW_ONE;
         channels.ripple.felt2 = GW_ZERO;
         for (uint32_t k = 0U; k < 4U; k++) {
@@ -729,6 +735,51 @@ static void ripple_is_seen_in_free_motion(void)
         CHECK((channels.ripple.guess2 < GW_ONE) == rows[i].fades);
         CHECK(channels.doubts.ripple2 == (R(6.25) * gw_ripple_variance(&channels.ripple, rows[i].reacting)));
     }
+}
+
+/* What lasts is no ripple. */
+static void a_force_that_lasts_is_no_ripple(void)
+{
+    begin_in_motion();
+    channels.fast.rocking_n2 = R(2000.0);
+    channels.doubts.rocking_n2 = R(2000.0);
+    for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+        channels.slow.mean.model.friction_n.wheel[k] = R(20.5);
+        channels.fast.baseline.model.friction_n.wheel[k] = R(20.5);
+        forces.friction_n.wheel[k] = R(20.5);
+    }
+    for (uint32_t k = 0U; k < 4U; k++) {
+        channels.fast.bank[2].force_x_n = R(20.0);
+        channels.fast.bank[3].force_x_n = R(20.0);
+        channels.fast.bank[2].force_y_n = R(-20.0);
+        channels.fast.bank[3].force_y_n = R(-20.0);
+        tick();
+    }
+    CHECK(channels.ripple.felt2 == GW_ZERO);
+    CHECK(channels.ripple.guess2 == (R(0.48) * R(0.48))); /* no wheel turns */
+}
+
+/* By the mean of what the wheels turn in four ticks. */
+static void the_guess_fades_as_wheels_turn(void)
+{
+    begin_in_motion();
+    channels.fast.rocking_n2 = R(2000.0);
+    channels.doubts.rocking_n2 = R(2000.0);
+    for (uint32_t k = 0U; k < GW_WHEEL_COUNT; k++) {
+        channels.slow.mean.model.friction_n.wheel[k] = R(20.5);
+        channels.fast.baseline.model.friction_n.wheel[k] = R(20.5);
+        forces.friction_n.wheel[k] = R(20.5);
+    }
+    twist.vx_mps = R(0.3);
+    twist.vy_mps = R(-0.2);
+    twist.omega_radps = R(0.4);
+    const gw_wheels_t rate_radps = gw_kinematics_wheel_rates(&kinematics, twist);
+    const gw_real_t mean_radps =
+        (gw_magnitude(rate_radps.wheel[0]) + gw_magnitude(rate_radps.wheel[1]) + gw_magnitude(rate_radps.wheel[2])) /
+        R(3.0);
+    channels.ripple.guess2 = GW_ONE;
+    ticks(4U);
+    CHECK_NEAR(channels.ripple.guess2, R(1.0) - ((mean_radps * R(0.004)) / R(0.4)), R(10.0) * ROUNDING);
 }
 
 /* What was learned of rollers is kept, but for what was felt last. */
@@ -1242,6 +1293,8 @@ void suite_channels(void)
     unit_run("an_error_of_gears_is_remembered", an_error_of_gears_is_remembered);
     unit_run("a_wheel_that_may_slip_is_doubted_in_free_motion", a_wheel_that_may_slip_is_doubted_in_free_motion);
     unit_run("ripple_is_seen_in_free_motion", ripple_is_seen_in_free_motion);
+    unit_run("a_force_that_lasts_is_no_ripple", a_force_that_lasts_is_no_ripple);
+    unit_run("the_guess_fades_as_wheels_turn", the_guess_fades_as_wheels_turn);
     unit_run("ripple_outlasts_a_restart", ripple_outlasts_a_restart);
     unit_run("counters_stop_at_their_largest", counters_stop_at_their_largest);
     unit_run("another_zero_moves_baselines_along", another_zero_moves_baselines_along);
