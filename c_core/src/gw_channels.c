@@ -316,8 +316,9 @@ static void doubt_grip(gw_channels_t *channels, const gw_kinematics_t *kinematic
 /* Since this was asked for the last time, rad, mean of the wheels. */
 static gw_real_t turned_rad(const gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_twist_t *twist)
 {
-    const gw_wheels_t rate_radps = gw_kinematics_wheel_rates(kinematics, *twist);
+    gw_wheels_t rate_radps;
     gw_real_t sum_radps = GW_ZERO;
+    rate_radps = gw_kinematics_wheel_rates(kinematics, *twist);
     for (uint32_t i = 0U; i < GW_WHEEL_COUNT; i++) {
         sum_radps += gw_magnitude(rate_radps.wheel[i]);
     }

@@ -38,8 +38,8 @@ bool gw_ripple_invariant_holds(const gw_ripple_t *ripple)
         holds = gw_in_range(ripple->guess2, GW_ZERO, GW_ONE) && gw_in_range(ripple->most2, GW_ZERO, MOST) &&
                 gw_in_range(ripple->seen2, GW_ZERO, MOST) && gw_in_range(ripple->next2, GW_ZERO, MOST) &&
                 gw_in_range(ripple->felt2, GW_ZERO, MOST) && gw_in_range(ripple->keep, GW_HALF, GW_ONE) &&
-                gw_in_range(ripple->rise, GW_ZERO, GW_HALF) && (ripple->interval >= 1U) &&
-                (ripple->interval <= INTERVAL_MAX) && (ripple->steps < ripple->interval);
+                gw_in_range(ripple->rise, GW_ZERO, GW_HALF) && (ripple->interval <= INTERVAL_MAX) &&
+                (ripple->steps < ripple->interval);
     }
     return holds;
 }

@@ -145,6 +145,7 @@ static void every_period_has_an_interval(void)
         CHECK(ripple.interval == rows[i].steps);
         CHECK(gw_in_range(ripple.keep, GW_HALF, GW_ONE) && gw_in_range(ripple.rise, GW_ZERO, GW_HALF));
         gw_ripple_follow(&ripple, R(1.0e9), R(1.0e12), GW_ZERO, false);
+        CHECK(ripple.guess2 == GW_HALF); /* at most half of it at once */
         CHECK(gw_ripple_invariant_holds(&ripple));
     }
     CHECK(ripple.rise == GW_HALF);
