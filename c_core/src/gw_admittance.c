@@ -113,16 +113,11 @@ static void remember_start(gw_admittance_t *admittance)
     admittance->first = admittance->away;
 }
 
-static gw_real_t component(gw_vector_t unit, gw_vector_t vector)
-{
-    return (unit.x * vector.x) + (unit.y * vector.y);
-}
-
 /* Does a direction agree with that of the start? For a robot that may lean any does: the push that tips it is felt
  * later than what its body does meanwhile. */
 static bool agrees(const gw_admittance_t *admittance, gw_vector_t direction)
 {
-    return (admittance->tip.margin_mps2 > GW_ZERO) || (component(admittance->first, direction) >= LEAST_AGREEMENT);
+    return (admittance->tip.margin_mps2 > GW_ZERO) || (gw_along(direction, admittance->first) >= LEAST_AGREEMENT);
 }
 
 /* The share of a change of velocity that lifts no wheel. */
@@ -140,7 +135,7 @@ static gw_real_t limit_without_tipping(const gw_admittance_t *admittance, gw_vec
 
 static gw_real_t along_away(const gw_admittance_t *admittance, gw_vector_t vector)
 {
-    return component(admittance->away, vector);
+    return gw_along(vector, admittance->away);
 }
 
 GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t direction, gw_real_t change_mps)
@@ -153,10 +148,10 @@ GW_SMALL static void add_velocity(gw_vector_t *velocity_mps, gw_vector_t directi
 static void hold_above(gw_admittance_t *admittance, gw_vector_t unit, gw_real_t least_mps)
 {
     add_velocity(&admittance->velocity_mps, unit,
-                 gw_max(least_mps - component(unit, admittance->velocity_mps), GW_ZERO));
+                 gw_max(least_mps - gw_along(admittance->velocity_mps, unit), GW_ZERO));
     for (uint32_t i = 0U; i < GW_SMOOTH_COUNT; i++) {
         add_velocity(&admittance->smooth_mps[i], unit,
-                     gw_max(least_mps - component(unit, admittance->smooth_mps[i]), GW_ZERO));
+                     gw_max(least_mps - gw_along(admittance->smooth_mps[i], unit), GW_ZERO));
     }
 }
 
@@ -494,7 +489,7 @@ static gw_admittance_output_t step_frozen(const gw_admittance_t *admittance)
         const gw_vector_t exact_m = {admittance->approach * ahead.x, admittance->approach * ahead.y};
         const gw_vector_t mean_mps = {exact_m.x / period_s, exact_m.y / period_s};
         const gw_real_t mean = gw_length(mean_mps);
-        const gw_real_t along_mps = (admittance->velocity_mps.x * unit.x) + (admittance->velocity_mps.y * unit.y);
+        const gw_real_t along_mps = gw_along(admittance->velocity_mps, unit);
         /* Braking is planned with half of the acceleration; the other half corrects errors. */
         const gw_vector_t back = {-unit.x, -unit.y};
         const gw_real_t brake_mps = gw_braking_speed(GW_HALF * limit_without_tipping(admittance, back), period_s,

@@ -23,11 +23,6 @@ static bool is_right_of(gw_vector_t point, gw_vector_t direction, gw_real_t offs
     return cross(point, direction) > offset_m;
 }
 
-static gw_real_t along(gw_vector_t a, gw_vector_t direction)
-{
-    return (a.x * direction.x) + (a.y * direction.y);
-}
-
 static gw_vector_t from_to(gw_vector_t a, gw_vector_t b)
 {
     const gw_vector_t difference = {b.x - a.x, b.y - a.y};
@@ -138,7 +133,7 @@ static uint32_t crossed_edge(const gw_contact_config_t *config, gw_vector_t dire
                 crossed = i;
             }
         } else if ((distance_m <= nearest_m) &&
-                   (along(corner[i - 1U], direction) <= along(corner[*nearest], direction))) {
+                   (gw_along(corner[i - 1U], direction) <= gw_along(corner[*nearest], direction))) {
             *nearest = i - 1U; /* an edge parallel to the line: the end that the force meets first */
         } else {
             /* farther away */

@@ -400,7 +400,7 @@ static gw_vector_t felt_force(const gw_controller_t *controller)
  * there the robot rocks, and what it feels of that would make it rock more. */
 static void note_press(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
 {
-    const gw_real_t towards_mps = -((velocity.x * direction.x) + (velocity.y * direction.y));
+    const gw_real_t towards_mps = -gw_along(velocity, direction);
     const bool begins = (before != GW_MODE_REACTING);
     const bool presses = (towards_mps > controller->supervisor.config.settled_speed_mps);
     controller->may_press = begins && presses;

@@ -229,6 +229,12 @@ static inline gw_vector_t gw_rotate_back(gw_rotation_t rotation, gw_vector_t vec
     return result;
 }
 
+/* The component of a vector along a direction, a unit vector. */
+static inline gw_real_t gw_along(gw_vector_t vector, gw_vector_t direction)
+{
+    return (vector.x * direction.x) + (vector.y * direction.y);
+}
+
 /* Length of the vector, for components below 1e18 in magnitude; the rung `eva` shows that no step needs others. */
 static inline gw_real_t gw_length(gw_vector_t vector)
 {

@@ -283,6 +283,15 @@ static void vectors_turn_and_turn_back(void)
     CHECK((back.x == vector.x) && (back.y == vector.y));
 }
 
+static void a_component_is_taken_along_a_direction(void)
+{
+    const gw_vector_t vector = {R(3.0), R(-4.0)};
+    const gw_vector_t direction = {R(0.0), R(-1.0)};
+    const gw_vector_t slanted = {R(0.5), R(0.25)};
+    CHECK(gw_along(vector, direction) == R(4.0));
+    CHECK(gw_along(vector, slanted) == R(0.5));
+}
+
 static void lengths_are_limited(void)
 {
     const gw_vector_t vector = {R(3.0), R(4.0)};
@@ -336,6 +345,7 @@ void suite_math(void)
     unit_run("wrapped_angles_are_within_half_a_turn", wrapped_angles_are_within_half_a_turn);
     unit_run("counters_may_wrap", counters_may_wrap);
     unit_run("vectors_turn_and_turn_back", vectors_turn_and_turn_back);
+    unit_run("a_component_is_taken_along_a_direction", a_component_is_taken_along_a_direction);
     unit_run("lengths_are_limited", lengths_are_limited);
     unit_run("the_braking_speed_stops_at_the_goal", the_braking_speed_stops_at_the_goal);
 }
