@@ -141,6 +141,7 @@ void gw_channels_restart(gw_channels_t *channels)
     channels->doubts.forces_n2 = GW_ZERO;
     channels->doubts.rocking_n2 = GW_ZERO;
     channels->doubts.gear_n2 = GW_ZERO;
+    channels->doubts.row_m2ps2 = GW_ZERO;
     gw_slip_restart(&channels->doubts.slip);
     gw_ripple_leave_out(&channels->ripple);
     doubt_rollers(channels, false);
@@ -182,6 +183,7 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
                 gw_in_range(channels->doubts.rocking_n2, GW_ZERO, ROCKING_MAX_N2) &&
                 gw_in_range(channels->gear_keep, GW_HALF, GW_ONE) &&
                 gw_in_range(channels->doubts.gear_n2, GW_ZERO, GEAR_MAX_N2) &&
+                gw_in_range(channels->doubts.row_m2ps2, GW_ZERO, GW_ROW_MAX_M2PS2) &&
                 gw_in_range(channels->doubts.ripple2, GW_ZERO, RIPPLE2_MAX) &&
                 gw_ripple_invariant_holds(&channels->ripple) && gw_slip_invariant_holds(&channels->doubts.slip) &&
                 (channels->calm_ticks <= CALM_TICKS) && gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
@@ -351,6 +353,13 @@ static void follow_ripple(gw_channels_t *channels, const gw_kinematics_t *kinema
     doubt_rollers(channels, input->reacting);
 }
 
+/* As a turning wheel passes from one row of rollers to the other, its arm changes, and its speed with it. */
+static void doubt_rows(gw_channels_t *channels, const gw_twist_t *twist)
+{
+    const gw_real_t step_mps = channels->config.lever_m * twist->omega_radps;
+    channels->doubts.row_m2ps2 = gw_clamp(step_mps * step_mps, GW_ZERO, GW_ROW_MAX_M2PS2);
+}
+
 /* Tasks that not every tick needs, each in ticks of its own: they make the longest step shorter. */
 static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinematics, const gw_channels_input_t *input,
                            const gw_balance_t *balance, gw_regime_t regime, gw_real_t fast)
@@ -367,6 +376,7 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
         const gw_real_t friction_n2 = squares_of_friction(model);
         channels->doubts.forces_n2 = squares_of_forces(model, friction_n2);
         follow_ripple(channels, kinematics, input, friction_n2, regime, fast);
+        doubt_rows(channels, input->twist);
         rock_on(channels);
         doubt_gears(channels, input->gear_n2);
         doubt_grip(channels, kinematics, input);

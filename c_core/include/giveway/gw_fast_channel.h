@@ -11,7 +11,8 @@
  * for the longer ones, M is what the model does not know of friction, rollers and mass with the forces of this tick,
  * and h is what the baseline holds of contacts that last: their end, a change against that, is no hit, and as it may
  * have turned, (x h)^2/|x|^2 I is added then, too; r is what the body does while it rocks. The moment has a variance of
- * its own. The channel trips if x^T S^-1 x > 1.
+ * its own: in a turn a wheel's speed steps as it passes from one row of rollers to the other, which encoders take for
+ * an acceleration. The channel trips if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
@@ -40,6 +41,8 @@ extern "C" {
 #define GW_SENSOR_COUNT 2U
 /* Largest change from the baseline, N and N m: two balances and what the follower corrects. */
 #define GW_CHANGE_MAX ((gw_real_t)1.0e6)
+/* Largest square of a step between rows of rollers, (m/s)^2. */
+#define GW_ROW_MAX_M2PS2 ((gw_real_t)100.0)
 #define GW_NOISE_SETS 3U /* at rest, slow or unsettled, in motion: as gw_regime_t */
 
 typedef struct {
@@ -56,8 +59,10 @@ typedef struct {
     gw_real_t gyro_noise_nm2[GW_SENSOR_COUNT][GW_BANK_COUNT]; /* what a gyro adds to that of the moment */
     gw_real_t least_noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
     gw_real_t noise_n2[GW_SENSOR_COUNT][GW_NOISE_SETS][GW_BANK_COUNT];
-    gw_real_t count_n2[GW_BANK_COUNT]; /* what counts add that are taken as they are */
-    gw_real_t counted;                 /* how many times of it now */
+    gw_real_t count_n2[GW_BANK_COUNT];   /* what counts add that are taken as they are */
+    gw_real_t counted;                   /* how many times of it now */
+    gw_real_t row_kg2ps2[GW_BANK_COUNT]; /* variance of the force that steps between rows of rollers look like, over the
+                                          * square of such a step */
     gw_real_t mass2_kg2;
     gw_real_t shaking_n2; /* the vibration that an IMU sees, as a force */
     uint32_t sensor;      /* GW_BY_ENCODERS or GW_BY_IMU */
@@ -68,6 +73,7 @@ typedef struct {
     gw_planar_covariance_t model_n2; /* k_m^2 M */
     gw_real_t moment_nm2;            /* likewise of the moment */
     gw_real_t rocking_n2;            /* variance of what the rocking body does */
+    gw_real_t row_m2ps2;             /* square of a step between rows, as encoders see it now */
     gw_real_t moment_noise_m2; /* variance of the moment's noise over that of the force's, as the wheels turn now */
     /* What the baseline holds of contacts, how sure nobody is of that, along the last one, and the share of the
      * baseline's motion that is put down to them. All fade after a contact. */
@@ -86,6 +92,8 @@ typedef struct {
     gw_real_t rocking_n2; /* variance of what the rocking body does, [0, 1e12] */
     gw_real_t gear_n2;    /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it,
                            * [0, 1e12] */
+    gw_real_t row_m2ps2;  /* square of a wheel's step of speed between rows of rollers, (m/s)^2, at most
+                           * GW_ROW_MAX_M2PS2 */
     gw_real_t ripple2;    /* k_m^2 times the variance of what the friction of a wheel varies by from roller to roller,
                            * relative, [0, 4e4] */
     gw_slip_t slip;       /* k_m^2 times that of wheels that may slip */

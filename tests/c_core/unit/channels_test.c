@@ -340,6 +340,27 @@ static void levers_make_the_moment_uncertain(void)
     CHECK(channels.fast.moment_nm2 >= (R(6.25) * R(0.37) * (GW_ONE - R(0.001))));
 }
 
+/* 0.01 m times the yaw rate, to either side; a restart forgets it until the next look. */
+static void a_turn_makes_wheels_step_between_rows(void)
+{
+    const struct {
+        gw_real_t yaw_rate_radps;
+        gw_real_t row_m2ps2;
+    } rows[] = {{R(0.0), R(0.0)}, {R(2.0), R(4.0e-4)}, {R(-2.0), R(4.0e-4)}, {R(3000.0), R(100.0)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin_in_motion();
+        twist.vx_mps = R(0.3);
+        twist.omega_radps = rows[i].yaw_rate_radps;
+        ticks(4U);
+        unit_row(i);
+        CHECK_NEAR(channels.doubts.row_m2ps2, rows[i].row_m2ps2, rows[i].row_m2ps2 * R(10.0) * ROUNDING);
+        ticks(2U);
+        CHECK(channels.fast.row_m2ps2 == channels.doubts.row_m2ps2);
+        gw_channels_restart(&channels);
+        CHECK(channels.doubts.row_m2ps2 == GW_ZERO);
+    }
+}
+
 /* In motion the slow channel's baseline follows: in 3 s once it has settled, in half a second before. At rest and in a
  * contact it stays. */
 static void the_slow_baseline_follows_the_motion(void)
@@ -1232,7 +1253,8 @@ static void the_invariant_sees_every_member(void)
         &channels.slow.force_n.y,        &channels.doubts.forces_n2,       &channels.rocking2,
         &channels.rocking_keep,          &channels.doubts.rocking_n2,      &channels.gear_keep,
         &channels.doubts.gear_n2,        &channels.doubts.slip.near_n,     &channels.doubts.ripple2,
-        &channels.ripple.felt2,          &channels.impulse.torque_nm,      &channels.impulse_s};
+        &channels.ripple.felt2,          &channels.impulse.torque_nm,      &channels.impulse_s,
+        &channels.doubts.row_m2ps2};
     CHECK(!gw_channels_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
         unit_row(i);
@@ -1279,6 +1301,7 @@ void suite_channels(void)
     unit_run("a_contact_is_quiet_when_both_channels_are", a_contact_is_quiet_when_both_channels_are);
     unit_run("a_contact_is_over_after_a_time", a_contact_is_over_after_a_time);
     unit_run("levers_make_the_moment_uncertain", levers_make_the_moment_uncertain);
+    unit_run("a_turn_makes_wheels_step_between_rows", a_turn_makes_wheels_step_between_rows);
     unit_run("the_slow_baseline_follows_the_motion", the_slow_baseline_follows_the_motion);
     unit_run("the_slow_channel_rests_when_the_robot_does", the_slow_channel_rests_when_the_robot_does);
     unit_run("an_armed_detector_after_rearm_ticks", an_armed_detector_after_rearm_ticks);

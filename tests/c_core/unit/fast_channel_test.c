@@ -774,7 +774,7 @@ static void known_friction_is_no_force(void)
 }
 
 /* k_m^2 M of the smoothed change; at rest no roller is between its limits. The moment: 2.5^2 (0.2^2 10^2 +
- * 0.03^2 (30^2 + 40^2) + 0.01^2 30000). */
+ * 0.03^2 (30^2 + 40^2) + 0.01^2 30000), and in motion twice the 0.3 of uneven rollers times 0.01^2 30000. */
 static void a_model_that_is_doubted_widens_the_threshold(void)
 {
     const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
@@ -794,7 +794,9 @@ static void a_model_that_is_doubted_widens_the_threshold(void)
             gw_ripple_added((i == 0U) ? GW_ZERO : R(0.3), &kinematics, &balance.model.friction_n, of_model);
         unit_row(i);
         CHECK((channel.model_n2.xx == m.xx) && (channel.model_n2.xy == m.xy) && (channel.model_n2.yy == m.yy));
-        CHECK_NEAR(channel.moment_nm2, R(6.25) * (R(4.0) + R(2.25) + R(3.0)), R(60.0) * ROUNDING);
+        CHECK_NEAR(channel.moment_nm2,
+                   (R(6.25) * (R(4.0) + R(2.25) + R(3.0))) + ((i == 0U) ? GW_ZERO : (R(0.6) * R(3.0))),
+                   R(60.0) * ROUNDING);
         balance.model = no_balance.model;
         balance.residual.force_x_n = R(20.0);
         steps(1U);
@@ -936,9 +938,55 @@ static void wheels_that_turn_alike_count_alike(void)
     }
 }
 
+/* 0.03 (M dv/tau)^2 to the square of the noise's multiple, of the moment alone; an IMU does not see wheels. */
+static void steps_between_rows_make_the_moment_noisy(void)
+{
+    const gw_real_t time_s[GW_BANK_COUNT] = {R(0.002), R(0.006), R(0.018), R(0.05)};
+    const struct {
+        gw_regime_t regime;
+        bool felt;
+        bool seen;
+    } rows[] = {{GW_REGIME_MOTION, false, true},
+                {GW_REGIME_CREEPING, false, true},
+                {GW_REGIME_REST, false, false},
+                {GW_REGIME_MOTION, true, false}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+            gw_real_t variances[2];
+            gw_real_t of_force[2];
+            begin();
+            gw_fast_channel_feel(&channel, rows[i].felt, GW_ZERO);
+            const gw_fast_channel_t before = channel;
+            for (uint32_t k = 0U; k < 2U; k++) {
+                channel = before;
+                doubts.row_m2ps2 = (k == 0U) ? GW_ZERO : R(1.0e-4);
+                gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, rows[i].regime, &doubts);
+                const gw_fast_channel_t doubted = channel;
+                channel.bank[j].torque_nm = R(5.0);
+                step(rows[i].regime, false);
+                variances[k] = (channel.bank[j].torque_nm * channel.bank[j].torque_nm) / found.statistic;
+                CHECK(found.widest == j);
+                channel = doubted;
+                channel.bank[j].force_x_n = R(10.0);
+                step(rows[i].regime, false);
+                of_force[k] = found.statistic;
+            }
+            const gw_real_t force_n = (R(35.0) * R(0.01)) / time_s[j];
+            const gw_real_t share = (j < 2U) ? GW_ONE : R(0.8);
+            const gw_real_t expected_nm2 =
+                ((share * (MULTIPLE * MULTIPLE)) * (R(0.03) * (force_n * force_n))) * channel.moment_noise_m2;
+            unit_row((10U * i) + j);
+            CHECK_NEAR(variances[1] - variances[0], rows[i].seen ? expected_nm2 : GW_ZERO,
+                       variances[1] * R(100.0) * ROUNDING);
+            CHECK(of_force[0] == of_force[1]);
+        }
+    }
+}
+
 static void a_restart_keeps_what_was_learned_of_the_noise(void)
 {
     hold_100_n();
+    channel.row_m2ps2 = GW_ONE;
     gw_fast_channel_feel(&channel, true, R(1.0));
     channel.noise_n2[GW_BY_IMU][GW_REGIME_MOTION][1] = R(123.0);
     gw_fast_channel_restart(&channel);
@@ -946,7 +994,7 @@ static void a_restart_keeps_what_was_learned_of_the_noise(void)
     CHECK(channel.noise_n2[GW_BY_IMU][GW_REGIME_MOTION][1] == R(123.0));
     CHECK((channel.held.force_x_n == GW_ZERO) && (channel.held_share == GW_ZERO) &&
           (channel.baseline.residual.force_x_n == GW_ZERO));
-    CHECK((channel.sensor == GW_BY_ENCODERS) && (channel.shaking_n2 == GW_ZERO));
+    CHECK((channel.sensor == GW_BY_ENCODERS) && (channel.shaking_n2 == GW_ZERO) && (channel.row_m2ps2 == GW_ZERO));
 }
 
 /* The largest robot with the worst sensors, and the smallest with perfect ones; any forces. */
@@ -1030,6 +1078,7 @@ static void the_invariant_sees_every_member(void)
                                   &channel.model_n2.yy,
                                   &channel.moment_nm2,
                                   &channel.rocking_n2,
+                                  &channel.row_m2ps2,
                                   &channel.moment_noise_m2,
                                   &channel.held.force_x_n,
                                   &channel.held.force_y_n,
@@ -1064,6 +1113,11 @@ static void the_invariant_sees_every_member(void)
         channel.count_n2[j] = unit_above(R(1.0e10));
         CHECK(!gw_fast_channel_invariant_holds(&channel));
         channel.count_n2[j] = R(-1.0);
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        channel = good;
+        channel.row_kg2ps2[j] = unit_above(R(1.0e12));
+        CHECK(!gw_fast_channel_invariant_holds(&channel));
+        channel.row_kg2ps2[j] = R(-1.0);
         CHECK(!gw_fast_channel_invariant_holds(&channel));
         channel = good;
         channel.bank[j].torque_nm = unit_above(GW_CHANGE_MAX);
@@ -1117,6 +1171,7 @@ void suite_fast_channel(void)
     unit_run("known_friction_is_no_force", known_friction_is_no_force);
     unit_run("a_model_that_is_doubted_widens_the_threshold", a_model_that_is_doubted_widens_the_threshold);
     unit_run("wheels_that_turn_alike_count_alike", wheels_that_turn_alike_count_alike);
+    unit_run("steps_between_rows_make_the_moment_noisy", steps_between_rows_make_the_moment_noisy);
     unit_run("a_restart_keeps_what_was_learned_of_the_noise", a_restart_keeps_what_was_learned_of_the_noise);
     unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
     unit_run("rocking_widens_the_threshold_of_a_hit", rocking_widens_the_threshold_of_a_hit);
