@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -27,6 +27,7 @@ __all__ = [
     "check_table",
     "measure",
     "measure_parts",
+    "measure_steps",
     "table",
     "worst_stack",
 ]
@@ -97,15 +98,23 @@ ROWS = {
 }
 
 
-# Subsets that a program may call, with their PART of parts.c; None: linked.c.
-PARTS = {
-    "controller and servo": None,
-    "the same, and the names of the configuration's fields": 1,
-    "estimator with its tare, detector and admittance": 2,
-    "estimator with its tare and detector": 4,
-    "servo": 3,
+# What a program may call, with its PART of parts.c, None: linked.c; and what it is built without.
+PARTS: Mapping[str, tuple[int | None, tuple[str, ...]]] = {
+    "controller and servo, with everything": (None, ()),
+    "controller and servo": (None, BARE),
+    "the same, and the names of the configuration's fields": (1, BARE),
+    "estimator with its tare, detector and admittance": (2, BARE),
+    "estimator with its tare and detector": (4, BARE),
+    "servo": (3, BARE),
 }
 SMALL = ("-Os", *FLAGS[1:])
+# What is left out of everything, each without what stands above it, with LEFT_OUT of measure.c.
+STEPS = {
+    "everything": 0,
+    "without bristles for the rollers' friction": 1,
+    "and without the IMU": 2,
+    "and motors not observed between counts": 3,
+}
 TABLE_FILE, PARTS_FILE = "c_core/README.md", "docs/site/reference/c_cost.md"
 
 
@@ -126,9 +135,24 @@ def measure(context: Context, target: Target) -> Footprint:
 def measure_parts(context: Context, target: Target) -> dict[str, tuple[int, int]]:
     """Flash at -O2 and at -Os of programs that call these."""
     return {
-        name: (_flash(context, _link(context, target, part)), _flash(context, _link(context, target, part, SMALL)))
-        for name, part in PARTS.items()
+        name: (
+            _flash(context, _link(context, target, part, FLAGS, without)),
+            _flash(context, _link(context, target, part, SMALL, without)),
+        )
+        for name, (part, without) in PARTS.items()
     }
+
+
+def measure_steps(context: Context, target: Target) -> dict[str, int]:
+    """Instructions of the longest step found by search, with less and less in use."""
+    return {name: _run(context, target, f"-DLEFT_OUT={level}")["all_step"] for name, level in STEPS.items()}
+
+
+def steps_table(steps: dict[str, int]) -> str:
+    """The table of `PARTS_FILE`."""
+    lines = ["| Longest step on Cortex-M4F, -O2 | instructions |", "|---|---:|"]
+    lines += [f"| {name} | {instructions:,} |" for name, instructions in steps.items()]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def parts_table(parts: dict[str, tuple[int, int]]) -> str:
@@ -138,10 +162,12 @@ def parts_table(parts: dict[str, tuple[int, int]]) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def check_parts(root: Path, parts: dict[str, tuple[int, int]]) -> None:
-    """`RungFailed` unless `PARTS_FILE` shows this table."""
-    if parts_table(parts) not in (root / PARTS_FILE).read_text(encoding="utf-8"):
-        raise RungFailed(f"{PARTS_FILE} does not show what was measured:\n{parts_table(parts)}")
+def check_parts(root: Path, parts: dict[str, tuple[int, int]], steps: dict[str, int]) -> None:
+    """`RungFailed` unless `PARTS_FILE` shows these tables."""
+    text = (root / PARTS_FILE).read_text(encoding="utf-8")
+    missing = [shown for shown in (parts_table(parts), steps_table(steps)) if shown not in text]
+    if missing:
+        raise RungFailed("\n".join([f"{PARTS_FILE} does not show what was measured:", *missing]))
 
 
 def _link(
@@ -286,7 +312,8 @@ def _print() -> None:
     with tempfile.TemporaryDirectory() as folder:
         context = Context(root, Path(folder), os.environ["PATH"])
         print(table({target.name: measure(context, target) for target in MACHINES}))
-        print(parts_table(measure_parts(context, TARGETS["cortex-m4f"])), end="")
+        print(parts_table(measure_parts(context, TARGETS["cortex-m4f"])))
+        print(steps_table(measure_steps(context, TARGETS["cortex-m4f"])), end="")
 
 
 if __name__ == "__main__":

@@ -17,9 +17,10 @@ def check(context: Context) -> Figure:
     measured = {target.name: footprint.measure(context, target) for target in footprint.MACHINES}
     footprint.check_table(context.root, measured)
     parts = footprint.measure_parts(context, TARGETS["cortex-m4f"])
-    footprint.check_parts(context.root, parts)
+    steps = footprint.measure_steps(context, TARGETS["cortex-m4f"])
+    footprint.check_parts(context.root, parts, steps)
     with planted("a part that grew", shows="does not show what was measured"):
-        footprint.check_parts(context.root, {name: (fast + 4, small) for name, (fast, small) in parts.items()})
+        footprint.check_parts(context.root, {name: (fast + 4, small) for name, (fast, small) in parts.items()}, steps)
     with planted("recursion", shows="recursion: gw_a -> gw_b -> gw_a"):
         footprint.worst_stack(RECURSION, {}, "gw_a")
     with planted("a call through a pointer", shows="through a pointer"):

@@ -21,6 +21,14 @@
 #define SEARCH_TICKS 1500U
 #define SERVO_TICKS 20000U
 
+/* What is left out of everything, one after the other: 1 bristles, 2 the IMU, 3 motors observed between counts. */
+#ifndef LEFT_OUT
+#define LEFT_OUT 0
+#endif
+#define WITHOUT_BRISTLES (LEFT_OUT >= 1)
+#define WITHOUT_IMU (LEFT_OUT >= 2)
+#define WITHOUT_OBSERVED_MOTORS (LEFT_OUT >= 3)
+
 static gw_controller_t controller;
 static gw_controller_t before;
 static gw_controller_t scratch;
@@ -93,11 +101,14 @@ static void demanding_config(gw_controller_config_t *config, uint32_t variant, u
     config->estimator.friction_model = friction_model;
 #if (GW_WITH_CHANNELS == 1)
     config->estimator.velocity_source = GW_SOURCE_MEASURED;
-    config->estimator.acceleration_source = ((variant & 1U) != 0U) ? GW_SOURCE_MEASURED : GW_SOURCE_IMU;
+    config->estimator.acceleration_source =
+        (WITHOUT_IMU || ((variant & 1U) != 0U)) ? GW_SOURCE_MEASURED : GW_SOURCE_IMU;
     config->estimator.aligned = 1U;
-    gw_motor_config_trikey(&config->estimator.motor);
+    if (!WITHOUT_OBSERVED_MOTORS) {
+        gw_motor_config_trikey(&config->estimator.motor);
+    }
     config->detector.kind = GW_DETECTOR_CHANNELS;
-    config->imu.use = 1U;
+    config->imu.use = WITHOUT_IMU ? 0U : 1U;
     config->imu.position_x_m = (gw_real_t)0.1;
     config->imu.position_y_m = (gw_real_t)-0.05;
     config->imu.angle_rad = (gw_real_t)0.3;
@@ -201,7 +212,8 @@ int main(void)
     SYST_CSR = COUNT_DOWN_AT_PROCESSOR_CLOCK;
 #if (GW_WITH_CHANNELS == 1)
     (void)printf("all_ram %" PRIu32 "\n", (uint32_t)sizeof(gw_controller_t) - window);
-    (void)printf("all_step %" PRIu32 "\n", worst_found_by_search(GW_FRICTION_BRISTLE));
+    (void)printf("all_step %" PRIu32 "\n",
+                 worst_found_by_search(WITHOUT_BRISTLES ? GW_FRICTION_TANH : GW_FRICTION_BRISTLE));
 #else
     (void)printf("controller_ram %" PRIu32 "\n", (uint32_t)sizeof(gw_controller_t) - window);
     (void)printf("window_ram %" PRIu32 "\n", window);
