@@ -21,6 +21,8 @@ def check(context: Context) -> Figure:
     footprint.check_parts(context.root, parts, steps)
     with planted("a part that grew", shows="does not show what was measured"):
         footprint.check_parts(context.root, {name: (fast + 4, small) for name, (fast, small) in parts.items()}, steps)
+    with planted("a longer step", shows="does not show what was measured"):
+        footprint.check_parts(context.root, parts, {name: step + 1 for name, step in steps.items()})
     with planted("recursion", shows="recursion: gw_a -> gw_b -> gw_a"):
         footprint.worst_stack(RECURSION, {}, "gw_a")
     with planted("a call through a pointer", shows="through a pointer"):
