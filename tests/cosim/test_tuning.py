@@ -13,15 +13,18 @@ import pytest
 from cosim_helpers import Cli
 from giveway import batch
 from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.crowd.hits import PER_ROBOT
+from giveway.crowd.population import GROUPS, group_of
 from giveway.identification.torque_model import TorqueModel
 from giveway.replay.run_log import write_log
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
 from giveway.tuning.identified import identify
-from giveway.tuning.judged import logs_of
+from giveway.tuning.judged import Hits, hits_of, judge, logs_of, rows
 from giveway.tuning.logs import Log, Push, read_log, read_pushes, with_plan
 from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
 from giveway.tuning.thresholds import NAMES, RIPPLE, RIPPLES, alarms_in, choose, settings_of
+from giveway.tuning.told import remarks
 from giveway.tuning.tuned import check_hours, noticed
 from scipy.ndimage import gaussian_filter1d
 
@@ -174,6 +177,29 @@ def test_ripple_is_expected_where_the_logs_have_it(logs: list[Log]) -> None:
     assert choose([uneven(log) for log in logs], {}, 200.0).thresholds[RIPPLE] == RIPPLES[-1]
 
 
+def test_hits_are_those_of_the_crowd_with_the_tuned_thresholds() -> None:
+    first = next(number for number in range(10) if group_of(number) == GROUPS[0])
+    told: list[int] = []
+    (one,) = judge("tuning", 1, 1.0, 300.0, 2, told.append)
+    assert (one.number, told, one.refused) == (first, [1], "")
+    assert one.hits is not None
+    assert one.hits_before == hits_of("tuning", first, {}, 1)
+    assert one.hits_before.runs == one.hits.runs == PER_ROBOT
+    assert one.hits_before.hits > 0
+    deaf = {name: 1000.0 for name in settings_of({}) if name.startswith(("channels.fast", "channels.slow"))}
+    heard = hits_of("tuning", first, deaf, 1)
+    assert heard.missed == heard.hits > 0  # these very thresholds are used
+    assert one.hits + heard == Hits(one.hits.hits + heard.hits, one.hits.missed + heard.missed, 2 * PER_ROBOT,
+                                    one.hits.invented, one.hits.towards)  # fmt: skip
+    assert ("hits missed, tuned", f"{one.hits.missed} of {one.hits.hits}") in rows([one], 300.0)
+
+
+@pytest.mark.parametrize("minutes", [0.5, 61.0, math.nan])
+def test_logs_of_the_judged_are_neither_too_short_nor_too_long(minutes: float) -> None:
+    with pytest.raises(GivewayError, match="--minutes"):
+        judge("tuning", 1, minutes, 300.0, 1)
+
+
 def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:
     log = logs[0]
     own = {name: values for name, values in log.inputs.items() if not name.startswith("plan.")}
@@ -222,6 +248,20 @@ def test_a_robot_file_from_a_log(process: Cli, arcs: Path, tmp_path: Path) -> No
     page = report.read_text(encoding="utf-8")
     html.parser.HTMLParser().feed(page)
     assert "EXTRAPOLATED" in page
+
+
+def test_short_logs_that_raise_thresholds_say_so(arcs: Path) -> None:
+    tuned = giveway.tune([arcs], TRIKEY, 30.0, smallest=False)
+    now = {name: float(value) for name, value in tuned.chosen.thresholds.items()}
+
+    def said(factor: float) -> list[str]:
+        before = {name: factor * value for name, value in now.items()}
+        return [one for one in remarks(dataclasses.replace(tuned, before=before)) if one.startswith("HIGHER")]
+
+    assert tuned.extrapolated
+    assert said(1.0) == []
+    (told,) = said(0.9)
+    assert all(name in told for name in NAMES if now[name] > 0.0)
 
 
 WRONG: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {

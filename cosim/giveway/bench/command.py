@@ -25,6 +25,8 @@ def bench(
     tune: Annotated[
         int, typer.Option("--tune", metavar="ROBOTS", help="Only: do thresholds tuned on logs keep what they promise?")
     ] = 0,
+    minutes: Annotated[float, typer.Option("--minutes", help="Logs of each of these robots, 1 to 60.")] = 6.0,
+    false_alarms: Annotated[float, typer.Option("--false-alarms", help="Per hour, what they are tuned for.")] = 60.0,
     optimum: Annotated[
         Path | None,
         typer.Option("--optimum", metavar="STUDY.toml", help="Only: what a search finds, against an even sample."),
@@ -60,7 +62,7 @@ def bench(
         _measure_probabilities()
         return
     if tune:
-        _judge_tuning(tune)
+        _judge_tuning(tune, minutes, false_alarms)
         return
     if optimum is not None:
         _compare_searches(optimum, out, sample, runs, seeds)
@@ -95,21 +97,20 @@ def _measure_sweeps() -> None:
     typer.echo("\n".join(found.in_words(threads)))
 
 
-def _judge_tuning(robots: int) -> None:
-    """Six minutes of logs for each robot of the judging draw, and as many fresh ones."""
+def _judge_tuning(robots: int, minutes: float, per_hour: float) -> None:
+    """Logs of each robot of the judging draw, as many fresh ones, and its hits."""
     import time
 
     from giveway.base.checks import whole
-    from giveway.crowd.crowd import ROBOTS_MAX
     from giveway.library.work import default_threads
-    from giveway.tuning.judged import HEADER, MINUTES, PER_HOUR, judge, rows
+    from giveway.tuning.judged import HEADER, ROBOTS_MAX, judge, rows
 
     whole("--tune", robots, 1, ROBOTS_MAX)
     cpu_s = time.process_time()
     with progress_bars(["robots"]) as progress:
-        found = judge("judging", robots, MINUTES, PER_HOUR, default_threads(),
+        found = judge("judging", robots, minutes, per_hour, default_threads(),
                       lambda done: progress("robots", done / robots))  # fmt: skip
-    print_columns("Thresholds tuned on logs of robots of the crowd", HEADER, rows(found, PER_HOUR))
+    print_columns("Thresholds tuned on logs of robots of the crowd", HEADER, rows(found, per_hour))
     for one in [one for one in found if not one.holds]:
         told = one.refused or f"{one.alarms} alarms, foretold {one.fewest} to {one.most}"
         typer.echo(f"robot {one.number}: {told}")

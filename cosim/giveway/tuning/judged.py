@@ -2,22 +2,28 @@
 
 Each robot differs from the robot file, which is all that the tuning knows of it. It drives as in `giveway crowd
 endurance`, and the controller does not react, as the log would end there. The fresh logs have other plans and noise.
+Then come the robot's hits in the crowd, with the tuned thresholds and with those of the start values.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from giveway import batch
+from giveway.base.checks import finite
 from giveway.base.errors import GivewayError, SimulationError
 from giveway.crowd import endurance
-from giveway.crowd.population import DRAWS, GROUPS, robot_of
+from giveway.crowd.crowd import compute
+from giveway.crowd.hits import PER_ROBOT
+from giveway.crowd.population import DRAWS, GROUPS, group_of, robot_of
 from giveway.crowd.statistics import count_interval, rate_interval
 from giveway.robot.presets import NO_REFLEX
-from giveway.robot.variables import table
+from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
 from giveway.scenario.plan import PLAN_INPUTS
 from giveway.scenario.scenario import Scenario
@@ -25,15 +31,39 @@ from giveway.tuning.logs import Log
 from giveway.tuning.thresholds import alarms_in, choose
 from giveway.tuning.tuned import check_hours
 
-__all__ = ["HEADER", "MINUTES", "PER_HOUR", "Judged", "judge", "logs_of", "rows"]
+__all__ = ["HEADER", "ROBOTS_MAX", "Hits", "Judged", "hits_of", "judge", "logs_of", "rows"]
 
 TRACES = (
     *(f"testbed.sensor.{what}[{wheel}]" for what in ("torque", "encoder") for wheel in range(WHEELS)),
     *(f"controller.{name}" for name in PLAN_INPUTS),
 )
 HEADER = ("", "found")
-MINUTES, PER_HOUR = 6.0, 60.0  # of logs, and wished: what so short logs can promise
+PLANT = GROUPS[0]
+MINUTES = (1.0, 60.0)  # of logs
 FRESH_PLANS = 1_000_000  # plans of fresh logs are numbered from here
+ROBOTS_MAX = 5000  # with the longest logs their plans do not reach the fresh ones
+
+
+@dataclass(frozen=True)
+class Hits:
+    """What comes of the crowd's hits of one robot, or of several.
+
+    Attributes:
+        hits: of `judged.IMPULSE_NS` or more.
+        missed: of these.
+        runs: with one or two hits each, or a push.
+        invented: runs with a reaction without contact.
+        towards: runs with a reaction towards what hit the robot.
+    """
+
+    hits: int
+    missed: int
+    runs: int
+    invented: int
+    towards: int
+
+    def __add__(self, other: Hits) -> Hits:
+        return Hits(*(getattr(self, name) + getattr(other, name) for name in self.__dataclass_fields__))
 
 
 @dataclass(frozen=True)
@@ -46,6 +76,7 @@ class Judged:
         upper_per_hour: what the tuning promises.
         fewest, most: alarms in the fresh hours, as the tuning foretells them with 95 %.
         alarms, fresh_hours: found in the fresh logs.
+        hits, hits_before: with the tuned thresholds, and with those of the start values; None: not tuned.
         refused: why it was not tuned; "" if it was.
     """
 
@@ -56,6 +87,8 @@ class Judged:
     most: int = 0
     alarms: int = 0
     fresh_hours: float = 0.0
+    hits: Hits | None = None
+    hits_before: Hits | None = None
     refused: str = ""
 
     @property
@@ -77,18 +110,25 @@ def judge(
     threads: int,
     progress: Callable[[int], None] = lambda done: None,
 ) -> list[Judged]:
-    """Tune the first ``robots`` planar robots of ``draw`` on ``minutes`` of logs each, and judge on as many."""
+    """Tune the first ``robots`` planar robots of ``draw`` on ``minutes`` of logs each, and judge on as many.
+
+    Raises:
+        GivewayError: ``minutes`` is out of range, or so short logs do not support this rate.
+    """
+    finite("--minutes", minutes, *MINUTES, "min")
     check_hours(minutes / 60.0, rate_per_hour)
-    found = []
-    for number in range(robots):
+    found: list[Judged] = []
+    for number in itertools.islice((one for one in itertools.count() if group_of(one) == PLANT), robots):
         tuned_on = logs_of(draw, number, minutes, 0, threads)
         fresh = logs_of(draw, number, minutes, FRESH_PLANS, threads)
-        found.append(_judged(number, tuned_on, fresh, rate_per_hour))
-        progress(number + 1)
+        found.append(_judged(draw, number, tuned_on, fresh, rate_per_hour, threads))
+        progress(len(found))
     return found
 
 
-def _judged(number: int, tuned_on: Sequence[Log], fresh: Sequence[Log], rate_per_hour: float) -> Judged:
+def _judged(
+    draw: str, number: int, tuned_on: Sequence[Log], fresh: Sequence[Log], rate_per_hour: float, threads: int
+) -> Judged:
     hours = sum(log.duration_s for log in tuned_on) / 3600.0
     try:
         chosen = choose(tuned_on, {}, rate_per_hour)
@@ -96,18 +136,28 @@ def _judged(number: int, tuned_on: Sequence[Log], fresh: Sequence[Log], rate_per
         return Judged(number, hours, refused=str(error))
     alarms, looked_h = alarms_in(fresh, dict(chosen.thresholds))
     fewest, most = chosen.tail.counts(1.0, looked_h)
-    return Judged(number, hours, chosen.upper_per_hour, fewest, most, alarms, looked_h)
+    hits, hits_before = (hits_of(draw, number, thresholds, threads) for thresholds in (chosen.thresholds, {}))
+    return Judged(number, hours, chosen.upper_per_hour, fewest, most, alarms, looked_h, hits, hits_before)
+
+
+def hits_of(draw: str, number: int, thresholds: Mapping[str, Value], threads: int) -> Hits:
+    """What comes of the crowd's hits of robot ``number`` with these thresholds."""
+    numbers = range(number * PER_ROBOT, (number + 1) * PER_ROBOT)
+    records = compute(draw, thresholds, numbers, threads, lambda done: None)
+    judged = [record["judged"] for record in records if record["judged"] is not None]
+    verdicts = Counter(contact["verdict"] for one in judged for contact in one["contacts"])
+    invented, towards = (sum(bool(one[name]) for one in judged) for name in ("false_s", "towards_s"))
+    return Hits(verdicts["missed"] + verdicts["noticed"], verdicts["missed"], len(records), invented, towards)
 
 
 def logs_of(draw: str, number: int, minutes: float, plans: int, threads: int) -> list[Log]:
     """``minutes`` of logs of planar robot ``number``, on the endurance's plans from ``plans`` on."""
-    group = GROUPS[0]
-    whose = robot_of(draw, number, group)
+    whose = robot_of(draw, number, PLANT)
     count = max(1, round(60.0 * minutes / endurance.RUN_S))
     scenarios = []
     for index in range(count):
         plan = plans + number * count + index
-        _, driven = endurance.drive(draw, group, plan * endurance.SHARED, {})
+        _, driven = endurance.drive(draw, PLANT, plan * endurance.SHARED, {})
         own = {**whose.testbed, "slider.present": False, "rope.attached": False}
         own["start.theta"] = driven.testbed["start.theta"]
         seed = int(np.random.default_rng((DRAWS[draw], 5, plan)).integers(2**31))
@@ -146,6 +196,9 @@ def rows(found: Sequence[Judged], rate_per_hour: float) -> list[tuple[str, str]]
     alarms, hours = sum(one.alarms for one in tuned), sum(one.fresh_hours for one in tuned)
     rate, low, high = rate_interval(alarms, hours) if hours else (0.0, 0.0, 0.0)
     share = [100.0 * end for end in count_interval(held, len(tuned))] if tuned else [0.0, 100.0]
+    none = Hits(0, 0, 0, 0, 0)
+    after = sum((one.hits for one in tuned if one.hits), none)
+    before = sum((one.hits_before for one in tuned if one.hits_before), none)
     return [
         ("robots", f"{len(found)}, {len(found) - len(tuned)} of them refused"),
         ("logs of each, min", f"{60.0 * found[0].hours:.3g}, and as many fresh ones"),
@@ -155,4 +208,10 @@ def rows(found: Sequence[Judged], rate_per_hour: float) -> list[tuple[str, str]]
         ("upper bounds that the fresh logs do not contradict", f"{kept} of {len(tuned)}"),
         ("alarms in fresh logs", f"{alarms} in {hours:.3g} h"),
         ("per hour, with its 95 % interval", f"{rate:.3g}, {low:.3g} to {high:.3g}"),
+        ("hits missed, tuned", f"{after.missed} of {after.hits}"),
+        ("the same with the start values", f"{before.missed} of {before.hits}"),
+        ("runs with a reaction without contact, tuned", f"{after.invented} of {after.runs}"),
+        ("the same with the start values", f"{before.invented} of {before.runs}"),
+        ("runs with a reaction towards what hit, tuned", f"{after.towards} of {after.runs}"),
+        ("the same with the start values", f"{before.towards} of {before.runs}"),
     ]

@@ -101,6 +101,12 @@ def remarks(tuned: Tuned) -> list[str]:
             f"{tuned.rate_per_hour:g}/h is EXTRAPOLATED by the tail of the peaks (at most {EXTRAPOLATION:g} times the "
             f"hours): {tuned.hours:.3g} h do not show it; {tuned.hours_needed:.3g} h without an alarm would."
         )
+        higher = [name for name in NAMES if float(tuned.chosen.thresholds[name]) > tuned.before[name]]
+        if higher:
+            said.append(
+                f"HIGHER than before: {', '.join(higher)}. Thresholds cover what short logs leave open of rare peaks: "
+                "more hits are missed with these. Longer logs may lower them."
+            )
     else:
         said.append(f"{tuned.hours:.3g} h are enough to show {tuned.rate_per_hour:g}/h by counting.")
     if not tuned.keeps:
