@@ -13,14 +13,13 @@ import pytest
 from cosim_helpers import Cli
 from giveway import batch
 from giveway.base.errors import FileError, GivewayError, InputFileError
-from giveway.crowd.hits import PER_ROBOT
 from giveway.crowd.population import GROUPS, group_of
 from giveway.identification.torque_model import TorqueModel
 from giveway.replay.run_log import write_log
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
 from giveway.tuning.identified import identify
-from giveway.tuning.judged import Hits, hits_of, judge, logs_of, rows
+from giveway.tuning.judged import hits_of, judge, logs_of, rows
 from giveway.tuning.logs import Log, Push, read_log, read_pushes, with_plan
 from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
 from giveway.tuning.thresholds import NAMES, RIPPLE, RIPPLES, alarms_in, choose, settings_of
@@ -182,16 +181,11 @@ def test_hits_are_those_of_the_crowd_with_the_tuned_thresholds() -> None:
     told: list[int] = []
     (one,) = judge("tuning", 1, 1.0, 300.0, 2, told.append)
     assert (one.number, told, one.refused) == (first, [1], "")
-    assert one.hits is not None
     assert one.hits_before == hits_of("tuning", first, {}, 1)
-    assert one.hits_before.runs == one.hits.runs == PER_ROBOT
-    assert one.hits_before.hits > 0
     deaf = {name: 1000.0 for name in settings_of({}) if name.startswith(("channels.fast", "channels.slow"))}
-    heard = hits_of("tuning", first, deaf, 1)
-    assert heard.missed == heard.hits > 0  # these very thresholds are used
-    assert one.hits + heard == Hits(one.hits.hits + heard.hits, one.hits.missed + heard.missed, 2 * PER_ROBOT,
-                                    one.hits.invented, one.hits.towards)  # fmt: skip
-    assert ("hits missed, tuned", f"{one.hits.missed} of {one.hits.hits}") in rows([one], 300.0)
+    shown = dict(rows([dataclasses.replace(one, hits=hits_of("tuning", first, deaf, 1))], 300.0))
+    missed, _, hits = shown["hits missed, tuned"].partition(" of ")
+    assert missed == hits != "0"  # these very thresholds are used
 
 
 @pytest.mark.parametrize("minutes", [0.5, 61.0, math.nan])

@@ -26,7 +26,9 @@ def bench(
         int, typer.Option("--tune", metavar="ROBOTS", help="Only: do thresholds tuned on logs keep what they promise?")
     ] = 0,
     minutes: Annotated[float, typer.Option("--minutes", help="Logs of each of these robots, 1 to 60.")] = 6.0,
-    false_alarms: Annotated[float, typer.Option("--false-alarms", help="Per hour, what they are tuned for.")] = 60.0,
+    false_alarms: Annotated[
+        str, typer.Option("--false-alarms", metavar="RATE", help="What they are tuned for, as of `giveway tune`.")
+    ] = "60/h",
     optimum: Annotated[
         Path | None,
         typer.Option("--optimum", metavar="STUDY.toml", help="Only: what a search finds, against an even sample."),
@@ -43,6 +45,7 @@ def bench(
     from giveway.bench import collisions
     from giveway.bench.co_simulation import measure
     from giveway.bench.solvers import HEADER, measure_solvers
+    from giveway.tuning.command import rate_of
 
     whole("--repeats", repeats, 1, 100)
     if scale:
@@ -62,7 +65,7 @@ def bench(
         _measure_probabilities()
         return
     if tune:
-        _judge_tuning(tune, minutes, false_alarms)
+        _judge_tuning(tune, minutes, rate_of(false_alarms))
         return
     if optimum is not None:
         _compare_searches(optimum, out, sample, runs, seeds)

@@ -8,7 +8,6 @@ Then come the robot's hits in the crowd, with the tuned thresholds and with thos
 from __future__ import annotations
 
 import itertools
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -20,8 +19,10 @@ from giveway.base.errors import GivewayError, SimulationError
 from giveway.crowd import endurance
 from giveway.crowd.crowd import compute
 from giveway.crowd.hits import PER_ROBOT
+from giveway.crowd.parts import Record
 from giveway.crowd.population import DRAWS, GROUPS, group_of, robot_of
 from giveway.crowd.statistics import count_interval, rate_interval
+from giveway.crowd.table import ROWS, find, read
 from giveway.robot.presets import NO_REFLEX
 from giveway.robot.variables import Value, table
 from giveway.robot.wheels import WHEELS
@@ -31,39 +32,17 @@ from giveway.tuning.logs import Log
 from giveway.tuning.thresholds import alarms_in, choose
 from giveway.tuning.tuned import check_hours
 
-__all__ = ["HEADER", "ROBOTS_MAX", "Hits", "Judged", "hits_of", "judge", "logs_of", "rows"]
+__all__ = ["HEADER", "ROBOTS_MAX", "Judged", "hits_of", "judge", "logs_of", "rows"]
 
 TRACES = (
     *(f"testbed.sensor.{what}[{wheel}]" for what in ("torque", "encoder") for wheel in range(WHEELS)),
     *(f"controller.{name}" for name in PLAN_INPUTS),
 )
 HEADER = ("", "found")
-PLANT = GROUPS[0]
+PLANT, ALL_HITS = GROUPS[0], ROWS[0]
 MINUTES = (1.0, 60.0)  # of logs
 FRESH_PLANS = 1_000_000  # plans of fresh logs are numbered from here
 ROBOTS_MAX = 5000  # with the longest logs their plans do not reach the fresh ones
-
-
-@dataclass(frozen=True)
-class Hits:
-    """What comes of the crowd's hits of one robot, or of several.
-
-    Attributes:
-        hits: of `judged.IMPULSE_NS` or more.
-        missed: of these.
-        runs: with one or two hits each, or a push.
-        invented: runs with a reaction without contact.
-        towards: runs with a reaction towards what hit the robot.
-    """
-
-    hits: int
-    missed: int
-    runs: int
-    invented: int
-    towards: int
-
-    def __add__(self, other: Hits) -> Hits:
-        return Hits(*(getattr(self, name) + getattr(other, name) for name in self.__dataclass_fields__))
 
 
 @dataclass(frozen=True)
@@ -76,7 +55,7 @@ class Judged:
         upper_per_hour: what the tuning promises.
         fewest, most: alarms in the fresh hours, as the tuning foretells them with 95 %.
         alarms, fresh_hours: found in the fresh logs.
-        hits, hits_before: with the tuned thresholds, and with those of the start values; None: not tuned.
+        hits, hits_before: records of the crowd with the tuned thresholds, and with the start values; empty: not tuned.
         refused: why it was not tuned; "" if it was.
     """
 
@@ -87,8 +66,8 @@ class Judged:
     most: int = 0
     alarms: int = 0
     fresh_hours: float = 0.0
-    hits: Hits | None = None
-    hits_before: Hits | None = None
+    hits: Sequence[Record] = ()
+    hits_before: Sequence[Record] = ()
     refused: str = ""
 
     @property
@@ -140,14 +119,10 @@ def _judged(
     return Judged(number, hours, chosen.upper_per_hour, fewest, most, alarms, looked_h, hits, hits_before)
 
 
-def hits_of(draw: str, number: int, thresholds: Mapping[str, Value], threads: int) -> Hits:
-    """What comes of the crowd's hits of robot ``number`` with these thresholds."""
+def hits_of(draw: str, number: int, thresholds: Mapping[str, Value], threads: int) -> list[Record]:
+    """Records of the crowd's hits of robot ``number`` with these thresholds."""
     numbers = range(number * PER_ROBOT, (number + 1) * PER_ROBOT)
-    records = compute(draw, thresholds, numbers, threads, lambda done: None)
-    judged = [record["judged"] for record in records if record["judged"] is not None]
-    verdicts = Counter(contact["verdict"] for one in judged for contact in one["contacts"])
-    invented, towards = (sum(bool(one[name]) for one in judged) for name in ("false_s", "towards_s"))
-    return Hits(verdicts["missed"] + verdicts["noticed"], verdicts["missed"], len(records), invented, towards)
+    return compute(draw, thresholds, numbers, threads, lambda done: None)
 
 
 def logs_of(draw: str, number: int, minutes: float, plans: int, threads: int) -> list[Log]:
@@ -196,9 +171,10 @@ def rows(found: Sequence[Judged], rate_per_hour: float) -> list[tuple[str, str]]
     alarms, hours = sum(one.alarms for one in tuned), sum(one.fresh_hours for one in tuned)
     rate, low, high = rate_interval(alarms, hours) if hours else (0.0, 0.0, 0.0)
     share = [100.0 * end for end in count_interval(held, len(tuned))] if tuned else [0.0, 100.0]
-    none = Hits(0, 0, 0, 0, 0)
-    after = sum((one.hits for one in tuned if one.hits), none)
-    before = sum((one.hits_before for one in tuned if one.hits_before), none)
+    after, before = (
+        find(ALL_HITS, read(list(itertools.chain.from_iterable(of_robots))))
+        for of_robots in ((one.hits for one in tuned), (one.hits_before for one in tuned))
+    )
     return [
         ("robots", f"{len(found)}, {len(found) - len(tuned)} of them refused"),
         ("logs of each, min", f"{60.0 * found[0].hours:.3g}, and as many fresh ones"),
@@ -210,8 +186,8 @@ def rows(found: Sequence[Judged], rate_per_hour: float) -> list[tuple[str, str]]
         ("per hour, with its 95 % interval", f"{rate:.3g}, {low:.3g} to {high:.3g}"),
         ("hits missed, tuned", f"{after.missed} of {after.hits}"),
         ("the same with the start values", f"{before.missed} of {before.hits}"),
-        ("runs with a reaction without contact, tuned", f"{after.invented} of {after.runs}"),
-        ("the same with the start values", f"{before.invented} of {before.runs}"),
-        ("runs with a reaction towards what hit, tuned", f"{after.towards} of {after.runs}"),
-        ("the same with the start values", f"{before.towards} of {before.runs}"),
+        ("runs with a reaction without contact, tuned", f"{after.runs_with_false} of {after.runs}"),
+        ("the same with the start values", f"{before.runs_with_false} of {before.runs}"),
+        ("reactions towards what hit, tuned", f"{after.towards}"),
+        ("the same with the start values", f"{before.towards}"),
     ]
