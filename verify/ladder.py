@@ -6,20 +6,22 @@ import json
 import shutil
 import time
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from giveway.base.files import write_text
 
 from verify.context import Context, Tool, kill_all
 from verify.rung import Figure, Rung, RungFailed
-from verify.sources import core_hash
+from verify.sources import core_hash, subject_hash
 
-__all__ = ["Outcome", "climb", "verified", "write_summary"]
+__all__ = ["Outcome", "climb", "hashes", "standing", "verified", "write_summary"]
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+VERIFIED = Path("c_core/VERIFIED.json")
 AT_A_TIME = 2
 
 
@@ -83,7 +85,7 @@ def _version(context: Context, tool: Tool) -> str:
     return next((line.strip() for line in (answer.stdout + answer.stderr).splitlines() if line.strip()), "")
 
 
-def write_summary(root: Path, outcomes: list[Outcome], sources: str, seconds: float) -> Path:
+def write_summary(root: Path, outcomes: list[Outcome], seconds: float) -> Path:
     """out/verify/summary.json: what this run found, in ``seconds`` altogether."""
     path = root / "out" / "verify" / "summary.json"
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -101,7 +103,7 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str, seconds: fl
     ]
     document = {
         "schema_version": SCHEMA_VERSION,
-        "sources_sha256": sources,
+        "c_core_sha256": core_hash(root),
         "seconds": round(seconds, 1),
         "rungs": rungs,
     }
@@ -109,33 +111,56 @@ def write_summary(root: Path, outcomes: list[Outcome], sources: str, seconds: fl
     return path
 
 
-def verified(root: Path, outcomes: list[Outcome], sources: str, order: Sequence[str]) -> Path:
-    """c_core/VERIFIED.json: the sources that climbed every rung, with the figures. `make test` holds it current.
+def hashes(root: Path, rungs: Mapping[str, Rung]) -> dict[str, str]:
+    """Of the sources that each rung is about."""
+    return {name: subject_hash(root, rung.subject) for name, rung in rungs.items()}
 
-    Results of other rungs for the same sources are kept, so that a new rung can be climbed alone; a rung that failed is
-    removed. ``order``: the names of all rungs.
+
+def verified(root: Path, outcomes: list[Outcome], rungs: Mapping[str, Rung], before: Mapping[str, str]) -> Path:
+    """c_core/VERIFIED.json: the figures of every rung, with the hash of what it is about. `make test` holds it current.
+
+    Results of other rungs stay if they are about the same sources as now, so that a rung can be climbed alone; a rung
+    that failed is removed. ``rungs``: all of them; ``before``: their `hashes` when the climb began.
     """
-    if core_hash(root) != sources:
-        raise RungFailed("c_core changed while it was being verified: run `make verify` again")
-    path = root / "c_core" / "VERIFIED.json"
-    before = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    if before.get("sources_sha256") != sources:
-        before = {"rungs": {}, "tools": {}}
+    now = hashes(root, rungs)
+    if changed := [outcome.name for outcome in outcomes if now[outcome.name] != before[outcome.name]]:
+        raise RungFailed(f"sources changed while they were being verified, climb again: {', '.join(changed)}")
+    stored = _stored(root)
     failed = {outcome.name for outcome in outcomes if outcome.figure is None}
-    rungs = {name: found for name, found in before["rungs"].items() if name not in failed} | {
-        outcome.name: {"figure": outcome.figure.text, "values": dict(outcome.figure.values)}
+    found = {name: stored["rungs"][name] for name in _standing(stored, now) if name not in failed} | {
+        outcome.name: {
+            "figure": outcome.figure.text,
+            "values": dict(outcome.figure.values),
+            "sources_sha256": now[outcome.name],
+        }
         for outcome in outcomes
         if outcome.figure is not None
     }
-    tools = before["tools"] | {name: version for outcome in outcomes for name, version in outcome.versions.items()}
+    tools = stored["tools"] | {name: version for outcome in outcomes for name, version in outcome.versions.items()}
     document = {
         "schema_version": SCHEMA_VERSION,
-        "sources_sha256": sources,
-        "rungs": {name: rungs[name] for name in order if name in rungs},
+        "c_core_sha256": core_hash(root),
+        "rungs": {name: found[name] for name in rungs if name in found},
         "tools": dict(sorted(tools.items())),
     }
+    path = root / VERIFIED
     write_text(path, _json(document))
     return path
+
+
+def standing(root: Path, rungs: Mapping[str, Rung]) -> list[str]:
+    """The rungs whose results in c_core/VERIFIED.json are about the sources as they are now."""
+    return _standing(_stored(root), hashes(root, rungs))
+
+
+def _standing(stored: Mapping[str, Any], now: Mapping[str, str]) -> list[str]:
+    return [name for name, result in stored["rungs"].items() if result["sources_sha256"] == now.get(name)]
+
+
+def _stored(root: Path) -> dict[str, Any]:
+    path = root / VERIFIED
+    document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    return document if document.get("schema_version") == SCHEMA_VERSION else {"rungs": {}, "tools": {}}
 
 
 def _json(document: Mapping[str, object]) -> str:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from verify.context import Context, Tool
 from verify.failure import RungFailed
+from verify.sources import CORE
 
 __all__ = ["Figure", "Rung", "RungFailed", "Value", "all_rungs", "planted"]
 
@@ -44,12 +45,16 @@ class Rung:
 
     ``remeasure`` returns the values that are cheap to measure: `make test` compares them with VERIFIED.json, so it may
     use only tools that `make test` has.
+
+    ``subject``: patterns of the files, relative to the repository's root, that the result is about. It stands as long
+    as they have not changed.
     """
 
     summary: str
     tools: tuple[Tool, ...]
     check: Callable[[Context], Figure]
     remeasure: Callable[[Context], Mapping[str, Value]] | None = None
+    subject: tuple[str, ...] = CORE
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from verify import ladder
 from verify.context import Context, Tool
 from verify.rung import Figure, Rung, RungFailed, all_rungs, planted
 from verify.rungs.r08_deep_tests import passed
-from verify.sources import core_hash
+from verify.sources import core_hash, subject_hash
 
 PYTHON = Tool("python3")
 
@@ -51,24 +51,28 @@ def test_every_rung_file_is_found_with_its_tools() -> None:
 
 def test_green_rungs_are_written_with_the_hash_of_the_sources(tmp_path: Path) -> None:
     root = tree(tmp_path)
-    outcomes = climb(root, first=Rung("", (PYTHON,), good), second=Rung("", (PYTHON,), good))
-    sources = core_hash(root)
-    summary = json.loads(ladder.write_summary(root, outcomes, sources, 12.34).read_text())
+    rungs = {"first": Rung("", (PYTHON,), good), "second": Rung("", (PYTHON,), good, subject=("other.txt",))}
+    (root / "other.txt").write_text("not of c_core")
+    outcomes = climb(root, **rungs)
+    summary = json.loads(ladder.write_summary(root, outcomes, 12.34).read_text())
     assert summary["seconds"] == 12.3
     assert [rung["name"] for rung in summary["rungs"]] == ["first", "second"]
     assert all(rung["passed"] and rung["tools"]["python3"].startswith("Python 3") for rung in summary["rungs"])
-    document = json.loads(ladder.verified(root, outcomes, sources, ["first", "second"]).read_text())
-    assert document["sources_sha256"] == sources
-    assert document["rungs"]["second"] == {"figure": "3 of 3", "values": {"found": 3}}
+    document = json.loads(ladder.verified(root, outcomes, rungs, ladder.hashes(root, rungs)).read_text())
+    assert document["c_core_sha256"] == document["rungs"]["first"]["sources_sha256"] == core_hash(root)
+    sources = subject_hash(root, ("other.txt",))
+    assert document["rungs"]["second"] == {"figure": "3 of 3", "values": {"found": 3}, "sources_sha256": sources}
+    assert sources != core_hash(root)
 
 
 def test_what_varies_is_said_but_not_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     root, written = tree(tmp_path), set()
     for inputs in (1000, 1001):
         rung = Rung("", (PYTHON,), lambda _, inputs=inputs: Figure("none bad", {"found": 3}, f"{inputs} inputs"))
-        outcomes = climb(root, fuzz=rung)
+        rungs = {"fuzz": rung}
+        outcomes = climb(root, **rungs)
         assert f"none bad ({inputs} inputs)" in capsys.readouterr().out
-        written.add(ladder.verified(root, outcomes, core_hash(root), ["fuzz"]).read_bytes())
+        written.add(ladder.verified(root, outcomes, rungs, ladder.hashes(root, rungs)).read_bytes())
     assert len(written) == 1
 
 
@@ -92,27 +96,37 @@ def test_a_missing_tool_is_a_failure(tmp_path: Path) -> None:
 
 def test_sources_that_changed_meanwhile_are_not_verified(tmp_path: Path) -> None:
     root = tree(tmp_path)
-    before = core_hash(root)
+    rungs = {"first": Rung("", (PYTHON,), good)}
+    before = ladder.hashes(root, rungs)
+    outcomes = climb(root, **rungs)
     (root / "c_core" / "src" / "a.c").write_text("int b;\n")
-    with pytest.raises(RungFailed, match="changed while"):
-        ladder.verified(root, [], before, [])
+    with pytest.raises(RungFailed, match=r"changed while.*: first"):
+        ladder.verified(root, outcomes, rungs, before)
     assert not (root / "c_core" / "VERIFIED.json").exists()
 
 
-def test_a_rung_climbed_alone_joins_the_others_of_the_same_sources(tmp_path: Path) -> None:
+def test_a_result_stands_until_what_it_is_about_changes(tmp_path: Path) -> None:
     root = tree(tmp_path)
-    order = ["early", "late"]
+    (root / "other.txt").write_text("first")
+    checked = {"of_core": Rung("", (PYTHON,), good), "of_other": Rung("", (PYTHON,), good, subject=("other.txt",))}
 
-    def rungs(name: str) -> list[str]:
-        outcomes = climb(root, **{name: Rung("", (PYTHON,), good)})
-        return list(json.loads(ladder.verified(root, outcomes, core_hash(root), order).read_text())["rungs"])
+    def climbed(*names: str, **others: Rung) -> list[str]:
+        """What VERIFIED.json has after a climb of these."""
+        rungs = checked | others
+        before = ladder.hashes(root, rungs)
+        outcomes = climb(root, **{name: rungs[name] for name in names})
+        return list(json.loads(ladder.verified(root, outcomes, rungs, before).read_text())["rungs"])
 
-    assert rungs("late") == ["late"]
-    assert rungs("early") == order
-    outcomes = climb(root, late=Rung("", (), bad))
-    assert list(json.loads(ladder.verified(root, outcomes, core_hash(root), order).read_text())["rungs"]) == ["early"]
+    assert climbed("of_other") == ["of_other"]
+    assert climbed("of_core") == ["of_core", "of_other"]
+    assert climbed("of_core", of_core=Rung("", (), bad)) == ["of_other"]
+    assert climbed("of_core") == ["of_core", "of_other"]
+    (root / "other.txt").write_text("second")
+    assert ladder.standing(root, checked) == ["of_core"]
+    assert climbed() == ["of_core"]
+    assert climbed("of_other") == ["of_core", "of_other"]
     (root / "c_core" / "src" / "a.c").write_text("int b;\n")
-    assert rungs("early") == ["early"]  # results for other sources do not count
+    assert climbed() == ["of_other"]
 
 
 def test_a_planted_fault_has_to_be_seen_for_its_own_reason() -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import pytest
 
 from verify.context import Context
 from verify.rung import all_rungs
-from verify.sources import core_files, core_hash
+from verify.sources import CORE, SCALARS, core_files, core_hash, subject_hash
 
 ROOT = Path(__file__).parents[2]
 RUNGS = all_rungs()
@@ -23,8 +24,35 @@ def verified() -> dict[str, Any]:
     return document
 
 
-def test_the_sources_are_those_that_were_verified(verified: dict[str, Any]) -> None:
-    assert verified["sources_sha256"] == core_hash(ROOT), "c_core has changed since: run `make verify` and commit"
+@pytest.mark.parametrize("name", RUNGS)
+def test_the_sources_are_those_that_were_verified(name: str, verified: dict[str, Any]) -> None:
+    subject = RUNGS[name].subject
+    recorded = verified["rungs"].get(name, {}).get("sources_sha256")
+    assert recorded == subject_hash(ROOT, subject), (
+        f"{', '.join(subject)}: changed since, or never verified; run `make verify ONLY={name}` and commit"
+    )
+
+
+def test_the_hash_of_the_c_core_is_that_of_the_rungs_about_all_of_it(verified: dict[str, Any]) -> None:
+    assert verified["c_core_sha256"] == core_hash(ROOT)
+    of_all = [name for name, rung in RUNGS.items() if rung.subject == CORE]
+    assert {verified["rungs"][name]["sources_sha256"] for name in of_all} == {core_hash(ROOT)}
+    assert len(of_all) >= 11
+
+
+def test_every_rung_is_about_files_that_exist() -> None:
+    for name, rung in RUNGS.items():
+        assert all(any(ROOT.glob(pattern)) for pattern in rung.subject), name
+
+
+def test_the_scalar_functions_include_no_other_header() -> None:
+    """Their rungs stand while the rest of c_core changes."""
+    source = ROOT / SCALARS[-1]
+    made = subprocess.run(
+        ["gcc", "-MM", f"-I{ROOT / 'c_core/include'}", str(source)], capture_output=True, text=True, check=True
+    ).stdout
+    files = made.replace("\\\n", " ").split()[1:]
+    assert sorted(Path(file) for file in files) == sorted(ROOT / name for name in SCALARS)
 
 
 def test_every_rung_was_climbed(verified: dict[str, Any]) -> None:

@@ -51,4 +51,9 @@ def _fuzzed(context: Context, count: int, *options: str) -> dict[str, Any]:
     return figures
 
 
-RUNG = Rung("fuzzing of FMU files", (GIVEWAY,), check)
+RUNG = Rung(
+    "fuzzing of FMU files",
+    (GIVEWAY,),
+    check,
+    subject=("cosim/giveway/fmu_tools/**/*.py", "verify/fmu_files/*.py"),
+)

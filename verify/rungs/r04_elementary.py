@@ -10,6 +10,7 @@ from pathlib import Path
 
 from verify.context import Context
 from verify.rung import Figure, Rung, RungFailed, planted
+from verify.sources import SCALARS
 from verify.targets import GCC, HOST, PORTABLE
 
 INFINITY_BITS = 0x7F800000
@@ -89,4 +90,9 @@ def _check_planted(context: Context, stated: dict[str, tuple[float, float]], of_
         _compare(stated, _errors(context, spoilt, "3f000000", "3f400000"), of_double)
 
 
-RUNG = Rung("errors of the scalar functions over every float", (GCC,), check)
+RUNG = Rung(
+    "errors of the scalar functions over every float",
+    (GCC,),
+    check,
+    subject=(*SCALARS, "tests/c_core/elementary/*", "tests/c_core/golden/generator.*"),
+)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from verify.context import Context
 from verify.rung import Figure, Rung, RungFailed, planted
+from verify.sources import SCALARS
 from verify.targets import CLANG, PORTABLE, STANDARD, WARNINGS
 
 FUNCTIONS = ("sqrt", "exp", "circle", "tanh", "atan2")
@@ -55,4 +56,4 @@ def _checked(context: Context, program: Path, name: str) -> int:
     return int(answer.stdout.split()[0])
 
 
-RUNG = Rung("bounds of gw_math on every float", (CLANG,), check)
+RUNG = Rung("bounds of gw_math on every float", (CLANG,), check, subject=(*SCALARS, "verify/exhaustive/*"))

@@ -65,4 +65,9 @@ def _compared(context: Context, models: Path) -> dict[str, float]:
     return found
 
 
-RUNG = Rung("the Modelica equations are the plant's", (PYTHON, CC, CXX), check)
+RUNG = Rung(
+    "the Modelica equations are the plant's",
+    (PYTHON, CC, CXX),
+    check,
+    subject=("fmu/plant/**/*.[ch]pp", "fmu/math/**/*.hpp", "verify/modelica/*.*"),
+)
