@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 __all__ = ["draw"]
 
-BODY, WHEEL, MASS, TIP, IMU = "#0b64a8", "#4a5568", "#c8500a", "#8a8f98", "#0a8a63"
+BODY, WHEEL, MASS, TIP = "#0b64a8", "#4a5568", "#c8500a", "#8a8f98"
+IMU: dict[str, Any] = {"mec": "#0a8a63", "mfc": "none", "mew": 1.5, "ms": 10}  # around the centre of mass, not over it
 
 
 def draw(numbers: Numbers, name: str) -> Figure:
@@ -57,7 +58,7 @@ def _above(axes: Axes, n: Numbers) -> None:
     axes.plot(*centres.T, ":", color=TIP, lw=1.0, label="tips over these lines")
     axes.plot(1e3 * n.com[0], 1e3 * n.com[1], "o", color=MASS, label="centre of mass")
     if n.values["testbed"]["imu.present"]:
-        axes.plot(1e3 * n["imu.x"], 1e3 * n["imu.y"], "s", color=IMU, ms=5, label="IMU")
+        axes.plot(1e3 * n["imu.x"], 1e3 * n["imu.y"], "s", **IMU, label="IMU")
     reach = 1e3 * max(n.plate.reach_m, n.distance + n.radius)
     axes.annotate("", (0.45 * reach, 0.0), (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": TIP})
     axes.text(0.47 * reach, 0.0, "x", color=TIP, va="center", fontsize=8.5)
@@ -79,7 +80,7 @@ def _side(axes: Axes, n: Numbers) -> None:
         axes.add_patch(Rectangle((x - half, 0.0), 2.0 * half, 2e3 * n.radius, fc="#4a556833", ec=WHEEL))
     axes.add_patch(Circle((1e3 * n.com[0], 1e3 * n.com_height), 0.012 * max(top, right - left), color=MASS))
     if n.values["testbed"]["imu.present"]:
-        axes.plot(1e3 * n["imu.x"], 1e3 * n["imu.height"], "s", color=IMU, ms=5)
+        axes.plot(1e3 * n["imu.x"], 1e3 * n["imu.height"], "s", **IMU)
     axes.axhline(0.0, color="#2b2f36", lw=1.2)
     heights = {"body's top" if n.height_is_stated else "top, not stated": top}
     heights |= {"centre of mass": 1e3 * n.com_height, "clearance": low, "wheel": 2e3 * n.radius}

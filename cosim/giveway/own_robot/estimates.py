@@ -266,7 +266,7 @@ ENTRIES: tuple[Part, ...] = (
         "Accelerometer and gyro",
         (
             Entry("testbed.imu.present", "", _same(True), ""),
-            Entry("imu.height", "m", lambda k: k.clearance + 0.05, "low in the body"),
+            Entry("imu.height", "m", lambda k: k.com_height, "the centre of mass's, where it should be"),
             Entry("imu.acceleration_noise", "m/s2", _same(0.0136), "TDK ICM-42688-P in 250 Hz"),
             Entry("imu.gyro_noise", "rad/s", _same(0.00097), "TDK ICM-42688-P in 250 Hz"),
             Entry("imu.vibration", "m/s2", _same(0.01), "fans, people walking by"),

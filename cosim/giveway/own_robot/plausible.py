@@ -32,6 +32,7 @@ SERVO_MARGIN_DEG, SENSED_OVER_SERVO, SENSED_LEAST_HZ = 30.0, 2.0, 2.0
 INDENTATION_M = 0.05
 HARD_NPM = 1e6
 TICK_S = 1e-3
+IMU_OFF_SHARE = 0.2
 
 
 @dataclass(frozen=True)
@@ -259,6 +260,18 @@ def _sensor(n: Numbers) -> Iterator[Doubt]:
         yield Doubt("torque sensor", ("drivetrain.torque_noise", "drivetrain.torque_sensor_limit"), words)
 
 
+def _accelerometer(n: Numbers) -> Iterator[Doubt]:
+    if n.robot.does_without("imu.height"):
+        return
+    height = n["imu.height"]
+    if abs(height - n.com_height) > IMU_OFF_SHARE * n.com_height:
+        words = (
+            f"{height:.3g} m high, the centre of mass {n.com_height:.3g} m: while the body leans, it does not show the "
+            f"sum of all forces; usual: within {100.0 * IMU_OFF_SHARE:.0f} % of that height"
+        )
+        yield Doubt("accelerometer", ("imu.height", "base.com_height"), words)
+
+
 def _thresholds(n: Numbers) -> Iterator[Doubt]:
     friction = WHEELS * n["roller.coulomb_torque"] / n["roller.radius"]
     if n.robot.motor_current:
@@ -366,5 +379,5 @@ def _escape(n: Numbers) -> Iterator[Doubt]:
 
 RULES: tuple[Rule, ...] = (
     *(_density, _yaw_inertia, _tilt_inertia, _centre_of_mass, _outline, _wheels, _roller_friction, _torque, _sensor),
-    *(_servo, _encoder, _observer, _thresholds, _contact, _escape),
+    *(_servo, _encoder, _observer, _accelerometer, _thresholds, _contact, _escape),
 )

@@ -43,7 +43,7 @@ record Trikey "Numbers of Trikey, made from robots/trikey.toml"
   parameter SI.RotationalDampingConstant servo_kd=7.02 "fitted, low confidence";
   parameter SI.Frequency servo_derivative_cutoff=60.0 "assumed, low confidence; first-order filter of the speed from encoder counts";
   parameter Integer electronics_bus_delay=1 "given, high confidence; cycles, each way";
-  parameter SI.Length imu_height=0.2 "assumed, low confidence; on the lower deck";
+  parameter SI.Length imu_height=0.414 "assumed, low confidence; at the height of the centre of mass, where it shows the sum of all forces although the body leans";
   parameter SI.Acceleration imu_acceleration_noise=0.0136 "assumed, medium confidence; in 250 Hz of first order; its zero is off by typically 20 mg, its scale by 0.5 %";
   parameter Real imu_gyro_noise(unit="rad/s")=0.00097 "assumed, medium confidence; in 250 Hz of first order; its zero is off by typically 0.5 deg/s, its scale by 0.5 %";
   parameter SI.Acceleration imu_vibration=0.01 "assumed, low confidence; fans, people walking by";
