@@ -194,6 +194,12 @@ def test_logs_of_the_judged_are_neither_too_short_nor_too_long(minutes: float) -
         judge("tuning", 1, minutes, 300.0, 1)
 
 
+@pytest.mark.parametrize("rate_per_hour", [0.0, -1.0, 1001.0, math.nan])
+def test_nobody_wishes_for_such_a_rate(rate_per_hour: float) -> None:
+    with pytest.raises(GivewayError, match="--false-alarms"):
+        judge("tuning", 1, 6.0, rate_per_hour, 1)
+
+
 def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:
     log = logs[0]
     own = {name: values for name, values in log.inputs.items() if not name.startswith("plan.")}

@@ -30,7 +30,7 @@ from giveway.scenario.plan import PLAN_INPUTS
 from giveway.scenario.scenario import Scenario
 from giveway.tuning.logs import Log
 from giveway.tuning.thresholds import alarms_in, choose
-from giveway.tuning.tuned import check_hours
+from giveway.tuning.tuned import check_hours, check_rate
 
 __all__ = ["HEADER", "ROBOTS_MAX", "Judged", "hits_of", "judge", "logs_of", "rows"]
 
@@ -92,9 +92,10 @@ def judge(
     """Tune the first ``robots`` planar robots of ``draw`` on ``minutes`` of logs each, and judge on as many.
 
     Raises:
-        GivewayError: ``minutes`` is out of range, or so short logs do not support this rate.
+        GivewayError: ``minutes`` or ``rate_per_hour`` is out of range, or so short logs do not support this rate.
     """
     finite("--minutes", minutes, *MINUTES, "min")
+    check_rate(rate_per_hour)
     check_hours(minutes / 60.0, rate_per_hour)
     found: list[Judged] = []
     for number in itertools.islice((one for one in itertools.count() if group_of(one) == PLANT), robots):

@@ -27,7 +27,7 @@ from giveway.tuning.thresholds import MOTION, NAMES, REST, Chosen, choose, setti
 if TYPE_CHECKING:
     from giveway.replay.mapping import Wishes
 
-__all__ = ["Noticed", "Tuned", "check_hours", "noticed", "tune", "tune_robot"]
+__all__ = ["Noticed", "Tuned", "check_hours", "check_rate", "noticed", "tune", "tune_robot"]
 
 HASH_DIGITS = 12
 CHANNELS_KIND = 2
@@ -113,7 +113,7 @@ def tune(
     Raises:
         GivewayError: the hours of the logs do not support this rate, or something is wrong in a file.
     """
-    finite("--false-alarms", false_alarms_per_hour, LEAST_RATE, MOST_RATE, "1/h")
+    check_rate(false_alarms_per_hour)
     path = Path(robot)
     file = read_robot(path)
     parameters = table("controller").robot_values(file)
@@ -157,6 +157,11 @@ def tune(
         tuple(noticed(log, push, everything) for log in read for push in log.pushes),
         tuple(said for log in read for said in log.said),
     )
+
+
+def check_rate(rate_per_hour: float) -> None:
+    """Refuse a rate that nobody can wish for."""
+    finite("--false-alarms", rate_per_hour, LEAST_RATE, MOST_RATE, "1/h")
 
 
 def check_hours(hours: float, rate_per_hour: float) -> None:
