@@ -16,7 +16,7 @@ from giveway import batch
 from giveway.base.errors import GivewayError, UnknownNameError
 from giveway.batch import LANES
 from giveway.bench import co_simulation, collisions, solvers
-from giveway.bench.command import bench
+from giveway.cli import _main
 from giveway.experiments import moving
 from giveway.scenario.random_collisions import random_collisions
 from giveway.scenario.scenario import BUMPERS
@@ -439,7 +439,7 @@ def test_the_benchmark_says_which_designs_were_detected_on_another_tick(
     monkeypatch.setattr(solvers, "measure_solvers", lambda *_: [])
     monkeypatch.setattr(collisions, "measure", lambda *_: [])
     monkeypatch.setattr(collisions, "accuracy", lambda: ([], lines))
-    bench(repeats=1)
+    assert _main(["bench", "--repeats", "1"]) == 0
     said = capsys.readouterr().out
     assert ("All detected on the same tick." in said) == (not lines)
     assert ("Detected on another tick:" in said) == bool(lines)

@@ -44,6 +44,22 @@ WRONG = {
     "unknown command": (("frob",), ("frob",)),
     "unknown model of variables": (("variables", "testbd"), ("testbd", "did you mean testbed?")),
     "no repeats": (("bench", "--repeats", "0"), ("--repeats", "1 to 100")),
+    "robots of no measurement": (("bench", "--tune", "0"), ("--tune", "0", "1 to")),
+    "two measurements": (("bench", "--tune", "2", "--scale"), ("--tune", "2", "only without --scale")),
+    "an option of another measurement": (("bench", "--scale", "--minutes", "6"), ("--minutes", "only with --tune")),
+    "repeats of a measurement that has none": (
+        ("bench", "--probability", "--repeats", "3"),
+        ("--repeats", "3", "only without --probability"),
+    ),
+    "an option before the command": (
+        ("crowd", "--draw", "judging", "endurance"),
+        ("--draw", "judging", "behind `endurance`"),
+    ),
+    "one hit of some robots": (("crowd", "--only", "3", "--robots", "5"), ("--robots", "5", "only without --only")),
+    "hours of one run": (
+        ("crowd", "endurance", "--only", "3", "--hours", "1"),
+        ("--hours", "1.0", "only without --only"),
+    ),
     "unknown load": (("drivetrain", "--load", "weel"), ("load", "weel", "base, wheel, locked", "kg.m2")),
     "infinite load": (("drivetrain", "--load", "inf"), ("load", "inf", "locked")),
     "servo delay too long": (("drivetrain", "--servo-delay", "65"), ("servo.delay", "65", "0 to 64")),

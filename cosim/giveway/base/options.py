@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from giveway.base import native
+from giveway.base.errors import GivewayError
 
-__all__ = ["DaskOption", "FmiOption", "RobotOption", "ThreadsOption"]
+__all__ = ["DaskOption", "FmiOption", "RobotOption", "ThreadsOption", "refuse_stated"]
 
 FmiOption = Annotated[int, typer.Option("--fmi", help="FMI version of the FMUs: 3 or 2.")]
 ThreadsOption = Annotated[int | None, typer.Option("--threads", help="Native threads; without it: all processors.")]
@@ -36,3 +38,15 @@ RobotOption = Annotated[
         parser=_robot_file,
     ),
 ]
+
+
+def refuse_stated(context: typer.Context, allowed: str, names: Container[str] | None = None) -> None:
+    """No option is left aside in silence: GivewayError if one of ``names`` (default: any) is on the command line.
+
+    ``names`` are as the user writes them, ``"--hours"``; ``allowed`` is the error's.
+    """
+    for option in context.command.params:
+        source = context.get_parameter_source(option.name or "")
+        stated = source is not None and source.name == "COMMANDLINE"
+        if stated and option.name in context.params and (names is None or option.opts[0] in names):
+            raise GivewayError(option.opts[0], context.params[option.name], allowed)

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from giveway.base.options import FmiOption
+from giveway.base.options import FmiOption, refuse_stated
 from giveway.base.terminal import INTERRUPTED, print_columns, progress_bars, working
 
 __all__ = ["bench"]
 
+OPTIONS = {
+    "": ("--repeats", "--fmi"),
+    "--tune": ("--minutes", "--false-alarms"),
+    "--optimum": ("--sample", "--runs", "--seeds", "--out"),
+}  # of each measurement; "": of the one without an option
+
 
 def bench(
+    context: typer.Context,
     repeats: Annotated[int, typer.Option("--repeats", help="Runs to measure, 1 to 100.")] = 5,
     fmi: FmiOption = 3,
     scale: Annotated[
@@ -23,8 +31,9 @@ def bench(
         bool, typer.Option("--probability", help="Only: do intervals of rare probabilities hold what is known?")
     ] = False,
     tune: Annotated[
-        int, typer.Option("--tune", metavar="ROBOTS", help="Only: do thresholds tuned on logs keep what they promise?")
-    ] = 0,
+        int | None,
+        typer.Option("--tune", metavar="ROBOTS", help="Only: do thresholds tuned on logs keep what they promise?"),
+    ] = None,
     minutes: Annotated[float, typer.Option("--minutes", help="Logs of each of these robots, 1 to 60.")] = 6.0,
     false_alarms: Annotated[
         str, typer.Option("--false-alarms", metavar="RATE", help="What they are tuned for, as of `giveway tune`.")
@@ -48,6 +57,7 @@ def bench(
     from giveway.tuning.command import rate_of
 
     whole("--repeats", repeats, 1, 100)
+    _check_measurement(context, {"--scale": scale, "--probability": probability, "--tune": tune, "--optimum": optimum})
     if scale:
         _measure_sweeps()
         title = "Random collisions of 0.6 s over fixed steps, all threads"
@@ -64,7 +74,7 @@ def bench(
     if probability:
         _measure_probabilities()
         return
-    if tune:
+    if tune is not None:
         _judge_tuning(tune, minutes, rate_of(false_alarms))
         return
     if optimum is not None:
@@ -86,6 +96,16 @@ def bench(
     with working("integration methods"):
         cells = [measurement.cells for measurement in measure_solvers(repeats, fmi)]
     print_columns(title, HEADER, cells)
+
+
+def _check_measurement(context: typer.Context, chosen: Mapping[str, object]) -> None:
+    """One measurement at a time, and its own options: GivewayError names one that would be left aside."""
+    stated = [name for name, value in chosen.items() if value not in (None, False)]
+    asked = stated[0] if stated else ""
+    refuse_stated(context, f"only without {asked}", stated[1:])
+    for measurement, options in OPTIONS.items():
+        if measurement != asked:
+            refuse_stated(context, f"only with {measurement}" if measurement else f"only without {asked}", options)
 
 
 def _measure_sweeps() -> None:

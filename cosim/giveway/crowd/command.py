@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from giveway.base.options import RobotOption, ThreadsOption
+from giveway.base.options import RobotOption, ThreadsOption, refuse_stated
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, print_written, working
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ def crowd(
 ) -> None:
     """Hit every robot of the crowd; a table per plant, with intervals and the worst cases, in DIR."""
     if context.invoked_subcommand is not None:
+        refuse_stated(context, f"behind `{context.invoked_subcommand}`")
         return
     from giveway.base.errors import GivewayError, UnknownNameError
     from giveway.crowd.population import DRAWS
@@ -85,6 +86,7 @@ def crowd(
     _check_imu(robot, imu)
     base = OUT if robot is None else OUT / robot.stem
     if only is not None:
+        refuse_stated(context, "only without --only", ("--robots", "--group", "--situation", "--threads"))
         folder = out or base / (f"hit-{only}-imu" if imu else f"hit-{only}")
         _one(draw, only, controller, calibrated, bool(imu), robot, same, folder)
     else:
@@ -310,6 +312,7 @@ FIGURES = ("delay_ms", "direction_deg", "later_direction_deg", "place_mm", "late
 
 @crowd_app.command("endurance")
 def endurance(
+    context: typer.Context,
     hours: Annotated[
         float | None, typer.Option("--hours", help="Planar; the other plants drive in proportion. Without it: 300.")
     ] = None,
@@ -336,6 +339,7 @@ def endurance(
     _check_imu(robot, imu)
     out = out if robot is None else out / robot.stem
     if only is not None:
+        refuse_stated(context, "only without --only", ("--hours", "--threads"))
         _one_drive(draw, group or "planar", only, imu, controller, robot, out)
         return
     groups = [group] if group else list(HOURS)
