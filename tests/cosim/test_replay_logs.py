@@ -201,6 +201,9 @@ def test_what_cannot_be_used_is_refused_with_its_line(
             "parameters of the controller",
         ),
         (["log.csv", "--robot", ROBOT, "--out", "out", "--encoder-bits", "7"], "--encoder-bits: 7 is not allowed"),
+        (["log.csv", "--robot", ROBOT, "--out", "out", "--efforts", "current"], "--efforts: current is not allowed"),
+        (["--follow", "--robot", ROBOT, "--joints", "a,b,c"], "--joints: a,b,c is not allowed; allowed: only for ROS"),
+        (["log.csv", "--robot", ROBOT, "--out", "out", "--torque-constant", "2"], "only for a log of currents"),
     ],
 )
 def test_wrong_options_are_refused(arguments: list[str], said: str, cli: Cli, tmp_path: Path) -> None:

@@ -36,6 +36,7 @@ WRONG = {
     "NaN duration": ((*RUN, "--duration", "nan"), ("duration_s", "nan")),
     "duration in words": ((*RUN, "--duration", "long"), ("--duration",)),
     "FMI version": ((*RUN, "--fmi", "1"), ("fmi_version", "3 or 2")),
+    "FMI version without FMUs": ((*RUN, "--engine", "native", "--fmi", "2"), ("--fmi", "only with --engine fmu")),
     "negative seed": ((*RUN, "--seed", "-1"), ("seed", "-1")),
     "missing robot file": ((*RUN, "--robot", "nowhere.toml"), ("nowhere.toml", "no such file")),
     "robot file is a folder": ((*RUN, "--robot", "."), (".", "cannot be read")),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from giveway.base.errors import GivewayError, UnknownNameError
-from giveway.base.options import FmiOption, RobotOption
+from giveway.base.options import FmiOption, RobotOption, refuse_stated
 from giveway.base.terminal import FAILED, INTERRUPTED, print_columns, print_written, progress_bars, wants_json
 from giveway.robot.presets import DEFAULT, check_preset
 from giveway.scenario.scenario import BUMPERS
@@ -40,6 +40,7 @@ SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of the sens
 
 
 def run(
+    context: typer.Context,
     what: Annotated[
         str,
         typer.Argument(
@@ -77,7 +78,7 @@ def run(
     from giveway.report.console import print_results
     from giveway.simulation import runner
 
-    chosen = _engine(engine)
+    chosen = _engine(context, engine)
     scenario, summary = _scenario(what, bumper, robot, preset)
     scenario = _changed(scenario, assignments, fmi, duration, seed)
     check_output(out)
@@ -111,6 +112,7 @@ def run(
 
 
 def demo(
+    context: typer.Context,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for report, summary and runs.")] = Path(
         "out/demo"
     ),
@@ -127,7 +129,7 @@ def demo(
     from giveway.simulation import runner
     from giveway.simulation.summary import write_summary
 
-    chosen = _engine(engine)
+    chosen = _engine(context, engine)
     check_output(out)
     name = "motionless"
     results: dict[str, Result] = {}
@@ -206,11 +208,13 @@ def list_experiments() -> None:
         typer.echo(f"{experiment.name}: {experiment.summary}{bumpers}{robots}")
 
 
-def _engine(name: str) -> Engine:
+def _engine(context: typer.Context, name: str) -> Engine:
     from giveway.simulation.runner import ENGINES
 
     for engine in ENGINES:
         if name == engine:
+            if engine != FMU:
+                refuse_stated(context, f"only with --engine {FMU}", ("--fmi",))
             return engine
     raise UnknownNameError("--engine", name, ENGINES)
 

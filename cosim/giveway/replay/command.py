@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from giveway.base.errors import GivewayError, UnknownNameError
-from giveway.base.options import RobotOption
+from giveway.base.options import RobotOption, refuse_stated
 from giveway.base.terminal import INTERRUPTED
 
 if TYPE_CHECKING:
+    from giveway.replay.mapping import Wishes
     from giveway.replay.play import Choice
     from giveway.replay.source import Source
 
@@ -19,9 +20,11 @@ __all__ = ["replay"]
 
 ANGLES = ("motor", "wheel")
 EFFORTS = ("torque", "current")
+OF_ROS = ("--joints", "--topic", "--angles", "--efforts")
 
 
 def replay(
+    context: typer.Context,
     log: Annotated[
         Path | None,
         typer.Argument(metavar="LOG", help="CSV, Parquet, MCAP, or rosbag2 (folder or .db3); none with --follow."),
@@ -61,13 +64,15 @@ def replay(
 ) -> None:
     """Play a log of wheel angles and torques through the controller; report, every step as Parquet, MCAP."""
     from giveway.replay.mapping import read_wishes
-    from giveway.replay.play import open_log
+    from giveway.replay.play import is_of_ros, open_log
 
+    if log is None or (log.exists() and not is_of_ros(log)):
+        refuse_stated(context, "only for ROS (.mcap, .db3 or its folder); other logs name their columns", OF_ROS)
     wishes = read_wishes(columns, column or (), joints)
     for name, value, known in (("--angles", angles, ANGLES), ("--efforts", efforts, EFFORTS)):
         if value not in known:
             raise UnknownNameError(name, value, known)
-    extra = _Extra(robot, preset, tuple(assignments or ()), resample, torque_constant, encoder_bits, observe)
+    extra = _Extra(wishes, robot, preset, tuple(assignments or ()), resample, torque_constant, encoder_bits, observe)
     if follow:
         from giveway.replay.follow import follow_lines
 
@@ -91,6 +96,7 @@ class _Extra:
 
     def __init__(
         self,
+        wishes: Wishes,
         robot: Path | None,
         preset: str | None,
         assignments: tuple[str, ...],
@@ -107,11 +113,12 @@ class _Extra:
         if torque_constant is not None:
             finite("--torque-constant", torque_constant, -1e4, 1e4, "N.m/A")
         whole("--encoder-bits", encoder_bits, 8, 32)
-        self._robot, self._preset, self._assignments = robot, preset, assignments
+        self._wishes, self._robot, self._preset, self._assignments = wishes, robot, preset, assignments
         self._way, self._constant, self._bits, self._observe = way, torque_constant, encoder_bits, observe
 
     def choice(self, source: Source) -> tuple[Choice, str]:
         """How to play ``source``, and where the controller's parameters come from, in words."""
+        from giveway.replay.mapping import choose
         from giveway.replay.play import Choice
         from giveway.robot.presets import DEFAULT, check_preset, preset_values
         from giveway.robot.robot_file import read_robot
@@ -122,6 +129,8 @@ class _Extra:
             raise GivewayError("--set", f"testbed.{next(iter(overrides['testbed']))}", "parameters of the controller")
         variables, origin = table("controller"), source.origin
         constant = self._constant
+        if constant is not None and choose(source, self._wishes).torque != "current":
+            raise GivewayError("--torque-constant", constant, "only for a log of currents: this one has torques")
         if self._robot is None:
             if origin.parameters is None:
                 allowed = "the robot file of the log's robot; only a log of `giveway run --log` has its own"

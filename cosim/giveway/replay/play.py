@@ -24,7 +24,7 @@ from giveway.robot.variables import Value
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["OUTPUTS", "Choice", "Played", "Replay", "open_log"]
+__all__ = ["OUTPUTS", "Choice", "Played", "Replay", "is_of_ros", "open_log"]
 
 OUTPUTS = (
     *("estimate.force_x", "estimate.force_y", "estimate.torque_z", "estimate.force", "estimate.direction"),
@@ -65,9 +65,14 @@ class Played:
     detections: list[Detection]
 
 
+def is_of_ros(path: Path) -> bool:
+    """Whether `open_log` takes it for a log of ROS, by the end of its name."""
+    return path.is_dir() or path.suffix in (".mcap", ".db3")
+
+
 def open_log(path: Path, wishes: Wishes, topic: str | None, angle: str, effort: str) -> Source:
     """The log at ``path``, by the end of its name."""
-    if path.is_dir() or path.suffix in (".mcap", ".db3"):
+    if is_of_ros(path):
         from giveway.replay.ros_log import RosLog
 
         return RosLog(path, topic, wishes.joints, angle, effort)
