@@ -45,7 +45,7 @@ WRONG = {
     "unknown command": (("frob",), ("frob",)),
     "unknown model of variables": (("variables", "testbd"), ("testbd", "did you mean testbed?")),
     "no repeats": (("bench", "--repeats", "0"), ("--repeats", "1 to 100")),
-    "robots of no measurement": (("bench", "--tune", "0"), ("--tune", "0", "1 to")),
+    "robots of no measurement": (("bench", "--tune", "0", "--minutes", "1"), ("--tune", "0", "1 to")),
     "two measurements": (("bench", "--tune", "2", "--scale"), ("--tune", "2", "only without --scale")),
     "an option of another measurement": (("bench", "--scale", "--minutes", "6"), ("--minutes", "only with --tune")),
     "repeats of a measurement that has none": (

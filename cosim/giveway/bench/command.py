@@ -100,7 +100,7 @@ def bench(
 
 def _check_measurement(context: typer.Context, chosen: Mapping[str, object]) -> None:
     """One measurement at a time, and its own options: GivewayError names one that would be left aside."""
-    stated = [name for name, value in chosen.items() if value not in (None, False)]
+    stated = [name for name, value in chosen.items() if value is not None and value is not False]
     asked = stated[0] if stated else ""
     refuse_stated(context, f"only without {asked}", stated[1:])
     for measurement, options in OPTIONS.items():
