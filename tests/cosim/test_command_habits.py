@@ -74,6 +74,16 @@ def test_the_option_stands_before_or_behind(place: str, cli: Cli) -> None:
     assert (row["name"], row["start"]) == ("wall.distance", 0.001)
 
 
+def test_it_stands_between_a_group_and_its_command(cli: Cli) -> None:
+    """`giveway crowd` has options of its own, which belong behind: those are refused there, this is not."""
+    options = ("endurance", "--hours", "0.01", "--group", "planar")
+    found = documents(cli("crowd", "--json", *options).stdout)
+    assert found["tables"][0]["title"] == "Motion without contact"
+    done = cli("crowd", "--json", "--threads", "1", *options)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--threads: 1 is not allowed; allowed: behind `endurance`" in done.stderr
+
+
 def test_lists_are_rows(cli: Cli) -> None:
     robots = documents(cli("robot", "list", "--json").stdout)["tables"][0]
     assert {row["name"] for row in robots["rows"]} == set(native.robots())

@@ -10,6 +10,7 @@ import typer
 
 from giveway.base import native
 from giveway.base.errors import GivewayError
+from giveway.base.output_options import OUTPUT_OPTIONS
 
 __all__ = ["DaskOption", "FmiOption", "RobotOption", "ThreadsOption", "refuse_stated"]
 
@@ -43,10 +44,12 @@ RobotOption = Annotated[
 def refuse_stated(context: typer.Context, allowed: str, names: Container[str] | None = None) -> None:
     """No option is left aside in silence: GivewayError if one of ``names`` (default: any) is on the command line.
 
-    ``names`` are as the user writes them, ``"--hours"``; ``allowed`` is the error's.
+    ``names`` are as the user writes them, ``"--hours"``; ``allowed`` is the error's. Those of the output may stand
+    anywhere.
     """
     for option in context.command.params:
-        source = context.get_parameter_source(option.name or "")
-        stated = source is not None and source.name == "COMMANDLINE"
-        if stated and option.name in context.params and (names is None or option.opts[0] in names):
-            raise GivewayError(option.opts[0], context.params[option.name], allowed)
+        name = option.name or ""
+        source = context.get_parameter_source(name)
+        stated = source is not None and source.name == "COMMANDLINE" and name not in OUTPUT_OPTIONS
+        if stated and (names is None or option.opts[0] in names):
+            raise GivewayError(option.opts[0], context.params[name], allowed)

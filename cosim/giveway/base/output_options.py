@@ -11,11 +11,11 @@ import typer
 
 from giveway.base.terminal import want_json, want_quiet
 
-__all__ = ["with_output_options"]
+__all__ = ["OUTPUT_OPTIONS", "with_output_options"]
 
 _JSON = typer.Option("--json", help="One JSON document on stdout and nothing else: tables as rows, with units.")
 _QUIET = typer.Option("--quiet", "-q", help="No progress and no text, only errors.")
-_OPTIONS = {"as_json": (_JSON, want_json), "quiet": (_QUIET, want_quiet)}
+OUTPUT_OPTIONS = {"as_json": (_JSON, want_json), "quiet": (_QUIET, want_quiet)}
 
 
 def with_output_options(app: typer.Typer) -> None:
@@ -35,7 +35,7 @@ def _with_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(command)
     def with_them(*args: Any, **given: Any) -> Any:
-        for name, (_, want) in _OPTIONS.items():
+        for name, (_, want) in OUTPUT_OPTIONS.items():
             if given.pop(name):
                 want()
         return command(*args, **given)
@@ -44,7 +44,7 @@ def _with_options(command: Callable[..., Any]) -> Callable[..., Any]:
     kind = inspect.Parameter.KEYWORD_ONLY
     added = [
         inspect.Parameter(name, kind, default=False, annotation=Annotated[bool, option])
-        for name, (option, _) in _OPTIONS.items()
+        for name, (option, _) in OUTPUT_OPTIONS.items()
     ]
     parameters = [*own.parameters.values(), *added]
     with_them.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]

@@ -66,7 +66,7 @@ def replay(
     from giveway.replay.mapping import read_wishes
     from giveway.replay.play import is_of_ros, open_log
 
-    if log is None or (log.exists() and not is_of_ros(log)):
+    if follow or (log is not None and log.exists() and not is_of_ros(log)):
         refuse_stated(context, "only for ROS (.mcap, .db3 or its folder); other logs name their columns", OF_ROS)
     wishes = read_wishes(columns, column or (), joints)
     for name, value, known in (("--angles", angles, ANGLES), ("--efforts", efforts, EFFORTS)):
