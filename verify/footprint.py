@@ -9,7 +9,7 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verify.context import Context, Tool
@@ -23,10 +23,8 @@ __all__ = [
     "SIZE",
     "TARGET",
     "Footprint",
-    "as_values",
     "check_parts",
     "check_table",
-    "from_values",
     "measure",
     "measure_parts",
     "measure_steps",
@@ -40,8 +38,7 @@ MACHINES = tuple(TARGETS[name] for name in ("cortex-m3", "cortex-m4f", "cortex-m
 ENTRIES = ("gw_controller_init", "gw_controller_step", "gw_servo_init", "gw_servo_step")
 SOURCES = "tests/c_core/footprint"
 # Usual firmware flags: one section per function, so that the linker drops functions that are not called.
-LEVELS = ("-O2", "-Os")
-FLAGS = (LEVELS[0], "-ffunction-sections", "-fdata-sections")
+FLAGS = ("-O2", "-ffunction-sections", "-fdata-sections")
 # What the paper's preset needs.
 BARE = ("-DGW_WITH_CHANNELS=0", "-DGW_WITH_ESCAPE=0")
 
@@ -110,7 +107,7 @@ PARTS: Mapping[str, tuple[int | None, tuple[str, ...]]] = {
     "estimator with its tare and detector": (4, BARE),
     "servo": (3, BARE),
 }
-SMALL = (LEVELS[1], *FLAGS[1:])
+SMALL = ("-Os", *FLAGS[1:])
 # What is left out of everything, each without what stands above it, too: LEFT_OUT of measure.c.
 STEPS = {
     "bristles for the rollers' friction": 1,
@@ -150,31 +147,6 @@ def measure_steps(context: Context, target: Target) -> dict[str, int]:
     return {name: _run(context, target, f"-DLEFT_OUT={level}")["all_step"] for name, level in STEPS.items()}
 
 
-def as_values(
-    measured: Mapping[str, Footprint], parts: Mapping[str, tuple[int, int]], steps: Mapping[str, int]
-) -> dict[str, int]:
-    """All of it under one name each, as VERIFIED.json keeps it."""
-    return {
-        **{f"{name} {field}": value for name, cost in measured.items() for field, value in asdict(cost).items()},
-        **{f"{name}: {level}": value for name, two in parts.items() for level, value in zip(LEVELS, two, strict=True)},
-        **{f"without {name}": value for name, value in steps.items()},
-    }
-
-
-def from_values(
-    values: Mapping[str, int],
-) -> tuple[dict[str, Footprint], dict[str, tuple[int, int]], dict[str, int]]:
-    """What `as_values` was made of."""
-    return (
-        {
-            target.name: Footprint(**{field.name: values[f"{target.name} {field.name}"] for field in fields(Footprint)})
-            for target in MACHINES
-        },
-        {name: (values[f"{name}: {LEVELS[0]}"], values[f"{name}: {LEVELS[1]}"]) for name in PARTS},
-        {name: values[f"without {name}"] for name in STEPS},
-    )
-
-
 def steps_table(steps: dict[str, int]) -> str:
     """The table of `PARTS_FILE`."""
     lines = ["| Longest step on Cortex-M4F, everything on but | instructions |", "|---|---:|"]
@@ -184,7 +156,7 @@ def steps_table(steps: dict[str, int]) -> str:
 
 def parts_table(parts: dict[str, tuple[int, int]]) -> str:
     """The table of `PARTS_FILE`."""
-    lines = [f"| Flash on Cortex-M4F, bytes: a program that calls | {' | '.join(LEVELS)} |", "|---|---:|---:|"]
+    lines = ["| Flash on Cortex-M4F, bytes: a program that calls | -O2 | -Os |", "|---|---:|---:|"]
     lines += [f"| {name} | {fast:,} | {small:,} |" for name, (fast, small) in parts.items()]
     return "".join(f"{line}\n" for line in lines)
 

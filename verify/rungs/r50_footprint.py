@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 from verify import footprint
 from verify.context import Context
@@ -30,10 +30,11 @@ def check(context: Context) -> Figure:
     m4f = measured["cortex-m4f"]
     with planted("one instruction more", shows=f"measured {m4f.step_recorded + 1:,}"):
         footprint.check_table(context.root, {"cortex-m4f": replace(m4f, step_recorded=m4f.step_recorded + 1)})
+    values = {f"{name} {field}": value for name, cost in measured.items() for field, value in asdict(cost).items()}
     return Figure(
         f"Cortex-M4F: flash {m4f.flash} B, RAM {m4f.controller_ram} B + window, stack {m4f.stack} B, "
         f"step {m4f.step_searched} instructions, servo {m4f.servo_step}",
-        footprint.as_values(measured, parts, steps),
+        values,
     )
 
 
