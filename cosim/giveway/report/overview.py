@@ -136,6 +136,7 @@ def _draw_estimate(axes: Axes, run: Run, row: int) -> None:
         axes.annotate(
             "", xy=tuple(tip), xytext=tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": width}
         )
+        axes.update_datalim([tuple(tail)])
         axes.plot([], [], color=colour, linewidth=width, label=label)
     axes.legend(loc="lower right", title="mean push up to detection", title_fontsize=9)
 
