@@ -26,6 +26,7 @@ from giveway.study.engine import sweep
 from giveway.study.golden import golden_works
 from study_helpers import LATCH, LATCH_STUDY, SPRING, part_files, small_study, stored_runs
 
+dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
 
 STUDY = f"""\
@@ -55,7 +56,9 @@ def same_runs(one: Path, other: Path) -> None:
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
     options = {"host": HOST, "dashboard_address": f"{HOST}:0", "memory_limit": 0, "silence_logs": 60}
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, **options) as found:
+    # 15 s after a worker was lost Dask gives it up, if another one just then starts in its place.
+    patience = dask.config.set({"distributed.deploy.lost-worker-timeout": "1 hour"})
+    with patience, distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, **options) as found:
         yield found
 
 
