@@ -40,7 +40,7 @@ class Outcome:
 
 
 def climb(root: Path, rungs: Mapping[str, Rung], path: str) -> list[Outcome]:
-    """Run the rungs; print a line for each as it ends and the evidence of those that failed."""
+    """Run the rungs; print a line for each as it ends, and its evidence if it failed."""
     outcomes = []
     with ThreadPoolExecutor(AT_A_TIME) as pool:
         running: list[Future[Outcome]] = [pool.submit(_run, root, name, rung, path) for name, rung in rungs.items()]
@@ -48,15 +48,14 @@ def climb(root: Path, rungs: Mapping[str, Rung], path: str) -> list[Outcome]:
             for future in as_completed(running):
                 outcome = future.result()
                 print(outcome.line, flush=True)
+                if outcome.figure is None:
+                    print(f"\n{outcome.name} failed:\n{outcome.evidence}", flush=True)
                 outcomes.append(outcome)
         except BaseException:
             for future in running:
                 future.cancel()
             kill_all()
             raise
-    for outcome in outcomes:
-        if outcome.figure is None:
-            print(f"\n{outcome.name} failed:\n{outcome.evidence}")
     order = list(rungs)
     return sorted(outcomes, key=lambda outcome: order.index(outcome.name))
 

@@ -177,7 +177,6 @@ def test_with_odd_workers_only_it_ends(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.deep
 def test_a_dead_scheduler_takes_nothing_with_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pool, "CONNECT_S", 1.0)  # nobody starts it again while the command waits
     study, folder = many(100), tmp_path / "b" / "study"
     address = f"tcp://{HOST}:{(port := free_port())}"
 
@@ -186,7 +185,8 @@ def test_a_dead_scheduler_takes_nothing_with_it(tmp_path: Path, monkeypatch: pyt
             time.sleep(0.01)
         process.kill()
 
-    with scheduler(port) as process, worker(address):
+    with scheduler(port) as process, worker(address), monkeypatch.context() as impatient:
+        impatient.setattr(pool, "CONNECT_S", 3.0)  # nobody starts it again while the command waits
         threading.Thread(target=kill, args=(process,), daemon=True).start()
         with pytest.raises(
             ClusterError, match="has lost its scheduler; what is stored is kept; the same command goes on"
