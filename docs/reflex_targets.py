@@ -41,13 +41,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="docs.reflex_targets", description="Compute what the reflex does.")
     parser.add_argument("--out", type=Path, default=ROOT / "out/targets", help="folder of the runs and their tables")
     parser.add_argument("--threads", help="of each command; without it: all processors")
-    parser.add_argument("--hours", help="of planar robots without contact, else 300; the page says how many it were")
     options = parser.parse_args()
     threads = [] if options.threads is None else ["--threads", options.threads]
-    hours = [] if options.hours is None else ["--hours", options.hours]
     sources = core_hash(ROOT)
     for folder, words in COMMANDS.items():
-        code = _run([*words, *(hours if folder == QUIET else ()), "--out", str(options.out / folder), *threads])
+        code = _run([*words, "--out", str(options.out / folder), *threads])
         if code:
             return code
     documents = {

@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -86,6 +87,23 @@ def test_a_red_rung_is_reported_and_does_not_hide_the_others(
     assert evidence in printed
     assert "FAILED red" in printed
     assert "3 of 3" in printed
+
+
+def test_a_red_rung_says_why_while_the_others_climb(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said = threading.Event()
+
+    def hear(text: str, **_: object) -> None:
+        if "it is red\nbecause" in text:
+            said.set()
+
+    def waits_for_it(_: Context) -> Figure:
+        if not said.wait(10.0):
+            raise RungFailed("nothing was said")
+        return Figure("heard")
+
+    monkeypatch.setattr(ladder, "print", hear, raising=False)
+    outcomes = climb(tree(tmp_path), red=Rung("", (), bad), patient=Rung("", (), waits_for_it))
+    assert [outcome.evidence for outcome in outcomes] == ["it is red\nbecause", ""]
 
 
 def test_a_missing_tool_is_a_failure(tmp_path: Path) -> None:
