@@ -108,8 +108,9 @@ gw_real_t gw_share_of(gw_real_t interval_s, gw_real_t time_s)
 /* What rollers may do now. */
 static void doubt_rollers(gw_channels_t *channels, bool reacting)
 {
-    const gw_real_t multiple = channels->config.model_multiple;
-    channels->doubts.ripple2 = (multiple * multiple) * gw_ripple_variance(&channels->ripple, reacting);
+    const gw_real_t multiple2 = channels->config.model_multiple * channels->config.model_multiple;
+    channels->doubts.ripple2 = multiple2 * gw_ripple_variance(&channels->ripple, reacting);
+    channels->doubts.usual2 = multiple2 * gw_ripple_usual(&channels->ripple, reacting);
 }
 
 void gw_channels_init(gw_channels_t *channels, const gw_channels_config_t *config, const gw_channels_noise_t *noise)
@@ -185,6 +186,7 @@ bool gw_channels_invariant_holds(const gw_channels_t *channels)
                 gw_in_range(channels->doubts.gear_n2, GW_ZERO, GEAR_MAX_N2) &&
                 gw_in_range(channels->doubts.row_m2ps2, GW_ZERO, GW_ROW_MAX_M2PS2) &&
                 gw_in_range(channels->doubts.ripple2, GW_ZERO, RIPPLE2_MAX) &&
+                gw_in_range(channels->doubts.usual2, GW_ZERO, RIPPLE2_MAX) &&
                 gw_ripple_invariant_holds(&channels->ripple) && gw_slip_invariant_holds(&channels->doubts.slip) &&
                 (channels->calm_ticks <= CALM_TICKS) && gw_wrench_is_within(&channels->impulse, IMPULSE_MAX) &&
                 (channels->summed < GW_BANK_COUNT) && gw_in_range(channels->impulse_s, IMPULSE_MIN_S, IMPULSE_MAX_S) &&
@@ -370,7 +372,7 @@ static void do_what_is_due(gw_channels_t *channels, const gw_kinematics_t *kinem
                               &channels->doubts);
     } else if ((channels->tick % GW_SLOW_TICKS) == 0U) {
         gw_slow_channel_judge(&channels->slow, &channels->config, kinematics, &channels->follower,
-                              rests ? GW_REGIME_REST : regime, channels->doubts.rocking_n2 + channels->doubts.gear_n2);
+                              rests ? GW_REGIME_REST : regime, &channels->doubts);
     } else {
         const gw_model_forces_t *const model = &channels->slow.mean.model;
         const gw_real_t friction_n2 = squares_of_friction(model);

@@ -3,6 +3,7 @@
 #include "giveway/gw_math.h"
 #include "giveway/gw_model_covariance.h"
 #include "giveway/gw_planar_covariance.h"
+#include "giveway/gw_ripple.h"
 
 #if (GW_WITH_CHANNELS == 1)
 
@@ -44,6 +45,7 @@
 #define TURNED_MAX_N2 ((gw_real_t)2.0e12)
 #define SLIPPING_MAX_NM2 ((gw_real_t)1.0e15)
 #define LEAST_SQUARE_N2 ((gw_real_t)1.0e-8)
+#define LETTING_GO_MAX_N2 ((gw_real_t)1.0e12)
 #define MOMENT_PER_FORCE_MAX ((gw_real_t)1.0e12)
 #define SWING_SHARE_MAX ((gw_real_t)0.25)
 #define SWING_LOSS_MAX ((gw_real_t)0.55)
@@ -250,6 +252,7 @@ void gw_fast_channel_restart(gw_fast_channel_t *channel)
     channel->baseline = no_balance;
     channel->model_n2 = no_doubt;
     channel->rocking_n2 = GW_ZERO;
+    channel->letting_go_n2 = GW_ZERO;
     channel->row_m2ps2 = GW_ZERO;
     channel->moment_nm2 = GW_ZERO;
     channel->moment_noise_m2 = channel->moment_per_force_m2;
@@ -300,6 +303,7 @@ bool gw_fast_channel_invariant_holds(const gw_fast_channel_t *channel)
                 gw_planar_is_within(channel->model_n2, VARIANCE_MAX) &&
                 gw_in_range(channel->moment_nm2, GW_ZERO, VARIANCE_MAX) &&
                 gw_in_range(channel->rocking_n2, GW_ZERO, VARIANCE_MAX) &&
+                gw_in_range(channel->letting_go_n2, GW_ZERO, LETTING_GO_MAX_N2) &&
                 gw_in_range(channel->row_m2ps2, GW_ZERO, GW_ROW_MAX_M2PS2) &&
                 gw_wrench_is_within(&channel->held, HELD_MAX_N) && gw_within(channel->doubt_n.x, HELD_MAX_N) &&
                 gw_within(channel->doubt_n.y, HELD_MAX_N) && gw_within(channel->carried_n.x, HELD_MAX_N) &&
@@ -441,6 +445,9 @@ void gw_fast_channel_doubt(gw_fast_channel_t *channel, const gw_channels_config_
         gw_ripple_added(rests ? GW_ZERO : doubts->ripple2, kinematics, &balance->model.friction_n, of_model);
     channel->model_n2 = gw_slip_added(&doubts->slip, kinematics, gw_planar_raised(of_rollers, doubts->gear_n2));
     channel->rocking_n2 = doubts->rocking_n2;
+    channel->letting_go_n2 =
+        rests ? GW_ZERO
+              : gw_clamp(doubts->usual2 * (channel->sliding_n * channel->sliding_n), GW_ZERO, LETTING_GO_MAX_N2);
     channel->row_m2ps2 = is_counting(channel, regime) ? doubts->row_m2ps2 : GW_ZERO;
     /* Each gear's error has the wheel's distance as its arm, and half of it is in each component of the force. A wheel
      * that slips has a force along one axis, and half of the moment that independent wheels have. */
@@ -499,6 +506,13 @@ static gw_real_t turned_variance(const gw_wrench_t *held, gw_vector_t force_n)
     return gw_min((along * along) / gw_max(square_n2, LEAST_SQUARE_N2), TURNED_MAX_N2);
 }
 
+/* Variance behind a low-pass. What a stuck wheel lets go rings with 100 to 200 N for 3 ms, which the short ones see. */
+static gw_real_t let_go(const gw_fast_channel_t *channel, uint32_t j)
+{
+    static const gw_real_t share[GW_BANK_COUNT] = {(gw_real_t)25.0, (gw_real_t)4.0, (gw_real_t)0.56, GW_ZERO};
+    return share[j] * channel->letting_go_n2;
+}
+
 void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t *config,
                           const gw_kinematics_t *kinematics, const gw_follower_t *follower, const gw_balance_t *balance,
                           gw_regime_t regime, bool quiet, gw_fast_found_t *found)
@@ -530,7 +544,7 @@ void gw_fast_channel_step(gw_fast_channel_t *channel, const gw_channels_config_t
         const gw_vector_t force_n = {x->force_x_n, x->force_y_n};
         const bool ends = ((held.x * force_n.x) + (held.y * force_n.y)) < GW_ZERO;
         const gw_real_t turned_n2 = ends ? turned_variance(&channel->held, force_n) : GW_ZERO;
-        const gw_real_t n2 = (still_n2 + channel->rocking_n2) + turned_n2;
+        const gw_real_t n2 = ((still_n2 + channel->rocking_n2) + turned_n2) + let_go(channel, j);
         const gw_planar_spread_t *const spread = ends ? &against : &along;
         /* A small force may point anywhere while the moment of an old contact ends. Asked of the force, too, in 4,200
          * runs of the tuning draw's planar robots with an IMU 21 have a reaction without contact, with this 14. */

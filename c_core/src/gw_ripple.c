@@ -17,6 +17,12 @@
 #define FADE_S ((gw_real_t)0.5)
 #define RISE_S ((gw_real_t)0.1)
 #define INTERVAL_S ((gw_real_t)0.064)
+/* Rollers that each have all of their friction have a mean of 0.43 to 0.58 of the largest in a second simulator's 43
+ * drives, those of the crowd, which share it, at most 0.09. */
+#define RECENT_S ((gw_real_t)20.0)
+#define KNOWN_WEIGHT ((gw_real_t)0.1)
+#define USUAL_FROM ((gw_real_t)0.3)
+#define PER_USUAL ((gw_real_t)10.0) /* one over what is beyond it where it is the largest */
 #define INTERVAL_MAX 1024U
 
 void gw_ripple_init(gw_ripple_t *ripple, gw_real_t share, gw_real_t interval_s)
@@ -26,7 +32,10 @@ void gw_ripple_init(gw_ripple_t *ripple, gw_real_t share, gw_real_t interval_s)
     ripple->most2 = MOST * ripple->guess2;
     ripple->seen2 = GW_ZERO;
     ripple->keep = GW_ONE - gw_share_of(interval_s, FADE_S);
+    ripple->mean2 = GW_ZERO;
+    ripple->weight = GW_ZERO;
     ripple->rise = gw_share_of(interval_s, RISE_S);
+    ripple->recent = gw_share_of(interval_s, RECENT_S);
     ripple->interval = (uint32_t)steps;
     gw_ripple_leave_out(ripple);
 }
@@ -38,8 +47,9 @@ bool gw_ripple_invariant_holds(const gw_ripple_t *ripple)
         holds = gw_in_range(ripple->guess2, GW_ZERO, GW_ONE) && gw_in_range(ripple->most2, GW_ZERO, MOST) &&
                 gw_in_range(ripple->seen2, GW_ZERO, MOST) && gw_in_range(ripple->next2, GW_ZERO, MOST) &&
                 gw_in_range(ripple->felt2, GW_ZERO, MOST) && gw_in_range(ripple->keep, GW_HALF, GW_ONE) &&
-                gw_in_range(ripple->rise, GW_ZERO, GW_HALF) && (ripple->interval <= INTERVAL_MAX) &&
-                (ripple->steps < ripple->interval);
+                gw_in_range(ripple->mean2, GW_ZERO, MOST) && gw_in_range(ripple->weight, GW_ZERO, GW_ONE) &&
+                gw_in_range(ripple->rise, GW_ZERO, GW_HALF) && gw_in_range(ripple->recent, GW_ZERO, GW_HALF) &&
+                (ripple->interval <= INTERVAL_MAX) && (ripple->steps < ripple->interval);
     }
     return holds;
 }
@@ -54,6 +64,10 @@ void gw_ripple_follow(gw_ripple_t *ripple, gw_real_t turned_rad, gw_real_t force
     ripple->guess2 = (GW_ONE - gw_min(turned_rad / FADE_RAD, GW_HALF)) * ripple->guess2;
     /* Never negative: at most half of it is taken off. */
     ripple->felt2 = gw_known_within(gw_min(ripple->felt2 + (share * (towards2 - ripple->felt2)), ripple->most2), MOST);
+    if (!reacting) {
+        ripple->mean2 = gw_approached(ripple->mean2, ripple->seen2, ripple->recent, MOST);
+        ripple->weight = gw_approached(ripple->weight, GW_ONE, ripple->recent, GW_ONE);
+    }
 }
 
 void gw_ripple_go_on(gw_ripple_t *ripple)
@@ -76,7 +90,17 @@ void gw_ripple_leave_out(gw_ripple_t *ripple)
 gw_real_t gw_ripple_variance(const gw_ripple_t *ripple, bool reacting)
 {
     const gw_real_t guess2 = reacting ? (REACTING * ripple->guess2) : ripple->guess2;
-    return guess2 + ripple->seen2;
+    return guess2 + gw_max(ripple->seen2, gw_ripple_usual(ripple, reacting));
+}
+
+gw_real_t gw_ripple_usual(const gw_ripple_t *ripple, bool reacting)
+{
+    gw_real_t usual2 = GW_ZERO;
+    if ((!reacting) && (ripple->weight >= KNOWN_WEIGHT)) {
+        const gw_real_t mean2 = ripple->mean2 / ripple->weight;
+        usual2 = gw_clamp(PER_USUAL * (mean2 - (USUAL_FROM * ripple->most2)), GW_ZERO, ripple->most2);
+    }
+    return usual2;
 }
 
 gw_planar_covariance_t gw_ripple_added(gw_real_t variance, const gw_kinematics_t *kinematics,

@@ -10,6 +10,7 @@
 #include "giveway/gw_contact.h"
 #include "giveway/gw_controller.h"
 #include "giveway/gw_detector.h"
+#include "giveway/gw_doubts.h"
 #include "giveway/gw_estimator.h"
 #include "giveway/gw_fast_channel.h"
 #include "giveway/gw_follower.h"

@@ -10,9 +10,10 @@
  * where the noise of each low-pass is followed, with a little ripple of rollers that are not alike, and k_n is smaller
  * for the longer ones, M is what the model does not know of friction, rollers and mass with the forces of this tick,
  * and h is what the baseline holds of contacts that last: their end, a change against that, is no hit, and as it may
- * have turned, (x h)^2/|x|^2 I is added then, too; r is what the body does while it rocks. The moment has a variance of
- * its own: in a turn a wheel's speed steps as it passes from one row of rollers to the other, which encoders take for
- * an acceleration. The channel trips if x^T S^-1 x > 1.
+ * have turned, (x h)^2/|x|^2 I is added then, too; r is what the body does while it rocks, and in motion, where rollers
+ * each have all of their friction, how the robot rings as a wheel that was stuck lets go: to any side, for 30 ms. The
+ * moment has a variance of its own: in a turn a wheel's speed steps as it passes from one row of rollers to the other,
+ * which encoders take for an acceleration. The channel trips if x^T S^-1 x > 1.
  *
  * With an IMU the noise is smaller and the shortest low-pass shorter. The vibration that it sees counts at once.
  *
@@ -24,10 +25,9 @@
 
 #include "giveway/gw_balance.h"
 #include "giveway/gw_channels_config.h"
+#include "giveway/gw_doubts.h"
 #include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
-#include "giveway/gw_ripple.h"
-#include "giveway/gw_slip.h"
 #include "giveway/gw_types.h"
 
 #ifdef __cplusplus
@@ -41,8 +41,6 @@ extern "C" {
 #define GW_SENSOR_COUNT 2U
 /* Largest change from the baseline, N and N m: two balances and what the follower corrects. */
 #define GW_CHANGE_MAX ((gw_real_t)1.0e6)
-/* Largest square of a step between rows of rollers, (m/s)^2. */
-#define GW_ROW_MAX_M2PS2 ((gw_real_t)100.0)
 #define GW_NOISE_SETS 3U /* at rest, slow or unsettled, in motion: as gw_regime_t */
 
 typedef struct {
@@ -73,6 +71,7 @@ typedef struct {
     gw_planar_covariance_t model_n2; /* k_m^2 M */
     gw_real_t moment_nm2;            /* likewise of the moment */
     gw_real_t rocking_n2;            /* variance of what the rocking body does */
+    gw_real_t letting_go_n2;         /* square of what a stuck wheel may let go, times the share that is usual */
     gw_real_t row_m2ps2;             /* square of a step between rows, as encoders see it now */
     gw_real_t moment_noise_m2; /* variance of the moment's noise over that of the force's, as the wheels turn now */
     /* What the baseline holds of contacts, how sure nobody is of that, along the last one, and the share of the
@@ -85,19 +84,6 @@ typedef struct {
     gw_vector_t carried_n;
     uint32_t followed; /* the low-pass whose noise is followed in this tick */
 } gw_fast_channel_t;
-
-/* What the balance may be wrong by, besides friction and masses. */
-typedef struct {
-    gw_real_t forces_n2;  /* sum of the squares of the model's forces, not of their change: rows of rollers */
-    gw_real_t rocking_n2; /* variance of what the rocking body does, [0, 1e12] */
-    gw_real_t gear_n2;    /* k_m^2 times what gears may be wrong by, now and as long as the slow channel remembers it,
-                           * [0, 1e12] */
-    gw_real_t row_m2ps2;  /* square of a wheel's step of speed between rows of rollers, (m/s)^2, at most
-                           * GW_ROW_MAX_M2PS2 */
-    gw_real_t ripple2;    /* k_m^2 times the variance of what the friction of a wheel varies by from roller to roller,
-                           * relative, [0, 4e4] */
-    gw_slip_t slip;       /* k_m^2 times that of wheels that may slip */
-} gw_doubts_t;
 
 /* What the channel finds in a tick. */
 typedef struct {

@@ -9,6 +9,11 @@
  * 0.01 beyond that, and fades within half a second. It counts after 64 ms at least, and what was felt since is left out
  * if it was a contact that began.
  *
+ * Where rollers each have all of their friction, that comes and goes all the time: the mean of s^2 over 20 s of motion
+ * is about half of the largest s^2 then, and below 0.1 of it where rollers share their friction. So after 2 s of motion
+ * s^2 has a least value, the usual one: none where that mean is below 0.3 of the largest, the largest from 0.4 on. It
+ * holds in quiet moments, too, but not in a reaction, where no push should be missed.
+ *
  * Life cycle: gw_ripple_init, then every so often gw_ripple_follow, if there is something to be seen, and
  * gw_ripple_go_on, or gw_ripple_leave_out. All members are private.
  */
@@ -29,8 +34,11 @@ typedef struct {
     gw_real_t seen2;   /* what has been seen */
     gw_real_t next2;   /* instead of it from the next interval on */
     gw_real_t felt2;   /* and from the one after that */
+    gw_real_t mean2;   /* of what has been seen in motion, times its weight */
+    gw_real_t weight;  /* of that mean: 1 once it has been seen for long */
     gw_real_t keep;    /* of felt2, from one step to the next */
     gw_real_t rise;    /* what felt2 takes over of a larger one */
+    gw_real_t recent;  /* what mean2 takes over */
     uint32_t interval; /* steps of an interval, at least 1 */
     uint32_t steps;    /* of this one */
 } gw_ripple_t;
@@ -50,6 +58,8 @@ void gw_ripple_go_on(gw_ripple_t *ripple);
 void gw_ripple_leave_out(gw_ripple_t *ripple);
 /* Variance of the share, [0, 4]. */
 gw_real_t gw_ripple_variance(const gw_ripple_t *ripple, bool reacting);
+/* The least value of s^2, [0, 3]. */
+gw_real_t gw_ripple_usual(const gw_ripple_t *ripple, bool reacting);
 /* M + what such a variance of each wheel's friction adds to it, in base axes. */
 gw_planar_covariance_t gw_ripple_added(gw_real_t variance, const gw_kinematics_t *kinematics,
                                        const gw_wheels_t *friction_n, gw_planar_covariance_t m);

@@ -4,7 +4,8 @@
  * seconds: at rest that is what was there when the zero was taken, in motion it follows slowly, so that a slope and a
  * zero that is wrong do not matter. S = floor^2 I + k_m^2 M, as in gw_fast_channel.h; at rest the floor alone. Friction
  * of rollers that hardly turn lasts longer than the channel's low-pass, which nothing but its size tells from a push:
- * it is doubted twice as much as in the fast channel. It trips if x^T S^-1 x > 1.
+ * it is doubted twice as much as in the fast channel. Of rollers that each have all of their friction half the variance
+ * that is usual for them passes the low-pass. It trips if x^T S^-1 x > 1.
  *
  * Life cycle: gw_slow_channel_init, gw_slow_channel_restart, gw_slow_channel_begin for each tick of the first mean,
  * then gw_slow_channel_step per tick. All members of gw_slow_channel_t are private.
@@ -14,6 +15,7 @@
 
 #include "giveway/gw_balance.h"
 #include "giveway/gw_channels_config.h"
+#include "giveway/gw_doubts.h"
 #include "giveway/gw_follower.h"
 #include "giveway/gw_kinematics.h"
 #include "giveway/gw_types.h"
@@ -47,11 +49,10 @@ void gw_slow_channel_step(gw_slow_channel_t *channel, const gw_balance_t *balanc
 GW_SMALL void gw_slow_channel_take_zero(gw_slow_channel_t *channel, gw_wrench_t step, gw_regime_t regime);
 /* The baseline follows, in motion without contact; to be called every GW_SLOW_TICKS. */
 void gw_slow_channel_follow(gw_slow_channel_t *channel, bool settled);
-/* Compares; every few ticks is enough. floor: of which regime the floor is; rocking_n2:
- * variance of what the rocking body does. */
+/* Compares; every few ticks is enough. floor: of which regime the floor is. */
 void gw_slow_channel_judge(gw_slow_channel_t *channel, const gw_channels_config_t *config,
                            const gw_kinematics_t *kinematics, const gw_follower_t *follower, gw_regime_t floor,
-                           gw_real_t rocking_n2);
+                           const gw_doubts_t *doubts);
 /* The follower learns from the mean balance, in motion without contact, when all rollers slide: from its component
  * along y or along x. */
 GW_SMALL void gw_slow_channel_teach(const gw_slow_channel_t *channel, const gw_kinematics_t *kinematics,

@@ -175,7 +175,7 @@ digest_t drive_ripple(void)
         const gw_real_t uneven = generator_between(&generator, GW_ZERO, (gw_real_t)0.12);
         gw_ripple_t ripple;
         gw_ripple_init(&ripple, generator_between(&generator, GW_ZERO, GW_ONE), (gw_real_t)0.004);
-        for (uint32_t k = 0U; k < 200U; k++) {
+        for (uint32_t k = 0U; k < 800U; k++) {
             const gw_real_t friction_n2 = generator_between(&generator, (gw_real_t)400.0, (gw_real_t)1500.0);
             const gw_real_t force_n2 = friction_n2 * generator_between(&generator, GW_ZERO, uneven);
             const gw_real_t turned_rad = generator_between(&generator, GW_ZERO, (gw_real_t)0.02);
@@ -190,6 +190,7 @@ digest_t drive_ripple(void)
             const gw_wheels_t friction_n = generator_wheels(&generator, (gw_real_t)25.0);
             const gw_planar_covariance_t known = {GW_ONE, GW_HALF, GW_TWO};
             digest_real(&digest, variance);
+            digest_real(&digest, gw_ripple_usual(&ripple, reacting));
             digest_covariance(&digest, gw_ripple_added(variance, &kinematics, &friction_n, known));
         }
     }

@@ -758,6 +758,30 @@ static void ripple_is_seen_in_free_motion(void)
     }
 }
 
+/* Where the mean of what was seen is half of its largest, all of that is usual: 6.25 times it for both channels. In a
+ * reaction, and where wheels share their friction, nothing. The slow channel's threshold is that of its own test. */
+static void what_is_usual_reaches_both_channels(void)
+{
+    const struct {
+        gw_real_t mean;
+        bool reacting;
+        bool usual;
+    } rows[] = {{R(0.5), false, true}, {R(0.5), true, false}, {R(0.1), false, false}};
+    const gw_real_t most2 = R(0.64); /* (5/3 0.48)^2 */
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin_in_motion();
+        input.reacting = rows[i].reacting;
+        channels.ripple.weight = R(0.8);
+        channels.ripple.mean2 = (R(0.8) * rows[i].mean) * most2;
+        ticks(4U);
+        unit_row(i);
+        const gw_real_t usual2 = rows[i].usual ? (R(6.25) * most2) : GW_ZERO;
+        const gw_real_t sliding_n = channels.fast.sliding_n;
+        CHECK_NEAR(channels.doubts.usual2, usual2, R(100.0) * ROUNDING);
+        CHECK_NEAR(channels.fast.letting_go_n2, usual2 * (sliding_n * sliding_n), R(1.0e6) * ROUNDING);
+    }
+}
+
 /* What lasts is no ripple. */
 static void a_force_that_lasts_is_no_ripple(void)
 {
@@ -810,8 +834,12 @@ static void ripple_outlasts_a_restart(void)
     channels.ripple.guess2 = R(0.01);
     channels.ripple.seen2 = R(0.2);
     channels.ripple.felt2 = R(0.3);
+    channels.ripple.mean2 = R(0.05);
+    channels.ripple.weight = R(0.4);
     gw_channels_restart(&channels);
     CHECK((channels.ripple.guess2 == R(0.01)) && (channels.ripple.felt2 == R(0.2)));
+    CHECK((channels.ripple.mean2 == R(0.05)) && (channels.ripple.weight == R(0.4)) &&
+          (channels.doubts.usual2 == GW_ZERO));
     CHECK(channels.doubts.ripple2 == (R(6.25) * (R(0.01) + R(0.2))));
     CHECK(gw_channels_invariant_holds(&channels));
 }
@@ -1254,7 +1282,7 @@ static void the_invariant_sees_every_member(void)
         &channels.rocking_keep,          &channels.doubts.rocking_n2,      &channels.gear_keep,
         &channels.doubts.gear_n2,        &channels.doubts.slip.near_n,     &channels.doubts.ripple2,
         &channels.ripple.felt2,          &channels.impulse.torque_nm,      &channels.impulse_s,
-        &channels.doubts.row_m2ps2};
+        &channels.doubts.row_m2ps2,      &channels.doubts.usual2,          &channels.ripple.mean2};
     CHECK(!gw_channels_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
         unit_row(i);
@@ -1316,6 +1344,7 @@ void suite_channels(void)
     unit_run("an_error_of_gears_is_remembered", an_error_of_gears_is_remembered);
     unit_run("a_wheel_that_may_slip_is_doubted_in_free_motion", a_wheel_that_may_slip_is_doubted_in_free_motion);
     unit_run("ripple_is_seen_in_free_motion", ripple_is_seen_in_free_motion);
+    unit_run("what_is_usual_reaches_both_channels", what_is_usual_reaches_both_channels);
     unit_run("a_force_that_lasts_is_no_ripple", a_force_that_lasts_is_no_ripple);
     unit_run("the_guess_fades_as_wheels_turn", the_guess_fades_as_wheels_turn);
     unit_run("ripple_outlasts_a_restart", ripple_outlasts_a_restart);

@@ -832,6 +832,52 @@ static void rocking_widens_the_threshold_of_a_hit(void)
     CHECK(releases[0] == releases[1]);
 }
 
+/* 0.3 20^2 N^2 times 25, 4, 0.56 and nothing: a wheel that lets go rings to all sides, but not at rest; the end of a
+ * contact does not wait for it. */
+static void a_wheel_that_lets_go_widens_the_threshold_in_motion(void)
+{
+    const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
+    const gw_real_t shares[] = {R(25.0), R(4.0), R(0.56), R(0.0)};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(regimes); i++) {
+        for (uint32_t j = 0U; j < GW_BANK_COUNT; j++) {
+            gw_real_t statistics[2];
+            gw_real_t releases[2];
+            for (uint32_t k = 0U; k < 2U; k++) {
+                begin();
+                config.presliding = GW_ZERO;
+                doubts.usual2 = (k == 0U) ? GW_ZERO : R(0.3);
+                gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, regimes[i], &doubts);
+                channel.bank[j].force_x_n = R(-240.0);
+                channel.bank[j].force_y_n = R(180.0);
+                step(regimes[i], false);
+                CHECK(found.widest == j);
+                const gw_wrench_t *const x = &channel.bank[j];
+                const gw_real_t square_n2 = (x->force_x_n * x->force_x_n) + (x->force_y_n * x->force_y_n);
+                statistics[k] = square_n2 / found.statistic;
+                releases[k] = found.release;
+            }
+            unit_row((4U * i) + j);
+            const gw_real_t added_n2 = (i == 0U) ? GW_ZERO : (R(120.0) * shares[j]);
+            CHECK_NEAR(statistics[1] - statistics[0], added_n2, statistics[1] * R(1000.0) * ROUNDING);
+            CHECK(releases[0] == releases[1]);
+        }
+    }
+}
+
+/* 2.4e9 20^2 N^2 are below what is kept, 2.6e9 are above; a restart forgets it. */
+static void a_wheel_holds_no_more_than_the_largest(void)
+{
+    begin();
+    doubts.usual2 = R(2.4e9);
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
+    CHECK_NEAR(channel.letting_go_n2, R(9.6e11), R(9.6e11) * ROUNDING);
+    doubts.usual2 = R(2.6e9);
+    gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
+    CHECK(channel.letting_go_n2 == R(1.0e12));
+    gw_fast_channel_restart(&channel);
+    CHECK(channel.letting_go_n2 == GW_ZERO);
+}
+
 /* What gears may be wrong by widens it, too, and the end of a contact; each at the wheels' distance from the centre. */
 static void doubt_of_gears_is_one_of_the_model(void)
 {
@@ -1041,6 +1087,7 @@ static void any_robot_keeps_the_invariant(void)
             doubts.forces_n2 = R(5.0e10);
             doubts.rocking_n2 = R(1.0e12);
             doubts.gear_n2 = R(1.0e12);
+            doubts.usual2 = R(4.0e4);
             doubts.slip.wheel_n2.wheel[k % 3U] = R(1.0e12);
             gw_fast_channel_doubt(&channel, &config, &kinematics, &follower, &balance, GW_REGIME_MOTION, &doubts);
             step((gw_regime_t)(k % 3U), true);
@@ -1078,6 +1125,7 @@ static void the_invariant_sees_every_member(void)
                                   &channel.model_n2.yy,
                                   &channel.moment_nm2,
                                   &channel.rocking_n2,
+                                  &channel.letting_go_n2,
                                   &channel.row_m2ps2,
                                   &channel.moment_noise_m2,
                                   &channel.held.force_x_n,
@@ -1175,6 +1223,9 @@ void suite_fast_channel(void)
     unit_run("a_restart_keeps_what_was_learned_of_the_noise", a_restart_keeps_what_was_learned_of_the_noise);
     unit_run("any_robot_keeps_the_invariant", any_robot_keeps_the_invariant);
     unit_run("rocking_widens_the_threshold_of_a_hit", rocking_widens_the_threshold_of_a_hit);
+    unit_run("a_wheel_that_lets_go_widens_the_threshold_in_motion",
+             a_wheel_that_lets_go_widens_the_threshold_in_motion);
+    unit_run("a_wheel_holds_no_more_than_the_largest", a_wheel_holds_no_more_than_the_largest);
     unit_run("doubt_of_gears_is_one_of_the_model", doubt_of_gears_is_one_of_the_model);
     unit_run("doubt_of_a_wheel_that_slips_is_one_of_the_model", doubt_of_a_wheel_that_slips_is_one_of_the_model);
     unit_run("a_moment_that_unwinds_is_no_hit", a_moment_that_unwinds_is_no_hit);

@@ -103,10 +103,74 @@ static void a_contact_teaches_nothing(void)
     CHECK(ripple.seen2 == GW_ZERO);
 }
 
+/* Seen at its largest from the third interval of 64 ms on, the mean is known after 0.1 of 20 s, 527 steps of 4 ms: the
+ * variance is the largest from then on, in quiet moments, too, but in no reaction. */
+static void rollers_that_are_always_uneven_stay_doubted(void)
+{
+    begin();
+    feel(526U, R(1.0), false);
+    CHECK(ripple.weight < R(0.1));
+    CHECK(gw_ripple_usual(&ripple, false) == GW_ZERO);
+    feel(1U, R(1.0), false);
+    CHECK(ripple.weight >= R(0.1));
+    CHECK(gw_ripple_usual(&ripple, false) == ripple.most2);
+    CHECK(gw_ripple_usual(&ripple, true) == GW_ZERO);
+    for (uint32_t i = 0U; i < 600U; i++) { /* 2.4 s with nothing to be seen: s^2 has faded, the mean is above 0.4 */
+        feel(1U, GW_ZERO, false);
+    }
+    CHECK(ripple.seen2 < R(0.01));
+    CHECK_NEAR(gw_ripple_variance(&ripple, false), ripple.guess2 + ripple.most2, ROUNDING);
+    CHECK_NEAR(gw_ripple_variance(&ripple, true), ((R(4.0) / R(9.0)) * ripple.guess2) + ripple.seen2, ROUNDING);
+}
+
+/* The mean of what is seen: 1 - e^(-t/20 s) of it, over its weight, which is as much. */
+static void the_mean_is_that_of_the_last_seconds(void)
+{
+    begin();
+    ripple.seen2 = R(0.2);
+    ripple.next2 = R(0.2);
+    for (uint32_t i = 0U; i < 2500U; i++) {
+        ripple.felt2 = R(0.2);
+        feel(1U, GW_ZERO, false);
+        ripple.next2 = R(0.2);
+    }
+    const gw_real_t weight = -gw_expm1(R(-0.5));
+    CHECK_NEAR(ripple.weight, weight, R(1000.0) * ROUNDING);
+    CHECK_NEAR(ripple.mean2, R(0.2) * weight, R(1000.0) * ROUNDING);
+    const gw_real_t mean2 = ripple.mean2;
+    const gw_real_t before = ripple.weight;
+    feel(100U, R(1.0), true); /* a reaction teaches nothing */
+    CHECK((ripple.mean2 == mean2) && (ripple.weight == before));
+}
+
+/* Nothing up to 0.3 of the largest, all of it from 0.4 on. */
+static void what_is_usual_grows_with_the_mean(void)
+{
+    const struct {
+        gw_real_t mean;
+        gw_real_t usual;
+    } rows[] = {{R(0.0), R(0.0)},  {R(0.29), R(0.0)}, {R(0.32), R(0.2)},
+                {R(0.38), R(0.8)}, {R(0.41), R(1.0)}, {R(1.0), R(1.0)}};
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(rows); i++) {
+        begin();
+        ripple.weight = R(0.5);
+        ripple.mean2 = (R(0.5) * rows[i].mean) * ripple.most2;
+        unit_row(i);
+        CHECK_NEAR(gw_ripple_usual(&ripple, false), rows[i].usual * MOST2, R(100.0) * ROUNDING);
+        CHECK(gw_ripple_usual(&ripple, true) == GW_ZERO);
+        ripple.guess2 = GW_ZERO;
+        ripple.seen2 = R(0.3) * MOST2;
+        CHECK_NEAR(gw_ripple_variance(&ripple, false), gw_max(rows[i].usual, R(0.3)) * MOST2, R(100.0) * ROUNDING);
+    }
+    begin();
+    CHECK(gw_ripple_usual(&ripple, false) == GW_ZERO);
+}
+
 static void without_ripple_nothing_is_doubted(void)
 {
     gw_ripple_init(&ripple, GW_ZERO, INTERVAL_S);
-    feel(300U, R(10.0), false);
+    feel(900U, R(10.0), false);
+    CHECK(gw_ripple_usual(&ripple, false) == GW_ZERO);
     CHECK(gw_ripple_variance(&ripple, false) == GW_ZERO);
 }
 
@@ -155,8 +219,8 @@ static void the_invariant_sees_every_member(void)
 {
     begin();
     const gw_ripple_t good = ripple;
-    gw_real_t *const members[] = {&ripple.guess2, &ripple.most2, &ripple.seen2, &ripple.next2,
-                                  &ripple.felt2,  &ripple.keep,  &ripple.rise};
+    gw_real_t *const members[] = {&ripple.guess2, &ripple.most2, &ripple.seen2, &ripple.next2,  &ripple.felt2,
+                                  &ripple.keep,   &ripple.rise,  &ripple.mean2, &ripple.weight, &ripple.recent};
     CHECK(!gw_ripple_invariant_holds(NULL));
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(members); i++) {
         unit_row(i);
@@ -168,8 +232,8 @@ static void the_invariant_sees_every_member(void)
         CHECK(!gw_ripple_invariant_holds(&ripple));
         ripple = good;
     }
-    gw_real_t *const shares[] = {&ripple.guess2, &ripple.keep, &ripple.rise};
-    const gw_real_t limits[] = {R(1.0), R(1.0), R(0.5)};
+    gw_real_t *const shares[] = {&ripple.guess2, &ripple.keep, &ripple.rise, &ripple.weight, &ripple.recent};
+    const gw_real_t limits[] = {R(1.0), R(1.0), R(0.5), R(1.0), R(0.5)};
     for (uint32_t i = 0U; i < UNIT_COUNT_OF(shares); i++) {
         unit_row(i);
         *shares[i] = limits[i];
@@ -195,6 +259,9 @@ void suite_ripple(void)
     unit_run("a_reaction_is_force_itself", a_reaction_is_force_itself);
     unit_run("what_is_felt_counts_later", what_is_felt_counts_later);
     unit_run("a_contact_teaches_nothing", a_contact_teaches_nothing);
+    unit_run("rollers_that_are_always_uneven_stay_doubted", rollers_that_are_always_uneven_stay_doubted);
+    unit_run("the_mean_is_that_of_the_last_seconds", the_mean_is_that_of_the_last_seconds);
+    unit_run("what_is_usual_grows_with_the_mean", what_is_usual_grows_with_the_mean);
     unit_run("without_ripple_nothing_is_doubted", without_ripple_nothing_is_doubted);
     unit_run("the_doubt_lies_along_the_axles", the_doubt_lies_along_the_axles);
     unit_run("every_period_has_an_interval", every_period_has_an_interval);

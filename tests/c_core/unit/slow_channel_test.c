@@ -1,12 +1,16 @@
 #include "usual_noise.h"
 
+#include "giveway/gw_ripple.h"
+
 static gw_slow_channel_t channel;
 static gw_channels_config_t config;
 static gw_follower_t follower;
 static gw_kinematics_t kinematics;
 static gw_balance_t balance;
+static gw_doubts_t doubts;
 
 static const gw_balance_t no_balance;
+static const gw_doubts_t no_doubts;
 static const gw_regime_t regimes[] = {GW_REGIME_REST, GW_REGIME_CREEPING, GW_REGIME_MOTION};
 
 static void begin(void)
@@ -19,6 +23,7 @@ static void begin(void)
     gw_slow_channel_init(&channel, &config, &usual);
     CHECK(gw_slow_channel_invariant_holds(&channel));
     balance = no_balance;
+    doubts = no_doubts;
 }
 
 static void steps(uint32_t count)
@@ -31,8 +36,18 @@ static void steps(uint32_t count)
 
 static void judge(gw_regime_t floor)
 {
-    gw_slow_channel_judge(&channel, &config, &kinematics, &follower, floor, GW_ZERO);
+    gw_slow_channel_judge(&channel, &config, &kinematics, &follower, floor, &doubts);
     CHECK(gw_slow_channel_invariant_holds(&channel));
+}
+
+/* In motion the threshold has this covariance besides the floor. */
+static void judge_against(gw_planar_covariance_t m, gw_regime_t floor)
+{
+    const gw_planar_covariance_t none = {GW_ZERO, GW_ZERO, GW_ZERO};
+    const gw_planar_spread_t spread = gw_planar_spread((floor == GW_REGIME_REST) ? none : m);
+    const gw_real_t floor_n = gw_force_floor(config.slow, floor);
+    judge(floor);
+    CHECK(channel.statistic == gw_planar_distance(&spread, floor_n * floor_n, channel.force_n));
 }
 
 /* F (1 - e^(-t/0.05 s)), and its square over that of the floor; no force, no model. */
@@ -71,15 +86,45 @@ static void what_the_model_does_not_know_widens_the_threshold_in_motion(void)
         change.friction_n.wheel[0] = R(30.0);
         const gw_planar_covariance_t m = gw_model_covariance(&config, &kinematics, &follower, &change,
                                                              &channel.mean.model, R(20.0), GW_TWO * config.presliding);
-        const gw_planar_covariance_t none = {GW_ZERO, GW_ZERO, GW_ZERO};
-        const gw_planar_spread_t spread = gw_planar_spread((i == 0U) ? none : m);
-        const gw_real_t floor_n = gw_force_floor(config.slow, regimes[i]);
-        judge(regimes[i]);
         unit_row(i);
-        CHECK(channel.statistic == gw_planar_distance(&spread, floor_n * floor_n, channel.force_n));
+        judge_against(m, regimes[i]);
         CHECK((m.xx > R(100.0)) || (m.yy > R(100.0)));
         CHECK(channel.force_n.x == R(30.0));
     }
+}
+
+/* Of rollers that each have all of their friction half of what is usual is added, along the axles, but at rest. */
+static void usual_ripple_widens_the_threshold_in_motion(void)
+{
+    for (uint32_t i = 0U; i < UNIT_COUNT_OF(regimes); i++) {
+        begin();
+        doubts.usual2 = R(0.6);
+        channel.mean.residual.force_x_n = R(30.0);
+        channel.mean.residual.force_y_n = R(-20.0);
+        channel.mean.model.friction_n.wheel[0] = R(15.0);
+        channel.mean.model.friction_n.wheel[2] = R(-12.0);
+        channel.baseline.model = channel.mean.model;
+        const gw_planar_covariance_t known =
+            gw_model_covariance(&config, &kinematics, &follower, &no_balance.model, &channel.mean.model, R(20.0),
+                                GW_TWO * config.presliding);
+        const gw_planar_covariance_t m = gw_ripple_added(R(0.3), &kinematics, &channel.mean.model.friction_n, known);
+        unit_row(i);
+        judge_against(m, regimes[i]);
+    }
+}
+
+/* What the body does while it rocks, and what gears may be wrong by, to all sides, at rest, too. */
+static void rocking_and_gears_widen_the_threshold(void)
+{
+    const gw_planar_covariance_t m = {R(700.0), GW_ZERO, R(700.0)};
+    const gw_planar_spread_t spread = gw_planar_spread(m);
+    begin();
+    doubts.rocking_n2 = R(400.0);
+    doubts.gear_n2 = R(300.0);
+    channel.mean.residual.force_x_n = R(30.0);
+    channel.mean.residual.force_y_n = R(-20.0);
+    judge(GW_REGIME_REST);
+    CHECK(channel.statistic == gw_planar_distance(&spread, R(16.0), channel.force_n));
 }
 
 /* What the follower knows of the change is added to the residual. */
@@ -225,6 +270,8 @@ void suite_slow_channel(void)
              a_push_is_compared_with_the_floor_behind_a_low_pass);
     unit_run("what_the_model_does_not_know_widens_the_threshold_in_motion",
              what_the_model_does_not_know_widens_the_threshold_in_motion);
+    unit_run("usual_ripple_widens_the_threshold_in_motion", usual_ripple_widens_the_threshold_in_motion);
+    unit_run("rocking_and_gears_widen_the_threshold", rocking_and_gears_widen_the_threshold);
     unit_run("known_friction_is_no_push", known_friction_is_no_push);
     unit_run("the_first_mean_begins_at_zero", the_first_mean_begins_at_zero);
     unit_run("a_baseline_of_seconds_follows_in_motion", a_baseline_of_seconds_follows_in_motion);
