@@ -1,54 +1,34 @@
-"""The tests marked `deep`, which `make test` leaves out, pass."""
+"""The tests marked `deep`, which `make test` leaves out, pass: those whose result depends on the controller."""
 
 from __future__ import annotations
 
-import re
-
 from verify.context import PYTEST, Context
-from verify.rung import Figure, Rung, RungFailed, planted
-
-# Most of the time is compilers and installers; only what hangs takes this long.
-HANGS_S = 5400.0
-# They build a release in the same folder, and keep both cores busy: one after the other, and beside nothing else.
-BUILDERS = "tests/packaging"
-PASSED = re.compile(r"^(?:=+ )?(\d+) passed\b[^\n]*", re.MULTILINE)
+from verify.deep import BUILDERS, OTHER_ROOMS, passed
+from verify.rung import Figure, Rung, planted
 
 
 def check(context: Context) -> Figure:
-    tests = passed(context, "tests", "--ignore", BUILDERS, "--numprocesses", "2", "--dist", "loadfile")
-    tests += passed(context, BUILDERS)
+    left_out = [word for path in (BUILDERS, *OTHER_ROOMS) for word in ("--ignore", path)]
+    tests = passed(context, "tests", *left_out, "--numprocesses", "2", "--dist", "loadfile")
     _check_planted(context)
     return Figure(f"{tests} tests passed; 1 planted fault seen", {"tests": tests, "planted_faults": 1})
 
 
-def passed(context: Context, *arguments: str, environment: dict[str, str] | None = None) -> int:
-    """The number of deep tests that passed; `RungFailed` if one failed or none was found."""
-    answer = context.run(
-        context.which(PYTEST), "-q", "-m", "deep", *arguments,
-        cwd=context.root, timeout_s=HANGS_S, memory_gib=None,
-        environment={"OPENBLAS_NUM_THREADS": "1", **(environment or {})},
-    )  # fmt: skip
-    closing = PASSED.search(answer.stdout)
-    if closing is None or "skipped" in closing[0]:
-        raise RungFailed(answer.evidence)
-    return int(closing[1])
-
-
 # Python runs it at each start.
-NO_LIMIT = """
-from giveway.fmu_tools.limits import Limits
+OTHER_NUMBERS = """
+from giveway.firmware import c_text
 
-_, *others = Limits.__init__.__defaults__
-Limits.__init__.__defaults__ = (100_000.0, *others)
+exact = c_text.real
+c_text.real = lambda value: exact(1.001 * value)
 """
 
 
 def _check_planted(context: Context) -> None:
-    """A limit on unpacked files that is too high to protect anybody."""
-    (context.work / "sitecustomize.py").write_text(NO_LIMIT, encoding="utf-8")
-    with planted("a gigabyte is unpacked", shows=r"FAILED tests/cosim/test_fmu_hostile\.py\S*bomb-info"):
-        tests = "tests/cosim/test_fmu_hostile.py::test_what_is_large_is_refused_in_little_memory"
-        passed(context, tests, "-k", "info and bomb", environment={"PYTHONPATH": str(context.work)})
+    """Firmware whose numbers are 0.1 % larger than those of the controller that was recorded."""
+    (context.work / "sitecustomize.py").write_text(OTHER_NUMBERS, encoding="utf-8")
+    with planted("other numbers in the firmware", shows=r"FAILED tests/cosim/test_firmware\.py\S*lekiwi-test-arm"):
+        tests = "tests/cosim/test_firmware.py::test_the_self_test_passes_here_and_on_a_cortex_m4f"
+        passed(context, tests, "-k", "lekiwi", environment={"PYTHONPATH": str(context.work)})
 
 
-RUNG = Rung("the tests that take too long for every commit", (PYTEST,), check)
+RUNG = Rung("the tests of the controller that take too long for every commit", (PYTEST,), check)
