@@ -86,6 +86,8 @@ def test_from_the_file_to_the_chosen_bumper(
     assert (tmp_path / "all.csv").read_text(encoding="utf-8").count("\n") == 10
     assert "peak force of the run" in say("run", "bumper.toml", "--out", "run")
     assert "peak force of the run" in say("study", "run", str(folder), "--design", "0")
+    assert _main(["study", "sure", str(folder), "--indices", "64"]) == 2
+    assert "tolerance: 0 uncertain quantities is not allowed; allowed: at least two" in capsys.readouterr().err
 
 
 def test_a_file_can_be_checked_without_a_run(
@@ -103,6 +105,8 @@ def test_a_file_can_be_checked_without_a_run(
     (("sweep", "wrong.toml"), "wrong.toml:20: vary[0].quantity: testbed.bumper.spring_rat is unknown"),
     (("study", "show", "nothing"), "manifest.json: no such file"),
     (("study", "export", "nothing", "--out", "a.ssv"), "manifest.json: no such file"),
+    (("study", "export", "s", "--out", "a.csv", "--collision", "front"), "--collision: front is not allowed"),
+    (("study", "export", "s", "--design", "1", "--out", "a.toml", "--model", "bumper"), "--out ends in .ssv"),
     (("sweep", "mine.toml", "--threads", "0"), "threads: 0 is not allowed"),
 ])  # fmt: skip
 def test_wrong_input_is_one_line_and_writes_nothing(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from giveway.base.options import DaskOption, ThreadsOption
+from giveway.base.options import DaskOption, ThreadsOption, refuse_stated
 from giveway.base.terminal import (
     INTERRUPTED,
     print_columns,
@@ -230,6 +230,8 @@ def study_sure(
     number = best_design(found) if design is None else found.check_design(design)
     plan = sure.plan_with(found.setup.sure, runs, method)
     count = plan.indices if indices is None else whole("--indices", indices, 0, INDICES_MAX)
+    if indices:
+        tolerance_indices.several_inputs(found.setup)
     told = None
     try:
         with messages.showing(messages.SURE) as progress:
@@ -273,6 +275,7 @@ def study_run(
 
 @study_app.command("export")
 def study_export(
+    context: typer.Context,
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `giveway sweep` wrote.")],
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="FILE.ssv, FILE.toml (for `giveway run`) or FILE.csv.")
@@ -280,7 +283,9 @@ def study_export(
     design: Annotated[
         int | None, typer.Option("--design", metavar="N", help="Without it: the table of all, as CSV.")
     ] = None,
-    collision: Annotated[str | None, typer.Option("--collision", metavar="NAME", help="Without it: the first.")] = None,
+    collision: Annotated[
+        str | None, typer.Option("--collision", metavar="NAME", help="Of FILE.ssv or FILE.toml; without it: the first.")
+    ] = None,
     model: Annotated[str, typer.Option("--model", help="Whose SSV: testbed, controller or bumper.")] = "testbed",
 ) -> None:
     """Export a design: parameters for an FMU (SSV 1.0), a scenario file, or a list of values."""
@@ -288,6 +293,9 @@ def study_export(
     from giveway.study.export import export_design, export_table
 
     check_file(out)
+    for option, kinds in (("--collision", (".ssv", ".toml")), ("--model", (".ssv",))):
+        if out.suffix not in kinds:
+            refuse_stated(context, f"only if --out ends in {' or '.join(kinds)}", (option,))
     found = _load(folder)
     if design is None:
         export_table(found, out)

@@ -26,7 +26,17 @@ if TYPE_CHECKING:
     from giveway.study.answers import Answers
     from giveway.study.setup import Goal, Setup
 
-__all__ = ["TELLING", "Index", "Indices", "indices", "indices_of", "inputs_of", "points_of", "stored_indices"]
+__all__ = [
+    "TELLING",
+    "Index",
+    "Indices",
+    "indices",
+    "indices_of",
+    "inputs_of",
+    "points_of",
+    "several_inputs",
+    "stored_indices",
+]
 
 RESAMPLES = 1000
 TELLING = 0.01  # of the variance: what may have a smaller part in it decides nothing
@@ -69,6 +79,14 @@ def inputs_of(setup: Setup) -> list[str]:
     names = [one.quantity.name for one in setup.tolerances]
     names += [f"robot: {one.what}" for one in setup.crowd for _ in range(one.draws)]
     return [*names, *([NOISE] if setup.noise_seeds else [])]
+
+
+def several_inputs(setup: Setup) -> list[str]:
+    """`inputs_of`; GivewayError if fewer than two quantities are uncertain."""
+    groups = inputs_of(setup)
+    if len(set(groups)) < 2:
+        raise GivewayError("tolerance", f"{len(set(groups))} uncertain quantities", "at least two, to tell them apart")
+    return groups
 
 
 def indices_of(groups: Sequence[str], values: NDArray[np.float64], metric: str, seed: int) -> list[Index]:
@@ -125,9 +143,7 @@ def indices(
 
     setup = answers.setup
     count = setup.sure.indices if count is None else count
-    groups = inputs_of(setup)
-    if len(set(groups)) < 2:
-        raise GivewayError("tolerance", f"{len(set(groups))} uncertain quantities", "at least two, to tell them apart")
+    groups = several_inputs(setup)
     goals = _goals(setup)
     names = [goal.metric.name for goal in goals]
     decides = {
