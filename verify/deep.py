@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from verify.context import PYTEST, Context
-from verify.failure import RungFailed
+from verify.rung import RungFailed, planted
 
-__all__ = ["BUILDERS", "OTHER_ROOMS", "PASSED", "passed"]
+__all__ = ["BUILDERS", "OTHER_ROOMS", "check_planted", "passed"]
 
 # They build a release in the same folder, and keep both cores busy: one after the other, and beside nothing else.
 BUILDERS = "tests/packaging"
@@ -26,18 +26,25 @@ OTHER_ROOMS = (
     "tests/verify/test_ladder.py",
 )
 # Most of the time is compilers and installers; only what hangs takes this long.
-HANGS_S = 5400.0
-PASSED = re.compile(r"^(?:=+ )?(\d+) passed\b[^\n]*", re.MULTILINE)
+_HANGS_S = 5400.0
+_PASSED = re.compile(r"^(?:=+ )?(\d+) passed\b[^\n]*", re.MULTILINE)
 
 
 def passed(context: Context, *arguments: str, environment: dict[str, str] | None = None) -> int:
     """The number of deep tests that passed; `RungFailed` if one failed or none was found."""
     answer = context.run(
         context.which(PYTEST), "-q", "-m", "deep", *arguments,
-        cwd=context.root, timeout_s=HANGS_S, memory_gib=None,
+        cwd=context.root, timeout_s=_HANGS_S, memory_gib=None,
         environment={"OPENBLAS_NUM_THREADS": "1", **(environment or {})},
     )  # fmt: skip
-    closing = PASSED.search(answer.stdout)
+    closing = _PASSED.search(answer.stdout)
     if closing is None or "skipped" in closing[0]:
         raise RungFailed(answer.evidence)
     return int(closing[1])
+
+
+def check_planted(context: Context, fault: str, code: str, *arguments: str, shows: str) -> None:
+    """With ``code`` run at each start of Python the tests of ``arguments`` fail as ``shows`` says, or else the rung."""
+    (context.work / "sitecustomize.py").write_text(code, encoding="utf-8")
+    with planted(fault, shows=shows):
+        passed(context, *arguments, environment={"PYTHONPATH": str(context.work)})
