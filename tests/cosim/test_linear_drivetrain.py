@@ -29,6 +29,7 @@ from giveway.drivetrain.model import (
     plant,
     read,
     response,
+    transfer,
 )
 from giveway.robot.robot_file import read_robot
 from motor_current_robot import trikey_by_current
@@ -256,6 +257,19 @@ def test_motor_torque_turns_the_motor_of_a_free_drivetrain() -> None:
     assert abs(response(p, None, MOTOR, slow, sink=ANGLE) / rigid - 1.0)[0] < 1e-6
 
 
+def test_all_points_at_once_are_those_of_python_control() -> None:
+    p, servo = read()
+    w = np.geomspace(0.1, 6000.0, 50)
+    for system, points in (
+        (plant(p), 1j * w),
+        (closed_loop(p, servo), np.exp(1j * w * TICK_S)),
+        (servo.system(), 2j + w),
+    ):
+        found = transfer(system, points)
+        assert found.shape == ((50,) if system.issiso() else (2, 2, 50))
+        assert np.abs(found / system(points) - 1.0).max() < 1e-9  # both solve in double, by other routines
+
+
 def test_what_cannot_move_or_is_not_a_number_is_refused() -> None:
     good = {"motor_inertia": 0.05, "stiffness": 600.0, "damping": 1.0, "gear_viscous": 0.02, "load_inertia": 0.2}
     for field, value in (
@@ -272,6 +286,8 @@ def test_what_cannot_move_or_is_not_a_number_is_refused() -> None:
         plant(read(load="locked")[0], stuck=True)
     with pytest.raises(GivewayError, match="below 1000 Hz"):
         response(*read(), MOTOR, np.array([1000.0]))
+    with pytest.raises(GivewayError, match=r"frequency_hz: 0\.0.*above 0 Hz"):
+        response(read()[0], None, MOTOR, np.array([1.0, 0.0]))
     with pytest.raises(GivewayError, match="base, wheel, locked"):
         read(load="bse")
 

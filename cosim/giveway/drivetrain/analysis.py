@@ -26,6 +26,7 @@ from giveway.drivetrain.model import (
     loop_gain,
     plant,
     response,
+    transfer,
 )
 
 if TYPE_CHECKING:
@@ -157,7 +158,7 @@ def analyse(drivetrain: Drivetrain, servo: Servo, motor_current: bool = False) -
         name: _case(drivetrain, servo, name, system, seen.get(name), motor_current, frequency_hz, time_s)
         for name, system in systems.items()
     }
-    loop = loop_gain(drivetrain, servo)(np.exp(2j * np.pi * frequency_hz * SERVO_PERIOD_S))
+    loop = transfer(loop_gain(drivetrain, servo), np.exp(2j * np.pi * frequency_hz * SERVO_PERIOD_S))
     return Analysis(
         drivetrain,
         servo,
