@@ -144,6 +144,11 @@ def test_importing_the_package_is_light() -> None:
     modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "giveway.bench.command" in modules
     assert not (heavy - {"rich"}) & set(modules)
+    # Experiments are looked up, and a wrong name refused, without what labels, draws or runs them.
+    code = "import sys, giveway.cli; giveway.cli._main(['list', '--quiet']); print(' '.join(sys.modules))"
+    modules = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "giveway.experiments.motionless" in modules
+    assert not (heavy - {"rich", "numpy"}) & set(modules)
 
 
 def test_the_names_of_the_bumpers_are_those_of_the_table() -> None:

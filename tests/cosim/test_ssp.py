@@ -96,19 +96,33 @@ def run_between_steps(bumper: str, sequential: bool = False, preset: str = "defa
             for model in names
             for kind in KINDS
         }
-        record = testbed.getter("real", [table("testbed")[name].reference for name in COMPARED])
+
+        def references(model: str, chosen: list[str]) -> list[int]:
+            return [table(model)[name].reference for name in chosen]
+
+        passed = [
+            (source, sink, kind)
+            for source, sink in (("testbed", "controller"), ("controller", "testbed"))
+            for kind in KINDS
+        ]
+        put = {
+            (source, kind): instances[sink].setter(kind, references(sink, names[source][kind]))
+            for source, sink, kind in passed
+        }
+        take = {
+            (source, kind): instances[source].getter(kind, references(source, names[source][kind]))
+            for source, _, kind in passed
+        }
+        step = {model: instance.stepper() for model, instance in instances.items()}
+        record = testbed.getter("real", references("testbed", list(COMPARED)))
         rows = np.zeros((STEPS, len(COMPARED)))
         for k in range(STEPS):
-            for source, sink in (("testbed", "controller"), ("controller", "testbed")):
-                for kind in KINDS:
-                    references = [table(sink)[n].reference for n in names[source][kind]]
-                    status = instances[sink].setter(kind, references)(buffers[source, kind].ctypes.data)
-                    instances[sink].check(status, k * STEP_S)
+            for source, sink, kind in passed:
+                instances[sink].check(put[source, kind](buffers[source, kind].ctypes.data), k * STEP_S)
             for model, instance in instances.items():
-                instance.check(instance.stepper()(k * STEP_S, STEP_S), k * STEP_S)
+                instance.check(step[model](k * STEP_S, STEP_S), k * STEP_S)
                 for kind in KINDS:
-                    references = [table(model)[n].reference for n in names[model][kind]]
-                    instance.check(instance.getter(kind, references)(buffers[model, kind].ctypes.data), k * STEP_S)
+                    instance.check(take[model, kind](buffers[model, kind].ctypes.data), k * STEP_S)
             testbed.check(record(rows[k].ctypes.data), k * STEP_S)
     return rows
 

@@ -116,7 +116,7 @@ def test_broken_robot_files_name_the_key(cli: Cli, tmp_path: Path) -> None:
 def test_missing_native_parts_name_both_places(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(native, "__file__", str(tmp_path / "giveway" / "base" / "native.py"))
+    monkeypatch.setattr(native, "INSTALLED", tmp_path / "giveway" / "native")
     monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "elsewhere"))
     monkeypatch.setattr("sys.argv", ["giveway", "run", "motionless", "--out", str(tmp_path / "out")])
     with pytest.raises(SystemExit) as caught:

@@ -19,19 +19,19 @@ MODELS = ("controller", "testbed")  # the models of an experiment
 COMPONENTS = ("drivetrain", "bumper")  # components for a user's own robot
 DEFAULT_ROBOT = "trikey.toml"
 TABLE_ENDING = ".variables.toml"
+INSTALLED = Path(__file__).resolve().parents[1] / "native"
 BATCH_LIBRARY = "giveway_batch" + {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 
 def file(name: str) -> Path:
     """Path of the native file ``name``; NativeMissingError names both places that were searched."""
-    installed = Path(__file__).resolve().parents[1] / "native"
-    if (installed / name).is_file():
-        return installed / name
+    if (INSTALLED / name).is_file():
+        return INSTALLED / name
     folder = os.environ.get(ENVIRONMENT_VARIABLE)
     if folder and (Path(folder) / name).is_file():
         return (Path(folder) / name).resolve()
     searched = f"{ENVIRONMENT_VARIABLE}={folder}" if folder else f"{ENVIRONMENT_VARIABLE}, which is not set"
-    raise NativeMissingError(name, installed, searched)
+    raise NativeMissingError(name, INSTALLED, searched)
 
 
 def fmu(model: str, fmi_version: int) -> Path:

@@ -229,14 +229,17 @@ def meet_many(
     ``testbed`` may hold arrays of shape (n,), but for the outline, which all runs share; ``path_start_s`` is one.
     """
     count = len(approaches.speed_mps)
-    values = {name: np.broadcast_to(np.asarray(value, dtype=np.float64), count) for name, value in testbed.items()}
-    outline = outline_of({name: float(values[name][0]) for name in testbed if name.startswith("outline.")})
-    run_up = _run_ups(approaches, values)
+
+    def of_each(name: str) -> Numbers:
+        return np.broadcast_to(np.asarray(testbed[name], dtype=np.float64), count)
+
+    outline = outline_of({name: float(of_each(name)[0]) for name in testbed if name.startswith("outline.")})
+    run_up = _run_ups(approaches, of_each)
     refused = dict(run_up.refused)
-    mounted = np.flatnonzero((values["bumper.kind"] != 0.0) & (values["bumper.mount"] != 0.0))
-    for index in mounted:
+    mount = of_each("bumper.mount")
+    for index in np.flatnonzero((of_each("bumper.kind") != 0.0) & (mount != 0.0)):
         allowed = "0: a bumper on the robot is in front of its outline"
-        refused[int(index)] = GivewayError("bumper.mount", int(values["bumper.mount"][index]), allowed)
+        refused[int(index)] = GivewayError("bumper.mount", int(mount[index]), allowed)
     normal, on_outline = outward_normals(outline, approaches.point_m)
     for index in np.flatnonzero(~on_outline):
         refused[int(index)] = _off_outline(outline, approaches.point_m[index])
@@ -255,7 +258,7 @@ def meet_many(
         allowed = "a direction and speed with which slider and robot approach each other at this point"
         found = float(given[index]) if speed > 0.0 and not math.isnan(given[index]) else speed
         refused.setdefault(int(index), GivewayError("direction_rad" if speed > 0.0 else "speed_mps", found, allowed))
-    radius = values["contact.nose_radius"]
+    radius = of_each("contact.nose_radius")
     centre = pose[:, 0:2] + arm + radius[:, None] * outward  # of the nose, when it touches
     target = centre + radius[:, None] * along
     if not isinstance(plan, Rest):  # a straight line enters a resting convex outline only once
@@ -292,12 +295,15 @@ def _off_outline(outline: Numbers, point: Numbers) -> GivewayError:
     return GivewayError("point_m", [float(value) for value in point], allowed)
 
 
-def _run_ups(approaches: Approaches, testbed: Mapping[str, Numbers]) -> _RunUp:
-    """With the rope from rest until the slider is as fast as asked; without, until the rail has slowed it so far."""
+def _run_ups(approaches: Approaches, of_each: Callable[[str], Numbers]) -> _RunUp:
+    """With the rope from rest until the slider is as fast as asked; without, until the rail has slowed it so far.
+
+    ``of_each``: a parameter of the testbed by name, shape (n,).
+    """
     rope = approaches.time_s is None
     duration = np.zeros(len(approaches.speed_mps)) if approaches.time_s is None else approaches.time_s
     names = [*(f"slider.{name}" for name in SLIDER), *(f"rope.{name}" for name in ROPE)]
-    rows = np.stack([approaches.speed_mps, duration, *(testbed[name] for name in names)], axis=1)
+    rows = np.stack([approaches.speed_mps, duration, *map(of_each, names)], axis=1)
     # Most runs of a batch share theirs.
     each, which = np.unique(rows, axis=0, return_inverse=True)
     which = which.ravel()

@@ -11,8 +11,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-import xarray
-
 from giveway.base import native
 from giveway.base.errors import UnknownNameError
 from giveway.base.version import VERSION
@@ -27,6 +25,8 @@ from giveway.simulation.result import SCHEMA_VERSION, Result
 from giveway.simulation.run_warnings import RunWarning, warnings_of
 
 if TYPE_CHECKING:
+    import xarray
+
     from giveway.scenario.scenario import Scenario
 
 __all__ = ["ENGINES", "Engine", "judge", "run"]
@@ -87,6 +87,8 @@ def _begun(scenario: Scenario, record: Record) -> tuple[TimedPush, ...]:
 
 
 def _label(record: Record) -> xarray.Dataset:
+    import xarray
+
     variables: dict[str, Any] = {}
     for model in native.MODELS:
         for variable in table(model):
