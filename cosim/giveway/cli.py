@@ -160,6 +160,10 @@ def _answered(arguments: list[str], settings: _Settings) -> int:
     try:
         code = app(args=arguments, standalone_mode=False, obj=settings)
         ended = True
+    except typer.Abort as abort:
+        if isinstance(abort.__cause__, EOFError):  # Typer takes a file cut short for a question left unanswered
+            raise abort.__cause__ from None
+        raise
     finally:
         end_output(ended)
     return code if isinstance(code, int) else DONE

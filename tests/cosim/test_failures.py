@@ -176,6 +176,18 @@ def test_what_nobody_foresaw_is_one_line_that_names_the_details(faulty: list[str
     assert folder_content(tmp_path) == []
 
 
+def test_a_file_cut_short_is_no_interruption(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def cut_short(*_: object) -> None:
+        raise EOFError("No data left in file")
+
+    monkeypatch.setattr("giveway.simulation.runner.run", cut_short)
+    code, error = run_quietly(["run", "motionless", "--out", str(tmp_path / "out")])
+    assert code == 1
+    said = re.fullmatch(r"\n?giveway: unexpected EOFError: No data left in file; details: (\S+)\n", error)
+    assert said is not None, error
+    Path(said[1]).unlink()
+
+
 def test_debug_shows_the_traceback(faulty: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     for arguments, variable in ((["--debug", *faulty], ""), (faulty, "1")):
         monkeypatch.setenv("GIVEWAY_DEBUG", variable)
