@@ -9,7 +9,7 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from verify.context import Context, Tool
@@ -23,11 +23,13 @@ __all__ = [
     "SIZE",
     "TARGET",
     "Footprint",
+    "check",
     "check_parts",
     "check_table",
     "measure",
     "measure_parts",
     "measure_steps",
+    "recorded",
     "table",
     "worst_stack",
 ]
@@ -159,6 +161,25 @@ def parts_table(parts: dict[str, tuple[int, int]]) -> str:
     lines = ["| Flash on Cortex-M4F, bytes: a program that calls | -O2 | -Os |", "|---|---:|---:|"]
     lines += [f"| {name} | {fast:,} | {small:,} |" for name, (fast, small) in parts.items()]
     return "".join(f"{line}\n" for line in lines)
+
+
+def recorded(
+    measured: dict[str, Footprint], parts: dict[str, tuple[int, int]], steps: dict[str, int]
+) -> dict[str, int]:
+    """All of it as VERIFIED.json has it."""
+    values = {f"{name} {field}": value for name, cost in measured.items() for field, value in asdict(cost).items()}
+    for name, (fast, small) in parts.items():
+        values |= {f"{name}, -O2": fast, f"{name}, -Os": small}
+    return values | {f"everything on but {name}": step for name, step in steps.items()}
+
+
+def check(root: Path, values: Mapping[str, int]) -> None:
+    """`RungFailed` unless the texts show what was `recorded`."""
+    check_table(
+        root, {one.name: Footprint(**{field: values[f"{one.name} {field}"] for field in ROWS}) for one in MACHINES}
+    )
+    parts = {name: (values[f"{name}, -O2"], values[f"{name}, -Os"]) for name in PARTS}
+    check_parts(root, parts, {name: values[f"everything on but {name}"] for name in STEPS})
 
 
 def check_parts(root: Path, parts: dict[str, tuple[int, int]], steps: dict[str, int]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 from verify import footprint
 from verify.context import Context
@@ -15,10 +15,10 @@ POINTER = "00000000 <gw_a>:\n   0:\tblx\tr3\n"
 
 def check(context: Context) -> Figure:
     measured = {target.name: footprint.measure(context, target) for target in footprint.MACHINES}
-    footprint.check_table(context.root, measured)
     parts = footprint.measure_parts(context, TARGETS["cortex-m4f"])
     steps = footprint.measure_steps(context, TARGETS["cortex-m4f"])
-    footprint.check_parts(context.root, parts, steps)
+    values = footprint.recorded(measured, parts, steps)
+    footprint.check(context.root, values)
     with planted("a part that grew", shows="does not show what was measured"):
         footprint.check_parts(context.root, {name: (fast + 4, small) for name, (fast, small) in parts.items()}, steps)
     with planted("a longer step", shows="does not show what was measured"):
@@ -30,7 +30,6 @@ def check(context: Context) -> Figure:
     m4f = measured["cortex-m4f"]
     with planted("one instruction more", shows=f"measured {m4f.step_recorded + 1:,}"):
         footprint.check_table(context.root, {"cortex-m4f": replace(m4f, step_recorded=m4f.step_recorded + 1)})
-    values = {f"{name} {field}": value for name, cost in measured.items() for field, value in asdict(cost).items()}
     return Figure(
         f"Cortex-M4F: flash {m4f.flash} B, RAM {m4f.controller_ram} B + window, stack {m4f.stack} B, "
         f"step {m4f.step_searched} instructions, servo {m4f.servo_step}",
