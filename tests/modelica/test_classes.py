@@ -1,4 +1,4 @@
-"""rumoca parses, type-checks and balances every class, and simulates every example and every self-checking model."""
+"""rumoca parses, type-checks and balances every class, its units fit, and what checks itself has no residual."""
 
 import shutil
 from pathlib import Path
@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from giveway_modelica.compiler import PACKAGE, Compiler, ModelicaClass, classes
+from giveway_modelica.units import findings
 
 ALL = {found.name: found for found in classes()}
 COMPLETE = [name for name, found in ALL.items() if found.kind in ("model", "block") and not found.partial]
@@ -35,6 +36,11 @@ def test_class_compiles_and_is_balanced(compiler: Compiler, name: str) -> None:
     assert structure.is_balanced
     # What is open at its flanges cannot be solved by itself; what is closed can.
     assert structure.is_matched or not name.startswith(("GiveWay.Examples.", "GiveWay.Tests."))
+
+
+@pytest.mark.parametrize("name", [name for name in COMPLETE if name not in DRIVEN_IN])
+def test_units_are_consistent(compiler: Compiler, name: str) -> None:
+    assert list(findings(compiler, name)) == []
 
 
 @pytest.mark.parametrize("name", OTHERS)

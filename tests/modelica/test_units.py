@@ -1,4 +1,7 @@
-"""No equation adds, compares or assigns what has different units, and the check sees it when one does."""
+"""The check of units sees an equation that adds, compares or assigns what has different ones.
+
+That no class has such an equation is checked where they are compiled: test_classes.py.
+"""
 
 import shutil
 from pathlib import Path
@@ -7,12 +10,6 @@ import pytest
 from giveway_modelica.compiler import PACKAGE, Compiler, classes
 from giveway_modelica.dimensions import parsed, shown, si_types
 from giveway_modelica.units import findings
-from test_classes import COMPLETE, DRIVEN_IN
-
-
-@pytest.mark.parametrize("name", [name for name in COMPLETE if name not in DRIVEN_IN])
-def test_units_are_consistent(compiler: Compiler, name: str) -> None:
-    assert list(findings(compiler, name)) == []
 
 
 def test_every_function_is_called_by_a_model_that_is_checked(compiler: Compiler) -> None:

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import copy
 import ctypes
+import functools
 import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
 
 import fmpy
+from fmpy.model_description import ModelDescription
 
 ROOT = Path(__file__).parents[3]
 BUILD = Path(os.environ.get("GIVEWAY_BUILD_DIR", ROOT / "build"))
@@ -66,6 +68,12 @@ class _Fmi2EventInfo(ctypes.Structure):
     ]
 
 
+@functools.cache
+def _description(path: Path, _changed_ns: int) -> ModelDescription:
+    """FMPy checks it against the schema, which takes as long as many a test."""
+    return fmpy.read_model_description(str(path))
+
+
 class Fmu:
     """An unpacked FMU and, after `instantiate`, one instance of it."""
 
@@ -73,7 +81,7 @@ class Fmu:
         self.version = version
         self.path = path
         fmpy.extract(str(path), unzipdir=str(folder))
-        self.description = fmpy.read_model_description(str(folder))
+        self.description = _description(path, path.stat().st_mtime_ns)
         identifier = self.description.coSimulation.modelIdentifier
         self.binary = folder / "binaries" / BINARY_FOLDERS[version] / f"{identifier}.so"
         self.library = ctypes.CDLL(str(self.binary))
