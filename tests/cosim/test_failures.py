@@ -27,12 +27,14 @@ FULL = "File too large"  # what the system calls it; ENOSPC comes the same way
 @contextmanager
 def full_disk() -> Iterator[None]:
     """No file of this process grows beyond `LIMIT_BYTES`."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    before, compiled = resource.getrlimit(resource.RLIMIT_FSIZE), sys.dont_write_bytecode
+    sys.dont_write_bytecode = True  # Python keeps a module whose compiled form was cut short, and fails ever after
     resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT_BYTES, before[1]))
     try:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        sys.dont_write_bytecode = compiled
 
 
 @pytest.fixture(scope="module")
