@@ -307,6 +307,9 @@ def response(
 
     Exact: the samples of a sine are those of its continuous response, and C responds with a staircase. With a stuck
         gear the servo has no effect. CURRENT is a sequence of samples: -C(z)/(z (1 + C(z) P_am(z))) G_as.
+
+    Raises:
+        GivewayError: a frequency is not above 0 Hz or, with a servo, not below half its rate.
     """
     w = 2.0 * np.pi * np.asarray(frequency_hz, dtype=float)
     if not w.min() > 0.0:  # where a load that turns freely has no response
