@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -63,8 +64,10 @@ def main() -> int:
 def _run(words: Sequence[str]) -> int:
     """Exit code of this command of `giveway`, which ends by itself at Ctrl-C and keeps what it has."""
     with subprocess.Popen([str(Path(sys.executable).parent / "giveway"), *words]) as child:
+        # Else it would go on alone, in a folder that the next run cannot use meanwhile.
+        signal.signal(signal.SIGTERM, lambda *_: child.terminate())
         try:
-            return child.wait()
+            return abs(child.wait())
         except KeyboardInterrupt:
             return child.wait()
 

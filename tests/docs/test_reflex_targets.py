@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -65,3 +69,18 @@ def test_figures_stand_where_they_belong() -> None:
 def test_a_page_without_marks_is_refused() -> None:
     with pytest.raises(SystemExit, match="has no lines"):
         replaced(PAGE.replace(BEGIN, ""), BEGIN, END, "")
+
+
+def test_who_ends_it_ends_its_command(tmp_path: Path) -> None:
+    words = ["crowd", "--draw", "tuning", "--no-imu", "--out", str(tmp_path / "crowd")]
+    lines = f"from docs.reflex_targets import _run; raise SystemExit(_run({words!r}))"
+    with subprocess.Popen([sys.executable, "-c", lines], cwd=ROOT, stderr=subprocess.DEVNULL) as running:
+        lock = tmp_path / "crowd" / ".lock"
+        while not lock.exists() and running.poll() is None:
+            time.sleep(0.05)
+        running.terminate()
+        assert running.wait() == signal.SIGTERM
+    again = subprocess.run(
+        [Path(sys.executable).parent / "giveway", *words, "--robots", "1"], capture_output=True, check=False
+    )
+    assert again.returncode == 0, again.stderr
