@@ -46,7 +46,7 @@ def make_sure(answers: Answers, threads: int | None = None, progress: Report | N
     best = sure.best_designs(answers)
     for design in best:
         sure.probability(answers, design, threads=threads, progress=progress)
-    if best and answers.setup.sure.indices and len(set(tolerance_indices.inputs_of(answers.setup))) > 1:
+    if best and answers.setup.sure.indices and tolerance_indices.has_several_inputs(answers.setup):
         tolerance_indices.indices(answers, best[0], threads=threads, progress=progress)
 
 

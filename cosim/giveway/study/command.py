@@ -236,7 +236,7 @@ def study_sure(
     try:
         with messages.showing(messages.SURE) as progress:
             sure.probability(found, number, plan, threads=threads, progress=progress)
-            if count and len(set(tolerance_indices.inputs_of(found.setup))) > 1:
+            if count and tolerance_indices.has_several_inputs(found.setup):
                 told = tolerance_indices.indices(found, number, count, threads=threads, progress=progress)
     except KeyboardInterrupt:
         _interrupted("what is stored is kept; the same command goes on from there.")

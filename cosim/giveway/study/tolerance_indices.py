@@ -30,6 +30,7 @@ __all__ = [
     "TELLING",
     "Index",
     "Indices",
+    "has_several_inputs",
     "indices",
     "indices_of",
     "inputs_of",
@@ -81,10 +82,15 @@ def inputs_of(setup: Setup) -> list[str]:
     return [*names, *([NOISE] if setup.noise_seeds else [])]
 
 
+def has_several_inputs(setup: Setup) -> bool:
+    """Are there quantities to be told apart?"""
+    return len(set(inputs_of(setup))) > 1
+
+
 def several_inputs(setup: Setup) -> list[str]:
     """`inputs_of`; GivewayError if fewer than two quantities are uncertain."""
     groups = inputs_of(setup)
-    if len(set(groups)) < 2:
+    if not has_several_inputs(setup):
         raise GivewayError("tolerance", f"{len(set(groups))} uncertain quantities", "at least two, to tell them apart")
     return groups
 
