@@ -65,11 +65,13 @@ def _run(words: Sequence[str]) -> int:
     """Exit code of this command of `giveway`, which ends by itself at Ctrl-C and keeps what it has."""
     with subprocess.Popen([str(Path(sys.executable).parent / "giveway"), *words]) as child:
         # Else it would go on alone, in a folder that the next run cannot use meanwhile.
-        signal.signal(signal.SIGTERM, lambda *_: child.terminate())
+        before = signal.signal(signal.SIGTERM, lambda *_: child.terminate())
         try:
             return abs(child.wait())
         except KeyboardInterrupt:
             return child.wait()
+        finally:
+            signal.signal(signal.SIGTERM, before)
 
 
 def tables(documents: Mapping[str, Document], sources: str) -> str:
