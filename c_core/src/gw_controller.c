@@ -377,6 +377,8 @@ static void set_up_escape(gw_controller_t *controller, const gw_controller_confi
     gw_tip_init(&tip, &config->admittance.tip, &controller->estimator.kinematics);
     gw_admittance_set_tip(&controller->admittance, &tip);
     gw_reference_set_tip(&controller->reference, &tip);
+    controller->begins = false;
+    controller->waits = false;
     controller->may_press = false;
     controller->may_be_pushed = false;
 }
@@ -396,15 +398,48 @@ static gw_vector_t felt_force(const gw_controller_t *controller)
 }
 #endif
 
-/* A reaction begins: does the robot move towards what it hit, or may the push accelerate it? Neither within a reaction:
- * there the robot rocks, and what it feels of that would make it rock more. */
-static void note_press(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+#if (GW_WITH_CHANNELS == 1)
+/* Is it too early to tell whether a hit pushes the robot or throws its wheels back? An IMU tells at once. */
+static bool is_unsure(const gw_controller_t *controller)
 {
+    return uses_channels(controller) && gw_channels_are_unsure(&controller->channels);
+}
+#else
+static bool is_unsure(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
+}
+#endif
+
+/* The escape begins: does the robot move towards what it hit, or may the push accelerate it? Neither within a reaction:
+ * there the robot rocks, and what it feels of that would make it rock more. Until the direction is sure it brakes. */
+static void begin_escape(gw_controller_t *controller, gw_vector_t velocity, gw_vector_t direction)
+{
+    static const gw_vector_t nowhere = {0};
     const gw_real_t towards_mps = -gw_along(velocity, direction);
-    const bool begins = (before != GW_MODE_REACTING);
+    const bool goes = controller->begins && (!controller->waits);
     const bool presses = (towards_mps > controller->supervisor.config.settled_speed_mps);
-    controller->may_press = begins && presses;
-    controller->may_be_pushed = begins && (!presses);
+    controller->may_press = goes && presses;
+    controller->may_be_pushed = goes && (!presses);
+    controller->turns = !controller->waits;
+    (void)gw_admittance_start(&controller->admittance, velocity, controller->waits ? nowhere : direction);
+}
+
+/* Something hits the robot. */
+static void begin_reaction(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+{
+    controller->begins = (before != GW_MODE_REACTING);
+    controller->waits = is_unsure(controller);
+    begin_escape(controller, velocity, direction);
+}
+
+/* Asked once in every tick. An interrupted reaction does not wait any more: it only comes to rest. */
+static bool stops_waiting(gw_controller_t *controller)
+{
+    const bool waited = controller->waits && (controller->supervisor.mode == GW_MODE_REACTING);
+    controller->waits = waited && is_unsure(controller);
+    return waited && (!controller->waits);
 }
 
 /* A push that is felt accelerates the escape; then that waits for the robot. */
@@ -452,12 +487,24 @@ static void set_up_escape(const gw_controller_t *controller, const gw_controller
     (void)config;
 }
 
-static void note_press(const gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+static void begin_reaction(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+{
+    (void)before;
+    controller->turns = true;
+    (void)gw_admittance_start(&controller->admittance, velocity, direction);
+}
+
+static void begin_escape(const gw_controller_t *controller, gw_vector_t velocity, gw_vector_t direction)
 {
     (void)controller;
-    (void)before;
     (void)velocity;
     (void)direction;
+}
+
+static bool stops_waiting(const gw_controller_t *controller)
+{
+    (void)controller;
+    return false;
 }
 
 static void prepare_escape(const gw_controller_t *controller)
@@ -518,6 +565,7 @@ gw_status_t gw_controller_init(gw_controller_t *controller, const gw_controller_
             controller->tick = 0U;
             controller->tare_request_before = false;
             controller->on_plan = false;
+            controller->turns = false;
         }
     }
     if (error != NULL) {
@@ -659,13 +707,15 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
 {
     const gw_mode_t mode = controller->supervisor.mode;
     const gw_vector_t velocity = {controller->reference.twist.vx_mps, controller->reference.twist.vy_mps};
+    const bool decided = stops_waiting(controller);
     if ((mode == GW_MODE_REACTING) && controller->detection.tripped) {
         const gw_vector_t direction = push_direction(controller);
         if (gives_way_anew(before, direction)) {
-            note_press(controller, before, velocity, direction);
-            (void)gw_admittance_start(&controller->admittance, velocity, direction);
+            begin_reaction(controller, before, velocity, direction);
         }
-    } else if ((mode == GW_MODE_REACTING) && is_refined(controller)) {
+    } else if (decided) {
+        begin_escape(controller, velocity, push_direction(controller));
+    } else if ((mode == GW_MODE_REACTING) && controller->turns && is_refined(controller)) {
         const gw_vector_t direction = push_direction(controller);
         if (gives_way_anew(before, direction)) {
             gw_admittance_redirect(&controller->admittance, direction);
@@ -674,6 +724,7 @@ static void enter_mode(gw_controller_t *controller, gw_mode_t before)
         if (mode == GW_MODE_REACTING) {
             /* After an interruption the space may no longer be free: come to rest, do not go on with the escape. */
             const gw_vector_t nowhere = {GW_ZERO, GW_ZERO};
+            controller->turns = false;
             (void)gw_admittance_start(&controller->admittance, velocity, nowhere);
         } else if (mode == GW_MODE_TARING) {
             gw_estimator_start_tare(&controller->estimator);

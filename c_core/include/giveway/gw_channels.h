@@ -122,6 +122,9 @@ GW_SMALL void gw_channels_restart(gw_channels_t *channels);
 /* After a gap in the samples: as gw_channels_restart, unless a contact lasted before it. That one goes on until its
  * end: a baseline that began within it would take its end for a hit from the other side. */
 GW_SMALL void gw_channels_resume(gw_channels_t *channels);
+/* A contact has just begun, and of a robot that may lean only the encoders tell: above the centre of percussion a hit
+ * throws the wheels towards what hits. */
+bool gw_channels_are_unsure(const gw_channels_t *channels);
 /* Nothing else was due in this tick: time for what not every tick needs. */
 bool gw_channels_have_time(const gw_channels_t *channels);
 /* One tick. The wrench is valid. */

@@ -114,7 +114,10 @@ typedef struct {
     bool drives_enabled;
     bool tare_request_before;
     bool on_plan; /* the reference was placed on the plan */
+    bool turns;   /* the escape follows the direction as it becomes better; an interrupted one only comes to rest */
 #if (GW_WITH_ESCAPE == 1)
+    bool begins;        /* the reaction began with a hit, and not within another one */
+    bool waits;         /* it brakes until the direction is sure */
     bool may_press;     /* the reaction began with a hit on the way: the robot may still move towards what it hit */
     bool may_be_pushed; /* it began with a hit, and the robot did not move towards it */
 #endif

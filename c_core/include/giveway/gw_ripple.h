@@ -2,7 +2,7 @@
  * have the friction of one, or each its own, and then it doubles for as long. Nobody knows before it has been seen. Its
  * force is along the wheel's axle, and has no moment about the centre: only a push there looks like it.
  *
- * The share by which the friction may vary has the variance g^2 + s^2. The guess g is the configuration's, 2/3 of it
+ * The share by which the friction may vary has the variance g^2 + s^2. The guess g is the configuration's, 0.45 of it
  * in a reaction, where no push should be missed, and fades as wheels turn: each 0.4 rad leaves 1/e of its square. What
  * has been seen, s, grows where a force comes and goes: where its square, of what takes some 20 to 50 ms, is more than
  * 0.025 of the sum of squares of the wheels' friction, 0.075 in a reaction. It is 5/3 of the configuration's at most,

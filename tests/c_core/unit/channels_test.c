@@ -1238,6 +1238,32 @@ static void the_impulse_is_bounded(void)
     CHECK(gw_in_range(output.mean_wrench.force_x_n, R(1.0e4), R(1.0e6)));
 }
 
+/* An IMU tells at once, and a robot that stands firm has no body that swings back. */
+static void the_direction_of_a_contact_is_unsure_at_first(void)
+{
+    gw_channels_config_trikey(&config);
+    config.rocking = R(0.3);
+    begin_with_config();
+    ticks(WARM_UP);
+    CHECK(!gw_channels_are_unsure(&channels));
+    wrench.force_x_n = R(50.0);
+    (void)ticks_to_trip(30U);
+    CHECK(output.active && (channels.rocking2 > GW_ZERO) && gw_channels_are_unsure(&channels));
+    ticks(9U);
+    CHECK(gw_channels_are_unsure(&channels));
+    channels.fast.sensor = GW_BY_IMU;
+    CHECK(!gw_channels_are_unsure(&channels));
+    channels.fast.sensor = GW_BY_ENCODERS;
+    channels.active = false;
+    CHECK(!gw_channels_are_unsure(&channels));
+    channels.active = true;
+    ticks(1U);
+    CHECK(!gw_channels_are_unsure(&channels));
+    channels.ticks_since_trip = 0U;
+    gw_channels_stand_firm(&channels);
+    CHECK(!gw_channels_are_unsure(&channels));
+}
+
 static void a_restart_keeps_what_was_learned(void)
 {
     begin_in_motion();
@@ -1361,6 +1387,7 @@ void suite_channels(void)
     unit_run("in_motion_nothing_pulls", in_motion_nothing_pulls);
     unit_run("an_end_is_no_push_from_the_other_side", an_end_is_no_push_from_the_other_side);
     unit_run("the_impulse_is_bounded", the_impulse_is_bounded);
+    unit_run("the_direction_of_a_contact_is_unsure_at_first", the_direction_of_a_contact_is_unsure_at_first);
     unit_run("a_restart_keeps_what_was_learned", a_restart_keeps_what_was_learned);
     unit_run("what_is_counted_is_passed_on", what_is_counted_is_passed_on);
     unit_run("the_invariant_sees_every_member", the_invariant_sees_every_member);

@@ -75,6 +75,70 @@ static void the_escape_turns_with_what_is_felt(void)
     CHECK(gw_abs(twist.vx_mps) > R(0.01));
 }
 
+/* With encoders alone. */
+static void rig_that_may_lean(void)
+{
+    rig_with_channels();
+    rig_config.channels.rocking = R(0.3);
+    rig_config.admittance.kind = GW_ADMITTANCE_ESCAPE;
+    rig_config.admittance.tip.height_m = R(0.4);
+}
+
+/* Hit along x, and as soon as it waits from the side, too. */
+static void begin_to_wait(void)
+{
+    begin_tracking();
+    rig_push(R(60.0));
+    rig_until(GW_MODE_REACTING, 30U);
+    CHECK(rig_controller.waits && (!rig_controller.may_press) && (!rig_controller.may_be_pushed));
+    rig_input.sensor.torque_nm[0] = R(3.0);
+}
+
+/* It knows in the tenth tick where to go to, or, if the contact is over before, in that tick. */
+static void an_escape_waits_for_its_direction(void)
+{
+    for (uint32_t i = 0U; i < 2U; i++) {
+        uint32_t waited = 0U;
+        rig_that_may_lean();
+        rig_config.channels.rearm_ticks = (i == 0U) ? 1000U : 5U;
+        begin_to_wait();
+        do {
+            CHECK((rig_output.reference_twist.vx_mps == GW_ZERO) && (rig_output.reference_twist.vy_mps == GW_ZERO));
+            rig_tick(GW_STATUS_OK);
+            waited++;
+        } while (rig_controller.waits && (waited < 20U));
+        unit_row(i);
+        CHECK((i == 0U) ? (waited == 10U) : (waited < 10U));
+        CHECK((!rig_controller.waits) && rig_controller.may_be_pushed && (!rig_controller.may_press));
+        CHECK(rig_output.detection_active == (i == 0U));
+        CHECK(gw_abs(rig_controller.contact_found.push_n.y) > R(0.3));
+        CHECK_NEAR(rig_controller.admittance.away.y * rig_controller.contact_found.push_n.x,
+                   rig_controller.admittance.away.x * rig_controller.contact_found.push_n.y,
+                   gw_abs(rig_controller.contact_found.push_n.y) * R(10.0) * ROUNDING);
+        rig_tick(GW_STATUS_OK);
+        CHECK((rig_output.reference_twist.vx_mps > GW_ZERO) == (i == 0U)); /* armed again, it feels more of the same */
+    }
+}
+
+/* After a fault the space may no longer be free: it does not go where it would have gone. */
+static void a_wait_ends_with_a_fault(void)
+{
+    rig_that_may_lean();
+    begin_to_wait();
+    rig_input.sensor.present = false;
+    rig_tick(GW_STATUS_SENSOR_MISSING);
+    CHECK((rig_output.mode == GW_MODE_FAULT) && (!rig_controller.waits));
+    rig_input.sensor.present = true;
+    for (uint32_t k = 0U; k < rig_config.sensor_check.recover_ticks; k++) {
+        rig_tick(GW_STATUS_SENSOR_RECOVERING);
+    }
+    for (uint32_t k = 0U; k < 100U; k++) {
+        rig_tick(GW_STATUS_OK);
+        CHECK((rig_output.mode == GW_MODE_REACTING) && (!rig_controller.waits));
+        CHECK((rig_output.reference_twist.vx_mps == GW_ZERO) && (rig_output.reference_twist.vy_mps == GW_ZERO));
+    }
+}
+
 /* Growing by 10 N/s: too slow for the one channel, the other one notices it. */
 static void a_slow_push_is_noticed_at_rest(void)
 {
@@ -316,6 +380,8 @@ void suite_channels_use(void)
 {
     unit_run("it_gives_way_to_a_hit_and_comes_back", it_gives_way_to_a_hit_and_comes_back);
     unit_run("the_escape_turns_with_what_is_felt", the_escape_turns_with_what_is_felt);
+    unit_run("an_escape_waits_for_its_direction", an_escape_waits_for_its_direction);
+    unit_run("a_wait_ends_with_a_fault", a_wait_ends_with_a_fault);
     unit_run("a_slow_push_is_noticed_at_rest", a_slow_push_is_noticed_at_rest);
     unit_run("live_force_yields_while_it_is_pushed", live_force_yields_while_it_is_pushed);
     unit_run("a_robot_without_height_stands_firm", a_robot_without_height_stands_firm);

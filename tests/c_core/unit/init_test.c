@@ -166,7 +166,8 @@ static void a_controller_starts_from_nothing(void)
     soil(&controller, sizeof(controller));
     CHECK_STATUS(gw_controller_init(&controller, &config, NULL), GW_STATUS_OK);
     CHECK((controller.tick == 0U) && (!controller.tare_request_before) && (!controller.on_plan) &&
-          (!controller.may_press) && (!controller.may_be_pushed));
+          (!controller.turns) && (!controller.begins) && (!controller.waits) && (!controller.may_press) &&
+          (!controller.may_be_pushed));
     CHECK((controller.detection_count == 0U) && (controller.detection_tick == -1));
     CHECK((controller.detection_wrench.force_x_n == GW_ZERO) && (controller.detection_wrench.force_y_n == GW_ZERO));
     CHECK(controller.detection_wrench.torque_nm == GW_ZERO);
