@@ -427,7 +427,8 @@ static void begin_escape(gw_controller_t *controller, gw_vector_t velocity, gw_v
 }
 
 /* Something hits the robot. */
-static void begin_reaction(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity, gw_vector_t direction)
+GW_APART static void begin_reaction(gw_controller_t *controller, gw_mode_t before, gw_vector_t velocity,
+                                    gw_vector_t direction)
 {
     controller->begins = (before != GW_MODE_REACTING);
     controller->waits = is_unsure(controller);
@@ -453,7 +454,7 @@ static void yield(gw_controller_t *controller)
 }
 
 /* Before a step of the admittance. */
-static void prepare_escape(gw_controller_t *controller)
+GW_APART static void prepare_escape(gw_controller_t *controller)
 {
     gw_admittance_face(&controller->admittance, controller->reference.yaw);
     if (controller->supervisor.mode == GW_MODE_REACTING) {

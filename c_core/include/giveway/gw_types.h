@@ -61,11 +61,14 @@
 #define GW_UNROLLED
 #endif
 
-/* Before a function that is made small instead of fast on Arm's microcontrollers: the longest step does not need it. */
+/* On Arm's microcontrollers. Before a function that is made small instead of fast: the longest step does not need it.
+ * Before one that is never inlined: its caller's stack does not hold what it needs. */
 #if defined(__GNUC__) && defined(__arm__)
 #define GW_SMALL __attribute__((cold))
+#define GW_APART __attribute__((noinline))
 #else
 #define GW_SMALL
+#define GW_APART
 #endif
 
 #ifdef __cplusplus
