@@ -5,6 +5,7 @@ Each task is bound to one worker that was accepted; the queue is kept here, so t
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 import pickle
@@ -161,6 +162,8 @@ class Pool:
 
     def close(self) -> None:
         """Forget all that is under way."""
+        with contextlib.suppress(Exception):  # a fetch that Ctrl-C broke off still looks for its future, once
+            self._client.sync(asyncio.sleep, 0, callback_timeout=CLOSE_S)
         for future in list(self._futures):
             self._drop(future)
         self._members = {}
