@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -54,3 +55,19 @@ def test_another_minor_version_is_refused(installed: Path, tmp_path: Path) -> No
 def test_the_folder_can_be_a_subdirectory(tmp_path: Path) -> None:
     cmake("-S", USER, "-B", tmp_path, f"-DGIVEWAY_SOURCE={CORE}")
     check_programs(tmp_path)
+
+
+def test_a_caller_is_compiled_with_what_was_left_out(tmp_path: Path) -> None:
+    options = ("-DGIVEWAY_WITH_CHANNELS=OFF", "-DGIVEWAY_WITH_ESCAPE=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
+    cmake("-S", USER, "-B", tmp_path, f"-DGIVEWAY_SOURCE={CORE}", *options)
+    commands = json.loads((tmp_path / "compile_commands.json").read_text(encoding="utf-8"))
+    of_caller = [one["command"].split() for one in commands if one["file"] == str(USER / "use.c")]
+    assert len(of_caller) == 2
+    for words in of_caller:
+        assert {"-DGW_WITH_CHANNELS=0", "-DGW_WITH_ESCAPE=0"} <= set(words)
+
+
+@pytest.mark.parametrize("flag", ["-DGW_WITH_CHANNELS=0", "-DGW_WITH_ESCAPE=0", "-DGW_REAL_DOUBLE=1"])
+def test_flags_that_a_caller_would_not_get_are_refused(flag: str, tmp_path: Path) -> None:
+    said = cmake("-S", CORE, "-B", tmp_path, f"-DCMAKE_C_FLAGS={flag}", fails=True)
+    assert f"{flag[2:-2]} is not allowed" in said
