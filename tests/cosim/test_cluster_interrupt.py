@@ -24,10 +24,10 @@ def test_it_leaves_no_complaint(caplog: pytest.LogCaptureFixture) -> None:
     ):
         client, gather = workers._client, workers._client._gather
 
-        async def late(*told: Any, **options: Any) -> Any:
+        async def late(*told: Any, **named: Any) -> Any:
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(0.5)  # the loop hears of it and of what follows at once, when the fetch is about to look
-            return await gather(*told, **options)
+            return await gather(*told, **named)
 
         client._gather = late
         with pytest.raises(KeyboardInterrupt):

@@ -86,9 +86,9 @@ def page(table: Table, version: str, equations: Path | None = None) -> str:
 <body>
 <h1>giveway {table.name} {escape(version)}</h1>
 <p>{escape(table.description)}.</p>
-<p>Co-Simulation{exchange}; any communication step size, made for {table.step_size} s. Inputs are held constant over a
-step and outputs are valid at its end. {_feedthrough(table)} Ranges are inclusive; a value outside its range, or not
-finite, is refused with a message. Parameters can be set until initialisation ends.</p>
+<p>Co-Simulation{exchange}; variable communication step size, made for {table.step_size} s. Inputs are held constant
+over a step and outputs are valid at its end. {_feedthrough(table)} Ranges are inclusive; a value outside its range, or
+not finite, is refused with a message. Parameters can be set until initialisation ends.</p>
 {_equations(equations)}{chr(10).join(sections)}
 <p>Licences: <a href="licenses/license.txt">licenses/license.txt</a>.</p>
 </body>
