@@ -51,7 +51,7 @@ def played(path: Path, wishes: Wishes | None = None, **choice: object) -> Replay
 def test_a_log_of_free_motion_is_resampled_and_found_in_order(tmp_path: Path) -> None:
     replay = played(csv(tmp_path / "log.csv", columns()))
     assert (replay.did.way, replay.did.rows, replay.did.steps) == ("linear", 2100, 4199)
-    assert replay.observes
+    assert replay.makes_plan
     assert replay.findings.wrong == []
     assert "signs and order of torque fit the motion" in replay.findings.fine
 

@@ -9,18 +9,21 @@ from pathlib import Path
 
 import giveway
 import numpy as np
+import pyarrow.parquet
 import pytest
 from cosim_helpers import Cli
 from giveway import batch
 from giveway.base.errors import FileError, GivewayError, InputFileError
 from giveway.crowd.population import GROUPS, group_of
 from giveway.identification.torque_model import TorqueModel
+from giveway.replay.inputs import Steps
 from giveway.replay.run_log import write_log
+from giveway.replay.wheel_plan import WheelPlan
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
 from giveway.tuning.identified import identify
 from giveway.tuning.judged import hits_of, judge, logs_of, rows
-from giveway.tuning.logs import Log, Push, read_log, read_pushes, with_plan
+from giveway.tuning.logs import Log, Push, read_log, read_pushes
 from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
 from giveway.tuning.thresholds import NAMES, RIPPLE, RIPPLES, alarms_in, choose, settings_of
 from giveway.tuning.told import remarks
@@ -200,10 +203,21 @@ def test_nobody_wishes_for_such_a_rate(rate_per_hour: float) -> None:
         judge("tuning", 1, 6.0, rate_per_hour, 1)
 
 
+def without_plan(log: Log, rows: slice = slice(None)) -> Steps:
+    own = {name: values[rows] for name, values in log.inputs.items() if not name.startswith("plan.")}
+    arrays = (log.angle_rad[rows], log.torque_nm[rows], own["sensor.present"])
+    return Steps(rows.start or 0, own, *arrays, None)
+
+
+def with_plan(log: Log) -> Log:
+    made = WheelPlan({}, log.step_s).add(without_plan(log), last=True)
+    assert made is not None
+    return dataclasses.replace(log, inputs=made.inputs, planned=False)
+
+
 def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:
     log = logs[0]
-    own = {name: values for name, values in log.inputs.items() if not name.startswith("plan.")}
-    made = with_plan(dataclasses.replace(log, inputs=own), read_robot(TRIKEY))
+    made = with_plan(log)
     rows = slice(200, None)
     made_mps, planned_mps = (np.hypot(one.inputs["plan.vx"], one.inputs["plan.vy"])[rows] for one in (made, log))
     # The robot differs from its file, and lags its plan; it goes 0.4 m/s at most.
@@ -215,6 +229,52 @@ def test_a_log_without_a_plan_gets_that_of_its_wheels(logs: list[Log]) -> None:
     off, on = as_own.replayed({"motor.inertia": 0.0}, names), as_own.replayed({}, names)
     assert all(np.array_equal(found[name], off[name]) for name in names)
     assert not any(np.array_equal(found[name], on[name]) for name in names)
+
+
+def test_the_plan_of_the_wheels_is_the_same_in_parts(logs: list[Log]) -> None:
+    plan, parts, at = WheelPlan({}, logs[0].step_s), [], 0
+    for size in (1, 40, 700, 3, 5000, 1, 2, 9000, 12000):
+        parts.append(plan.add(without_plan(logs[0], slice(at, at + size)), last=False))
+        at += size
+    parts.append(plan.add(None, last=True))
+    known = [part for part in parts if part is not None]
+    assert [part.first for part in known] == np.cumsum([0, *(len(part.present) for part in known[:-1])]).tolist()
+    whole = with_plan(logs[0]).inputs
+    for name in whole:
+        found = np.concatenate([part.inputs[name] for part in known])
+        # the last rows do not know what is ahead of them in the whole log
+        assert np.array_equal(found[: at - 400], whole[name][: at - 400]), name
+
+
+def test_jumps_and_missing_samples_are_no_motion(logs: list[Log]) -> None:
+    log, begin, end = logs[0], 8000, 8400
+    present = log.inputs["sensor.present"].copy()
+    present[begin:end] = False
+    angle, encoder = log.angle_rad.copy(), log.inputs["sensor.encoder[1]"].copy()
+    angle[begin:end], encoder[begin:end] = 0.0, 0
+    angle[12000:, 1] += 1e3
+    inputs = {**log.inputs, "sensor.present": present, "sensor.encoder[1]": encoder}
+    found = with_plan(dataclasses.replace(log, inputs=inputs, angle_rad=angle)).inputs
+    wanted = with_plan(log).inputs
+    for name in ("plan.vx", "plan.vy"):  # 0.1 m/s: what the robot may do otherwise in 0.4 s without a sample
+        assert np.abs(found[name] - wanted[name]).max() < 0.1
+
+
+def test_a_replay_of_the_logs_has_the_alarms_of_the_tuning(cli: Cli, arcs: Path, tmp_path: Path) -> None:
+    """Both see the same, with the plan that both make of the wheels' motion."""
+    table_of = pyarrow.parquet.read_table(arcs)
+    own = [name for name in table_of.column_names if not name.startswith("plan_")]
+    pyarrow.parquet.write_table(table_of.select(own).replace_schema_metadata(), tmp_path / "log.parquet")
+    log = read_log(tmp_path / "log.parquet", read_robot(TRIKEY), parameters())
+    alarms, hours = alarms_in([log], parameters())
+    assert hours > 0.0
+    done = cli("replay", "log.parquet", "--robot", str(TRIKEY), "--out", "out")
+    assert done.returncode == 0, done.stderr
+    assert "taken to be the motion of its wheels" in done.stdout
+    assert f"\n{alarms} detections\n" in done.stdout
+    assert "means nothing" not in done.stdout
+    done = cli("replay", "log.parquet", "--robot", str(TRIKEY), "--out", "out", "--observe")
+    assert "the drives are off (--observe): what is noticed while the wheels turn means nothing" in done.stdout
 
 
 def test_what_logs_say_of_a_robot(arcs: Path) -> None:

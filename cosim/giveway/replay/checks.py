@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.identification.torque_model import TorqueModel
-from giveway.replay.inputs import Steps, value_of
+from giveway.replay.inputs import Steps, jump_radps, value_of, wheels_at_azimuths
 from giveway.replay.quantities import PLAN, QUANTITIES
 from giveway.robot.variables import Value
-from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,6 +29,7 @@ SMOOTH = 5  # points on either side for speed and acceleration
 BETTER = 0.5  # of the squared misfit: another order or sign has to fit so much better to be named
 MOVING_MPS = 0.02
 TURNING_RADPS = 0.05
+DRIVEN_M = 0.05
 SATURATED_SHARE = 0.01
 _DEG = math.degrees(1.0)
 
@@ -112,7 +113,8 @@ class LogChecks:
         self._saturated = self._samples = 0
         self._fastest = 0.0
         self._tare_moved = False
-        self._last: NDArray[np.float64] | None = None
+        self._farthest = 0.0
+        self._begin: NDArray[np.float64] | None = None
 
     def add(self, steps: Steps) -> None:
         """The next samples."""
@@ -136,6 +138,10 @@ class LogChecks:
             limit = value_of(self._parameters, "sensor_check.torque_limit")
             self._saturated += int(np.count_nonzero((torque >= limit).any(axis=1)))
             self._samples += len(torque)
+        if good.any():
+            angle = steps.angle_rad[good]
+            self._begin = angle[0] if self._begin is None else self._begin
+            self._farthest = max(self._farthest, float(np.abs(angle - self._begin).max()))
         change = np.abs(np.diff(steps.angle_rad, axis=0))[good[1:] & good[:-1]]
         if change.size:
             self._fastest = max(self._fastest, float(change.max()) / self._step_s)
@@ -146,6 +152,11 @@ class LogChecks:
             moved = np.abs(steps.angle_rad[:until] - steps.angle_rad[0]).max()
             counts = value_of(self._parameters, "estimator.encoder_counts")
             self._tare_moved |= bool(moved > 3.0 * 2.0 * math.pi / counts)
+
+    @property
+    def moved(self) -> bool:
+        """Whether the robot drove, and did not just give way to what pushed it."""
+        return self._farthest * value_of(self._parameters, "geometry.wheel_radius") > DRIVEN_M
 
     def judge(self) -> Findings:
         """What the log shows."""
@@ -177,8 +188,7 @@ class LogChecks:
         else:
             found.fine.append(f"torques of up to {self._largest_torque:.3g} N m; the sensors saturate at {limit:g} N m")
         counts = value_of(self._parameters, "estimator.encoder_counts")
-        period_s = value_of(self._parameters, "controller.period")
-        jump = value_of(self._parameters, "sensor_check.encoder_jump") * 2.0 * math.pi / counts / period_s
+        jump = jump_radps(self._parameters)
         speed = self._fastest * value_of(self._parameters, "geometry.wheel_radius")
         if self._fastest > jump:
             found.wrong.append(
@@ -203,16 +213,11 @@ class LogChecks:
             roller_inertia_kgm2=value("base.roller_inertia"),
         )
 
-    def _slots(self) -> list[int]:
-        """The wheel at each azimuth of the model."""
-        slots = [int(value_of(self._parameters, f"geometry.wheel_slot[{wheel}]")) for wheel in range(WHEELS)]
-        return [slots.index(slot) for slot in range(len(AZIMUTHS_RAD))]
-
     def _judge_torque(
         self, found: Findings, torque: NDArray[np.float64], rate: NDArray[np.float64], change: NDArray[np.float64]
     ) -> None:
         """Torques against those that the motion takes."""
-        model, slots = self._model(), self._slots()
+        model, slots = self._model(), wheels_at_azimuths(self._parameters)
         roller_rate, expected = model.motion(rate[:, slots], change[:, slots])
         slope = value_of(self._parameters, "friction.tanh_slope")
         rolled = value_of(self._parameters, "friction.coulomb_torque") * np.tanh(slope * roller_rate)
@@ -240,7 +245,8 @@ class LogChecks:
             found.open.append("wheels against the yaw rate: the log has none")
             return
         inverse = np.linalg.inv(self._model().wheel_jacobian)
-        parts = rate[:, self._slots()][good] * inverse[2]
+        slots = wheels_at_azimuths(self._parameters)
+        parts = rate[:, slots][good] * inverse[2]
         gyro = yaw[good] - np.median(yaw[good])
         wheels = parts.sum(axis=1)
         if min(wheels.std(), gyro.std()) < TURNING_RADPS:
@@ -258,7 +264,7 @@ class LogChecks:
         elif all(sign < 0 for sign in best):
             found.wrong.append("the yaw rate is opposite to that of the wheels: the sign of yaw_rate or of all angles")
         elif any(sign < 0 for sign in best):
-            names = [f"{self._angle}_{self._slots()[i]}" for i, sign in enumerate(best) if sign < 0]
+            names = [f"{self._angle}_{slots[i]}" for i, sign in enumerate(best) if sign < 0]
             found.wrong.append(f"the yaw rate fits the wheels with the sign of {' and '.join(names)} turned")
         else:
             hint = ": is it in deg/s?" if 0.7 < ratio / _DEG < 1.4 or 0.7 < ratio * _DEG < 1.4 else ""
@@ -274,7 +280,7 @@ class LogChecks:
         azimuth = value_of(self._parameters, "geometry.azimuth")
         cos, sin = np.cos(theta + azimuth), np.sin(theta + azimuth)
         twist = np.stack([cos * vx + sin * vy, cos * vy - sin * vx, omega], axis=1)
-        slots = self._slots()
+        slots = wheels_at_azimuths(self._parameters)
         expected = twist @ self._model().wheel_jacobian.T
         measured = rate[:, slots][good]
         if expected.std(axis=0).max() * self._model().wheel_radius_m < MOVING_MPS:

@@ -53,8 +53,8 @@ def replay(
     encoder_bits: Annotated[int, typer.Option("--encoder-bits", help="At which counts wrap.")] = 32,
     resample: Annotated[str, typer.Option("--resample", help="auto, as-is, linear, hold or rows.")] = "auto",
     observe: Annotated[
-        bool | None, typer.Option("--observe/--react", help="Drives off or on; without it: on if there is a plan.")
-    ] = None,
+        bool, typer.Option("--observe/--react", help="Drives off: for a log in which the robot only stands; or on.")
+    ] = False,
     every_output: Annotated[
         bool, typer.Option("--every-output", help="Every output of the controller in replay.parquet.")
     ] = False,
@@ -103,7 +103,7 @@ class _Extra:
         way: str,
         torque_constant: float | None,
         encoder_bits: int,
-        observe: bool | None,
+        observe: bool,
     ) -> None:
         from giveway.base.checks import finite, whole
         from giveway.replay.sampling import RESAMPLING

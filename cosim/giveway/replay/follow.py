@@ -13,6 +13,7 @@ from giveway.base.terminal import print_document, print_warnings, wants_json
 from giveway.replay.csv_log import LineLog
 from giveway.replay.play import Played, Replay
 from giveway.replay.told import wrong_lines
+from giveway.replay.wheel_plan import WheelPlan
 
 if TYPE_CHECKING:
     from giveway.replay.mapping import Wishes
@@ -28,6 +29,9 @@ def follow_lines(wishes: Wishes, choice_of: Callable[[Source], tuple[Choice, str
     choice, robot = choice_of(source)
     with Replay(source, wishes, choice) as replay:
         _say(f"Following standard input; controller: {robot}; drives {'off' if replay.observes else 'on'}")
+        if replay.makes_plan:
+            late = f"detections are told {WheelPlan.DELAY_S:g} s late"
+            _say(f"The lines have no plan: it is taken to be the motion of the wheels, and {late} (--observe: at once)")
         ended = " (Ctrl-C)"
         try:
             for row, values in source.rows(replay.wanted):

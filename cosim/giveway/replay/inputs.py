@@ -14,12 +14,12 @@ from giveway.replay.mapping import Chosen
 from giveway.replay.quantities import PLAN, QUANTITIES, TIME, of_wheels
 from giveway.replay.sampling import Sampled
 from giveway.robot.variables import Value, table
-from giveway.robot.wheels import WHEELS
+from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HELD", "Inputs", "Steps", "columns_for", "value_of"]
+__all__ = ["HELD", "Inputs", "Steps", "columns_for", "jump_radps", "value_of", "wheels_at_azimuths"]
 
 HELD = ("sensor_counter", "sensor_present", "imu_counter", "imu_present", "stop_request", "tare_request")
 _IMU = ("acceleration_x", "acceleration_y", "yaw_rate")
@@ -31,6 +31,18 @@ def value_of(parameters: Mapping[str, Value], name: str) -> float:
     value = parameters.get(name, table("controller")[name].start)
     assert value is not None
     return float(value)
+
+
+def jump_radps(parameters: Mapping[str, Value]) -> float:
+    """The speed of a wheel, rad/s, above which the controller takes a change of its encoder for a jump."""
+    counts_per_s = value_of(parameters, "sensor_check.encoder_jump") / value_of(parameters, "controller.period")
+    return counts_per_s * 2.0 * math.pi / value_of(parameters, "estimator.encoder_counts")
+
+
+def wheels_at_azimuths(parameters: Mapping[str, Value]) -> list[int]:
+    """The wheel at each azimuth of the model."""
+    slots = [int(value_of(parameters, f"geometry.wheel_slot[{wheel}]")) for wheel in range(WHEELS)]
+    return [slots.index(slot) for slot in range(len(AZIMUTHS_RAD))]
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from giveway.replay.mapping import Chosen, Wishes, choose
 from giveway.replay.sampling import Sampled, Sampling, Treatment
 from giveway.replay.source import Block, Source
 from giveway.replay.story import Detection, Story
+from giveway.replay.wheel_plan import UNOBSERVED, WheelPlan
 from giveway.robot.variables import Value
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class Choice:
         way: one of `sampling.RESAMPLING`.
         torque_constant: N m at the wheel per A, for currents.
         encoder_bits: at which counts wrap.
-        observe: the drives stay off: nothing is planned, and the controller only watches. None: if there is no plan.
+        observe: the drives stay off: nothing is planned, and the controller only watches.
     """
 
     parameters: Mapping[str, Value]
@@ -53,7 +54,7 @@ class Choice:
     way: str = "auto"
     torque_constant: float | None = None
     encoder_bits: int = 32
-    observe: bool | None = None
+    observe: bool = False
 
 
 @dataclass(frozen=True)
@@ -90,17 +91,26 @@ def open_log(path: Path, wishes: Wishes, topic: str | None, angle: str, effort: 
 
 
 class Replay:
-    """Plays a source; a context manager."""
+    """Plays a source; a context manager.
+
+    Attributes:
+        observes: the drives are off.
+        makes_plan: the drives are on, and the log has no plan: that is the motion of its wheels.
+    """
 
     def __init__(self, source: Source, wishes: Wishes, choice: Choice, outputs: tuple[str, ...] = OUTPUTS) -> None:
         self.source, self.choice = source, choice
         self.chosen: Chosen = choose(source, wishes)
         parameters = dict(choice.parameters)
         self.inputs = Inputs(self.chosen, parameters, choice.torque_constant)
-        self.observes = not self.inputs.has_plan if choice.observe is None else choice.observe
+        self.observes = choice.observe
+        self.makes_plan = not (self.observes or self.inputs.has_plan)
         if self.observes:
             parameters["controller.drives_enabled"] = False
+        if self.makes_plan:
+            parameters |= UNOBSERVED
         self.parameters = parameters
+        self._plan = WheelPlan(parameters, choice.step_s) if self.makes_plan else None
         names, held, periods, angles = columns_for(self.chosen, choice.encoder_bits)
         self._scale = np.array([column.scale for column in self.chosen.columns])
         self._sampling = Sampling(source, names, held, periods, angles, choice.step_s, choice.way)
@@ -124,8 +134,8 @@ class Replay:
     def findings(self) -> Findings:
         """What the log shows of units, signs and order, when it is over."""
         found = self._checks.judge()
-        if self.value("estimator.velocity_source") == 0.0 and not self.inputs.has_plan:
-            found.wrong.append("the controller takes the planned motion, and the log has no plan: it counts as at rest")
+        if self.observes and self._checks.moved:
+            found.wrong.append("the drives are off (--observe): what is noticed while the wheels turn means nothing")
         uses_imu = self.value("estimator.acceleration_source") == 3.0
         if uses_imu and not self.inputs.has_imu:
             found.open.append("the controller would use an IMU; the log has none, so it takes the encoders")
@@ -152,35 +162,31 @@ class Replay:
     def _all_steps(self) -> Iterator[Steps]:
         for block in self.source.blocks(self.wanted):
             sampled = self._sampling.feed(Block(block.values * self._scale, block.first))
-            if sampled is not None and len(sampled.present):
-                yield self._steps(sampled)
-        sampled = self._sampling.finish()
-        if sampled is not None and len(sampled.present):
-            yield self._steps(sampled)
+            if (steps := self._steps(sampled)) is not None:
+                yield steps
+        if (steps := self._steps(self._sampling.finish(), last=True)) is not None:
+            yield steps
 
     def feed(self, values: NDArray[np.float64], row: int) -> Played | None:
         """Some rows, live."""
-        sampled = self._sampling.feed(Block(values * self._scale, row))
-        if sampled is None or not len(sampled.present):
-            return None
-        steps = self._steps(sampled)
-        return self._told(steps, self._play(steps))
+        steps = self._steps(self._sampling.feed(Block(values * self._scale, row)))
+        return None if steps is None else self._told(steps, self._play(steps))
 
     def end(self) -> Played | None:
         """The end of what was fed."""
-        sampled = self._sampling.finish()
-        played = None
-        if sampled is not None and len(sampled.present):
-            steps = self._steps(sampled)
-            played = self._told(steps, self._play(steps))
+        steps = self._steps(self._sampling.finish(), last=True)
+        played = None if steps is None else self._told(steps, self._play(steps))
         self.story.end(self.did.steps * self.choice.step_s)
         return played
 
-    def _steps(self, sampled: Sampled) -> Steps:
-        self.inputs.exact = self.did.way in ("as-is", "rows")
-        steps = self.inputs.of(sampled)
-        self._checks.add(steps)
-        return steps
+    def _steps(self, sampled: Sampled | None, last: bool = False) -> Steps | None:
+        """The next steps that can be played."""
+        steps = None
+        if sampled is not None and len(sampled.present):
+            self.inputs.exact = self.did.way in ("as-is", "rows")
+            steps = self.inputs.of(sampled)
+            self._checks.add(steps)
+        return steps if self._plan is None else self._plan.add(steps, last)
 
     def _play(self, steps: Steps) -> dict[str, NDArray[Any]]:
         try:

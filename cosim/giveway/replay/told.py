@@ -37,13 +37,15 @@ def done_lines(replay: Replay, robot: str) -> list[tuple[str, str]]:
         lines.append(("torques", f"currents times {replay.choice.torque_constant:g} N m/A"))
     if did.wraps:
         lines.append(("wraps", f"{did.wraps} of the angles undone"))
+    if replay.makes_plan:
+        lines.append(("plan", "the log has none: taken to be the motion of its wheels, as by `giveway tune`"))
     if replay.observes:
-        why = "" if replay.inputs.has_plan else ", as the log has no plan"
-        lines.append(("drives", f"off{why}: the controller estimates and detects, and never moves the robot"))
+        lines.append(("drives", "off: the controller estimates and detects, and never moves the robot"))
     else:
         lines.append(("drives", "on: after a hit the controller believes that the robot gives way as it commands"))
-    if value_of(replay.parameters, "motor.inertia") > 0.0:
-        way = "counts as they are: no commands" if replay.observes else "between counts, if they follow the commands"
+    if value_of(replay.choice.parameters, "motor.inertia") > 0.0:
+        unknown = replay.observes or replay.makes_plan
+        way = "counts as they are: no commands" if unknown else "between counts, if they follow the commands"
         lines.append(("motors", way))
     return lines
 

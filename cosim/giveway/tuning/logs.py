@@ -1,12 +1,9 @@
-"""Logs of a robot, ready to be replayed many times: the controller's inputs at every step.
-
-A log without a plan gets one from its wheels, since the controller tells rest from motion by what is planned, too.
-"""
+"""Logs of a robot, read as by `giveway replay`, ready to be replayed many times."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,23 +12,20 @@ import numpy as np
 from giveway.base.checks import finite
 from giveway.base.csv_rows import check_widths, number_of, read_rows
 from giveway.base.errors import FileError, GivewayError, InputFileError
-from giveway.identification.torque_model import TorqueModel
 from giveway.library.replay import ReplayedController
 from giveway.replay.mapping import Wishes
 from giveway.replay.play import Choice, Replay, open_log
 from giveway.replay.source import file_hash
+from giveway.replay.wheel_plan import UNOBSERVED, moving
 from giveway.robot.variables import Value
-from giveway.scenario.plan import PLAN_INPUTS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.robot.robot_file import Robot
 
-__all__ = ["Log", "Push", "read_log", "read_pushes", "with_plan"]
+__all__ = ["Log", "Push", "read_log", "read_pushes"]
 
-STANDING_S = 0.25  # before and after the last count of an encoder a wheel counts as moving
-SMOOTHING_S = 0.03  # of the plan that is made from the wheels
 AROUND_PUSH_S = 2.0  # after a push, until the robot is undisturbed again
 BEFORE_PUSH_S = 0.2
 TRACKING = 1  # the controller's mode in which it looks for hits
@@ -58,8 +52,7 @@ class Log:
         pushes: what is known to have pushed it.
         sha256: of the file.
         as_logged: each step is a row of the log, nothing was interpolated.
-        planned: its plan is the robot's own. Otherwise the commands that the controller makes of it are not those that
-            the motors got, and it does not observe them.
+        planned: its plan is the robot's own, and not made of the wheels' motion (`wheel_plan`).
         said: what was assumed.
     """
 
@@ -83,11 +76,8 @@ class Log:
         return self.steps * self.step_s
 
     def moving(self) -> NDArray[np.bool_]:
-        """Whether a wheel turns, or did `STANDING_S` ago."""
-        from scipy.ndimage import maximum_filter1d
-
-        turned = np.abs(np.diff(self.angle_rad, axis=0, prepend=self.angle_rad[:1])).max(axis=1) > 1e-9
-        return np.asarray(maximum_filter1d(turned, 2 * round(STANDING_S / self.step_s) + 1))
+        """Whether a wheel turns, or does so soon or did a moment ago."""
+        return moving(self.inputs, self.step_s)
 
     def free(self) -> NDArray[np.bool_]:
         """Whether nothing is known to push it."""
@@ -99,7 +89,7 @@ class Log:
 
     def replayed(self, parameters: Mapping[str, Value], outputs: Sequence[str]) -> dict[str, NDArray[Any]]:
         """Outputs of the controller with ``parameters`` on this log."""
-        known = parameters if self.planned else {**parameters, "motor.inertia": 0.0}
+        known = parameters if self.planned else {**parameters, **UNOBSERVED}
         with ReplayedController(known, self.step_s, outputs) as controller:
             return controller.play(self.inputs)
 
@@ -120,9 +110,9 @@ def read_log(path: Path, robot: Robot, parameters: Mapping[str, Value], wishes: 
             raise FileError(path, "has no step", "a log of some minutes")
         if replay.findings.wrong:
             raise FileError(path, replay.findings.wrong[0], "`giveway replay` shows what the log holds")
-        has_plan = replay.inputs.has_plan
+        planned = not replay.makes_plan
         as_logged = replay.did.way in ("as-is", "rows")
-    log = Log(
+    return Log(
         path.name,
         step_s,
         {name: np.concatenate([steps.inputs[name] for steps in played]) for name in played[0].inputs},
@@ -130,29 +120,9 @@ def read_log(path: Path, robot: Robot, parameters: Mapping[str, Value], wishes: 
         np.concatenate([steps.torque_nm for steps in played]),
         sha256=file_hash(path),
         as_logged=as_logged,
+        planned=planned,
+        said=() if planned else (f"{path.name} has no plan: the plan was taken to be the motion of its wheels",),
     )
-    if has_plan:
-        return log
-    said = (f"{path.name} has no plan: the plan was taken to be the motion of its wheels",)
-    return replace(with_plan(log, robot), said=said)
-
-
-def with_plan(log: Log, robot: Robot) -> Log:
-    """``log`` with the motion of its wheels as the planned one."""
-    from scipy.ndimage import gaussian_filter1d
-
-    model = TorqueModel.of(robot)
-    angle = gaussian_filter1d(log.angle_rad, SMOOTHING_S / log.step_s, axis=0, mode="nearest")
-    twist = np.gradient(angle, log.step_s, axis=0) @ np.linalg.inv(model.wheel_jacobian).T
-    standing = ~log.moving()
-    twist[standing] = 0.0
-    theta = np.cumsum(twist[:, 2]) * log.step_s
-    cos, sin = np.cos(theta), np.sin(theta)
-    rates = np.stack([cos * twist[:, 0] - sin * twist[:, 1], sin * twist[:, 0] + cos * twist[:, 1], twist[:, 2]])
-    places = np.cumsum(rates, axis=1) * log.step_s
-    growth = np.gradient(rates, log.step_s, axis=1)
-    columns = np.concatenate([places, rates, growth])
-    return replace(log, inputs={**log.inputs, **dict(zip(PLAN_INPUTS, columns, strict=True))}, planned=False)
 
 
 def read_pushes(path: Path, logs: Sequence[str]) -> dict[str, tuple[Push, ...]]:
