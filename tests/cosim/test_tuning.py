@@ -23,7 +23,7 @@ from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
 from giveway.tuning.identified import identify
 from giveway.tuning.judged import hits_of, judge, logs_of, rows
-from giveway.tuning.logs import Log, Push, read_log, read_pushes
+from giveway.tuning.logs import Log, Push, read_log, read_pushes, without_refused
 from giveway.tuning.peaks import EXTRAPOLATION, Peaks, Tail, hours_to_count, joined, peaks_of
 from giveway.tuning.thresholds import NAMES, RIPPLE, RIPPLES, alarms_in, choose, settings_of
 from giveway.tuning.told import remarks
@@ -402,3 +402,37 @@ def test_what_pushes_does_not_count(logs: list[Log]) -> None:
     assert not free[7900]
     assert free[4700]
     assert free[8100]
+
+
+def test_samples_that_the_controller_refuses_raise_no_threshold(arcs: Path, tmp_path: Path) -> None:
+    """One torque beyond the sensor and 100 that are no numbers, in motion: nothing is learnt from them."""
+    table_of = pyarrow.parquet.read_table(arcs)
+    torque = table_of["torque_1"].to_numpy().copy()
+    torque[20000], torque[40000:40100] = 1000.0, np.nan
+    at = table_of.column_names.index("torque_1")
+    damaged = table_of.set_column(at, table_of.schema.field("torque_1"), pyarrow.array(torque))
+    pyarrow.parquet.write_table(damaged, tmp_path / "damaged.parquet")
+    sound, log = (read_log(path, read_robot(TRIKEY), parameters()) for path in (arcs, tmp_path / "damaged.parquet"))
+    (said,) = log.said
+    assert said.startswith("damaged.parquet: the controller refuses 101 samples (not finite 100, torque saturated 1)")
+    assert said.endswith("were left out: 4.1 of 65 s")
+    free = log.free()
+    assert free[19999]
+    assert not free[20000:22000].any()
+    assert free[22001]
+    assert set(log.replayed(parameters(), ("status",))["status"].tolist()) == {0}
+    wanted, found = (choose([one], parameters(), 60.0).thresholds for one in (sound, log))
+    assert found == pytest.approx(wanted, rel=0.05)  # 6 % of the time less
+    friction = identify([log], read_robot(TRIKEY)).friction
+    assert friction is not None
+    assert friction.coulomb_torque_nm.value == pytest.approx(0.2, rel=0.05)
+
+
+def test_a_log_without_samples_in_motion_is_refused(logs: list[Log]) -> None:
+    status = np.zeros(logs[0].steps, dtype=np.int32)
+    moving = int(np.flatnonzero(logs[0].moving())[0]) + 1000
+    status[moving : moving + 150] = 4
+    assert without_refused(logs[0], status).refused is not None
+    status[moving : moving + 300] = 4
+    with pytest.raises(GivewayError, match=r"no good sample from .* s, and the wheels turn is not allowed"):
+        without_refused(logs[0], status)

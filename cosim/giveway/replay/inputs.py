@@ -19,7 +19,7 @@ from giveway.robot.wheels import AZIMUTHS_RAD, WHEELS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HELD", "Inputs", "Steps", "columns_for", "jump_radps", "value_of", "wheels_at_azimuths"]
+__all__ = ["HELD", "Inputs", "Steps", "columns_for", "jump_radps", "value_of", "wheels_at_azimuths", "wrapped"]
 
 HELD = ("sensor_counter", "sensor_present", "imu_counter", "imu_present", "stop_request", "tare_request")
 _IMU = ("acceleration_x", "acceleration_y", "yaw_rate")
@@ -115,7 +115,7 @@ class Inputs:
         inputs: dict[str, NDArray[Any]] = {}
         for wheel in range(WHEELS):
             inputs[f"sensor.torque[{wheel}]"] = torque[:, wheel]
-            inputs[f"sensor.encoder[{wheel}]"] = _wrapped(counts[:, wheel])
+            inputs[f"sensor.encoder[{wheel}]"] = wrapped(counts[:, wheel])
         inputs["sensor.counter"] = self._whole(values, "sensor_counter", numbers)
         inputs["sensor.present"] = sampled.present & (self._whole(values, "sensor_present", np.ones(count)) != 0)
         for name in ("stop_request", "tare_request"):
@@ -153,12 +153,12 @@ class Inputs:
         """A column of whole numbers; ``otherwise`` where the log has none, or they were those of rows, not of steps."""
         of_rows = name.endswith("_counter") and not self.exact
         if name not in self._at or of_rows:
-            return _wrapped(otherwise.astype(np.float64))
+            return wrapped(otherwise.astype(np.float64))
         found = values[:, self._at[name]]
-        return _wrapped(np.rint(np.where(np.isfinite(found), found, 0.0)))
+        return wrapped(np.rint(np.where(np.isfinite(found), found, 0.0)))
 
 
-def _wrapped(values: NDArray[np.float64]) -> NDArray[np.int32]:
+def wrapped(values: NDArray[np.float64]) -> NDArray[np.int32]:
     """Whole numbers at 32 bits."""
     return np.mod(values, _COUNT_RANGE).astype(np.uint32).view(np.int32)
 

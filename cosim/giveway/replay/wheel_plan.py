@@ -19,7 +19,7 @@ from giveway.scenario.plan import PLAN_INPUTS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["UNOBSERVED", "WheelPlan", "moving"]
+__all__ = ["UNOBSERVED", "WheelPlan", "moving", "over_gaps"]
 
 STANDING_S = 0.25  # before and after the last count of an encoder a wheel counts as moving
 SMOOTHING_S = 0.03
@@ -34,12 +34,12 @@ def moving(inputs: Mapping[str, NDArray[Any]], step_s: float) -> NDArray[np.bool
     from scipy.ndimage import maximum_filter1d
 
     counts = np.stack([inputs[f"sensor.encoder[{wheel}]"] for wheel in range(WHEELS)], axis=1).astype(np.float64)
-    known = np.rint(_over_gaps(counts, inputs["sensor.present"]))
+    known = np.rint(over_gaps(counts, inputs["sensor.present"]))
     turned = np.diff(known, axis=0, prepend=known[:1]).any(axis=1)
     return np.asarray(maximum_filter1d(turned, 2 * round(STANDING_S / step_s) + 1))
 
 
-def _over_gaps(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.float64]:
+def over_gaps(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Straight over rows without a sample."""
     good = np.flatnonzero(present)
     if len(good) in (0, len(present)):
@@ -106,7 +106,7 @@ class WheelPlan:
         """Of the base in the axes of the first wheel, (n, 3)."""
         from scipy.ndimage import gaussian_filter1d
 
-        angle = _over_gaps(steps.angle_rad[:, self._order], steps.present)
+        angle = over_gaps(steps.angle_rad[:, self._order], steps.present)
         change = np.diff(angle, axis=0, prepend=angle[:1])
         change[np.abs(change) > self._most_rad] = 0.0  # no wheel turns so far: the encoder jumped
         smooth = gaussian_filter1d(change, self._sigma, axis=0, mode="constant", truncate=TRUNCATE)

@@ -12,7 +12,7 @@ from giveway.base.errors import GivewayError
 from giveway.identification.motion_log import MotionLog, behind_drivetrain, pieces
 from giveway.identification.roller_friction import Calibration, calibrate
 from giveway.robot.variables import Value
-from giveway.tuning.logs import TRACKING, Log
+from giveway.tuning.logs import TRACKING, Log, runs_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,8 +74,7 @@ def identify(logs: Sequence[Log], robot: Robot) -> Identified:
 def _motion(log: Log, robot: Robot) -> MotionLog:
     """Thinned out: the calibration smooths over five times as long."""
     every = max(1, round(THIN_S / log.step_s))
-    free = log.free()
-    if not free.all():
+    if log.pushes:
         raise GivewayError(log.name, "a log with pushes", "one without, to calibrate on")
     torque = log.torque_nm[::every]
     angle = behind_drivetrain(log.angle_rad[::every], torque, robot)
@@ -86,11 +85,9 @@ def _motion(log: Log, robot: Robot) -> MotionLog:
 
 def _rests(log: Log) -> list[tuple[int, int]]:
     """Steps in which the robot stands and nothing pushes, without their beginning."""
-    still = ~log.moving() & log.free()
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], still.astype(np.int8), [0]))))
     settled = round(SETTLED_S / log.step_s)
-    return [(begin + settled, end) for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-            if end - begin > 2 * settled]  # fmt: skip
+    still = runs_of(~log.moving() & log.free())
+    return [(begin + settled, end) for begin, end in still if end - begin > 2 * settled]
 
 
 def _drift(log: Log, rests: Sequence[tuple[int, int]]) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,22 +12,28 @@ import numpy as np
 from giveway.base.checks import finite
 from giveway.base.csv_rows import check_widths, number_of, read_rows
 from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.identification.motion_log import COUNT_WRAP
 from giveway.library.replay import ReplayedController
+from giveway.replay.inputs import wrapped
 from giveway.replay.mapping import Wishes
 from giveway.replay.play import Choice, Replay, open_log
 from giveway.replay.source import file_hash
-from giveway.replay.wheel_plan import UNOBSERVED, moving
+from giveway.replay.story import STATUSES
+from giveway.replay.wheel_plan import UNOBSERVED, moving, over_gaps
 from giveway.robot.variables import Value
+from giveway.robot.wheels import WHEELS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.robot.robot_file import Robot
 
-__all__ = ["Log", "Push", "read_log", "read_pushes"]
+__all__ = ["Log", "Push", "read_log", "read_pushes", "runs_of", "without_refused"]
 
-AROUND_PUSH_S = 2.0  # after a push, until the robot is undisturbed again
+AFTER_S = 2.0  # a push, until the robot is undisturbed again; refused sensors, until the detector is armed and calm
 BEFORE_PUSH_S = 0.2
+BRIDGED_S = 0.2  # of refused samples in motion: straight lines over so little time change nothing
+REFUSED = (4, 5, 6, 7, 8)  # statuses of samples that the controller does not use
 TRACKING = 1  # the controller's mode in which it looks for hits
 
 
@@ -53,6 +59,7 @@ class Log:
         sha256: of the file.
         as_logged: each step is a row of the log, nothing was interpolated.
         planned: its plan is the robot's own, and not made of the wheels' motion (`wheel_plan`).
+        refused: steps whose samples the controller refuses: straight lines stand there; None: there are none.
         said: what was assumed.
     """
 
@@ -65,6 +72,7 @@ class Log:
     sha256: str = ""
     as_logged: bool = True
     planned: bool = True
+    refused: NDArray[np.bool_] | None = None
     said: tuple[str, ...] = field(default=())
 
     @property
@@ -80,11 +88,13 @@ class Log:
         return moving(self.inputs, self.step_s)
 
     def free(self) -> NDArray[np.bool_]:
-        """Whether nothing is known to push it."""
+        """Whether nothing is known to push it, and the controller has had its sensors for a while."""
         found = np.ones(self.steps, dtype=np.bool_)
+        if self.refused is not None:
+            found = ~_until(self.refused, round(AFTER_S / self.step_s))
         for push in self.pushes:
             begin = max(0, round((push.start_s - BEFORE_PUSH_S) / self.step_s))
-            found[begin : round((push.end_s + AROUND_PUSH_S) / self.step_s)] = False
+            found[begin : round((push.end_s + AFTER_S) / self.step_s)] = False
         return found
 
     def replayed(self, parameters: Mapping[str, Value], outputs: Sequence[str]) -> dict[str, NDArray[Any]]:
@@ -105,14 +115,15 @@ def read_log(path: Path, robot: Robot, parameters: Mapping[str, Value], wishes: 
     step_s = float(parameters.get("controller.period", 1e-3))
     choice = Choice(parameters, step_s, torque_constant=constant)
     with Replay(source, wishes, choice) as replay:
-        played = [one.steps for one in replay.all()]
+        all_played = list(replay.all())
+        played = [one.steps for one in all_played]
         if not played:
             raise FileError(path, "has no step", "a log of some minutes")
         if replay.findings.wrong:
             raise FileError(path, replay.findings.wrong[0], "`giveway replay` shows what the log holds")
         planned = not replay.makes_plan
         as_logged = replay.did.way in ("as-is", "rows")
-    return Log(
+    log = Log(
         path.name,
         step_s,
         {name: np.concatenate([steps.inputs[name] for steps in played]) for name in played[0].inputs},
@@ -123,6 +134,57 @@ def read_log(path: Path, robot: Robot, parameters: Mapping[str, Value], wishes: 
         planned=planned,
         said=() if planned else (f"{path.name} has no plan: the plan was taken to be the motion of its wheels",),
     )
+    return without_refused(log, np.concatenate([one.outputs["status"] for one in all_played]))
+
+
+def without_refused(log: Log, status: NDArray[np.int32]) -> Log:
+    """``log`` without the samples that the controller refuses, as its ``status`` says.
+
+    An alarm after them would hide the rest of the log, so straight lines take their place.
+
+    Raises:
+        GivewayError: there are too many in a row while the robot drives.
+    """
+    refused = np.isin(status, REFUSED)
+    if not refused.any():
+        return log
+    good = ~refused
+    inputs = dict(log.inputs)
+    for wheel in range(WHEELS):
+        torque, encoder = f"sensor.torque[{wheel}]", f"sensor.encoder[{wheel}]"
+        inputs[torque] = over_gaps(inputs[torque][:, None], good)[:, 0]
+        counts = np.zeros((log.steps, 1))
+        counts[good, 0] = np.unwrap(inputs[encoder][good].astype(np.float64), period=COUNT_WRAP)
+        inputs[encoder] = wrapped(np.rint(over_gaps(counts, good)[:, 0]))
+    inputs["sensor.present"] = np.ones_like(good)
+    inputs["sensor.counter"] = np.arange(log.steps, dtype=np.int32)
+    found = replace(log, inputs=inputs, refused=refused, angle_rad=over_gaps(log.angle_rad, good),
+                    torque_nm=over_gaps(log.torque_nm, good))  # fmt: skip
+    driven = found.moving()
+    for begin, end in runs_of(refused):
+        if (end - begin) * log.step_s > BRIDGED_S and driven[begin:end].any():
+            reason = f"no good sample from {begin * log.step_s:.3f} to {end * log.step_s:.3f} s, and the wheels turn"
+            raise GivewayError(log.name, reason, "give what is before and after as logs that begin at rest")
+    why = ", ".join(f"{STATUSES[one]} {count}" for one in REFUSED if (count := np.count_nonzero(status == one)))
+    left_out_s = np.count_nonzero(~found.free()) * log.step_s
+    said = (
+        f"{log.name}: the controller refuses {np.count_nonzero(refused)} samples ({why}); these, and {AFTER_S:g} s "
+        f"after each, were left out: {left_out_s:.3g} of {log.duration_s:.3g} s"
+    )
+    return replace(found, said=(*log.said, said))
+
+
+def runs_of(rows: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Begin and end of the successive ``rows``."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], rows.astype(np.int8), [0]))))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _until(rows: NDArray[np.bool_], more: int) -> NDArray[np.bool_]:
+    """``rows``, and so many ``more`` after each."""
+    numbers = np.arange(len(rows))
+    last = np.maximum.accumulate(np.where(rows, numbers, -more - 1))
+    return np.asarray(numbers - last <= more)
 
 
 def read_pushes(path: Path, logs: Sequence[str]) -> dict[str, tuple[Push, ...]]:
