@@ -436,3 +436,43 @@ def test_a_log_without_samples_in_motion_is_refused(logs: list[Log]) -> None:
     status[moving : moving + 300] = 4
     with pytest.raises(GivewayError, match=r"no good sample from .* s, and the wheels turn is not allowed"):
         without_refused(logs[0], status)
+
+
+def changed(arcs: Path, path: Path, wheel: int, rows: slice, factor: float, more_nm: float) -> Path:
+    """The log with another torque of a wheel."""
+    table_of = pyarrow.parquet.read_table(arcs)
+    torque = table_of[f"torque_{wheel}"].to_numpy().copy()
+    torque[rows] = factor * torque[rows] + more_nm
+    at = table_of.column_names.index(f"torque_{wheel}")
+    column = table_of.schema.field(at)
+    pyarrow.parquet.write_table(table_of.set_column(at, column, pyarrow.array(torque)), path)
+    return path
+
+
+def test_a_dead_sensor_is_refused(cli: Cli, arcs: Path, tmp_path: Path) -> None:
+    changed(arcs, tmp_path / "dead.parquet", 2, slice(None), 0.0, 0.3)
+    answer = cli("tune", "dead.parquet", "--robot", str(TRIKEY), "--false-alarms", "60/h", "--out", "new.toml")
+    assert answer.returncode == 2
+    assert "dead.parquet: torque_2 never changes: all three sensors are needed" in answer.stderr
+    assert not (tmp_path / "new.toml").exists()
+
+
+def test_a_touch_is_told_with_the_result_and_in_the_file(cli: Cli, arcs: Path, tmp_path: Path) -> None:
+    """2 N m more at one wheel for half a second, while it drives."""
+    changed(arcs, tmp_path / "touched.parquet", 0, slice(12000, 12500), 1.0, 2.0)
+    answer = cli(
+        "tune",
+        "touched.parquet",
+        "--robot",
+        str(TRIKEY),
+        "--false-alarms",
+        "60/h",
+        "--no-smallest",
+        "--out",
+        "new.toml",
+    )
+    assert answer.returncode == 0, answer.stderr
+    touched = " ".join(answer.stdout.split())
+    assert "TOUCHED? touched.parquet" in touched
+    assert "something touched the robot" in touched
+    assert "TOUCHED? touched.parquet" in (tmp_path / "new.toml").read_text(encoding="utf-8")

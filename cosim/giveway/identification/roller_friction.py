@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from giveway.identification.motion_log import MotionLog
     from giveway.robot.robot_file import Robot
 
-__all__ = ["Calibration", "Estimate", "FittedLog", "UnidentifiableError", "calibrate"]
+__all__ = ["Calibration", "Estimate", "FittedLog", "TouchedError", "UnidentifiableError", "calibrate"]
 
 EXPLAINED_MIN = 0.5  # with a smaller share most of the torque is not explained by (27)
 ALIKE = 1.5  # speeds within this factor show the tanh at one point
@@ -76,6 +76,10 @@ class UnidentifiableError(GivewayError):
 
     def __str__(self) -> str:
         return one_line(f"{self.field}: {self.value}; {self.allowed}")
+
+
+class TouchedError(UnidentifiableError):
+    """A log in which forces act that free motion does not explain."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +181,7 @@ def calibrate(logs: Sequence[MotionLog], robot: Robot) -> Calibration:
     _check_motion(data, samples, used)
     found = fit(samples, used, data.model)
     if touched := find_disturbance(samples, used, found, data.model, data.limits):
-        raise UnidentifiableError(
+        raise TouchedError(
             logs[touched.log].name,
             f"from {touched.begin_s:.1f} to {touched.end_s:.1f} s something touched the robot: up to "
             f"{touched.force_n:.0f} N that free motion does not explain",

@@ -110,6 +110,7 @@ class LogChecks:
         self._parts: list[NDArray[np.float64]] = []
         self._points = 0
         self._largest_torque = 0.0
+        self._least, self._most = np.full(WHEELS, np.inf), np.full(WHEELS, -np.inf)
         self._saturated = self._samples = 0
         self._fastest = 0.0
         self._tare_moved = False
@@ -135,6 +136,8 @@ class LogChecks:
         torque = np.abs(steps.torque_nm[good])
         if torque.size:
             self._largest_torque = max(self._largest_torque, float(torque.max()))
+            self._least = np.minimum(self._least, steps.torque_nm[good].min(axis=0))
+            self._most = np.maximum(self._most, steps.torque_nm[good].max(axis=0))
             limit = value_of(self._parameters, "sensor_check.torque_limit")
             self._saturated += int(np.count_nonzero((torque >= limit).any(axis=1)))
             self._samples += len(torque)
@@ -158,9 +161,18 @@ class LogChecks:
         """Whether the robot drove, and did not just give way to what pushed it."""
         return self._farthest * value_of(self._parameters, "geometry.wheel_radius") > DRIVEN_M
 
+    @property
+    def _dead(self) -> list[str]:
+        """Torques that never change, though the robot drove or another one changes."""
+        still = self._most <= self._least
+        if not self._samples or (still.all() and not self.moved):
+            return []
+        return [f"{self._torque}_{wheel}" for wheel in np.flatnonzero(still)]
+
     def judge(self) -> Findings:
         """What the log shows."""
         found = Findings()
+        found.wrong += [f"{name} never changes: all three sensors are needed" for name in self._dead]
         self._judge_size(found)
         if self._tare_moved:
             found.wrong.append("the wheels turn while the controller takes its tare, at the begin of the log")
@@ -228,6 +240,8 @@ class LogChecks:
         noise = value_of(self._parameters, "estimator.torque_noise")
         if len(torque) < POINTS_MIN or expected.std(axis=0).max() < 3.0 * noise:
             found.open.append(f"signs and order of {self._torque}: the robot moves too little to tell")
+            return
+        if self._dead:
             return
         match = best_match(torque, expected, np.sign(rate))
         if match.as_it_is:

@@ -10,7 +10,7 @@ import numpy as np
 
 from giveway.base.errors import GivewayError
 from giveway.identification.motion_log import MotionLog, behind_drivetrain, pieces
-from giveway.identification.roller_friction import Calibration, calibrate
+from giveway.identification.roller_friction import Calibration, TouchedError, calibrate
 from giveway.robot.variables import Value
 from giveway.tuning.logs import TRACKING, Log, runs_of
 
@@ -34,6 +34,7 @@ class Identified:
     Attributes:
         friction: of the rollers; None: the logs do not determine it.
         why: the reason for that.
+        touched: it is that forces act which the friction of rollers does not explain.
         noise_nm: standard deviation of one torque sample, the largest of the wheels; None: too little rest.
         drift_nm: largest change of a resting torque signal between two rests of a log, per hour of it; None: no two.
     """
@@ -42,6 +43,7 @@ class Identified:
     why: str
     noise_nm: float | None
     drift_nm_per_h: float | None
+    touched: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,11 +56,11 @@ class ModelError:
 
 def identify(logs: Sequence[Log], robot: Robot) -> Identified:
     """Everything that needs no controller."""
-    friction, why = None, ""
+    friction, why, touched = None, "", False
     try:
         friction = calibrate([piece for log in logs for piece in pieces(_motion(log, robot))], robot)
     except GivewayError as error:
-        why = str(error)
+        why, touched = str(error), isinstance(error, TouchedError)
     noises, drifts = [], []
     for log in logs:
         rests = _rests(log)
@@ -68,7 +70,7 @@ def identify(logs: Sequence[Log], robot: Robot) -> Identified:
         drift = _drift(log, rests)
         if drift is not None:
             drifts.append(drift)
-    return Identified(friction, why, max(noises, default=None), max(drifts, default=None))
+    return Identified(friction, why, max(noises, default=None), max(drifts, default=None), touched)
 
 
 def _motion(log: Log, robot: Robot) -> MotionLog:

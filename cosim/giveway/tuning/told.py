@@ -85,7 +85,14 @@ def remarks(tuned: Tuned) -> list[str]:
     """What holds, and what does not."""
     said = list(tuned.said)
     tail = tuned.chosen.tail
-    if tuned.identified.friction is None:
+    if tuned.identified.touched:
+        said.insert(
+            0,
+            f"TOUCHED? {tuned.identified.why}. If something did, the thresholds miss such contacts: name its times "
+            "with --pushes, and tune again. If nothing did, the rollers have another friction than (27), and the "
+            "thresholds allow for it.",
+        )
+    elif tuned.identified.friction is None:
         said.append(f"The rollers' friction stays as it was: {tuned.identified.why}")
     if tuned.identified.noise_nm is None:
         said.append("The noise stays as it was: the logs have too little rest, or rows that are not the controller's.")

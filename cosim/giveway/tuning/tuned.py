@@ -254,6 +254,8 @@ def robot_text(path: Path, robot: Robot, tuned: Tuned) -> str:
     )
     if tuned.extrapolated:
         note += f", by the tail of the peaks: counting would take {tuned.hours_needed:.3g} h"
+    if tuned.identified.touched:
+        note += f"; TOUCHED? {tuned.identified.why}"
     variables = table("controller")
     for threshold in NAMES:
         new = NewValue(float(tuned.chosen.thresholds[threshold]), source, "fitted", "medium", note)
