@@ -359,24 +359,26 @@ def test_the_same_log_twice_is_refused(cli: Cli, arcs: Path, tmp_path: Path) -> 
 def test_marked_pushes(tmp_path: Path) -> None:
     path = tmp_path / "pushes.csv"
     path.write_text("# by hand\nstart [s],end [s]\n2,2.5\n4,4.5\n", encoding="utf-8")
-    assert read_pushes(path, ["a.csv"]) == {"a.csv": (Push(2.0, 2.5), Push(4.0, 4.5))}
+    assert read_pushes(path, {"a.csv": 4.5}) == {"a.csv": (Push(2.0, 2.5), Push(4.0, 4.5))}
     for text, line, words in (
         ("start [s],end [s]\n2,1\n", 2, ("end [s]: 1.0", "above the start")),
         ("start [s],end [s]\n2,x\n", 2, ("end [s]: x",)),
         ("start [s],end [s]\n-2,1\n", 2, ("start [s]: -2.0",)),
+        ("start [s],end [s]\n2,3\n9,11\n", 3, ("end [s]: 11.0", "0 to 10 s: since the first row of a.csv")),
+        ("start [s],end [s]\n1.7e9,1700000001\n", 2, ("start [s]: 1700000000.0", "0 to 10 s: since the first row")),
         ("start [s],end [s]\n2,3\n2\n", 3, ("columns",)),
     ):
         path.write_text(text, encoding="utf-8")
         with pytest.raises(InputFileError) as caught:
-            read_pushes(path, ["a.csv"])
+            read_pushes(path, {"a.csv": 10.0})
         assert f"pushes.csv:{line}:" in str(caught.value)
         assert all(word in str(caught.value) for word in words)
     path.write_text("start [s],end [s]\n2,3\n", encoding="utf-8")
     with pytest.raises(FileError, match="there is no column log"):
-        read_pushes(path, ["a.csv", "b.csv"])
+        read_pushes(path, {"a.csv": 10.0, "b.csv": 10.0})
     path.write_text("log,start [s],end [s]\nc.csv,2,3\n", encoding="utf-8")
     with pytest.raises(InputFileError, match=r"log: c\.csv"):
-        read_pushes(path, ["a.csv", "b.csv"])
+        read_pushes(path, {"a.csv": 10.0, "b.csv": 10.0})
 
 
 def test_a_marked_push_is_noticed_and_is_no_false_alarm(logs: list[Log]) -> None:

@@ -33,7 +33,12 @@ def tune(
     ] = None,
     report: Annotated[Path | None, typer.Option("--report", metavar="PAGE.html", help="The tables as a page.")] = None,
     pushes: Annotated[
-        Path | None, typer.Option("--pushes", metavar="FILE.csv", help="Times of pushes: start [s],end [s] (,log).")
+        Path | None,
+        typer.Option(
+            "--pushes",
+            metavar="FILE.csv",
+            help="Times of pushes, since the first row of the log: start \\[s],end \\[s] (,log).",
+        ),
     ] = None,
     columns: Annotated[
         Path | None, typer.Option("--columns", metavar="FILE", help="TOML that says which column is what.")

@@ -39,7 +39,7 @@ TRACKING = 1  # the controller's mode in which it looks for hits
 
 @dataclass(frozen=True)
 class Push:
-    """A time in which something pushed the robot, s of the log."""
+    """A time in which something pushed the robot, s since the first row of the log."""
 
     start_s: float
     end_s: float
@@ -187,8 +187,13 @@ def _until(rows: NDArray[np.bool_], more: int) -> NDArray[np.bool_]:
     return np.asarray(numbers - last <= more)
 
 
-def read_pushes(path: Path, logs: Sequence[str]) -> dict[str, tuple[Push, ...]]:
-    """By the log's name the pushes in ``path``: a CSV file with the columns start [s], end [s], and log if several."""
+def read_pushes(path: Path, logs: Mapping[str, float]) -> dict[str, tuple[Push, ...]]:
+    """By the log's name the pushes in ``path``: a CSV file with the columns start [s], end [s], and log if several.
+
+    Args:
+        path: of the file; its times count from the first row of the log.
+        logs: how long each is, s.
+    """
     rows = read_rows(path, "times of pushes")
     if not rows:
         raise FileError(path, "is empty", "heads first: start [s],end [s], and log if there are several logs")
@@ -206,9 +211,12 @@ def read_pushes(path: Path, logs: Sequence[str]) -> dict[str, tuple[Push, ...]]:
             finite("start [s]", start, 0.0)
             if end <= start:
                 raise GivewayError("end [s]", end, f"above the start, {start:g} s")
-            log = cells.get("log", logs[0])
+            log = cells.get("log", next(iter(logs)))
             if log not in found:
                 raise GivewayError("log", log, ", ".join(logs))
+            for name, at_s in (("start [s]", start), ("end [s]", end)):
+                if at_s > logs[log]:
+                    raise GivewayError(name, at_s, f"0 to {logs[log]:.6g} s: since the first row of {log}")
         except GivewayError as error:
             raise InputFileError(path, line, error) from None
         found[log].append(Push(start, end))

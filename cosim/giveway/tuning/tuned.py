@@ -107,7 +107,7 @@ def tune(
     Args:
         logs: files as `giveway replay` reads them.
         robot: the robot file.
-        pushes: a CSV file with the times in which something pushed the robot.
+        pushes: a CSV file with the times in which something pushed the robot, s since the first row of the log.
         smallest: also what is noticed with the new thresholds, in some simulated pushes.
 
     Raises:
@@ -129,7 +129,7 @@ def tune(
         read.append(read_log(one, file, parameters, wishes))
     _check_different(read)
     if pushes is not None:
-        marked = read_pushes(Path(pushes), [log.name for log in read])
+        marked = read_pushes(Path(pushes), {log.name: log.duration_s for log in read})
         read = [dataclasses.replace(log, pushes=marked[log.name]) for log in read]
     hours = sum(float(np.count_nonzero(log.free())) * log.step_s for log in read) / 3600.0
     check_hours(hours, false_alarms_per_hour)
