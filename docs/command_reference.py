@@ -36,18 +36,23 @@ def pages(root: Path) -> dict[str, str]:
 def _sections(name: str, command: Any) -> Iterator[str]:
     children = getattr(command, "commands", {})
     label = name.replace(" ", "-")
-    yield f"({label})=\n## `{name}`\n\n{paragraphs(command.help or '')}\n\n"
+    yield f"({label})=\n## `{name}`\n\n{paragraphs(_plain(command.help))}\n\n"
     arguments = [one for one in command.params if one.param_type_name == "argument"]
     options = [one for one in command.params if one.param_type_name == "option"]
     if not children:
         words = [name, *(_argument(one) for one in arguments), *(["[OPTIONS]"] if options else [])]
         yield f"```text\n{' '.join(words)}\n```\n\n"
-    rows = [(f"`{_argument(one)}`", paragraphs(one.help or "")) for one in arguments]
+    rows = [(f"`{_argument(one)}`", paragraphs(_plain(one.help))) for one in arguments]
     rows += [(_names(one), paragraphs(_help(one))) for one in options if not one.hidden]
     if rows:
         yield table(("", ""), rows) + "\n"
     for child in children:
         yield from _sections(f"{name} {child}", children[child])
+
+
+def _plain(text: str | None) -> str:
+    """A help without the backslashes that keep its brackets at a terminal."""
+    return (text or "").replace("\\[", "[")
 
 
 def _argument(one: Any) -> str:
@@ -63,7 +68,7 @@ def _names(option: Any) -> str:
 
 
 def _help(option: Any) -> str:
-    told = [option.help or ""]
+    told = [_plain(option.help)]
     if option.required:
         told.append("Required.")
     default = getattr(option, "show_default", True) and not option.is_flag and option.default

@@ -20,6 +20,7 @@ from giveway.base.terminal import EXIT_CODES, FAILED, INTERRUPTED, WRONG_INPUT
 from giveway.cli import app
 from giveway.doctor import findings
 from giveway.simulation import runner
+from rich.text import Text
 from terminal_process import at_a_terminal
 
 PACKAGE = Path(giveway.__file__).parent
@@ -190,6 +191,13 @@ def test_no_command_ends_with_another_code() -> None:
 def test_exit_codes_are_told(cli: Cli) -> None:
     said = " ".join(cli("--help").stdout.split())
     assert all(f"{code}: {words}" in said for code, words in EXIT_CODES.items())
+
+
+def test_help_keeps_its_brackets() -> None:
+    """Rich takes what stands in brackets for markup, unless a backslash is before it."""
+    for path, command in commands(typer.main.get_command(app)):
+        for text in (command.help or "", *(getattr(one, "help", "") or "" for one in command.params)):
+            assert Text.from_markup(text).plain == text.replace("\\[", "["), f"{path}: {text}"
 
 
 def shown_at_a_terminal(*arguments: str, **environment: str) -> bytes:

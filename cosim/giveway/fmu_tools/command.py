@@ -117,7 +117,7 @@ def run(
     ] = None,
     inputs: Annotated[
         Path | None,
-        typer.Option("--input", metavar="FILE.csv", help="Inputs over time: a column time [s], then one per input."),
+        typer.Option("--input", metavar="FILE.csv", help="Inputs over time: a column time \\[s], then one per input."),
     ] = None,
     plot: Annotated[
         list[str] | None,

@@ -39,7 +39,7 @@ def replay(
         Path | None, typer.Option("--columns", metavar="FILE", help="TOML that says which column is what.")
     ] = None,
     column: Annotated[
-        list[str] | None, typer.Option("--column", metavar="QUANTITY=COLUMN", help='torque_1="-tau_b [mN.m]"')
+        list[str] | None, typer.Option("--column", metavar="QUANTITY=COLUMN", help='torque_1="-tau_b \\[mN.m]"')
     ] = None,
     joints: Annotated[
         str | None, typer.Option("--joints", metavar="A,B,C", help="ROS: the wheels' joints, in their order.")
