@@ -148,6 +148,37 @@ def test_missing_rows_repeated_rows_and_empty_cells_are_named(tmp_path: Path) ->
     assert replay.story.statuses.total_s[4] == pytest.approx(0.024)
 
 
+def test_a_wrong_unit_of_time_is_refused_before_it_fills_the_memory(cli: Cli, tmp_path: Path) -> None:
+    values = columns()
+    path = csv(tmp_path / "log.csv", values | {"time [s]": 1e3 * values["time [s]"]})
+    for command in (("replay", "--out", "out"), ("tune", "--false-alarms", "60/h")):
+        done = cli(command[0], "log.csv", *command[1:], "--robot", ROBOT)
+        assert done.returncode == 2
+        said = "log.csv: time step: 2 s is not allowed; allowed: at most 0.05 s between rows; is the unit of its times"
+        assert said in done.stderr
+    assert played(path, way="rows").did.steps == 2100  # whatever their time
+
+
+@pytest.mark.parametrize("step_s", [0.05, 0.0509])
+def test_twenty_rows_a_second_are_enough(step_s: float, tmp_path: Path) -> None:
+    time = step_s * np.arange(100)
+    values = {name: one[::20][:100] for name, one in columns().items()} | {"time [s]": time}
+    assert played(csv(tmp_path / "log.csv", values)).did.usual_s == pytest.approx(step_s)
+    with pytest.raises(GivewayError, match=r"time step: 0\.0515 s is not allowed"):
+        played(csv(tmp_path / "log.csv", values | {"time [s]": 0.0515 * np.arange(100)}))
+
+
+def test_many_pauses_do_not_stand_in_memory_together(tmp_path: Path) -> None:
+    values = {name: one[:110] for name, one in columns().items()}
+    values["time [s]"] = np.concatenate([0.002 * np.arange(100), 50.0 * np.arange(1, 11)])
+    path, longest = csv(tmp_path / "log.csv", values), 0
+    with Replay(open_log(path, Wishes(), None, "motor_angle", "torque"), Wishes(), Choice({}, 1e-3)) as replay:
+        for one in replay.all():
+            longest = max(longest, len(one.steps.present))
+    assert replay.did.steps == 500_001
+    assert longest <= 120_000
+
+
 @pytest.mark.parametrize("way", ["hold", "rows"])
 def test_other_ways_to_steps(way: str, tmp_path: Path) -> None:
     did = played(csv(tmp_path / "log.csv", columns()), way=way).did

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.base.errors import GivewayError
 from giveway.identification.torque_model import TorqueModel
 from giveway.robot.wheels import WHEELS
 
@@ -27,6 +28,7 @@ __all__ = [
     "Fit",
     "RestZone",
     "Samples",
+    "check_step",
     "enough_blocks",
     "fit",
     "half_widths",
@@ -37,6 +39,7 @@ SMOOTHING_S = 0.05
 """Standard deviation of the Gaussian: -3 dB at 2.7 Hz. Arcs take seconds; encoder steps and servo ripple do not."""
 
 LONGEST_STEP_S = SMOOTHING_S  # between two samples of a log: the Gaussian has to cover some of them
+STEP_TOLERANCE = 0.02  # of it: clocks of loggers, and rounded times
 CONFIDENCE = 0.95
 TRUNCATE = 4.0  # Gaussians are cut off here; what the cut touches at the ends of a log is left out
 SAMPLES_PER_SMOOTHING = 1  # between kept samples: closer ones would add no information
@@ -49,6 +52,13 @@ CORRELATIONS_PER_BLOCK = 3.0
 BLOCKS_PER_PARAMETER = 2  # with fewer blocks their scatter is unknown
 GAUSSIAN_MAD = 1.4826  # standard deviation over median absolute deviation
 SLOPES = np.geomspace(0.03, 300.0, 24)  # starting values of alpha, times the largest roller rate
+
+
+def check_step(name: str, step_s: float) -> None:
+    """GivewayError if the usual time between the rows of log ``name``, s, is too long to see a motion by."""
+    if step_s > (1.0 + STEP_TOLERANCE) * LONGEST_STEP_S:
+        allowed = f"at most {LONGEST_STEP_S:g} s between rows; is the unit of its times right?"
+        raise GivewayError(f"{name}: time step", f"{step_s:.6g} s", allowed)
 
 
 @dataclass(frozen=True)

@@ -36,11 +36,11 @@ from giveway.identification.disturbance import Limits, find_disturbance
 from giveway.identification.friction_curve import FrictionCurve, friction_curve
 from giveway.identification.roller_fit import (
     BLOCKS_PER_PARAMETER,
-    LONGEST_STEP_S,
     SMOOTHING_S,
     Fit,
     RestZone,
     Samples,
+    check_step,
     enough_blocks,
     fit,
     half_widths,
@@ -221,9 +221,7 @@ class _Data:
     @classmethod
     def of(cls, logs: Sequence[MotionLog], robot: Robot) -> _Data:
         for log in logs:
-            step = float(np.median(np.diff(log.time_s)))
-            if step > LONGEST_STEP_S:
-                raise GivewayError(f"{log.name}: time step", f"{step:g} s", f"at most {LONGEST_STEP_S:g} s")
+            check_step(log.name, float(np.median(np.diff(log.time_s))))
         return cls(
             logs,
             TorqueModel.of(robot),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -33,6 +34,7 @@ OUTPUTS = (
     *("estimate.valid", "estimate.acceleration_source", "imu.trusted", "detection.active", "detection.statistic"),
     *Story.OUTPUTS,
 )
+PART_S = 60.0
 _ENDINGS = "CSV (.csv), Parquet (.parquet), MCAP (.mcap), rosbag2 (.db3 or its folder)"
 
 
@@ -88,6 +90,14 @@ def open_log(path: Path, wishes: Wishes, topic: str | None, angle: str, effort: 
     if not path.exists():
         raise FileError(path, "no such file", f"give the path of a log: {_ENDINGS}")
     raise FileError(path, "has a name with another ending", f"allowed: {_ENDINGS}")
+
+
+def _short(block: Block) -> Iterator[Block]:
+    """Parts of ``block`` of `PART_S` at most: pauses between rows become many steps, and these stand in memory."""
+    number = np.nan_to_num(np.floor((block.values[:, 0] - block.values[:1, 0]) / PART_S))
+    cuts = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(number)]
+    for begin, end in itertools.pairwise(cuts):
+        yield Block(block.values[begin:end], block.first + begin)
 
 
 class Replay:
@@ -161,9 +171,9 @@ class Replay:
 
     def _all_steps(self) -> Iterator[Steps]:
         for block in self.source.blocks(self.wanted):
-            sampled = self._sampling.feed(Block(block.values * self._scale, block.first))
-            if (steps := self._steps(sampled)) is not None:
-                yield steps
+            for part in _short(Block(block.values * self._scale, block.first)):
+                if (steps := self._steps(self._sampling.feed(part))) is not None:
+                    yield steps
         if (steps := self._steps(self._sampling.finish(), last=True)) is not None:
             yield steps
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.base.errors import FileError, UnknownNameError
+from giveway.identification.roller_fit import check_step
 from giveway.replay.source import Block, Source, place_error
 
 if TYPE_CHECKING:
@@ -162,6 +163,8 @@ class Sampling:
             raise FileError(self._source.path, f"has {len(values)} rows with a time of their own", "a log needs two")
         steps = np.diff(values[:, 0])
         usual = self.did.usual_s = float(np.median(steps))
+        if self.did.way != "rows":  # whatever their time
+            check_step(self._source.path.name, usual)
         self._longest_s = GAP_STEPS * usual
         if self.did.way == "auto":
             place = values[:, 0] / self._step_s
