@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from arc_logs import arc_log, sine
+from arc_logs import DISTANCE, R_W, arc_log, jacobians, sine
 from cosim_helpers import Cli
 from giveway.base import native
 from giveway.base.errors import FileError, GivewayError
@@ -104,6 +105,53 @@ def test_wrong_signs_orders_and_units_are_named(change: Change, said: str, tmp_p
     assert any(said in line for line in findings.wrong), findings.wrong
     if change in (swapped, turned, dead):
         assert "signs and order of torque fit the motion" not in findings.fine
+
+
+def with_plan(values: Columns) -> Columns:
+    """What the wheels do, as the plan."""
+    time = values["time [s]"]
+    angle = np.stack([values[f"wheel_angle_{i} [rad]"] for i in range(3)], axis=1)
+    theta = angle.sum(axis=1) * R_W / (3.0 * DISTANCE)
+    rate = np.gradient(angle, time, axis=0)
+    twist = np.linalg.solve(jacobians(theta)[0], rate[:, :, None])[:, :, 0]
+    place = np.stack([*(np.cumsum(twist[:, :2], axis=0) * (time[1] - time[0])).T, theta])
+    names = ("x [m]", "y [m]", "theta [rad]", "vx [m/s]", "vy [m/s]", "omega [rad/s]")
+    more = ("ax [m/s2]", "ay [m/s2]", "alpha [rad/s2]")
+    plan = np.concatenate([place, twist.T, np.gradient(twist, time, axis=0).T])
+    return values | {f"plan_{name}": one for name, one in zip((*names, *more), plan, strict=True)}
+
+
+def far(lines: list[str]) -> tuple[str, float, str]:
+    """What a line says of how far the wheels turn: which, the factor, and the rest."""
+    (said,) = [line for line in lines if "as far as the plan" in line]
+    which, factor, rest = re.split(r" turns? ([\d.]+) times as far as the plan", said)
+    return which, float(factor), rest
+
+
+@pytest.mark.parametrize(("wheels", "factor"), [((0, 1, 2), 2.0), ((0, 1, 2), 0.5), ((1,), 1.5)])
+def test_wheels_that_turn_otherwise_than_planned_are_named(
+    wheels: tuple[int, ...], factor: float, tmp_path: Path
+) -> None:
+    """Differences over 0.1 s make less of sines of 0.5 Hz: 0.5 %."""
+    values = with_plan(columns())
+    path = tmp_path / "log.csv"
+    assert far(played(csv(path, values)).findings.fine) == ("the wheels", pytest.approx(1.0, abs=0.015), "")
+    names = [f"wheel_angle_{i} [rad]" for i in wheels]
+    found = played(csv(path, values | {name: factor * values[name] for name in names})).findings
+    which = "the wheels" if len(wheels) == 3 else f"wheel_angle_{wheels[0]}"
+    hint = ": encoder counts, wheel radius or unit?"
+    assert far(found.wrong) == (which, pytest.approx(factor, rel=0.015), hint)
+    held = {name: np.minimum(values[name], 0.4) for name in values if name.startswith("wheel")}
+    found = played(csv(path, values | held)).findings
+    assert "how far the wheels turn against the plan: they do not follow it steadily" in found.open
+
+
+def test_speeds_that_the_robot_does_not_have_are_named(tmp_path: Path) -> None:
+    """0.6 m/s at a rim are none of them; five times the robot's 0.5 m/s are."""
+    values = columns()
+    fast = {name: 5.0 * values[name] for name in values if name.startswith("wheel")}
+    wrong = played(csv(tmp_path / "log.csv", values | fast)).findings.wrong
+    assert any("times the robot's reference.speed_limit of 0.5 m/s: is the unit of wheel_angle" in one for one in wrong)
 
 
 def test_the_yaw_rate_of_the_wheels_is_in_order(tmp_path: Path) -> None:

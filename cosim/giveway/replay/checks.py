@@ -30,6 +30,10 @@ BETTER = 0.5  # of the squared misfit: another order or sign has to fit so much 
 MOVING_MPS = 0.02
 TURNING_RADPS = 0.05
 DRIVEN_M = 0.05
+ALIKE = (0.8, 1.25)  # factors within which two speeds count as the same
+STEADY = 0.3  # spread of the middle half of such factors, relative
+FAST = 5.0  # times the limit of the robot's speed: no wheel turns so fast
+OUTER = 0.99  # of the time: one jump is no speed
 SATURATED_SHARE = 0.01
 _DEG = math.degrees(1.0)
 
@@ -182,7 +186,9 @@ class LogChecks:
             return found
         angle = points[:, :WHEELS]
         some = slice(None, None, -(-len(points) // POINTS_JUDGED))
-        rate, acceleration = (one[some] for one in _derivatives(angle, self._width * self._step_s))
+        rate, acceleration = _derivatives(angle, self._width * self._step_s)
+        self._judge_speed(found, rate)
+        rate, acceleration = rate[some], acceleration[some]
         inside = points[SMOOTH:-SMOOTH][some]
         self._judge_torque(found, inside[:, WHEELS : 2 * WHEELS], rate, acceleration)
         self._judge_yaw(found, inside[:, 2 * WHEELS], rate)
@@ -210,6 +216,17 @@ class LogChecks:
             )
         else:
             found.fine.append(f"wheels turn with up to {self._fastest:.3g} rad/s ({speed:.3g} m/s at the rim)")
+
+    def _judge_speed(self, found: Findings, rate: NDArray[np.float64]) -> None:
+        """Speeds that the robot does not have, so that another unit is likely."""
+        known = np.abs(rate).max(axis=1) * value_of(self._parameters, "geometry.wheel_radius")
+        known = known[np.isfinite(known)]
+        limit_mps = value_of(self._parameters, "reference.speed_limit")
+        if known.size and (speed_mps := float(np.quantile(known, OUTER))) > FAST * limit_mps:
+            found.wrong.append(
+                f"the wheels' rims move with {speed_mps:.3g} m/s, {speed_mps / limit_mps:.3g} times the robot's "
+                f"reference.speed_limit of {limit_mps:g} m/s: is the unit of {self._angle} right?"
+            )
 
     def _model(self) -> TorqueModel:
         def value(name: str) -> float:
@@ -273,7 +290,7 @@ class LogChecks:
             return float(gyro @ turned) / math.sqrt(float(turned @ turned) or math.inf)
 
         best = max(itertools.product((1, -1), repeat=WHEELS), key=likeness)
-        if all(sign > 0 for sign in best) and 0.8 <= ratio <= 1.25:
+        if all(sign > 0 for sign in best) and ALIKE[0] <= ratio <= ALIKE[1]:
             found.fine.append(f"the yaw rate is {ratio:.3g} times that of the wheels")
         elif all(sign < 0 for sign in best):
             found.wrong.append("the yaw rate is opposite to that of the wheels: the sign of yaw_rate or of all angles")
@@ -303,9 +320,35 @@ class LogChecks:
         match = best_match(measured, expected, np.zeros_like(expected))
         if match.as_it_is:
             found.fine.append(f"signs and order of {self._angle} fit the plan")
+            self._judge_scale(found, measured, expected, slots)
         else:
             words = _words(match, self._angle, slots)
             found.wrong.append(f"{self._angle} fits the plan better otherwise: {words}")
+
+    def _judge_scale(
+        self, found: Findings, measured: NDArray[np.float64], expected: NDArray[np.float64], slots: list[int]
+    ) -> None:
+        """How far the wheels turn, as a multiple of the plan, unless most of the time something holds or moves them."""
+        moving = np.abs(expected) * self._model().wheel_radius_m > MOVING_MPS
+        factors: dict[str, float] = {}
+        for i, rows in enumerate(moving.T):
+            if np.count_nonzero(rows) >= POINTS_MIN // 2:
+                low, factor, high = np.quantile(measured[rows, i] / expected[rows, i], (0.25, 0.5, 0.75))
+                if high - low > STEADY * abs(factor):
+                    found.open.append("how far the wheels turn against the plan: they do not follow it steadily")
+                    return
+                factors[f"{self._angle}_{slots[i]}"] = float(factor)
+        if not factors:
+            return
+        least, most = min(factors.values()), max(factors.values())
+        if least > 0.0 and most <= ALIKE[1] * least:  # all of them alike
+            factors = {"the wheels": float(np.median([*factors.values()]))}
+        for name, factor in sorted(factors.items()):
+            words = f"{name} turn{'' if name == 'the wheels' else 's'} {factor:.2f} times as far as the plan"
+            if ALIKE[0] <= factor <= ALIKE[1]:
+                found.fine.append(words)
+            else:
+                found.wrong.append(f"{words}: encoder counts, wheel radius or unit?")
 
 
 def _derivatives(values: NDArray[np.float64], step_s: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
