@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import mcap.reader
 import numpy as np
 import pytest
 from arc_logs import DISTANCE, R_W, arc_log, jacobians, sine
@@ -225,6 +226,21 @@ def test_many_pauses_do_not_stand_in_memory_together(tmp_path: Path) -> None:
             longest = max(longest, len(one.steps.present))
     assert replay.did.steps == 500_001
     assert longest <= 120_000
+
+
+@pytest.mark.parametrize("begin_s", [-5.0, 1e12])
+def test_times_that_mcap_cannot_say_begin_at_zero(begin_s: float, cli: Cli, tmp_path: Path) -> None:
+    values = {name: one[:300] for name, one in columns().items()}
+    csv(tmp_path / "log.csv", values | {"time [s]": begin_s + values["time [s]"]})
+    done = cli("replay", "log.csv", "--robot", ROBOT, "--out", "out")
+    assert done.returncode == 0, done.stderr
+    assert f"begin at {begin_s:.9g} s, which MCAP cannot say: in replay.mcap at 0 s" in done.stdout
+    with (tmp_path / "out/replay.mcap").open("rb") as file:
+        summary = mcap.reader.make_reader(file).get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.message_start_time == 0
+    assert summary.statistics.message_end_time == pytest.approx(590_000_000, abs=10_000_000)
 
 
 @pytest.mark.parametrize("way", ["hold", "rows"])

@@ -31,6 +31,7 @@ DECIDE_ROWS = 50  # enough for the usual time between rows
 GAP_STEPS = 2.5  # rows further apart than so many usual ones have others missing between them
 GAPS_KEPT = 1000
 PAUSE_S = 60.0
+LATEST_S = 2.0**31  # a ROS stamp counts seconds with a sign, in 32 bits
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,11 @@ class Treatment:
     gap_count: int = 0
     gaps: list[Gap] = field(default_factory=list)
     not_finite: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def stamps_from_s(self) -> float:
+        """The time of the first row in files whose times cannot be negative, nor later than their seconds reach."""
+        return self.begin_s if 0.0 <= self.begin_s <= LATEST_S else 0.0
 
     def add_gap(self, gap: Gap) -> None:
         self.gap_count += 1

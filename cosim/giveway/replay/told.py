@@ -35,6 +35,8 @@ def done_lines(replay: Replay, robot: str) -> list[tuple[str, str]]:
         lines.append(("angles", f"rounded to encoder counts, {counts:g} per turn{behind}"))
     if replay.chosen.torque == "current":
         lines.append(("torques", f"currents times {replay.choice.torque_constant:g} N m/A"))
+    if did.stamps_from_s != did.begin_s:
+        lines.append(("times", f"begin at {did.begin_s:.9g} s, which MCAP cannot say: in replay.mcap at 0 s"))
     if did.wraps:
         lines.append(("wraps", f"{did.wraps} of the angles undone"))
     if replay.makes_plan:

@@ -120,7 +120,7 @@ class McapFile:
 
         self._step_s = replay.choice.step_s
         self._every = max(1, round(MCAP_STEP_S / self._step_s))
-        self._begin_s = replay.did
+        self._did = replay.did
         self._stream = path.open("wb")
         residual = [f"residual.torque[{wheel}]" for wheel in _WHEELS]
         hit = ("force_x", "force_y", "torque_z", "point_x", "point_y", "point_sigma", "channel")
@@ -136,7 +136,7 @@ class McapFile:
         outputs, first = played.outputs, played.steps.first
         numbers = first + np.arange(len(residual))
         rows = np.flatnonzero(numbers % self._every == 0)
-        time_ns = np.rint((numbers[rows] * self._step_s + self._begin_s.begin_s) * 1e9).astype(np.int64)
+        time_ns = np.rint((numbers[rows] * self._step_s + self._did.stamps_from_s) * 1e9).astype(np.int64)
 
         def columns(*names: str) -> NDArray[np.float64]:
             taken = [outputs[name][rows].astype(np.float64) if name else np.zeros(len(rows)) for name in names]
@@ -148,9 +148,8 @@ class McapFile:
         point = np.stack([outputs["estimate.point_x"][valid], outputs["estimate.point_y"][valid], 0.0 * valid], axis=1)
         self._writer.write(self._place, time_ns[outputs["estimate.valid"][rows]], point)
         self._writer.write(self._state, time_ns, np.concatenate([columns(*self.STATE), residual[rows]], axis=1))
-        hits = np.array(
-            [round((one.time_s + self._begin_s.begin_s) * 1e9) for one in played.detections], dtype=np.int64
-        )
+        begin_s = self._did.stamps_from_s
+        hits = np.array([round((one.time_s + begin_s) * 1e9) for one in played.detections], dtype=np.int64)
         at = [round(one.time_s / self._step_s) - first for one in played.detections]
         values = np.stack([outputs[f"detection.{name}"][at].astype(np.float64) for name in self._hits], axis=1)
         self._writer.write(self._hit, hits, values)
