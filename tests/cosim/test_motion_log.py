@@ -67,6 +67,12 @@ def test_other_units_order_and_columns(robot: Robot, write: Callable[[list[str]]
     assert log.wheel_angle_rad - log.wheel_angle_rad[0] == pytest.approx(angle - angle[0], abs=1e-6)  # of 1.6e6 rad
 
 
+def test_nanoseconds(robot: Robot, write: Callable[[list[str]], Path]) -> None:
+    columns = {f"wheel_angle_{i}_rad": SHORT.wheel_angle_rad[:, i] for i in range(3)}
+    columns |= {f"torque_{i}_nm": SHORT.torque_nm[:, i] for i in range(3)}
+    assert read_log(write(table(time_ns=1e9 * SHORT.time_s, **columns)), robot).time_s == pytest.approx(SHORT.time_s)
+
+
 def test_the_log_of_a_run(robot: Robot, write: Callable[[list[str]], Path]) -> None:
     """Its heads, under comments, mean the same as those of a log of one's own; an error has the line of the file."""
     columns = {f"motor_angle_{i}_counts": np.rint(SHORT.wheel_angle_rad[:, i] * 1e3) for i in range(3)}

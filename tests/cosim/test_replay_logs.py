@@ -178,6 +178,15 @@ def test_other_names_units_and_signs_give_the_same(tmp_path: Path) -> None:
     assert two.findings.fine == one.findings.fine
 
 
+def test_times_in_nanoseconds_of_the_epoch(tmp_path: Path) -> None:
+    """As ROS and many loggers have them; 64 bits of a float keep 0.24 us of them."""
+    values = columns()
+    time_ns = np.rint(1.7e18 + 1e9 * values.pop("time [s]"))
+    did = played(csv(tmp_path / "log.csv", {"time [ns]": time_ns, **values})).did
+    assert did.duration_s == pytest.approx(4.198, abs=1e-6)
+    assert did.steps in (4198, 4199)
+
+
 def test_missing_rows_repeated_rows_and_empty_cells_are_named(tmp_path: Path) -> None:
     path = csv(tmp_path / "log.csv", columns())
     lines = path.read_text().splitlines()

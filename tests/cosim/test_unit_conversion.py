@@ -12,7 +12,7 @@ from giveway.base.units import factor
 SIZES = {  # of one unit in SI: the SI brochure; NIST SP 811 for inch, foot, pound and pound-force, which are exact
     ("m",): {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "km": 1e3, "in": 0.0254, "ft": 0.3048},
     ("kg",): {"g": 1e-3, "kg": 1.0, "lb": 0.45359237},
-    ("s",): {"us": 1e-6, "ms": 1e-3, "s": 1.0, "h": 3600.0},
+    ("s",): {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "h": 3600.0},
     ("rad",): {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
     ("Hz", "1/s"): {"Hz": 1.0, "kHz": 1e3},
     ("N", "kg.m/s2"): {"mN": 1e-3, "N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},

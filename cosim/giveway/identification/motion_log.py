@@ -2,7 +2,7 @@
 
 Columns are found by their names, in any order; other columns are ignored:
 
-    time_s                                        also _ms, _us
+    time_s                                        also _ms, _us, _ns
     wheel_angle_0_rad  ..._1_rad  ..._2_rad       also _deg, _counts (the robot's drivetrain.encoder_counts per turn)
     torque_0_nm        ..._1_nm   ..._2_nm        also _mnm
 
@@ -39,7 +39,7 @@ COUNT_WRAP = 2.0**32
 STANDING_S = 0.8  # without motion: the robot stands between two arcs, it does not just turn back
 STANDING_RAD = 2e-3  # in which wheels that stand move, between them two counts of an encoder
 SHORTEST_PIECE_S = 2.0
-_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _TORQUE = {"nm": 1.0, "mnm": 1e-3}
 _ANGLE_UNITS = ("rad", "deg", "counts")
 

@@ -15,8 +15,8 @@ ANGLES = ("encoder", "motor_angle", "wheel_angle")
 TORQUES = ("torque", "current")
 PLAN = ("plan_x", "plan_y", "plan_theta", "plan_vx", "plan_vy", "plan_omega", "plan_ax", "plan_ay", "plan_alpha")
 CALIBRATION_UNITS: Mapping[str, str] = {
-    **{"s": "s", "ms": "ms", "us": "us", "rad": "rad", "deg": "deg", "nm": "N.m", "mnm": "mN.m", "a": "A", "ma": "mA"},
-    "counts": "1",
+    **{"s": "s", "ms": "ms", "us": "us", "ns": "ns", "rad": "rad", "deg": "deg", "nm": "N.m", "mnm": "mN.m"},
+    **{"a": "A", "ma": "mA", "counts": "1"},
 }
 """Units at the end of a name, as in the logs of `giveway calibrate`: time_s, torque_0_nm."""
 
