@@ -58,6 +58,24 @@ def test_the_end_of_the_input_ends_it(lines: list[str], cli: Cli, monkeypatch: p
     assert "Followed 501 rows, 0.501 s: 1 detections" in done.stdout
 
 
+def test_a_byte_order_mark_is_left_out(lines: list[str], cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = [line for line in lines if not line.startswith("#")]
+    monkeypatch.setattr("sys.stdin", io.StringIO("\ufeff" + "".join(own)))
+    done = cli("replay", "--follow", "--robot", str(native.robot()))
+    assert done.returncode == 0, done.stderr
+    assert "Followed 501 rows, 0.501 s: 1 detections" in done.stdout
+
+
+def test_without_a_plan_detections_come_later(lines: list[str], cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = [line.rstrip().split(",") for line in lines if not line.startswith("#")]
+    kept = [at for at, head in enumerate(own[0]) if not head.startswith("plan_")]
+    monkeypatch.setattr("sys.stdin", io.StringIO("".join(",".join(row[at] for at in kept) + "\n" for row in own)))
+    done = cli("replay", "--follow", "--robot", str(native.robot()))
+    assert done.returncode == 0, done.stderr
+    assert "it is taken to be the motion of the wheels, and detections are told 0.3 s late" in done.stdout
+    assert "Followed 501 rows, 0.501 s: 1 detections" in done.stdout
+
+
 def test_wrong_lines_are_named(lines: list[str], cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = [*lines[:100], lines[100].replace(",", ";", 1), *lines[101:]]
     monkeypatch.setattr("sys.stdin", io.StringIO("".join(wrong)))

@@ -12,6 +12,7 @@ from giveway import batch
 from giveway.base import native
 from giveway.experiments import all_experiments, get
 from giveway.own_robot.checked import check
+from giveway.robot.changes import NewValue, changed_robot
 from giveway.robot.robot_file import read_robot
 from giveway.robot.variables import table
 
@@ -218,3 +219,14 @@ def test_wrong_settings_name_file_line_and_key(case: str, tmp_path: Path) -> Non
     assert line > native.robot().read_text(encoding="utf-8").count("\n")
     for word in words:
         assert word in message
+
+
+def test_a_byte_order_mark_is_left_out(cli: Cli, tmp_path: Path) -> None:
+    """Some editors of Windows write one; scenario, study and column files are read by the same function."""
+    (tmp_path / "own.toml").write_bytes(b"\xef\xbb\xbf" + native.robot().read_bytes())
+    done = cli("robot", "check", "own.toml")
+    assert done.returncode == 0, done.stderr
+    own = read_robot(tmp_path / "own.toml")
+    assert dict(own.entries()) == dict(read_robot(native.robot()).entries())
+    changed = changed_robot(tmp_path / "own.toml", {"base.mass": NewValue(41.0, "scales", "measured", "high")})
+    assert changed == changed_robot(native.robot(), {"base.mass": NewValue(41.0, "scales", "measured", "high")})

@@ -19,9 +19,12 @@ __all__ = ["Section", "lines_named", "read_toml", "renamed"]
 
 
 def read_toml(path: Path, hint: str) -> tuple[str, dict[str, Any]]:
-    """Text and document of the file ``path``; ``hint``: what to give if there is no such file."""
+    """Text and document of the file ``path``; ``hint``: what to give if there is no such file.
+
+    A byte order mark, which some editors of Windows write, is left out.
+    """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise FileError(path, "no such file", hint) from None
     except (OSError, UnicodeDecodeError) as error:

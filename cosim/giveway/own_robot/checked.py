@@ -77,7 +77,7 @@ def check(path: Path) -> Checked:
         _probe(path)
     except GivewayError as error:
         return Checked(robot, (), str(error), (), None)
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text(encoding="utf-8-sig")
     found = tuple((_line(robot, text, doubt), doubt) for doubt in doubts(numbers))
     return Checked(robot, (), "", found, numbers)
 

@@ -178,7 +178,9 @@ class LineLog:
 
     def __init__(self, lines: Iterable[str], name: str = "standard input") -> None:
         self.path, self.said = Path(name), list[str]()
-        self._lines = iter(lines)
+        rest = iter(lines)
+        first = next(rest, "").removeprefix("\ufeff")  # a byte order mark, as `CsvLog` leaves out
+        self._lines = itertools.chain([first], rest)
         begin = _Begin(self.path, self._lines)
         self.heads, self.origin, self._head_line = begin.heads, begin.origin, begin.line
         self._places = Places()

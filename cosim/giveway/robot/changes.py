@@ -43,7 +43,7 @@ def changed_robot(path: Path, changes: Mapping[str, NewValue]) -> str:
     from tomlkit.items import AbstractTable
 
     robot = read_robot(path)
-    document = tomlkit.parse(path.read_text(encoding="utf-8"))
+    document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
     stated: dict[str, float] = {}
     added: dict[str, NewValue] = {}
     for name, new in changes.items():
@@ -113,7 +113,7 @@ def _has(document: Mapping[str, Any], tables: list[str]) -> bool:
 
 def _check(path: Path, text: str, changes: Mapping[str, float]) -> None:
     """Checks that the new text equals the old one except for ``changes``, the new values by name."""
-    old, new = tomllib.loads(path.read_text(encoding="utf-8")), tomllib.loads(text)
+    old, new = tomllib.loads(path.read_text(encoding="utf-8-sig")), tomllib.loads(text)
     for name, value in changes.items():
         *tables, key = name.split(".")
         before, after = old, new
