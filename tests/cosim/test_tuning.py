@@ -478,3 +478,14 @@ def test_a_touch_is_told_with_the_result_and_in_the_file(cli: Cli, arcs: Path, t
     assert "TOUCHED? touched.parquet" in touched
     assert "something touched the robot" in touched
     assert "TOUCHED? touched.parquet" in (tmp_path / "new.toml").read_text(encoding="utf-8")
+
+
+def test_logs_without_free_motion_say_why(cli: Cli, arcs: Path, tmp_path: Path) -> None:
+    changed(arcs, tmp_path / "nan.parquet", 0, slice(None), 1.0, math.nan)
+    answer = cli("tune", "nan.parquet", "--robot", str(TRIKEY), "--false-alarms", "60/h")
+    assert answer.returncode == 2
+    assert "logs: no free motion; nan.parquet: the controller refuses 65001 samples (not finite 65001)" in answer.stderr
+    (tmp_path / "pushes.csv").write_text("start [s],end [s]\n0,65\n", encoding="utf-8")
+    answer = cli("tune", str(arcs), "--robot", str(TRIKEY), "--false-alarms", "60/h", "--pushes", "pushes.csv")
+    assert answer.returncode == 2
+    assert "logs: no free motion is not allowed; allowed: some minutes in which nothing pushes" in answer.stderr

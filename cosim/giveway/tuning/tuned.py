@@ -132,6 +132,9 @@ def tune(
         marked = read_pushes(Path(pushes), {log.name: log.duration_s for log in read})
         read = [dataclasses.replace(log, pushes=marked[log.name]) for log in read]
     hours = sum(float(np.count_nonzero(log.free())) * log.step_s for log in read) / 3600.0
+    if hours == 0.0:
+        why = "; ".join(["no free motion", *(said for log in read for said in log.said)])
+        raise GivewayError("logs", why, "some minutes in which nothing pushes and the sensors are good")
     check_hours(hours, false_alarms_per_hour)
     progress("friction and noise")
     identified = identify(read, file)
@@ -169,7 +172,7 @@ def check_hours(hours: float, rate_per_hour: float) -> None:
     needed = 1.0 / (EXTRAPOLATION * rate_per_hour)
     if hours >= needed:
         return
-    least = 1.0 / (EXTRAPOLATION * hours) if hours > 0.0 else float("inf")
+    least = 1.0 / (EXTRAPOLATION * hours)
     allowed = (
         f"at least {least:.3g}/h with {hours:.3g} h of free motion; this rate takes {needed:.3g} h of logs, and "
         f"{hours_to_count(rate_per_hour):.3g} h to be shown without the tail of the peaks"
