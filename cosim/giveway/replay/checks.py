@@ -110,6 +110,10 @@ class LogChecks:
     def __init__(self, parameters: Mapping[str, Value], step_s: float, names: tuple[str, str]) -> None:
         self._parameters, self._step_s = parameters, step_s
         self._angle, self._torque = names
+        # looked up once: live, rows come one by one
+        self._limit_nm = value_of(parameters, "sensor_check.torque_limit")
+        self._tare_s = value_of(parameters, "estimator.tare_ticks") * value_of(parameters, "controller.period")
+        self._at_rest_rad = 3.0 * 2.0 * math.pi / value_of(parameters, "estimator.encoder_counts")
         self._width = max(1, round(POINT_S / step_s))
         self._parts: list[NDArray[np.float64]] = []
         self._points = 0
@@ -142,23 +146,19 @@ class LogChecks:
             self._largest_torque = max(self._largest_torque, float(torque.max()))
             self._least = np.minimum(self._least, steps.torque_nm[good].min(axis=0))
             self._most = np.maximum(self._most, steps.torque_nm[good].max(axis=0))
-            limit = value_of(self._parameters, "sensor_check.torque_limit")
-            self._saturated += int(np.count_nonzero((torque >= limit).any(axis=1)))
+            self._saturated += int(np.count_nonzero((torque >= self._limit_nm).any(axis=1)))
             self._samples += len(torque)
         if good.any():
             angle = steps.angle_rad[good]
-            self._begin = angle[0] if self._begin is None else self._begin
+            self._begin = angle[0].copy() if self._begin is None else self._begin
             self._farthest = max(self._farthest, float(np.abs(angle - self._begin).max()))
         change = np.abs(np.diff(steps.angle_rad, axis=0))[good[1:] & good[:-1]]
         if change.size:
             self._fastest = max(self._fastest, float(change.max()) / self._step_s)
-        tare = int(value_of(self._parameters, "estimator.tare_ticks"))
-        period_s = value_of(self._parameters, "controller.period")
-        until = min(len(good), round(tare * period_s / self._step_s) - steps.first)
+        until = min(len(good), round(self._tare_s / self._step_s) - steps.first)
         if until > 1:
             moved = np.abs(steps.angle_rad[:until] - steps.angle_rad[0]).max()
-            counts = value_of(self._parameters, "estimator.encoder_counts")
-            self._tare_moved |= bool(moved > 3.0 * 2.0 * math.pi / counts)
+            self._tare_moved |= bool(moved > self._at_rest_rad)
 
     @property
     def moved(self) -> bool:
@@ -196,7 +196,7 @@ class LogChecks:
         return found
 
     def _judge_size(self, found: Findings) -> None:
-        limit = value_of(self._parameters, "sensor_check.torque_limit")
+        limit = self._limit_nm
         if self._samples and self._saturated > SATURATED_SHARE * self._samples:
             found.wrong.append(
                 f"{100.0 * self._saturated / self._samples:.3g} % of the samples have a torque at or above "
