@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from figure_labels import check_panels, check_planted, curve, in_si, unit_in
 from giveway.base.units import WrittenUnit, factor
+from giveway.report.figure_data import figure_data
 from giveway.robot.variables import table
 from giveway.study import Study, figures
 from giveway.study.answers import Answers
@@ -156,6 +157,20 @@ def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> No
 
 
 def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
+@pytest.mark.parametrize("goals", [("detection time",), ("detection time", "location error")], ids=["one", "two"])
+def test_what_decides_names_its_quantities_from_the_top(goals: tuple[str, ...], tmp_path: Path) -> None:
+    study = small_study(vary=[], designs={"kind": "morris", "trajectories": 2})
+    study.vary(LATCH, low=0, high=60).vary(SPRING, low=0.6, high=2.4, unit="N/mm")
+    for goal in goals:
+        study.objective(goal)
+    figure = figures.sensitivities(study.run(tmp_path / "study", progress=False))
+    panels = figure_data(figure)["axes"]  # type: ignore[arg-type]
+    assert len(panels) == len(goals)
+    for panel in panels:
+        assert panel["y"]["ticks"] == [[0.0, "bumper.latch_force"], [1.0, "bumper.spring_rate"]]
+        assert panel["y"]["first"] > panel["y"]["last"]
+
+
     write_report(tmp_path / "report.html", answers)
     page = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
     for words in ("0.6, 2.4 N/mm", "1.2 to 2.1 km/h", "+-0.002 kN", "bumper compression: at most 3 cm"):

@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection, PathCollection, PolyCollectio
 from matplotlib.colors import to_rgba
 from matplotlib.legend import Legend
 from matplotlib.text import Annotation
-from matplotlib.ticker import FixedFormatter
+from matplotlib.ticker import FixedFormatter, FuncFormatter
 
 from giveway.report.page import packed
 
@@ -83,7 +83,8 @@ def _axes(axes: Axes, row: int, column: int, points_max: int) -> dict[str, Any]:
 def _axis(axes: Axes, which: str) -> dict[str, Any]:
     axis = axes.xaxis if which == "x" else axes.yaxis
     first, last = axes.get_xlim() if which == "x" else axes.get_ylim()
-    named = isinstance(axis.get_major_formatter(), FixedFormatter)
+    # Names of ticks: matplotlib 3.11 has a function where others had a list.
+    named = isinstance(axis.get_major_formatter(), FixedFormatter | FuncFormatter)
     places = axis.get_majorticklocs().tolist()
     texts = axis.get_major_formatter().format_ticks(places) if named else []
     ticks = [[float(at), text] for at, text in zip(places, texts, strict=True)] if named else None
