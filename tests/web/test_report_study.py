@@ -143,6 +143,16 @@ def test_curves_are_those_of_the_design_in_the_user_s_units(tab: Page, answers: 
     assert found[np.searchsorted(times, 2.0)] > 0.0
 
 
+def test_curves_fit_their_places_when_a_design_comes_beside(tab: Page, answers: Answers) -> None:
+    show(tab, int(answers.order[1]))
+    widths = tab.locator("#beside figure.curve").evaluate_all(
+        "(all) => all.map((one) => [one.clientWidth, one.querySelector('.uplot canvas').clientWidth])"
+    )
+    assert len(widths) == 4
+    for room, curve in widths:
+        assert room - 1 <= curve <= room  # whole pixels
+
+
 def test_a_brush_is_seen_in_all_views(tab: Page, answers: Answers) -> None:
     said = tab.locator("#selection").get_by_role("status")
     expect(said).to_have_text("12 of 12 designs selected")

@@ -109,7 +109,7 @@ export class Curves {
     this.setting = true;
     this.drawn.forEach((one) => one.zoom(this.zoomed, this.x));
     this.setting = false;
-    this.place();
+    this.resize(); // the first one had the room of all
   }
 }
 
