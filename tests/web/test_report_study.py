@@ -153,6 +153,28 @@ def test_curves_fit_their_places_when_a_design_comes_beside(tab: Page, answers: 
         assert room - 1 <= curve <= room  # whole pixels
 
 
+def test_the_scene_says_the_detection_time_of_the_table(tab: Page, answers: Answers, tmp_path: Path) -> None:
+    stored, chosen = stored_runs(answers.folder), int(answers.order[0])
+    times_ms = stored["detection time"].reshape(12, -1)[:, 0]  # nominal, of the first collision
+    design = int(np.nanargmax(np.abs(times_ms - np.round(times_ms))))  # samples are at whole milliseconds
+    assert design != chosen
+    show(tab, design)
+    told = taken(tab, "numbers of these designs as CSV", tmp_path)
+    wanted = {f"noticed after {metrics_of(told, one)['detection time']:.1f} ms" for one in (chosen, design)}
+    assert f"noticed after {times_ms[design]:.1f} ms" in wanted
+    tab.evaluate(
+        """() => {
+          const pen = CanvasRenderingContext2D.prototype, fill = pen.fillText;
+          window.drawn = [];
+          pen.fillText = function (text, ...where) { window.drawn.push(text); fill.call(this, text, ...where); };
+        }"""
+    )
+    tab.locator("#beside .scene canvas").press("End")
+    expect(tab.get_by_label("time shown")).not_to_have_text("0 ms")
+    said = tab.evaluate("() => window.drawn.filter((text) => text.startsWith('noticed after'))")
+    assert {text.split(",")[0] for text in said} == wanted
+
+
 def test_a_brush_is_seen_in_all_views(tab: Page, answers: Answers) -> None:
     said = tab.locator("#selection").get_by_role("status")
     expect(said).to_have_text("12 of 12 designs selected")

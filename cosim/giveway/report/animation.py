@@ -26,7 +26,6 @@ DECIMALS = 4
 PUSH = tuple(f"{kind}_{axis}" for kind in ("force", "point") for axis in "xy")
 FELT = (
     "controller.estimate.valid",
-    "controller.detection.count",
     *(f"controller.{what}.{name}" for what in ("estimate", "detection") for name in PUSH),
 )  # in the base frame
 
@@ -64,7 +63,6 @@ def scene(label: str, result: Result) -> dict[str, Any]:
         "point": [_rounded(values[rows]) for values in point],
         "force": [_rounded(values[rows]) for values in force],
         "felt": {name: sampled(name) for name in FELT},
-        "touched": _rounded(((hit["testbed.truth.contact"] != 0) | hit.pushed()).astype(float)[rows], 0),
         "touches": touches,
     }
 
@@ -76,12 +74,13 @@ def motion(found: dict[str, Any]) -> dict[str, Any]:
     named |= {f"contact_{what}_{axis}": found[what][k] for what in ("force", "point") for k, axis in enumerate("xy")}
     shape, plate_ = found["obstacle"], found["plate"]
     front = None if shape is None else shape["body"][0][0]
+    noticed = [touch["detection"]["time"] for touch in found["touches"] if touch["detection"] is not None]
     return {
         "label": found["label"],
         "time": found["time"],
-        "traces": {f"testbed.truth.{name}": values for name, values in named.items()}
-        | {"testbed.truth.contact": found["touched"]}
-        | found["felt"],
+        "traces": {f"testbed.truth.{name}": values for name, values in named.items()} | found["felt"],
+        "contact": found["touches"][0]["time"] if found["touches"] else None,
+        "detected": min(noticed, default=None),
         "robot": {
             "outline": found["outline"],
             "wheel": found["wheel"],

@@ -8,12 +8,15 @@ export interface Motion {
   /** By full name; those of SCENE_TRACES. */
   traces: Readonly<Record<string, ArrayLike<number>>>;
   robot: RobotShape;
+  /** When something first touched, and when it was noticed after that, on the axis of `time_s`; NaN if not. */
+  contact_s: number;
+  detected_s: number;
 }
 
-const TRUTH = ["x", "y", "theta", "nose_x", "nose_y", "bumper_compression", "contact", "contact_force_x", "contact_force_y",
+const TRUTH = ["x", "y", "theta", "nose_x", "nose_y", "bumper_compression", "contact_force_x", "contact_force_y",
   "contact_point_x", "contact_point_y"] as const;
 const FELT = ["estimate.force_x", "estimate.force_y", "estimate.point_x", "estimate.point_y", "estimate.valid",
-  "detection.count", "detection.force_x", "detection.force_y", "detection.point_x", "detection.point_y"] as const;
+  "detection.force_x", "detection.force_y", "detection.point_x", "detection.point_y"] as const;
 
 /** What a motion needs. */
 export const SCENE_TRACES: readonly string[] = [
@@ -242,38 +245,8 @@ function row_at(time_s: ArrayLike<number>, now: number): number {
 
 const value_of = (motion: Motion, name: string, row: number): number => Number(motion.traces[name]?.[row] ?? 0);
 
-export interface Moments {
-  contact_s: number;
-  detected_s: number;
-}
-
-const found_moments = new WeakMap<Motion, Moments>();
-
-/** When something first touched, and when it was noticed after that; NaN if not. */
-export function moments(motion: Motion): Moments {
-  let found = found_moments.get(motion);
-  if (!found) {
-    found = find_moments(motion);
-    found_moments.set(motion, found);
-  }
-  return found;
-}
-
-function find_moments(motion: Motion): Moments {
-  const rows = motion.time_s.length;
-  const first = (good: (row: number) => boolean, from = 0) => {
-    for (let row = from; row < rows; row++) if (good(row)) return row;
-    return -1;
-  };
-  const contact = first((row) => value_of(motion, "testbed.truth.contact", row) !== 0);
-  const before = contact < 0 ? 0 : value_of(motion, "controller.detection.count", contact);
-  const felt = first((row) => value_of(motion, "controller.detection.count", row) > before, Math.max(contact, 0));
-  const at = (row: number) => (row < 0 ? NaN : Number(motion.time_s[row]));
-  return { contact_s: at(contact), detected_s: at(felt) };
-}
-
 function what_happens(motion: Motion, now: number): string {
-  const { contact_s, detected_s } = moments(motion);
+  const { contact_s, detected_s } = motion;
   const row = row_at(motion.time_s, now);
   const force = Math.hypot(value_of(motion, "testbed.truth.contact_force_x", row), value_of(motion, "testbed.truth.contact_force_y", row));
   const newtons = force >= SMALLEST_FORCE ? `, ${force.toFixed(0)} N` : "";
@@ -281,7 +254,7 @@ function what_happens(motion: Motion, now: number): string {
     return Number.isNaN(contact_s) ? "nothing touches the robot" : "before the contact";
   }
   if (now >= detected_s) {
-    return `noticed after ${(1000 * (detected_s - contact_s)).toFixed(0)} ms${newtons}`;
+    return `noticed after ${(1000 * (detected_s - contact_s)).toFixed(1)} ms${newtons}`;
   }
   return `contact${newtons}${Number.isNaN(detected_s) ? ", not noticed" : ""}`;
 }
@@ -365,7 +338,7 @@ class Picture {
 
   /** What the robot makes of it: the estimate, and once it has noticed the hit, that. */
   private felt(): void {
-    const { contact_s, detected_s } = moments(this.motion);
+    const { contact_s, detected_s } = this.motion;
     const noticed = this.now >= detected_s;
     if (!(this.now >= contact_s) || !(noticed || this.said("estimate.valid"))) {
       return;

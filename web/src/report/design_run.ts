@@ -59,7 +59,10 @@ export async function compute(engine: Engine, study: Study, case_index: number, 
   const time_s = seconds.map((time) => time - contact);
   const title = `design ${study.number[row]}`;
   const robot = shape_of({ ...study.data.starts, ...settings_of(one, row) });
-  return { row, run, motion: { title, time_s, traces: run.traces, robot }, time_s, same: is_same(study, one, row, run) };
+  const contact_s = Number.isNaN(run.metrics["contact time"] ?? NaN) ? NaN : 0;
+  const detected_s = contact_s + (run.metrics["detection time"] ?? NaN) / 1000;
+  const motion = { title, time_s, traces: run.traces, robot, contact_s, detected_s };
+  return { row, run, motion, time_s, same: is_same(study, one, row, run) };
 }
 
 function is_same(study: Study, one: Case, row: number, run: Run): boolean | undefined {

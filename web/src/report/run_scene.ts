@@ -10,8 +10,11 @@ export interface SceneData {
   /** By full name; what `SCENE_TRACES` says. */
   traces: Record<string, number[]>;
   robot: RobotShape;
+  /** On the axis of `time`; null: it did not happen. */
+  contact: number | null;
+  detected: number | null;
 }
 
-export function motion_of({ label, time, traces, robot }: SceneData): Motion {
-  return { title: label, time_s: time, traces, robot };
+export function motion_of({ label, time, traces, robot, contact, detected }: SceneData): Motion {
+  return { title: label, time_s: time, traces, robot, contact_s: contact ?? NaN, detected_s: detected ?? NaN };
 }

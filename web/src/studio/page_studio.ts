@@ -4,7 +4,7 @@ import { engine, Latest, type Engine } from "../engine/engine";
 import { Curves } from "../parts/curves";
 import { data, element, shown, start, theme, unit_of } from "../parts/page";
 import { save } from "../parts/save";
-import { moments, Scene } from "../parts/scene";
+import { Scene } from "../parts/scene";
 import { outline_of, type Point } from "../parts/shapes";
 import { Controls } from "./controls";
 import { base_of, complete, DURATION, from_hash, History, HIT_LIMITS, start_design, to_hash, type Complete, type Design, type Hit } from "./design";
@@ -58,7 +58,7 @@ class Studio {
   /** Computes and shows what the address says. */
   async open(): Promise<void> {
     await this.show();
-    const detected = this.results.flatMap((one) => (one ? [moments(one.motion).detected_s] : [])).find((time) => !Number.isNaN(time));
+    const detected = this.results.flatMap((one) => (one ? [one.motion.detected_s] : [])).find((time) => !Number.isNaN(time));
     this.scene.seek(detected === undefined ? 0 : detected + 0.01); // opens on something worth seeing
   }
 

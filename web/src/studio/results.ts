@@ -2,7 +2,7 @@
 import type { Library } from "../../giveway_batch.js";
 import type { Panel, Series, Tone } from "../parts/curves";
 import type { Run, Spec } from "../engine/engine";
-import { moments, SCENE_TRACES, type Motion } from "../parts/scene";
+import { SCENE_TRACES, type Motion } from "../parts/scene";
 import { shape_of } from "../parts/shapes";
 import type { Complete } from "./design";
 
@@ -31,7 +31,9 @@ export interface Shown {
 export function shown_of(complete: Complete, run: Run, title: string): Shown {
   const count = run.traces[FORCE]?.length ?? 0;
   const time_s = Float64Array.from({ length: count }, (_, k) => k * STEP_S);
-  const motion = { title, time_s, traces: run.traces, robot: shape_of(complete.settings) };
+  const contact_s = run.metrics["contact time"] ?? NaN;
+  const detected_s = contact_s + (run.metrics["detection time"] ?? NaN) / 1000;
+  const motion = { title, time_s, traces: run.traces, robot: shape_of(complete.settings), contact_s, detected_s };
   return { complete, run, motion, time_ms: time_s.map((time) => 1000 * time) };
 }
 
@@ -86,7 +88,7 @@ export function panels(all: readonly Shown[]): { x: Float64Array; panels: Panel[
       { label: `${name(i)}estimated`, values: curve(shown, x.length, felt), tone: both ? (tones[i] as Tone) : "estimate", dash: true },
     ]);
   const marks = all.flatMap((shown, i) => {
-    const { contact_s, detected_s } = moments(shown.motion);
+    const { contact_s, detected_s } = shown.motion;
     const tone = both ? tones[i] : undefined;
     const found = [
       { label: `${name(i)}contact`, x: 1000 * contact_s, tone },
