@@ -17,6 +17,7 @@ from giveway.base.errors import FileError
 from giveway.library.work import RunningWork
 from giveway.study import Study
 from giveway.study.engine import Outcome, plan_runs, sweep
+from giveway.study.messages import overview
 from giveway.study.results_table import read_part
 from giveway.study.store import KeyIndex, Store, read_manifest
 from study_helpers import LATCH, SPRING, interrupt, part_files, small_study, stored_runs
@@ -100,6 +101,25 @@ def test_a_changed_study_takes_over_what_is_the_same(tmp_path: Path) -> None:
     assert (outcome.ran, outcome.reused) == (2, 2)
     swept(grown, tmp_path / "elsewhere" / "study")
     same_runs(tmp_path / "study", tmp_path / "elsewhere" / "study")
+
+
+def test_what_was_made_of_the_designs_of_another_study_is_removed_and_said(tmp_path: Path) -> None:
+    study, folder = small_study(vary=[]).vary(LATCH, values=[20.0]), tmp_path / "study"
+    swept(study, folder)
+    files = [folder / "chosen" / "design-0" / "front" / "metrics.json",
+             *(folder / "evidence" / "design-0" / f"evidence.{ending}" for ending in ("csv", "html"))]  # fmt: skip
+    for path in files:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("of 20 N", encoding="utf-8")
+    assert swept(study, folder).removed == ()
+    assert all(path.is_file() for path in files)
+    outcome = swept(study.constraint("peak force of the run", maximum=60.0), folder)  # the same runs, other limits
+    assert outcome.removed == (Path("evidence/design-0/evidence.csv"), Path("evidence/design-0/evidence.html"))
+    assert files[0].is_file()
+    outcome = swept(small_study(vary=[]).vary(LATCH, values=[40.0]), folder)
+    assert outcome.removed == (Path("chosen"),)
+    assert not files[0].parent.exists()
+    assert overview(study.setup(), outcome).endswith("; removed, of the study that was there before: chosen")
 
 
 def test_studies_side_by_side_share_their_results(tmp_path: Path) -> None:

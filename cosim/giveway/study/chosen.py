@@ -12,6 +12,7 @@ from giveway.scenario.scenario import BUMPERS
 from giveway.scenario.stated_contact import StatedContact
 from giveway.study.runs import RunTable
 from giveway.study.setup import Setup
+from giveway.study.store import CHOSEN
 
 if TYPE_CHECKING:
     from giveway.robot.variables import Value
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from giveway.simulation.result import Result
 
 __all__ = ["hit_of", "scenario_of_run", "settings_of_run", "simulate"]
-
-CHOSEN = "chosen"
 
 
 def settings_of_run(table: RunTable, design: int, sample: int, case: int) -> dict[str, dict[str, Value]]:

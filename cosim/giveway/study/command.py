@@ -262,7 +262,8 @@ def study_run(
 ) -> None:
     """Simulate one design again, event-exact and with traces, in DIR/chosen/design-N."""
     from giveway.report.console import print_results
-    from giveway.study.chosen import CHOSEN, simulate
+    from giveway.study.chosen import simulate
+    from giveway.study.store import CHOSEN
 
     found = _load(folder)
     found.check_design(design)

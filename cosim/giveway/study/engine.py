@@ -81,7 +81,10 @@ Report = Callable[[Progress], None]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What `sweep` did: ``stored`` of ``runs`` are in the folder, ``ran`` of them run now, ``reused`` taken over."""
+    """What `sweep` did: ``stored`` of ``runs`` are in the folder, ``ran`` of them run now, ``reused`` taken over.
+
+    ``removed``: of the study that was there before, seen from the folder.
+    """
 
     folder: Path
     runs: int
@@ -91,6 +94,7 @@ class Outcome:
     failed: int
     wall_s: float
     interrupted: bool
+    removed: tuple[Path, ...] = ()
 
 
 @dataclass
@@ -264,7 +268,7 @@ class Runner:
         # Ctrl-C may have come between the last part and its being counted.
         self._stored = self._table.count - sum(end - first for first, end in self._store.missing(self._table.count))
         found = (self._table.count, self._stored, self._ran, self._reused, self._failed)
-        return Outcome(self._store.folder, *found, wall_s, interrupted)
+        return Outcome(self._store.folder, *found, wall_s, interrupted, tuple(self._store.removed))
 
     def _run_here(self, gaps: list[tuple[int, int]], threads: int) -> None:
         """Part by part; while one runs, the following one is prepared."""

@@ -20,6 +20,8 @@ from giveway.base.units import WrittenUnit
 from giveway.study.chosen import hit_of
 from giveway.study.engine import Report, sweep
 from giveway.study.frames import best_design, every_run
+from giveway.study.quantities import find, value_of
+from giveway.study.store import EVIDENCE
 from giveway.study.limit_lines import unit_of
 from giveway.study.study_file import check
 
@@ -30,9 +32,8 @@ if TYPE_CHECKING:
     from giveway.study.answers import Answers
     from giveway.study.setup import Setup
 
-__all__ = ["COLUMNS", "EVIDENCE", "NOTICE", "Evidence", "evidence", "evidence_setup"]
+__all__ = ["COLUMNS", "NOTICE", "Evidence", "evidence", "evidence_setup"]
 
-EVIDENCE = "evidence"  # folder in that of the study
 NOTICE = "Evidence from simulation, not certification: it does not replace a test on the machine, nor ISO/TS 15066."
 SPEEDS = (0.25, 0.5, 0.75, 1.0, 1.25)  # shares of the fastest hit that the study has
 MASSES = (0.5, 1.0, 2.0)  # shares of the heaviest

@@ -78,7 +78,10 @@ def overview(setup: Setup, outcome: Outcome) -> str:
     words += f"; {outcome.ran:,} run now in {duration(outcome.wall_s)}"
     if outcome.reused:
         words += f", {outcome.reused:,} taken from equal runs"
-    return words + (f", {outcome.failed:,} failed" if outcome.failed else "")
+    words += f", {outcome.failed:,} failed" if outcome.failed else ""
+    if outcome.removed:
+        words += f"; removed, of the study that was there before: {', '.join(map(str, outcome.removed))}"
+    return words
 
 
 def sizes(setup: Setup, table: RunTable) -> str:

@@ -23,12 +23,14 @@ import numpy as np
 
 from giveway.base import system
 from giveway.base.errors import FileError, WriteError, system_words
-from giveway.base.files import check_file, read_json, replace_file, write_text
+from giveway.base.files import check_file, read_json, remove_folder, replace_file, write_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
+    "CHOSEN",
+    "EVIDENCE",
     "MANIFEST_FILE",
     "PARTS",
     "SCHEMA_VERSION",
@@ -43,6 +45,7 @@ __all__ = [
 SCHEMA_VERSION = 1
 KIND = "giveway study"
 MANIFEST_FILE, LOCK_FILE, PARTS, DESIGNS_FILE = "manifest.json", ".lock", "parts", "designs.npz"
+CHOSEN, EVIDENCE = "chosen", "evidence"  # traces and evidence of designs, written by others
 INPUT_FILES, CATALOGUE = ("robot.toml", "designs.csv", "bumper.csv"), "catalogue-"
 HINT = "give a folder that `giveway sweep` wrote"
 _PART = re.compile(r"part-(\d{9})-(\d{9})\.parquet")
@@ -72,6 +75,7 @@ class Store:
         ``kind`` is what the manifest says that it holds.
         """
         self.folder, self._kind = folder, kind
+        self.removed: list[Path] = []
         self.check(folder, kind)
         try:
             self.parts_folder = folder / PARTS / fingerprint[:16]
@@ -120,9 +124,31 @@ class Store:
         self._lock.close()
 
     def write_manifest(self, manifest: dict[str, Any]) -> None:
-        """Write the manifest, atomically."""
+        """Write the manifest, atomically; what was made of a design of another study is removed first."""
+        self._remove_former(manifest)
         text = json.dumps({"schema_version": SCHEMA_VERSION, "kind": self._kind, **manifest}, indent=2, allow_nan=False)
         write_text(self.folder / MANIFEST_FILE, text + "\n")
+
+    def _remove_former(self, manifest: dict[str, Any]) -> None:
+        """Traces and evidence of the study that was here before: its designs had the same numbers."""
+        if not (self.folder / MANIFEST_FILE).is_file():
+            return
+        former = read_manifest(self.folder, self._kind)
+
+        def changed(*keys: str) -> bool:
+            return any(former.get(key) != manifest.get(key) for key in keys)
+
+        found = [self.folder / CHOSEN] if changed("fingerprint") else []
+        if changed("fingerprint", "study", "name"):
+            found += sorted(self.folder.glob(f"{EVIDENCE}/*/evidence.*"))
+        for path in found:
+            if path.is_dir():
+                remove_folder(path)
+            elif path.is_file():
+                path.unlink()
+            else:
+                continue
+            self.removed.append(path.relative_to(self.folder))
 
     def write_designs(self, designs: NDArray[np.float64], deviations: NDArray[np.float64]) -> None:
         """Keep what was sampled: another version of the samplers may do it otherwise."""
