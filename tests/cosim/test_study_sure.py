@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import random
@@ -326,6 +327,30 @@ def test_plain_sampling_counts_the_stored_runs_beyond_the_limit(answers: Answers
     peaks = np.concatenate([pyarrow.parquet.read_table(path, columns=[name])[name].to_numpy() for path in parts])
     assert len(peaks) >= 1000
     assert found.exceeded == int((peaks[:1000] > 60.0).sum())
+@pytest.mark.parametrize("method", ["subset", "plain"])
+def test_a_limit_that_is_never_exceeded_has_an_upper_end_beside_others(method: str, tmp_path: Path) -> None:
+    study = uncertain_study().constraint("bumper compression", maximum=100.0, unit="mm")
+    found = study.run(tmp_path / "study", progress=False)
+    told = sure.probability(found, 1, SurePlan(runs=1000, method=method))  # type: ignore[arg-type]
+    force, travel = told.limits
+    assert (force.value, force.high) == (pytest.approx(told.value), None)
+    assert told.value > 0.0
+    assert travel.value == 0.0
+    assert travel.high == pytest.approx(min(told.high, binomial_interval(0, told.plainly)[1]))
+    (words,) = (text for name, text in certainty.probability_lines(found, 1) if name.endswith("each"))
+    assert words.endswith(f"; bumper compression, at most 100 mm: below {travel.high:.1g} (95 %)")
+    frame = certainty.probability_frame(told)
+    assert frame["high"].tolist() == [told.high, pytest.approx(math.nan, nan_ok=True), travel.high]
+    # What an earlier version has stored does not say it.
+    path = found.folder / sure.SURE / f"design-1-{method}" / "manifest.json"
+    manifest = json.loads(path.read_text(encoding="utf-8"))
+    for one in manifest["result"]["limits"]:
+        del one["high"]
+    path.write_text(json.dumps(manifest), encoding="utf-8")
+    (again,) = sure.stored(found, 1)
+    assert [one.high for one in again.limits] == [None, told.high]
+
+
 
 
 def test_kills_at_random_moments_change_nothing(tmp_path: Path) -> None:

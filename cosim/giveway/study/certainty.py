@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas
 
     from giveway.study.answers import Answers
-    from giveway.study.sure import Probability
+    from giveway.study.sure import LimitShare, Probability
     from giveway.study.tolerance_indices import Indices
 
 __all__ = [
@@ -55,7 +55,7 @@ def probability_words(found: Probability) -> str:
     if found.value > 0.0:
         words = f"{found.value:.2g}, 95 % interval {found.low:.2g} to {found.high:.2g}"
     else:
-        words = f"below {found.high:.1g} (95 %): no sample exceeded it"
+        words = f"{_never(found.high)}: no sample exceeded it"
     words += f"; {METHOD_WORDS[found.method]}, {counted(found.samples, 'sample')}"
     if found.method == "subset" and found.plainly < found.samples:
         words += f", plainly {found.exceeded:,} of {found.plainly:,}"
@@ -72,10 +72,17 @@ def probability_lines(answers: Answers, design: int) -> list[tuple[str, str]]:
     for found in sure.stored(answers, design):
         lines.append((NAME, probability_words(found)))
         if len(found.limits) > 1 and found.value > 0.0:
-            lines.append(
-                (f"{NAME}, each", "; ".join(f"{one.limit}, {one.allowed}: {one.value:.2g}" for one in found.limits))
-            )
+            each = (f"{one.limit}, {one.allowed}: {_of_limit(one)}" for one in found.limits)
+            lines.append((f"{NAME}, each", "; ".join(each)))
     return lines
+
+
+def _of_limit(one: LimitShare) -> str:
+    return f"{one.value:.2g}" if one.high is None else _never(one.high)
+
+
+def _never(high: float) -> str:
+    return f"below {high:.1g} (95 %)"
 
 
 def recommended_indices(answers: Answers) -> Indices | None:
@@ -120,8 +127,16 @@ def probability_frame(found: Probability) -> pandas.DataFrame:
     import pandas
 
     told = {"method": found.method, "samples": found.samples, "runs": found.runs, "failed": found.failed}
-    first = {"limit": "any", "allowed": "", "probability": found.value, "low": found.low, "high": found.high}
-    each = [{"limit": one.limit, "allowed": one.allowed, "probability": one.value} for one in found.limits]
+    first: dict[str, object] = {
+        "limit": "any",
+        "allowed": "",
+        "probability": found.value,
+        "low": found.low,
+        "high": found.high,
+    }
+    each: list[dict[str, object]] = [
+        {"limit": one.limit, "allowed": one.allowed, "probability": one.value, "high": one.high} for one in found.limits
+    ]
     return pandas.DataFrame([{**row, **told} for row in (first, *each)])
 
 

@@ -25,7 +25,7 @@ from giveway.study.limits import limit_words
 from giveway.study.results_table import read_part
 from giveway.study.runs import RunTable
 from giveway.study.store import Store, list_parts, read_manifest
-from giveway.study.subset import SAMPLER, Sampled, plain, subset
+from giveway.study.subset import SAMPLER, Sampled, binomial_interval, plain, subset
 from giveway.study.sure_plan import METHODS, SurePlan
 
 if TYPE_CHECKING:
@@ -58,11 +58,18 @@ RESULT = "result"  # in the manifest
 
 @dataclass(frozen=True)
 class LimitShare:
-    """One limit: ``limit``, what is ``allowed`` in words, and the probability that it is exceeded."""
+    """One limit alone.
+
+    Attributes:
+        limit, allowed: its name, and what is allowed in words.
+        value: the probability that it is exceeded.
+        high: the upper end of its 95 % interval if it was never exceeded; else None.
+    """
 
     limit: str
     allowed: str
     value: float
+    high: float | None
 
 
 @dataclass(frozen=True)
@@ -221,6 +228,10 @@ class _Judge:
             return [0.0] * len(self._limits)
         return [float(share) for share in np.concatenate(self._beyond)[numbers].mean(axis=0)]
 
+    def ever(self, samples: int) -> list[bool]:
+        """Which limits one of the first ``samples`` is beyond."""
+        return [bool(beyond.any()) for beyond in np.concatenate(self._beyond)[:samples].T]
+
 
 def _beyond(limit: Constraint, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Of samples (n, collisions), in shares of the limit; infinite where the metric is missing."""
@@ -275,9 +286,17 @@ def _result(
     answers: Answers, design: int, method: str, found: Sampled, judge: _Judge, numbers: Sequence[int]
 ) -> Probability:
     offset = len(answers.setup.objectives)
+    # A limit that is never exceeded: not more probable than any, nor than the plain samples allow.
+    _, never = binomial_interval(0, found.plainly)
+    highs = [found.high if ever else min(found.high, never) for ever in judge.ever(found.plainly)]
     limits = tuple(
-        LimitShare(answers.goals[offset + number].metric.name, limit_words(answers.setup, number), share * found.value)
-        for number, share in zip(numbers, judge.shares(found.beyond), strict=True)
+        LimitShare(
+            answers.goals[offset + number].metric.name,
+            limit_words(answers.setup, number),
+            share * found.value,
+            None if share else high,
+        )
+        for number, share, high in zip(numbers, judge.shares(found.beyond), highs, strict=True)
     )
     runs = found.samples * len(answers.setup.cases)
     plainly = (found.exceeded, found.plainly, found.agrees)
@@ -308,7 +327,9 @@ def _stored(answers: Answers, design: int, method: str, decides: dict[str, Any] 
     told = concluded(answers, design, method, decides)
     if told is None:
         return None
-    return Probability(**{**told, "limits": tuple(LimitShare(**one) for one in told["limits"])})
+    # Of an earlier version: a limit is exceeded at most as often as any.
+    limits = (LimitShare(**{"high": None if one["value"] else told["high"], **one}) for one in told["limits"])
+    return Probability(**{**told, "limits": tuple(limits)})
 
 
 def concluded(answers: Answers, design: int, purpose: str, decides: dict[str, Any] | None) -> dict[str, Any] | None:
