@@ -103,6 +103,15 @@ def test_the_command_writes_it_and_takes_what_is_stored(study: Answers, capsys: 
     assert "--speeds: 0.4,x is not allowed" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("option", "value"), [("--masses", 0.0), ("--speeds", -0.1)])
+def test_a_wrong_number_names_its_option(option: str, value: float, study: Answers) -> None:
+    stated = {option.removeprefix("--"): [value]}
+    with pytest.raises(GivewayError) as caught:
+        evidence(study, 1, **stated)  # type: ignore[arg-type]
+    assert (caught.value.field, caught.value.value) == (option, value)
+    assert "a finite number from " in caught.value.allowed
+
+
 def test_speeds_and_masses_are_around_those_of_the_study(study: Answers) -> None:
     setup = evidence_setup(study, 0, None, None)
     levels = {one.quantity.name: one.levels for one in setup.varied}
@@ -116,7 +125,7 @@ def test_a_body_region_keeps_its_mass_and_a_place_its_direction(tmp_path: Path) 
     answers = made.objective("peak force of the run").run(tmp_path / "study", progress=False)
     setup = evidence_setup(answers, 1, [0.2], None)
     assert [one.quantity.name for one in setup.varied] == [LATCH, "collision.speed"]
-    with pytest.raises(GivewayError, match=r"masses: .*body region has its own mass"):
+    with pytest.raises(GivewayError, match=r"--masses: .*body region has its own mass"):
         evidence_setup(answers, 1, [0.2], [3.0])
 
 

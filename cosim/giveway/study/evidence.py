@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.base.checks import finite
 from giveway.base.errors import GivewayError
 from giveway.base.units import WrittenUnit
 from giveway.study.chosen import hit_of
 from giveway.study.engine import Report, sweep
 from giveway.study.frames import best_design, every_run
+from giveway.study.limit_lines import unit_of
 from giveway.study.quantities import find, value_of
 from giveway.study.store import EVIDENCE
-from giveway.study.limit_lines import unit_of
 from giveway.study.study_file import check
 
 if TYPE_CHECKING:
@@ -117,7 +116,7 @@ def evidence_setup(
     if setup.cases[0].scenario.body_region is None:
         added.append({"quantity": _MASS, "values": _masses(answers, masses)})
     elif masses is not None:
-        raise GivewayError("masses", list(masses), "nothing: the body region has its own mass")
+        raise GivewayError("--masses", list(masses), "nothing: the body region has its own mass")
     touched = {one.quantity.name for one in setup.varied} | {one.quantity.name for one in setup.tolerances}
     if all(hit.direction_deg is None for hit in hits) and not touched & {_OFFSET, _DIRECTION}:
         added.append({"quantity": _AROUND, "values": _places(answers)})
@@ -153,16 +152,22 @@ def _fix(answers: Answers, design: int, document: dict[str, Any]) -> None:
         document["vary"].append({"quantity": name, "values": [typed], **also})
 
 
+def _checked(option: str, values: Sequence[float], name: str) -> list[float]:
+    """Values of a quantity, within its range."""
+    quantity = find(option, name)
+    return [value_of(option, value, quantity) for value in values]
+
+
 def _speeds(answers: Answers, speeds: Sequence[float] | None) -> list[float]:
     if speeds is not None:
-        return [finite("speeds", speed, 0.0, 20.0, "m/s") for speed in speeds]
+        return _checked("--speeds", speeds, _SPEED)
     fastest = _largest(answers, _SPEED, [case.hit.speed_mps for case in answers.setup.cases if case.hit is not None])
     return [float(f"{share * fastest:.3g}") for share in SPEEDS]
 
 
 def _masses(answers: Answers, masses: Sequence[float] | None) -> list[float]:
     if masses is not None:
-        return [finite("masses", mass, 0.0, math.inf, "kg") for mass in masses]
+        return _checked("--masses", masses, _MASS)
     stated = [float(case.scenario.parameters("testbed")["slider.mass"] or 0.0) for case in answers.setup.cases]
     return [float(f"{share * _largest(answers, _MASS, stated):.3g}") for share in MASSES]
 
