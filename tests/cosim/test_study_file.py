@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from giveway.base.errors import GivewayError
 from giveway.study import study_file
-from study_helpers import LATCH, small_study
+from giveway.study.evidence import evidence_setup
+from study_helpers import LATCH, SPRING, small_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "studies"
 GOOD = """\
@@ -205,3 +207,41 @@ def test_a_study_of_a_body_region_is_hit_by_that_body() -> None:
         del refused.document["collision"][0]["mass"]
         with pytest.raises(GivewayError, match=r'vary\[0\]\.quantity: .* body_region = "lower leg".*judge_as'):
             refused.setup()
+
+
+@pytest.mark.parametrize(
+    ("bumper", "quantity", "words"),
+    [
+        ("none", SPRING, "the bumper none, which has no numbers"),
+        ("none", "testbed.bumper.mount_x", "the bumper none, which has no numbers"),
+        ("spring", LATCH, "the bumper spring: testbed.bumper.spring_rate, "),
+        ("spring", "testbed.bumper.latch_model", "the bumper spring: "),
+        ("magnetic", "testbed.bumper.foam_force_25", "testbed.bumper.latch_gap"),
+    ],
+)
+def test_a_number_that_the_bumper_has_not_is_refused(bumper: str, quantity: str, words: str) -> None:
+    study = small_study(vary=[])
+    study.document["scenario"]["bumper"] = bumper
+    ends: dict[str, Any] = {"values": [0, 1]} if quantity.endswith("model") else {"low": 10.0, "high": 20.0}
+    if quantity.endswith("mount_x"):
+        ends = {"low": 0.1, "high": 0.2}
+    with pytest.raises(GivewayError) as caught:
+        study.vary(quantity, **ends).designs("sobol", count=2).setup()
+    assert (caught.value.field, caught.value.value) == ("vary[0].quantity", quantity)
+    assert words in caught.value.allowed
+
+
+def test_a_tolerance_that_the_bumper_has_not_is_refused_too() -> None:
+    study = small_study(vary=[]).vary("collision.speed", values=[0.3, 0.5]).tolerance(LATCH, relative=0.1)
+    study.document["scenario"]["bumper"] = "spring"
+    with pytest.raises(GivewayError, match=r"tolerance\[0\]\.quantity: testbed\.bumper\.latch_force is not allowed"):
+        study.setup()
+
+
+def test_a_number_that_one_of_the_bumpers_has_may_vary(tmp_path: Path) -> None:
+    study = small_study(vary=[]).vary("bumper", values=["none", "spring"]).vary(SPRING, values=[0.6, 1.2], unit="N/mm")
+    answers = study.objective("detection time").run(tmp_path / "study", progress=False)
+    for design in (0, 3):  # the evidence is about one bumper, with all the numbers of the design
+        assert len(evidence_setup(answers, design, [0.3], [5.0]).varied) == 5
+    with pytest.raises(GivewayError, match=r"vary\[2\]\.quantity: testbed\.bumper\.latch_force is not allowed"):
+        study.vary(LATCH, values=[10.0, 20.0]).setup()

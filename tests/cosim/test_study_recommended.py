@@ -143,3 +143,17 @@ def test_without_objectives_nothing_is_recommended(tmp_path: Path) -> None:
     found = small_study().run(tmp_path / "study", progress=False)
     assert recommended(found) is None
     assert "no objective" in advice(found).lines[0][1]
+
+
+# ---- what decides nothing
+
+
+def test_the_end_of_a_range_that_decides_nothing_limits_nothing(tmp_path: Path) -> None:
+    study = small_study(vary=[]).vary("bumper", values=["none", "spring"]).vary(SPRING, values=[0.6, 1.2], unit="N/mm")
+    found = study.objective("detection time").run(tmp_path / "study", progress=False)
+    told = recommended(found)
+    assert told is not None
+    assert found.designs[told.design, 0] == 0.0  # without a bumper it is felt sooner
+    assert found.designs[told.design, 1] == 600.0
+    assert told.ends == ()
+    assert "limited by" not in dict(advice(found).lines)

@@ -29,7 +29,7 @@ from giveway.scenario.scenario import BUMPERS, ROBOT_BUMPERS
 if TYPE_CHECKING:
     from giveway.robot.variables import Value
 
-__all__ = ["COMMON", "FILE", "LAW", "NUMBERS", "bumper_shape", "law_of", "stated_bumper"]
+__all__ = ["COMMON", "FILE", "LAW", "NUMBERS", "acts", "bumper_shape", "law_of", "stated_bumper"]
 
 LAW, FILE = "law", "file"
 COMMON = ("travel", "plate_mass", "damping", "guide_friction", "guide_friction_speed", "stop_stiffness",
@@ -69,6 +69,18 @@ _NOT_STATED = {
 }  # fmt: skip
 # Of a gas spring's data sheet, instead of its length.
 _COMPRESSED, _STROKE = "force_compressed", "stroke"
+
+
+def acts(law: str, parameter: str) -> bool:
+    """Whether the testbed's ``parameter`` decides anything with a bumper of this law; true of all but a bumper's."""
+    group, _, key = parameter.partition(".")
+    if group != "bumper" or key == "kind":
+        return True
+    if key == "latch_model":
+        return law == "magnetic"
+    if key.startswith("table_"):
+        return law == "table"
+    return key in NUMBERS[law] or (key.startswith("mount") and law != "none")
 
 
 @functools.cache

@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.scenario.scenario import BUMPERS
+from giveway.scenario.stated_bumper import acts
 from giveway.study.answers import costs_of
 from giveway.study.limits import rooms, shares
+from giveway.study.quantities import columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +34,7 @@ class Recommended:
             that it breaks; None: no limit keeps a better design out.
         broken: which limits that one breaks.
         barred: how many such designs there are.
-        ends: quantities at an end of their range: index, and whether it is the upper one.
+        ends: quantities that decide something and are at an end of their range: index, and whether the upper one.
         following: the next best designs: of all, and of those with other parts, if that is another one.
     """
 
@@ -74,7 +77,12 @@ def recommended(answers: Answers) -> Recommended | None:
         tempting = int(barred[np.lexsort((beyond, (left < 0.0).sum(axis=1)))[0]])
         broken = tuple(np.flatnonzero(rooms(answers)[tempting] < 0.0).tolist())
     ends = [at_an_end(one, value) for one, value in zip(answers.setup.varied, answers.designs[design], strict=True)]
-    found = tuple((index, end) for index, end in enumerate(ends) if end is not None)
+    law = _law(answers, design)
+    found = tuple(
+        (index, end)
+        for index, (one, end) in enumerate(zip(answers.setup.varied, ends, strict=True))
+        if end is not None and _decides(one, law)
+    )
     return Recommended(design, tempting, broken, len(barred), found, _following(answers))
 
 
@@ -109,6 +117,18 @@ def _following(answers: Answers) -> tuple[int, ...]:
     parts = [j for j, one in enumerate(answers.setup.varied) if one.parts is not None]
     other = order[(answers.designs[order][:, parts] != answers.designs[order[0]][parts]).any(axis=1)]
     return tuple(dict.fromkeys([int(order[1]), *other[:1].tolist()]))
+
+
+def _law(answers: Answers, design: int) -> str:
+    """Of the design's bumper."""
+    row = answers.runs.rows(np.array([design]), np.array([0]), 0).values[0]
+    return list(BUMPERS)[int(row[columns().index["testbed.bumper.kind"]])]
+
+
+def _decides(one: Varied, law: str) -> bool:
+    """Whether a design with a bumper of this law is another one with another value."""
+    names = [columns().names[column].removeprefix("testbed.") for column in one.columns]
+    return not names or any(acts(law, name) for name in names)
 
 
 def at_an_end(one: Varied, value: float) -> bool | None:

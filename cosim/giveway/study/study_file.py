@@ -18,9 +18,10 @@ from giveway.base.shapes import Choice, Either, Flag, List, Number, Rows, Shape,
 from giveway.base.toml_sections import Section, lines_named, read_toml, renamed
 from giveway.library.batch_library import METHODS, PLANT_STEP_RANGE_S
 from giveway.scenario.plan_limits import LIMIT_NAMES, check_plan_of
-from giveway.scenario.scenario import Scenario
+from giveway.scenario.scenario import BUMPERS, Scenario
 from giveway.scenario.scenario_file import PLAN_KEYS, scenario_of
 from giveway.scenario.scenario_shape import NAME_MAX, collision_shape, scenario_keys
+from giveway.scenario.stated_bumper import NUMBERS, acts
 from giveway.simulation.run_warnings import plan_speed
 from giveway.study.distributions import Varied
 from giveway.study.drivetrain_metrics import DRIVETRAIN_TABLE, drivetrain_plan_of, metrics_shown, wanted
@@ -165,7 +166,12 @@ def check(
             if not limit.quantity.columns:
                 key = "at_most" if limit.sense > 0 else "at_least"
                 _fits_cases(f"{choice.field}.{key}.{limit.quantity.name}", limit.quantity, cases, set_by_design)
+    laws = _laws(varied, cases[0].scenario.bumper)
+    for one in varied:
+        if one.parts is None:
+            _fits_bumper(f"{one.field}.quantity", one.quantity, laws)
     for i, tolerance in enumerate(tolerances):
+        _fits_bumper(f"tolerance[{i}].quantity", tolerance.quantity, laws)
         _fits_cases(f"tolerance[{i}].quantity", tolerance.quantity, cases, set_by_design)
         if tolerance.replaces:
             refuse_replaced(f"tolerance[{i}]", tolerance, varied)
@@ -339,6 +345,28 @@ def _fits_cases(field: str, quantity: Quantity, cases: Sequence[Case], varied: S
             raise GivewayError(field, name, f"no direction: {case.name} has one, and an angle is from straight ahead")
         if name == "collision.around" and "collision.direction" not in varied and hit.direction_deg is not None:
             raise GivewayError(field, name, f"no direction in {case.name}: it does not fit every side")
+
+
+def _laws(varied: Sequence[Varied], stated: str) -> tuple[str, ...]:
+    """Laws of the bumper that designs may have."""
+    kind = columns().index["testbed.bumper.kind"]
+    chosen = next((one for one in varied if kind in one.columns), None)
+    if chosen is None:
+        return (stated,)
+    # Parts have any; and of one value, as the evidence of a design has it, the other numbers are those of all designs.
+    several = chosen.parts is None and len(chosen.levels) > 1
+    return tuple(chosen.text(level) for level in chosen.levels) if several else tuple(BUMPERS)
+
+
+def _fits_bumper(field: str, quantity: Quantity, laws: tuple[str, ...]) -> None:
+    """Refuse a number that no bumper of these laws has: all designs would be the same."""
+    names = [columns().names[column].removeprefix("testbed.") for column in quantity.columns]
+    if names and not any(acts(law, name) for law in laws for name in names):
+        numbers = dict.fromkeys(f"testbed.bumper.{key}" for law in laws for key in NUMBERS[law])
+        allowed = f"what decides something with the bumper {' or '.join(laws)}" + (
+            f": {', '.join(numbers)}" if numbers else ", which has no numbers"
+        )
+        raise GivewayError(field, quantity.name, allowed)
 
 
 def _with_nominal(one: Varied, cases: Sequence[Case]) -> Varied:
