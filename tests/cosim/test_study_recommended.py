@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from giveway.cli import _main
 from giveway.study import Study
-from giveway.study.advice import advice
+from giveway.study.advice import _percent, advice
 from giveway.study.limits import limit_words, margins_of
 from giveway.study.recommended import nearest, recommended
 from giveway.study.report import write_report
@@ -157,3 +157,18 @@ def test_the_end_of_a_range_that_decides_nothing_limits_nothing(tmp_path: Path) 
     assert found.designs[told.design, 1] == 600.0
     assert told.ends == ()
     assert "limited by" not in dict(advice(found).lines)
+
+
+def test_equal_designs_on_the_front_are_not_called_better(tmp_path: Path) -> None:
+    study = small_study(vary=[]).vary("testbed.bumper.travel", values=[0.1, 0.11, 0.12])
+    study.objective("peak force of the run").constraint("bumper compression", maximum=9.0, unit="cm")
+    found = study.run(tmp_path / "study", progress=False)
+    assert found.pareto.tolist() == [True] * 3
+    said = [text for name, text in advice(found).lines if name == "limited by"]
+    assert said[0].endswith("better in all objectives; 2 designs on the front are equal in all of them")
+
+
+def test_a_change_has_all_digits_before_the_point() -> None:
+    assert [_percent(share) for share in (0.0123, -3.456, 99.4, 99.6, -1234.5)] == [
+        "+0.012 %", "-3.5 %", "+99 %", "+100 %", "-1,234 %",
+    ]  # fmt: skip

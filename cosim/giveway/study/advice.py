@@ -115,11 +115,13 @@ def _limited(answers: Answers, found: Recommended) -> list[tuple[str, str]]:
         changes = "; ".join(_changes(answers, found.tempting, found.design))
         lines.append(("limited by", f"{' and '.join(limits)}: {would} design {found.tempting}: {changes}"))
     elif setup.constraints:
-        others = int(answers.pareto.sum()) - 1
-        rest = (
-            f"; {counted(others, 'design')} on the front {'is' if others == 1 else 'are'} better in some of them"
-            if others > 0
-            else ""
+        goals = answers.values[answers.pareto][:, :offset]
+        others = int((goals != answers.values[found.design, :offset]).any(axis=1).sum())
+        equal = len(goals) - 1 - others
+        rest = "".join(
+            f"; {counted(count, 'design')} on the front {'is' if count == 1 else 'are'} {how} of them"
+            for count, how in ((others, "better in some"), (equal, "equal in all"))
+            if count
         )
         lines.append(("limited by", f"no constraint: no design that breaks one is better in all objectives{rest}"))
     for index, upper in found.ends:
@@ -165,7 +167,7 @@ def _changes(answers: Answers, design: int, than: int) -> list[str]:
         unit, new, old = answers.goal_unit(index), answers.values[design, index], answers.values[than, index]
         if new == old:
             continue
-        share = f" ({100.0 * (new - old) / abs(old):+.2g} %)" if old else ""
+        share = f" ({_percent(100.0 * (new - old) / abs(old))})" if old else ""
         values = _instead(unit.of(float(new)), unit.of(float(old))) + (f" {unit.shown}" if unit.shown else "")
         (worse if goal.sense * (new - old) > 0 else better).append(f"{goal.metric.name} {values}{share}")
     return [f"{word} {', '.join(some)}" for word, some in (("loses:", worse), ("gains:", better)) if some]
@@ -175,3 +177,8 @@ def _instead(new: float, old: float) -> str:
     """Both values with as many digits as tell them apart."""
     digits = next((digits for digits in range(4, 16) if f"{new:.{digits}g}" != f"{old:.{digits}g}"), 17)
     return f"{new:.{digits}g} instead of {old:.{digits}g}"
+def _percent(share: float) -> str:
+    """Two digits, or all before the point."""
+    return f"{share:+.2g} %" if abs(share) < 99.5 else f"{share:+,.0f} %"
+
+
