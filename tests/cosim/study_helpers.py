@@ -31,6 +31,8 @@ low = 0.0
 high = 60.0
 """
 """Lines of a study file: a collision of 0.1 s with latches of any force."""
+JUDGED_LATCH_STUDY = LATCH_STUDY.replace("duration = 0.2", "duration = 0.65")
+"""The same until the contact is over."""
 
 
 class SmallStudy(Study):
@@ -49,6 +51,13 @@ def small_study(**changes: Any) -> Study:
     study.collision("front", speed=0.5, mass=9.08, edge=0, time=0.12)
     study.vary(LATCH, values=[0.0, 20.0, 40.0, 60.0])
     study.document.update(changes)
+    return study
+
+
+def judged_study(**changes: Any) -> Study:
+    """The same until the contact is over, so that peak force and travel are known."""
+    study = small_study(**changes)
+    study.document["scenario"]["duration"] = 0.65
     return study
 
 

@@ -11,12 +11,12 @@ from giveway.bench.optimum import Comparison, compare, shares_in_words
 from giveway.cli import _main
 from giveway.study.answers import load
 from giveway.study.hypervolume import hypervolume
-from study_helpers import LATCH_STUDY
+from study_helpers import JUDGED_LATCH_STUDY
 
 STUDY = f"""\
 schema_version = 1
 method = "fixed-step"
-{LATCH_STUDY}[[vary]]
+{JUDGED_LATCH_STUDY}[[vary]]
 quantity = "testbed.bumper.spring_rate"
 low = 500.0
 high = 3000.0

@@ -18,7 +18,7 @@ from giveway.study.metrics import Metric
 from giveway.study.pareto import front, scores
 from giveway.study.quantities import find
 from giveway.study.setup import Goal
-from study_helpers import LATCH, SPRING, part_files, small_study, stored_runs
+from study_helpers import LATCH, SPRING, judged_study, part_files, stored_runs
 
 
 @pytest.mark.parametrize("objectives", [1, 2, 3, 5])
@@ -61,9 +61,9 @@ def test_goals_are_taken_over_runs_as_asked(
 
 
 def test_the_answers_are_those_of_the_stored_runs(tmp_path: Path) -> None:
-    study = small_study().vary(SPRING, values=[600.0, 1200.0]).collision("slow", speed=0.3, edge=1, time=0.12)
+    study = judged_study().vary(SPRING, values=[600.0, 1200.0]).collision("slow", speed=0.3, edge=1, time=0.12)
     study.objective("peak force of the run").objective("bumper compression", collisions="mean", goal="minimise")
-    study.constraint("bumper compression", maximum=3.0, unit="cm").tolerance(LATCH, relative=0.3).tolerances(samples=3)
+    study.constraint("bumper compression", maximum=4.0, unit="cm").tolerance(LATCH, relative=0.3).tolerances(samples=3)
     study.document["part_runs"] = 5  # designs end in the middle of parts
     found = study.run(tmp_path / "study", threads=2)
     runs = stored_runs(tmp_path / "study")
@@ -71,7 +71,7 @@ def test_the_answers_are_those_of_the_stored_runs(tmp_path: Path) -> None:
     travel = runs["bumper compression"].reshape(8, 4, 2)
     np.testing.assert_array_equal(found.values[:, 0], peak.max(axis=(1, 2)))
     np.testing.assert_allclose(found.values[:, 1], travel.mean(axis=2).max(axis=1), rtol=1e-15)
-    np.testing.assert_array_equal(found.feasible, travel.max(axis=(1, 2)) <= 30.0)
+    np.testing.assert_array_equal(found.feasible, travel.max(axis=(1, 2)) <= 40.0)
     assert 0 < found.feasible.sum() < 8
     assert found.complete
     assert set(found.order) == set(np.flatnonzero(found.feasible))
@@ -103,7 +103,7 @@ def compared_by_hand(costs: np.ndarray, weights: tuple[float, float]) -> tuple[l
 def test_goals_and_weights_decide_front_and_ranking(force: str, travel: str, tmp_path: Path) -> None:
     orders = []
     for weights in ((1.0, 16.0), (16.0, 1.0)):
-        study = small_study().vary(SPRING, values=[400.0, 2500.0])
+        study = judged_study().vary(SPRING, values=[600.0, 2500.0])
         study.objective("peak force of the run", goal=force, weight=weights[0])
         study.objective("bumper compression", goal=travel, weight=weights[1])
         found = study.run(tmp_path / "study", threads=2)  # the second only looks at the runs of the first
@@ -118,16 +118,16 @@ def test_goals_and_weights_decide_front_and_ranking(force: str, travel: str, tmp
 
 
 def test_goals_and_weights_are_read_as_they_are_written() -> None:
-    study = small_study().objective("contact impulse").objective("rebound speed", goal="maximise", weight=3.0)
+    study = judged_study().objective("contact impulse").objective("rebound speed", goal="maximise", weight=3.0)
     assert [(one.sense, one.weight) for one in study.setup().objectives] == [(1, 1.0), (-1, 3.0)]
     for wrong in ("maximize", "max", ""):
         with pytest.raises(GivewayError, match=r"objective\[0\]\.goal: .*maximise.*minimise"):
-            small_study().objective("contact impulse", goal=wrong).setup()
+            judged_study().objective("contact impulse", goal=wrong).setup()
 
 
 @pytest.mark.parametrize(("limit", "bound"), [("minimum", 30.0), ("maximum", 60.0)])
 def test_a_constraint_is_met_by_the_worst_of_all_runs(limit: str, bound: float, tmp_path: Path) -> None:
-    study = small_study().collision("slow", speed=0.3, edge=1, time=0.12)
+    study = judged_study().collision("slow", speed=0.3, edge=1, time=0.12)
     study.tolerance(LATCH, relative=0.5).tolerances(samples=3)
     found = study.constraint("peak force of the run", **{limit: bound}).run(tmp_path / "study", threads=2)
     peaks = stored_runs(tmp_path / "study")["peak force of the run"].reshape(4, 8)
@@ -139,24 +139,24 @@ def test_a_constraint_is_met_by_the_worst_of_all_runs(limit: str, bound: float, 
 
 @pytest.mark.parametrize("limit", ["minimum", "maximum"])
 def test_a_limit_is_itself_allowed(limit: str, tmp_path: Path) -> None:
-    found = small_study().constraint("false detections", **{limit: 0}).run(tmp_path / "study", threads=2)
+    found = judged_study().constraint("false detections", **{limit: 0}).run(tmp_path / "study", threads=2)
     assert not stored_runs(tmp_path / "study")["false detections"].any()
     assert found.feasible.all()
 
 
 def test_a_design_with_a_failed_run_is_not_among_the_answers(tmp_path: Path) -> None:
-    study = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).objective("peak force of the run")
+    study = judged_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).objective("peak force of the run")
     found = study.run(tmp_path / "study", threads=2)
     assert found.feasible.tolist() == [True, False]
     assert found.failed.tolist() == [0, 1]
     assert "0.9 is not allowed" in found.reason[1]
     assert found.order.tolist() == [0]
-    without = small_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).run(tmp_path / "study", threads=2)
+    without = judged_study(vary=[]).vary("collision.offset", values=[0.0, 0.9]).run(tmp_path / "study", threads=2)
     assert without.feasible.tolist() == [True, False]  # whatever is asked for
 
 
 def test_chosen_designs_run_again_as_they_did(tmp_path: Path) -> None:
-    study = small_study().objective("peak force of the run")
+    study = judged_study().objective("peak force of the run")
     found = study.run(tmp_path / "study", threads=2)
     design = int(found.order[0])
     result = simulate(found.setup, found.runs, tmp_path / "study", design)["front"]
@@ -250,7 +250,7 @@ def test_the_names_of_metrics_are_the_library_s(tmp_path: Path) -> None:
 
 
 def test_an_unfinished_study_has_answers_so_far(tmp_path: Path) -> None:
-    study = small_study(part_runs=2).objective("peak force of the run")
+    study = judged_study(part_runs=2).objective("peak force of the run")
     study.run(tmp_path / "study", threads=2)
     part_files(tmp_path / "study")[1].unlink()
     found = answers.load(tmp_path / "study")

@@ -15,7 +15,7 @@ schema_version = 1
 name = "at the command line"
 
 [scenario]
-duration = 0.35
+duration = 0.65
 bumper = "magnetic"
 
 [[collision]]

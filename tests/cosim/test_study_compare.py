@@ -11,11 +11,11 @@ from giveway.study import Study, certainty, sure
 from giveway.study.answers import Answers
 from giveway.study.compare import compare
 from giveway.study.limits import margins_of
-from study_helpers import SPRING, small_study
+from study_helpers import SPRING, judged_study
 
 
 def limited(maximum: float, **changes: object) -> Study:
-    study = small_study(**changes).vary(SPRING, values=[0.6, 2.4], unit="N/mm")
+    study = judged_study(**changes).vary(SPRING, values=[0.6, 2.4], unit="N/mm")
     study.objective("peak force of the run")
     return study.constraint("bumper compression", maximum=maximum, unit="cm")
 

@@ -11,7 +11,7 @@ from giveway.base.errors import GivewayError
 from giveway.cli import _main
 from giveway.study.answers import Answers
 from giveway.study.limits import margins_of
-from study_helpers import LATCH, SPRING, small_study, stored_runs
+from study_helpers import LATCH, SPRING, judged_study, stored_runs
 
 CREATED = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00")
 
@@ -19,7 +19,7 @@ CREATED = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00")
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     """Of eight designs with two hits each, at nominal values and with one tolerance sample."""
-    study = small_study().vary(SPRING, values=[0.6, 2.4], unit="N/mm")
+    study = judged_study().vary(SPRING, values=[0.6, 2.4], unit="N/mm")
     study.collision("slow", speed=0.3, mass=9.08, edge=1, time=0.12).tolerance(LATCH, relative=0.3)
     study.tolerances(samples=1).objective("peak force of the run").objective("bumper compression")
     study.constraint("bumper compression", maximum=3.0, unit="cm")
@@ -27,7 +27,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
 
 
 def test_python_writes_the_files_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    study = small_study().objective("peak force of the run").report(chosen=1)
+    study = judged_study().objective("peak force of the run").report(chosen=1)
     found = study.run(tmp_path / "study", files=True)
     assert {"[1 of 2] chosen designs", "[2 of 2] report"} <= set(capsys.readouterr().err.splitlines())
     mine = {name: (tmp_path / "study" / name).read_text(encoding="utf-8") for name in ("report.html", "table.csv")}
@@ -44,7 +44,7 @@ def test_python_writes_the_files_of_the_command(tmp_path: Path, capsys: pytest.C
 
 
 def test_without_files_nothing_but_the_runs_is_written(tmp_path: Path) -> None:
-    small_study().run(tmp_path / "study", files=False, progress=False)
+    judged_study().run(tmp_path / "study", files=False, progress=False)
     assert {path.name for path in (tmp_path / "study").iterdir()} == {"manifest.json", "parts", ".lock"}
 
 
@@ -111,6 +111,6 @@ def test_what_is_not_there_cannot_be_traced(answers: Answers, arguments: dict[st
 
 
 def test_without_an_allowed_design_a_number_is_asked_for(tmp_path: Path) -> None:
-    found = small_study().objective("peak force of the run").constraint("peak force of the run", maximum=1.0)
+    found = judged_study().objective("peak force of the run").constraint("peak force of the run", maximum=1.0)
     with pytest.raises(GivewayError, match="no design meets all constraints"):
         found.run(tmp_path / "study", progress=False).margins()

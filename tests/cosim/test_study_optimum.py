@@ -29,7 +29,7 @@ from giveway.study.report import write_report
 from giveway.study.search_plan import SearchPlan
 from giveway.study.setup import Constraint, Goal, Metric, Setup
 from giveway.study.store import PARTS, read_designs, read_manifest
-from study_helpers import LATCH, LATCH_STUDY, SPRING, interrupt, part_files, small_study, stored_runs
+from study_helpers import LATCH, LATCH_STUDY, SPRING, interrupt, judged_study, part_files, small_study, stored_runs
 
 TRAVEL = "testbed.bumper.travel"
 
@@ -157,7 +157,9 @@ d, 9, 2.0
 def bumper(folder: Path, **options: object) -> Study:
     """A small search: springs from a catalogue, latch and travel; a short travel makes the run fail."""
     (folder / "springs.csv").write_text(CATALOGUE, encoding="utf-8")
-    study = small_study(vary=[], part_runs=3, optimise={"designs": 40, "population": 8, **options})
+    study = judged_study(
+        vary=[], method="fixed-step", part_runs=3, optimise={"designs": 40, "population": 8, **options}
+    )
     study.parts("spring", folder / "springs.csv", sets={SPRING: "rate"}).vary(LATCH, low=0.0, high=60.0)
     study.vary(TRAVEL, low=0.02, high=0.1).tolerance(TRAVEL, absolute=0.03).tolerances(kind="corners")
     study.objective("peak force of the run", tolerances="mean").objective("price of parts")

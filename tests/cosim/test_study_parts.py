@@ -21,7 +21,7 @@ from giveway.study.engine import plan_runs, sweep
 from giveway.study.export import SSV, export_design, export_table
 from giveway.study.report import write_report
 from lxml import etree
-from study_helpers import LATCH, SPRING, small_study, stored_runs
+from study_helpers import LATCH, SPRING, judged_study, small_study, stored_runs
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCHEMA = Path(fmpy.ssp.__file__).parent / "schema" / "SystemStructureParameterValues.xsd"
@@ -54,7 +54,7 @@ def shop(tmp_path: Path) -> Path:
 
 def bought(shop: Path, **spring: object) -> Study:
     """Every spring with every magnet."""
-    study = small_study(vary=[])
+    study = judged_study(vary=[])
     study.parts("spring", shop / "springs.csv", **{"sets": RATE, **spring})  # type: ignore[arg-type]
     return study.parts("magnet", shop / "magnets.csv", sets=PULL)
 
@@ -116,7 +116,7 @@ STUDY = """\
 schema_version = 1
 
 [scenario]
-duration = 0.2
+duration = 0.65
 bumper = "magnetic"
 
 [[collision]]
@@ -216,11 +216,11 @@ def test_a_price_that_is_not_stated_cannot_be_an_objective(shop: Path) -> None:
 def test_parts_give_the_bits_that_their_numbers_give(shop: Path) -> None:
     study = bought(shop, only=["soft"])
     sweep(study.setup(shop), shop / "a" / "parts", threads=1)
-    plain = small_study(vary=[]).vary(SPRING, values=[0.4], unit="N/mm")
+    plain = judged_study(vary=[]).vary(SPRING, values=[0.4], unit="N/mm")
     (shop / "designs.csv").write_text(
         f"{SPRING} [N/mm], {LATCH}, testbed.bumper.latch_gap [mm]\n0.4,0,1\n0.4,20,0.8\n0.4,60,1.2\n", encoding="utf-8"
     )
-    plain = small_study(vary=[], designs={"kind": "csv", "file": "designs.csv"})
+    plain = judged_study(vary=[], designs={"kind": "csv", "file": "designs.csv"})
     sweep(plain.setup(shop), shop / "b" / "numbers", threads=1)
     one, other = stored_runs(shop / "a" / "parts"), stored_runs(shop / "b" / "numbers")
     for name in ("key", "peak force of the run", "bumper compression"):

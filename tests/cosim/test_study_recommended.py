@@ -13,7 +13,8 @@ from giveway.study.advice import _percent, advice
 from giveway.study.limits import limit_words, margins_of
 from giveway.study.recommended import nearest, recommended
 from giveway.study.report import write_report
-from study_helpers import LATCH, SPRING, small_study, stored_runs
+from giveway.study.tables import counts
+from study_helpers import LATCH, SPRING, judged_study, stored_runs
 
 CATALOGUE = """name,maker,price [EUR],rate [N/mm]
 soft,Made Up,3,0.6
@@ -23,7 +24,7 @@ hard,Made Up,2,2.4
 
 def compressing(maximum: float) -> Study:
     """The more compression the better, up to so many cm."""
-    study = small_study().vary(SPRING, values=[0.6, 1.2, 2.4], unit="N/mm")
+    study = judged_study().vary(SPRING, values=[0.6, 1.2, 2.4], unit="N/mm")
     study.objective("bumper compression", goal="maximise")
     return study.constraint("bumper compression", maximum=maximum, unit="cm")
 
@@ -45,15 +46,15 @@ def test_margins_are_those_of_the_stored_runs_in_the_user_s_unit(tmp_path: Path)
 
 
 def test_the_limit_that_keeps_better_designs_out_is_named(tmp_path: Path) -> None:
-    found = compressing(3.0).run(tmp_path / "study", progress=False)
+    found = compressing(3.4).run(tmp_path / "study", progress=False)
     travel = stored_runs(tmp_path / "study")["bumper compression"]
     told = recommended(found)
     assert told is not None
-    assert told.design == np.argmax(np.where(travel <= 30.0, travel, 0.0))
-    assert told.tempting == np.argmin(np.where(travel > 30.0, travel, np.inf))
-    assert (told.broken, told.barred) == ((0,), (travel > 30.0).sum())
+    assert told.design == np.argmax(np.where(travel <= 34.0, travel, 0.0))
+    assert told.tempting == np.argmin(np.where(travel > 34.0, travel, np.inf))
+    assert (told.broken, told.barred) == ((0,), (travel > 34.0).sum())
     words = dict(advice(found).lines)
-    assert words["limited by"].startswith("bumper compression, at most 3 cm: ")
+    assert words["limited by"].startswith("bumper compression, at most 3.4 cm: ")
     assert f"design {told.tempting}: gains: bumper compression " in words["limited by"]
 
 
@@ -79,7 +80,7 @@ def test_others_on_the_front_are_counted(tmp_path: Path) -> None:
 
 def test_the_next_best_says_what_it_loses_and_the_next_with_other_parts(tmp_path: Path) -> None:
     (tmp_path / "springs.csv").write_text(CATALOGUE, encoding="utf-8")
-    study = small_study().parts("spring", tmp_path / "springs.csv", sets={SPRING: "rate"})
+    study = judged_study().parts("spring", tmp_path / "springs.csv", sets={SPRING: "rate"})
     found = study.objective("peak force of the run").run(tmp_path / "study", progress=False)
     told = recommended(found)
     assert told is not None
@@ -130,7 +131,7 @@ def test_terminal_and_report_begin_with_it(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_limits_of_a_body_region_have_its_name() -> None:
-    study = small_study()
+    study = judged_study()
     study.document["scenario"]["judge_as"] = "lower leg"
     study.constraint("transient force", maximum="transient limit").constraint("lasting force", maximum=0.1, unit="kN")
     setup = study.setup()
@@ -140,16 +141,69 @@ def test_limits_of_a_body_region_have_its_name() -> None:
 
 
 def test_without_objectives_nothing_is_recommended(tmp_path: Path) -> None:
-    found = small_study().run(tmp_path / "study", progress=False)
+    found = judged_study().run(tmp_path / "study", progress=False)
     assert recommended(found) is None
     assert "no objective" in advice(found).lines[0][1]
+
+
+# ---- runs that end too early
+
+
+def test_what_is_cut_off_is_not_recommended_but_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A soft spring looks gentle until its run is long enough."""
+    ended = judged_study(vary=[]).vary(SPRING, values=[0.3, 10.0], unit="N/mm")
+    ended.document["scenario"]["duration"] = 0.35
+    found = ended.objective("bumper compression").run(tmp_path / "ended", progress=False)
+    assert found.cut_off.tolist() == [True, False]
+    assert found.values[0, 0] > found.values[1, 0]
+    assert found.order.tolist() == [1]
+    told = advice(found)
+    assert told.title == "Recommended: design 1"
+    assert dict(told.lines)["cut off"].startswith("1 design (0) cannot be judged: a run ended before its contact")
+    assert dict(told.lines)["cut off"].endswith("give scenario.duration more than 0.35 s")
+    assert "1 cut off by the end of their runs" in counts(found)
+    ended.document["scenario"]["duration"] = 0.2
+    found = ended.run(tmp_path / "all ended", progress=False)
+    assert not len(found.order)
+    assert advice(found).title == "No design is recommended"
+    assert _main(["study", "show", str(tmp_path / "all ended")]) == 0
+    assert "2 designs (0, 1) cannot be judged" in " ".join(capsys.readouterr().out.split())
+    assert _main(["study", "evidence", str(tmp_path / "all ended")]) == 2
+    assert "some are cut off" in capsys.readouterr().err
+    ended.document["scenario"]["duration"] = 0.9
+    whole = ended.run(tmp_path / "whole", progress=False)
+    assert not whole.cut_off.any()
+    assert len(whole.order) == 2
+    assert whole.values[0, 0] > 1.5 * found.values[0, 0]
+
+
+def test_a_search_does_not_judge_what_is_cut_off(tmp_path: Path) -> None:
+    study = judged_study(vary=[], method="fixed-step").vary(SPRING, low=0.3, high=20.0, unit="N/mm")
+    study.document["scenario"]["duration"] = 0.35
+    study.objective("peak force of the run").sure(probability=False)
+    found = study.optimise(tmp_path / "search", designs=24, progress=False)
+    soft, stiff = found.designs[found.cut_off, 0], found.designs[~found.cut_off, 0]
+    assert 0 < len(soft) < 24
+    assert soft.max() < stiff.min()
+    told = found.manifest["optimum"]
+    assert told["hypervolume"][-1] > 0.0
+    assert told["reference"][0] > found.values[~found.cut_off, 0].max()
+
+
+def test_what_no_contact_decides_is_judged_all_the_same(tmp_path: Path) -> None:
+    study = judged_study().objective("detection time")
+    study.document["scenario"]["duration"] = 0.2
+    found = study.run(tmp_path / "study", progress=False)
+    assert "contact cut off" in found.warning_text(0)
+    assert not found.cut_off.any()
+    assert len(found.order) == 4
 
 
 # ---- what decides nothing
 
 
 def test_the_end_of_a_range_that_decides_nothing_limits_nothing(tmp_path: Path) -> None:
-    study = small_study(vary=[]).vary("bumper", values=["none", "spring"]).vary(SPRING, values=[0.6, 1.2], unit="N/mm")
+    study = judged_study(vary=[]).vary("bumper", values=["none", "spring"]).vary(SPRING, values=[0.6, 1.2], unit="N/mm")
     found = study.objective("detection time").run(tmp_path / "study", progress=False)
     told = recommended(found)
     assert told is not None
@@ -160,7 +214,7 @@ def test_the_end_of_a_range_that_decides_nothing_limits_nothing(tmp_path: Path) 
 
 
 def test_equal_designs_on_the_front_are_not_called_better(tmp_path: Path) -> None:
-    study = small_study(vary=[]).vary("testbed.bumper.travel", values=[0.1, 0.11, 0.12])
+    study = judged_study(vary=[]).vary("testbed.bumper.travel", values=[0.1, 0.11, 0.12])
     study.objective("peak force of the run").constraint("bumper compression", maximum=9.0, unit="cm")
     found = study.run(tmp_path / "study", progress=False)
     assert found.pareto.tolist() == [True] * 3

@@ -26,7 +26,16 @@ from giveway.study.subset import binomial_interval, level_size, plain, subset
 from giveway.study.sure_plan import SurePlan
 from giveway.study.tolerance_indices import indices_of, points_of
 from scipy import stats
-from study_helpers import LATCH, LATCH_STUDY, SPRING, interrupt, part_files, small_study
+from study_helpers import (
+    JUDGED_LATCH_STUDY,
+    LATCH,
+    LATCH_STUDY,
+    SPRING,
+    interrupt,
+    judged_study,
+    part_files,
+    small_study,
+)
 
 A_THOUSAND = SurePlan(runs=1000)
 
@@ -318,15 +327,6 @@ def test_both_methods_agree_about_a_design(answers: Answers) -> None:
     assert sure.stored(answers, 2) == []
 
 
-def test_plain_sampling_counts_the_stored_runs_beyond_the_limit(answers: Answers) -> None:
-    import pyarrow.parquet
-
-    found = sure.probability(answers, 1, SurePlan(runs=1000, method="plain"))
-    parts = part_files(answers.folder / sure.SURE / "design-1-plain")
-    name = "peak force of the run"
-    peaks = np.concatenate([pyarrow.parquet.read_table(path, columns=[name])[name].to_numpy() for path in parts])
-    assert len(peaks) >= 1000
-    assert found.exceeded == int((peaks[:1000] > 60.0).sum())
 @pytest.mark.parametrize("method", ["subset", "plain"])
 def test_a_limit_that_is_never_exceeded_has_an_upper_end_beside_others(method: str, tmp_path: Path) -> None:
     study = uncertain_study().constraint("bumper compression", maximum=100.0, unit="mm")
@@ -351,6 +351,15 @@ def test_a_limit_that_is_never_exceeded_has_an_upper_end_beside_others(method: s
     assert [one.high for one in again.limits] == [None, told.high]
 
 
+def test_plain_sampling_counts_the_stored_runs_beyond_the_limit(answers: Answers) -> None:
+    import pyarrow.parquet
+
+    found = sure.probability(answers, 1, SurePlan(runs=1000, method="plain"))
+    parts = part_files(answers.folder / sure.SURE / "design-1-plain")
+    name = "peak force of the run"
+    peaks = np.concatenate([pyarrow.parquet.read_table(path, columns=[name])[name].to_numpy() for path in parts])
+    assert len(peaks) >= 1000
+    assert found.exceeded == int((peaks[:1000] > 60.0).sum())
 
 
 def test_kills_at_random_moments_change_nothing(tmp_path: Path) -> None:
@@ -407,7 +416,7 @@ def test_noise_and_robots_are_quantities_too(tmp_path: Path) -> None:
 
 
 def test_nothing_uncertain_is_said(tmp_path: Path) -> None:
-    study = small_study().objective("peak force of the run").constraint("peak force of the run", maximum=200.0)
+    study = judged_study().objective("peak force of the run").constraint("peak force of the run", maximum=200.0)
     found = study.run(tmp_path / "study", progress=False)
     assert not sure.wanted(found)
     with pytest.raises(GivewayError, match="nothing differs from sample to sample"):
@@ -417,7 +426,7 @@ def test_nothing_uncertain_is_said(tmp_path: Path) -> None:
 STUDY = f"""\
 schema_version = 1
 method = "fixed-step"
-{LATCH_STUDY}levels = 3
+{JUDGED_LATCH_STUDY}levels = 3
 [[tolerance]]
 quantity = "testbed.bumper.latch_force"
 relative = 0.3

@@ -23,13 +23,13 @@ from giveway.study.page_data import page_data
 from giveway.study.report import write_report
 from giveway.study.tables import design_rows, goal_header, sensitivity_rows
 from page_arrays import page_array, page_values
-from study_helpers import LATCH, SPRING, small_study
+from study_helpers import LATCH, SPRING, judged_study
 
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     """Of a study in units of its own: N/mm, km/h, cm, and an absolute tolerance in kN."""
-    study = small_study(vary=[])
+    study = judged_study(vary=[])
     study.vary(SPRING, values=[0.6, 2.4], unit="N/mm").vary("collision.speed", low=1.2, high=2.1, levels=2, unit="km/h")
     study.tolerance(LATCH, absolute=0.002, unit="kN").tolerances(samples=1)
     study.objective("bumper compression").objective("peak force of the run")
@@ -100,7 +100,7 @@ def test_the_growth_of_a_search_is_in_shares_of_its_end(answers: Answers) -> Non
 
 
 def test_limits_of_forces_and_times_are_in_the_curves_too(tmp_path: Path) -> None:
-    study = small_study().objective("peak force of the run").constraint("detection time", maximum=1.0, unit="s")
+    study = judged_study().objective("peak force of the run").constraint("detection time", maximum=1.0, unit="s")
     found = study.constraint("peak force of the run", maximum=0.07, unit="kN").run(tmp_path / "study", progress=False)
     data = page_data(found)
     limits = [{"at": 0.07, "words": "peak force of the run at most 0.07 kN"}]
@@ -124,6 +124,7 @@ def test_of_many_designs_the_page_has_the_best_and_those_that_the_text_names(ans
         score=np.zeros(many),
         stored=answers.stored[repeated],
         failed=answers.failed[repeated],
+        cut_off=answers.cut_off[repeated],
     )
     data = page_data(wide)
     assert data["count"] == data["total"] == many
@@ -139,7 +140,7 @@ def test_of_many_designs_the_page_has_the_best_and_those_that_the_text_names(ans
 
 
 def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> None:
-    study = small_study(vary=[], designs={"kind": "morris", "trajectories": 2}).objective("bumper compression")
+    study = judged_study(vary=[], designs={"kind": "morris", "trajectories": 2}).objective("bumper compression")
     study.vary(LATCH, low=0, high=60).vary(SPRING, low=0.6, high=2.4, unit="N/mm")
     answers = study.constraint("bumper compression", maximum=3.0, unit="cm").run(tmp_path / "study", progress=False)
     effects = answers.sensitivities()  # in mm
@@ -156,10 +157,9 @@ def test_elementary_effects_are_in_the_unit_of_their_title(tmp_path: Path) -> No
         assert float(rows[one.quantity][3]) == pytest.approx(0.1 * one.main, rel=5e-3)  # three digits
 
 
-def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
 @pytest.mark.parametrize("goals", [("detection time",), ("detection time", "location error")], ids=["one", "two"])
 def test_what_decides_names_its_quantities_from_the_top(goals: tuple[str, ...], tmp_path: Path) -> None:
-    study = small_study(vary=[], designs={"kind": "morris", "trajectories": 2})
+    study = judged_study(vary=[], designs={"kind": "morris", "trajectories": 2})
     study.vary(LATCH, low=0, high=60).vary(SPRING, low=0.6, high=2.4, unit="N/mm")
     for goal in goals:
         study.objective(goal)
@@ -171,6 +171,7 @@ def test_what_decides_names_its_quantities_from_the_top(goals: tuple[str, ...], 
         assert panel["y"]["first"] > panel["y"]["last"]
 
 
+def test_the_report_says_what_was_asked(answers: Answers, tmp_path: Path) -> None:
     write_report(tmp_path / "report.html", answers)
     page = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
     for words in ("0.6, 2.4 N/mm", "1.2 to 2.1 km/h", "+-0.002 kN", "bumper compression: at most 3 cm"):
@@ -204,7 +205,7 @@ def test_everything_that_a_scenario_sets_is_said() -> None:
 
 
 def test_what_varies_is_said_to_vary() -> None:
-    study = small_study(vary=[{"quantity": "bumper", "values": ["spring", "magnetic"]}])
+    study = judged_study(vary=[{"quantity": "bumper", "values": ["spring", "magnetic"]}])
     study.vary("testbed.contact.stiffness", values=[5.0, 9.0], unit="kN/m")
     study.document["scenario"] |= {"judge_as": "lower leg", "plan": {"kind": "rest", "x": 0.1}}
     said = dict(asked(study.setup()))
@@ -229,7 +230,7 @@ def test_a_unit_there_and_back_is_what_was_written() -> None:
     ],
 )
 def test_sensitivities_that_are_not_there_say_why(tables: dict[str, object], reason: str, tmp_path: Path) -> None:
-    study = small_study(vary=[]).objective("peak force of the run")
+    study = judged_study(vary=[]).objective("peak force of the run")
     study.vary(LATCH, low=0, high=60, levels=2).vary(SPRING, low=0.6, high=2.4, levels=2, unit="N/mm")
     study.document.update(tables)
     found = study.run(tmp_path / "study", progress=False).sensitivities()

@@ -14,14 +14,14 @@ from giveway.study.chosen import scenario_of_run
 from giveway.study.export import export_table
 from giveway.study.report import write_report
 from giveway.study.tables import counts, design_rows, goal_header
-from study_helpers import small_study, stored_runs
+from study_helpers import judged_study, stored_runs
 
 TRAVEL = "testbed.bumper.travel"
 
 
 def bottoming(folder: Path) -> Answers:
     """Bumpers of 5 and 120 mm: the short one is pressed into its stop; each is hit twice."""
-    study = small_study(vary=[]).vary(TRAVEL, values=[0.12, 0.005])
+    study = judged_study(vary=[]).vary(TRAVEL, values=[0.12, 0.005])
     study.collision("slow", speed=0.05, mass=9.08, edge=1, time=0.12)
     return study.objective("peak force of the run").run(folder)
 
@@ -63,7 +63,9 @@ def test_the_export_and_the_report_have_them(answers: Answers, tmp_path: Path) -
 
 
 def test_without_any_there_is_no_column(tmp_path: Path) -> None:
-    found = small_study(vary=[]).vary(TRAVEL, values=[0.12, 0.1]).objective("peak force of the run").run(tmp_path / "s")
+    found = (
+        judged_study(vary=[]).vary(TRAVEL, values=[0.12, 0.1]).objective("peak force of the run").run(tmp_path / "s")
+    )
     assert found.warnings == {}
     assert "warnings" not in goal_header(found)
     assert "warnings" not in counts(found)
@@ -77,7 +79,7 @@ def test_results_that_were_taken_over_are_judged_by_what_this_study_states(tmp_p
 
 
 def test_a_run_that_failed_has_no_warning(tmp_path: Path) -> None:
-    study = small_study(vary=[]).vary("testbed.bumper.plate_mass", values=[0.5, 9.0])
+    study = judged_study(vary=[]).vary("testbed.bumper.plate_mass", values=[0.5, 9.0])
     study.run(tmp_path / "study")
     runs = stored_runs(tmp_path / "study")
     assert runs["status"].tolist() == ["ok", "refused"]
@@ -87,7 +89,7 @@ def test_a_run_that_failed_has_no_warning(tmp_path: Path) -> None:
 def test_the_speeds_of_the_contact_are_always_shown(answers: Answers, tmp_path: Path) -> None:
     assert "contact speed, worst collision, m/s" in goal_header(answers)
     assert "robot speed at contact, worst collision, m/s" not in goal_header(answers)
-    study = small_study(vary=[]).vary("collision.mass", values=[5.0, 9.0])
+    study = judged_study(vary=[]).vary("collision.mass", values=[5.0, 9.0])
     study.document["scenario"] = {"duration": 1.2, "plan": {"kind": "straight", "speed": 0.3, "direction": 60.0}}
     study.document["collision"] = [{"name": "standing", "speed": 0.0, "edge": 0, "time": 1.0}]
     found = study.objective("peak force of the run").run(tmp_path / "study")

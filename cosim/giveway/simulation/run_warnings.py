@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BOUNDS",
     "CODES",
+    "CUT_OFF",
     "MEANINGS",
     "METRICS",
     "SEPARATOR",
@@ -48,12 +49,15 @@ BOUNDS: Mapping[str, float] = MappingProxyType(
         "time_s": 0.02,  # the servo's lag is 16 ms
         "plan_mm": 10.0,  # a plan within the limits is followed to 0.01 mm
         "plan_deg": 1.0,
+        "quiet_s": 0.1,  # touches less than this apart are one contact: a plate bounces
         "saturated": 1.0 - 1e-6,  # share of a limit that single precision carries
     }
 )
 
 
 SEPARATOR = "; "  # of codes in a table
+CUT_OFF = "contact cut off"  # what a study judges, too
+PEAK = "peak force of the run"
 
 
 @dataclass(frozen=True)
@@ -78,6 +82,7 @@ class Stated:
         point_x_m, point_y_m: of the contact, base frame.
         time_s: of the contact.
         plan_speed_mps: of the plan, once it has started; in runs with a contact.
+        end_s: of the run.
         contact: whether one is stated at all, shape (n,).
         region: a body region is to be judged, shape (n,).
     """
@@ -87,13 +92,14 @@ class Stated:
     point_y_m: Numbers
     time_s: Numbers
     plan_speed_mps: Numbers
+    end_s: Numbers
     contact: Masks
     region: Masks
 
     @classmethod
     def nothing(cls, count: int) -> Stated:
         """The requests of ``count`` runs without any statement; to be filled by `put`."""
-        return cls(*(np.full(count, math.nan) for _ in range(5)), *(np.zeros(count, dtype=np.bool_) for _ in range(2)))
+        return cls(*(np.full(count, math.nan) for _ in range(6)), *(np.zeros(count, dtype=np.bool_) for _ in range(2)))
 
     def put(self, where: NDArray[np.int64], other: Stated) -> None:
         """Copy the requests of ``other`` to the runs ``where``."""
@@ -112,6 +118,7 @@ class Stated:
             _known([y for _, y in points]),
             _known([contact.time_s for contact in contacts]),
             _known(planned),
+            _known([scenario.duration_s for scenario in scenarios]),
             np.array([scenario.contact is not None for scenario in scenarios], dtype=np.bool_),
             np.array([scenario.judged is not None for scenario in scenarios], dtype=np.bool_),
         )
@@ -154,6 +161,12 @@ def _away_mm(stated: Stated, found: _Metrics) -> Numbers:
     return np.hypot(
         found["first contact x"] - 1e3 * stated.point_x_m, found["first contact y"] - 1e3 * stated.point_y_m
     )
+
+
+def _lasts(stated: Stated, found: _Metrics) -> Masks:
+    """The run ended before a contact was over."""
+    quiet_s = stated.end_s - found["contact time"] - found["longest contact"]
+    return np.asarray((found["contact at end"] > 0.0) | (quiet_s < BOUNDS["quiet_s"]))
 
 
 _CHECKS: Sequence[_Check] = (
@@ -260,13 +273,24 @@ _CHECKS: Sequence[_Check] = (
         ),
     ),
     _Check(
+        CUT_OFF,
+        f"the run ended during a contact, or less than {BOUNDS['quiet_s']:g} s after the last touch: the largest force "
+        "and compression may have been still to come",
+        ("contact at end", "contact time", "longest contact", "lasting force", PEAK),
+        # The lasting force is that of 0.5 s after a touch and later: below the peak, the peak was before, and is over.
+        lambda stated, found: _lasts(stated, found) & ~(found["lasting force"] < found[PEAK]),
+        lambda _stated, _found: (
+            f"the run ended during the contact, or less than {BOUNDS['quiet_s']:g} s after the last touch: the largest "
+            "force and compression may have been still to come, which a longer duration shows"
+        ),
+    ),
+    _Check(
         "second hit harder",
         "a later contact was harder than the first",
-        (FIRST_PEAK, "peak force of the run"),
-        lambda _stated, found: found["peak force of the run"] > found[FIRST_PEAK],
+        (FIRST_PEAK, PEAK),
+        lambda _stated, found: found[PEAK] > found[FIRST_PEAK],
         lambda _stated, found: (
-            f"a later contact was harder than the first: {_at(found['peak force of the run']):.0f} N after "
-            f"{_at(found[FIRST_PEAK]):.0f} N"
+            f"a later contact was harder than the first: {_at(found[PEAK]):.0f} N after {_at(found[FIRST_PEAK]):.0f} N"
         ),
     ),
 )

@@ -1,6 +1,6 @@
 """Studies: thousands of bumper designs, stored so that nothing is lost, with first answers.
 
-    study = giveway.Study("latch", duration=0.6, bumper="magnetic")
+    study = giveway.Study("latch", duration=1.1, bumper="magnetic")
     study.collision("front", speed=0.5, mass=9.08, edge=0)
     study.vary("testbed.bumper.spring_rate", low=0.4, high=3.0, unit="N/mm", levels=5)
     study.vary("testbed.bumper.latch_force", low=0.0, high=100.0, levels=11)

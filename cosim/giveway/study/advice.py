@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from giveway.base.words import counted
 from giveway.study.certainty import probability_lines
 from giveway.study.limits import Margin, limit_words, margins_of
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MARGIN_HEADER", "Advice", "advice", "design_lines"]
 
+NAMED = 8  # designs that a line names
 MARGIN_HEADER = ("limit", "allowed", "has", "margin", "margin, %")
 
 
@@ -44,10 +47,15 @@ def advice(answers: Answers) -> Advice:
         return Advice("No design is recommended", [("why", words)], [])
     if (found := recommended(answers)) is not None:
         sure = probability_lines(answers, found.design)
-        lines = [*design_lines(answers, found.design), *sure, *_limited(answers, found), *_following(answers, found)]
+        why = [*_limited(answers, found), *_following(answers, found), *_cut_off(answers)]
+        lines = [*design_lines(answers, found.design), *sure, *why]
         return Advice(f"Recommended{so_far}: design {found.design}", lines, _margin_rows(answers, found.design))
-    title = f"No design meets all constraints{so_far}"
+    cut_off = _cut_off(answers)
+    title = "No design is recommended" if cut_off else "No design meets all constraints"
+    title += so_far
     if (near := nearest(answers)) is None:
+        if cut_off:
+            return Advice(title, cut_off, [])
         return Advice(title, [("why", "no design has a value for every objective and constraint")], [])
     missed = margins_of(answers, near.design)[near.worst]
     lines = [
@@ -61,7 +69,7 @@ def advice(answers: Answers) -> Advice:
         one = margins_of(answers, design)[index]
         has = f"the nearest one, design {design}, has {_valued(one.value, one.unit.shown)}"
         lines.append(("met by no design", f"{one.name}, {one.allowed}: {has}"))
-    return Advice(title, lines, _margin_rows(answers, near.design))
+    return Advice(title, [*lines, *cut_off], _margin_rows(answers, near.design))
 
 
 def design_lines(answers: Answers, design: int) -> list[tuple[str, str]]:
@@ -132,6 +140,20 @@ def _limited(answers: Answers, found: Recommended) -> list[tuple[str, str]]:
     return lines
 
 
+def _cut_off(answers: Answers) -> list[tuple[str, str]]:
+    """Which designs are not judged because a run was over before its contact."""
+    designs = np.flatnonzero(answers.cut_off).tolist()
+    if not designs:
+        return []
+    named = ", ".join(map(str, designs[:NAMED])) + (", ..." if len(designs) > NAMED else "")
+    words = (
+        f"{counted(len(designs), 'design')} ({named}) cannot be judged: a run ended before its contact was over, and "
+        "what it measured may have been still growing; give scenario.duration more than "
+        f"{answers.setup.cases[0].scenario.duration_s:g} s"
+    )
+    return [("cut off", words)]
+
+
 def _following(answers: Answers, found: Recommended) -> list[tuple[str, str]]:
     """The next best designs, and why they are not recommended."""
     lines = []
@@ -173,12 +195,12 @@ def _changes(answers: Answers, design: int, than: int) -> list[str]:
     return [f"{word} {', '.join(some)}" for word, some in (("loses:", worse), ("gains:", better)) if some]
 
 
-def _instead(new: float, old: float) -> str:
-    """Both values with as many digits as tell them apart."""
-    digits = next((digits for digits in range(4, 16) if f"{new:.{digits}g}" != f"{old:.{digits}g}"), 17)
-    return f"{new:.{digits}g} instead of {old:.{digits}g}"
 def _percent(share: float) -> str:
     """Two digits, or all before the point."""
     return f"{share:+.2g} %" if abs(share) < 99.5 else f"{share:+,.0f} %"
 
 
+def _instead(new: float, old: float) -> str:
+    """Both values with as many digits as tell them apart."""
+    digits = next((digits for digits in range(4, 16) if f"{new:.{digits}g}" != f"{old:.{digits}g}"), 17)
+    return f"{new:.{digits}g} instead of {old:.{digits}g}"

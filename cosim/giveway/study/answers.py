@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,7 +14,7 @@ import numpy as np
 from giveway.base.errors import GivewayError
 from giveway.base.in_notebooks import ShownInNotebooks
 from giveway.base.units import WrittenUnit
-from giveway.simulation.run_warnings import SEPARATOR
+from giveway.simulation.run_warnings import CUT_OFF, SEPARATOR
 from giveway.study import frames
 from giveway.study.designs import DesignPlan
 from giveway.study.distributions import Varied
@@ -39,6 +39,7 @@ __all__ = [
     "Sensitivity",
     "blocks_of",
     "costs_of",
+    "cut_off_of",
     "goals_of",
     "load",
     "over_runs",
@@ -103,7 +104,8 @@ class Answers(ShownInNotebooks):
         stored, failed: runs per design that are stored, and that failed.
         reason: of the first run of a design that failed, by design.
         warnings: what happened otherwise than asked: by design, in how many of its runs which code (`run_warnings`).
-        feasible: all runs are there and none failed, and all constraints are met.
+        cut_off: a run ended during a contact, and an objective or constraint may be worse than its value says.
+        feasible: all runs are there, none failed and nothing judged is cut off, and all constraints are met.
         pareto: feasible, and no other design is better in all objectives.
         order: designs, the best first; only feasible ones.
         score: distance from the best of every objective, in widths of the front; NaN: not feasible.
@@ -119,6 +121,7 @@ class Answers(ShownInNotebooks):
     failed: NDArray[np.int64]
     reason: dict[int, str]
     warnings: dict[int, dict[str, int]]
+    cut_off: NDArray[np.bool_]
     feasible: NDArray[np.bool_]
     pareto: NDArray[np.bool_]
     order: NDArray[np.int64]
@@ -322,7 +325,8 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
         values[part], stored[part], failed[part] = block.values, block.stored, block.failed
         reason |= block.reason
         warnings |= block.warnings
-    feasible = (stored == table.per_design) & (failed == 0)
+    cut_off = cut_off_of(setup, warnings, range(count))
+    feasible = (stored == table.per_design) & (failed == 0) & ~cut_off
     offset = len(setup.objectives)
     for index, constraint in enumerate(setup.constraints):
         column = values[:, offset + index]
@@ -334,7 +338,7 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
     score = scores(costs, on_front, np.array([goal.weight for goal in setup.objectives]))
     candidates = np.flatnonzero(feasible)
     order = candidates[np.lexsort((score[candidates], ~on_front[candidates]))]
-    judged = (feasible, on_front, order, score)
+    judged = (cut_off, feasible, on_front, order, score)
     return Answers(Path(folder), setup, table, manifest, goals, values, stored, failed, reason, warnings, *judged)
 
 
@@ -346,6 +350,14 @@ def goals_of(setup: Setup) -> tuple[Goal, ...]:
 def costs_of(setup: Setup, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """The objectives among ``values`` (n, goals) so that less is better."""
     return np.asarray(values[:, : len(setup.objectives)] * np.array([goal.sense for goal in setup.objectives]))
+
+
+def cut_off_of(setup: Setup, warnings: Mapping[int, Mapping[str, int]], designs: Sequence[int]) -> NDArray[np.bool_]:
+    """Which of ``designs`` have a run that ended during a contact, if the study judges what then may still grow."""
+    judged = (*setup.objectives, *(one.goal for one in setup.constraints))
+    if not any(goal.metric.of_whole_contact for goal in judged):
+        return np.zeros(len(designs), dtype=bool)
+    return np.array([CUT_OFF in warnings.get(design, ()) for design in designs], dtype=bool)
 
 
 @dataclass

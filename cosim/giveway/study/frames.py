@@ -47,7 +47,8 @@ def best_design(answers: Answers) -> int:
         GivewayError: no design is allowed.
     """
     if not len(answers.order):
-        raise GivewayError("design", "nothing", "its number: no design meets all constraints")
+        why = "is recommended, and some are cut off" if answers.cut_off.any() else "meets all constraints"
+        raise GivewayError("design", "nothing", f"its number: no design {why}")
     return int(answers.order[0])
 
 

@@ -44,6 +44,11 @@ DRIVETRAIN: Mapping[str, str] = MappingProxyType(
 )
 """What follows from the parameters of a run, and its unit."""
 _LESS_IS_BETTER = (SMALLEST_PUSH, INERTIA, IMPACT_FORCE)
+_OF_WHOLE_CONTACT = (
+    "peak force of the run", "peak force of the first contact", "bumper compression", "bottoming margin",
+    "transient force", "transient force share", "lasting force", "lasting force share", "longest contact",
+    "contact impulse", "peak wheel torque", "peak torque, any sign",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,11 @@ class Metric:
     def of_design(self) -> bool:
         """It is the same in all runs of a design."""
         return self.name in (PRICE_OF_PARTS, MASS_OF_PARTS)
+
+    @property
+    def of_whole_contact(self) -> bool:
+        """It may grow as long as a contact lasts."""
+        return self.column in _OF_WHOLE_CONTACT
 
     @property
     def columns(self) -> tuple[str, ...]:

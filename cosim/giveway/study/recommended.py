@@ -103,9 +103,9 @@ def nearest(answers: Answers) -> Nearest | None:
 
 
 def _judged(answers: Answers) -> NDArray[np.bool_]:
-    """All runs are there, none failed, and all objectives and limits have a value."""
+    """All runs are there, none failed or was cut off, and all objectives and limits have a value."""
     count = len(answers.setup.objectives) + len(answers.setup.constraints)
-    found = (answers.stored == answers.runs.per_design) & (answers.failed == 0)
+    found = (answers.stored == answers.runs.per_design) & (answers.failed == 0) & ~answers.cut_off
     return np.asarray(found & ~np.isnan(answers.values[:, :count]).any(axis=1))
 
 

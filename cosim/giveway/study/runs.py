@@ -315,6 +315,7 @@ def _stated(case: Case, hit: dict[str, NDArray[np.float64]], speed_mps: NDArray[
         hit.get("point_y", unknown),
         hit["time"] if case.hit is not None and case.hit.time_s is not None else unknown,
         unknown if planned is None else np.full(count, planned),
+        np.full(count, case.scenario.duration_s),
         contact=np.full(count, case.hit is not None),
         region=np.full(count, case.scenario.judged is not None),
     )

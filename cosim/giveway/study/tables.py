@@ -125,6 +125,8 @@ def counts(answers: Answers) -> str:
     failed = int((answers.failed > 0).sum()) - unfit
     if failed:
         words += f", {failed:,} with failed runs"
+    if cut_off := int(answers.cut_off.sum()):
+        words += f", {cut_off:,} cut off by the end of their runs"
     if answers.warnings:
         words += f", {len(answers.warnings):,} with warnings"
     return words
