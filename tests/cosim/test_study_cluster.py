@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import random
 import re
@@ -260,6 +261,22 @@ def test_ctrl_c_ends_it_cleanly_and_it_goes_on(tmp_path: Path) -> None:
     assert sweep(setup, tmp_path / "b" / "x", threads=2).ran == 600 - 10 * stored
     sweep(setup, tmp_path / "a" / "x", threads=2)
     same_runs(tmp_path / "a" / "x", tmp_path / "b" / "x")
+
+
+def test_ctrl_c_while_a_result_comes_leaves_no_complaint(cluster: Any, caplog: pytest.LogCaptureFixture) -> None:
+    with pool.joined(cluster.scheduler_address, None, golden_works()) as workers:
+        client, gather = workers._client, workers._client._gather
+
+        async def late(*told: Any, **options: Any) -> Any:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.5)  # the loop hears of it and of what follows at once, when the fetch is about to look
+            return await gather(*told, **options)
+
+        client._gather = late
+        with pytest.raises(KeyboardInterrupt):
+            workers.wait(60.0)
+    gc.collect()
+    assert [record for record in caplog.records if record.name == "asyncio"] == []
 
 
 @pytest.mark.parametrize(
