@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.base.errors import SimulationError
+from giveway.base.stretches import stretches
 from giveway.experiments import PAPER_BUMPERS, Experiment, motionless
 from giveway.experiments.placement import not_above
 from giveway.experiments.reproduction.findings import Effort, Findings, Picture, Row, Target
@@ -124,9 +125,8 @@ class _Run:
 
 
 def _longest(where: NDArray[np.bool_], time_ms: NDArray[np.float64]) -> float:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]]).astype(int)))
-    lengths = edges[1::2] - edges[0::2]
-    return float(lengths.max() * (time_ms[1] - time_ms[0])) if len(lengths) else 0.0
+    longest = max((end - begin for begin, end in stretches(where)), default=0)
+    return float(longest * (time_ms[1] - time_ms[0]))
 
 
 def _reproduce(effort: Effort) -> Findings:

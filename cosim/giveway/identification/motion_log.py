@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from giveway.base.errors import FileError, nearest_names
+from giveway.base.stretches import stretches
 from giveway.identification.log_rows import LogRows, read_rows
 from giveway.robot.robot_file import Robot
 from giveway.robot.wheels import WHEELS
@@ -116,10 +117,9 @@ def pieces(log: MotionLog) -> list[MotionLog]:
     width = max(2, round(STANDING_S / step_s))
     span = maximum_filter1d(log.wheel_angle_rad, width, axis=0) - minimum_filter1d(log.wheel_angle_rad, width, axis=0)
     standing = (span < STANDING_RAD).all(axis=1)
-    edges = np.flatnonzero(np.diff(np.concatenate(([True], standing, [True])).astype(np.int8)))
     found = [
         (begin, end)
-        for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+        for begin, end in stretches(~standing)
         if log.time_s[end - 1] - log.time_s[begin] >= SHORTEST_PIECE_S
     ]
     if len(found) < 2:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.base.stretches import stretches
 from giveway.base.version import VERSION
 from giveway.replay.inputs import value_of
 from giveway.replay.story import MODES
@@ -121,7 +122,8 @@ def _panel(replay: Replay, curves: Curves, title: str, names: Sequence[str]) -> 
         x = float(x_of(np.array(detection.time_s)))
         parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{bottom}" class="hit"/>')
     for (least, largest), colour in zip(bands, COLOURS, strict=False):
-        for part in _pieces(np.isfinite(least)):
+        for begin, end in stretches(np.isfinite(least)):
+            part = slice(begin, end)
             across = x_of(time_s[part])
             there = zip(across, y_of(largest[part]), strict=True)
             back = zip(across[::-1], y_of(least[part])[::-1], strict=True)
@@ -132,12 +134,6 @@ def _panel(replay: Replay, curves: Curves, title: str, names: Sequence[str]) -> 
 
 def _end(replay: Replay) -> float:
     return replay.choice.step_s * max(int(replay.did.steps), 1)
-
-
-def _pieces(there: NDArray[np.bool_]) -> list[slice]:
-    """Runs of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], there, [False])).astype(np.int8)))
-    return [slice(int(start), int(end)) for start, end in edges.reshape(-1, 2)]
 
 
 def _strip(replay: Replay) -> str:

@@ -44,6 +44,7 @@ __all__ = [
     "load",
     "over_runs",
     "sensitivities_of",
+    "whole",
     "why_no_sensitivities",
 ]
 
@@ -326,7 +327,7 @@ def load(folder: Path | str, progress: Callable[[float], None] | None = None) ->
         reason |= block.reason
         warnings |= block.warnings
     cut_off = cut_off_of(setup, warnings, range(count))
-    feasible = (stored == table.per_design) & (failed == 0) & ~cut_off
+    feasible = whole(table.per_design, stored, failed, cut_off)
     offset = len(setup.objectives)
     for index, constraint in enumerate(setup.constraints):
         column = values[:, offset + index]
@@ -358,6 +359,13 @@ def cut_off_of(setup: Setup, warnings: Mapping[int, Mapping[str, int]], designs:
     if not any(goal.metric.of_whole_contact for goal in judged):
         return np.zeros(len(designs), dtype=bool)
     return np.array([CUT_OFF in warnings.get(design, ()) for design in designs], dtype=bool)
+
+
+def whole(
+    per_design: int, stored: NDArray[np.int64], failed: NDArray[np.int64], cut_off: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Which designs can be judged: all of their ``per_design`` runs are there, none failed, none was cut off."""
+    return np.asarray((stored == per_design) & (failed == 0) & ~cut_off)
 
 
 @dataclass

@@ -17,7 +17,7 @@ import numpy as np
 
 from giveway.base.errors import GivewayError
 from giveway.study import engine
-from giveway.study.answers import blocks_of, costs_of, cut_off_of, goals_of
+from giveway.study.answers import blocks_of, costs_of, cut_off_of, goals_of, whole
 from giveway.study.engine import Outcome, Report, Runner
 from giveway.study.hypervolume import hypervolume, reference_of, stopped
 from giveway.study.optimiser import Known, Space, next_generation, pymoo_version
@@ -119,8 +119,8 @@ class _Search:
             for block in blocks_of(store.parts_folder, table, self._goals, len(values)):
                 values = np.concatenate([values, block.values])
                 there = range(block.first, block.first + len(block.stored))
-                whole = (block.stored == table.per_design) & ~cut_off_of(setup, block.warnings, there)
-                ran = np.concatenate([ran, whole & (block.failed == 0)])
+                cut_off = cut_off_of(setup, block.warnings, there)
+                ran = np.concatenate([ran, whole(table.per_design, block.stored, block.failed, cut_off)])
             known = self._known(designs, values, ran)
             for number in range(judged, int(generation[-1]) + 1 if len(generation) else 0):
                 self._volumes.append(self._volume(known, generation <= number))

@@ -9,7 +9,7 @@ import numpy as np
 
 from giveway.scenario.scenario import BUMPERS
 from giveway.scenario.stated_bumper import acts
-from giveway.study.answers import costs_of
+from giveway.study.answers import costs_of, whole
 from giveway.study.limits import rooms, shares
 from giveway.study.quantities import columns
 
@@ -105,7 +105,7 @@ def nearest(answers: Answers) -> Nearest | None:
 def _judged(answers: Answers) -> NDArray[np.bool_]:
     """All runs are there, none failed or was cut off, and all objectives and limits have a value."""
     count = len(answers.setup.objectives) + len(answers.setup.constraints)
-    found = (answers.stored == answers.runs.per_design) & (answers.failed == 0) & ~answers.cut_off
+    found = whole(answers.runs.per_design, answers.stored, answers.failed, answers.cut_off)
     return np.asarray(found & ~np.isnan(answers.values[:, :count]).any(axis=1))
 
 

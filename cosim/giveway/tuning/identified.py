@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.base.errors import GivewayError
+from giveway.base.stretches import stretches
 from giveway.identification.motion_log import MotionLog, behind_drivetrain, pieces
 from giveway.identification.roller_friction import Calibration, TouchedError, calibrate
 from giveway.robot.variables import Value
-from giveway.tuning.logs import TRACKING, Log, runs_of
+from giveway.tuning.logs import TRACKING, Log
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -88,7 +89,7 @@ def _motion(log: Log, robot: Robot) -> MotionLog:
 def _rests(log: Log) -> list[tuple[int, int]]:
     """Steps in which the robot stands and nothing pushes, without their beginning."""
     settled = round(SETTLED_S / log.step_s)
-    still = runs_of(~log.moving() & log.free())
+    still = stretches(~log.moving() & log.free())
     return [(begin + settled, end) for begin, end in still if end - begin > 2 * settled]
 
 

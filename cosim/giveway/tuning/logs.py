@@ -12,6 +12,7 @@ import numpy as np
 from giveway.base.checks import finite
 from giveway.base.csv_rows import check_widths, number_of, read_rows
 from giveway.base.errors import FileError, GivewayError, InputFileError
+from giveway.base.stretches import stretches
 from giveway.identification.motion_log import COUNT_WRAP
 from giveway.library.replay import ReplayedController
 from giveway.replay.inputs import wrapped
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
     from giveway.robot.robot_file import Robot
 
-__all__ = ["Log", "Push", "read_log", "read_pushes", "runs_of", "without_refused"]
+__all__ = ["Log", "Push", "read_log", "read_pushes", "without_refused"]
 
 AFTER_S = 2.0  # a push, until the robot is undisturbed again; refused sensors, until the detector is armed and calm
 BEFORE_PUSH_S = 0.2
@@ -161,7 +162,7 @@ def without_refused(log: Log, status: NDArray[np.int32]) -> Log:
     found = replace(log, inputs=inputs, refused=refused, angle_rad=over_gaps(log.angle_rad, good),
                     torque_nm=over_gaps(log.torque_nm, good))  # fmt: skip
     driven = found.moving()
-    for begin, end in runs_of(refused):
+    for begin, end in stretches(refused):
         if (end - begin) * log.step_s > BRIDGED_S and driven[begin:end].any():
             reason = f"no good sample from {begin * log.step_s:.3f} to {end * log.step_s:.3f} s, and the wheels turn"
             raise GivewayError(log.name, reason, "give what is before and after as logs that begin at rest")
@@ -172,12 +173,6 @@ def without_refused(log: Log, status: NDArray[np.int32]) -> Log:
         f"after each, were left out: {left_out_s:.3g} of {log.duration_s:.3g} s"
     )
     return replace(found, said=(*log.said, said))
-
-
-def runs_of(rows: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Begin and end of the successive ``rows``."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], rows.astype(np.int8), [0]))))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
 def _until(rows: NDArray[np.bool_], more: int) -> NDArray[np.bool_]:
